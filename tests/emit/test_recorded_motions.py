@@ -10,9 +10,10 @@ import pytest
 from every_motion import CASES, SURFACES, everything, states
 from node import NODE
 from tippetop.contact.sliding import sliding_motion
-from tippetop.emit import llvm
+from tippetop.emit import graph, llvm
 from tippetop.emit.coefficients import NodeArithmetic
 from tippetop.emit.graph import NotRecordable
+from tippetop.emit.hoisting import hoisted, played
 from tippetop.emit.javascript import javascript_source
 from tippetop.emit.recording import record
 from tippetop.integrators import has_llvm
@@ -179,6 +180,30 @@ def test_series_of_nodes_solve_what_they_are_given():
     starts = np.linspace(1.0, 2.0, 8)
     found = by_llvm(record(exponential, 1, 2), starts[:, None], (3.0, 2.0))[:, 0]
     np.testing.assert_allclose(found, starts * math.exp(0.5), rtol=1e-15)
+
+
+@pytest.mark.parametrize("shape", SURFACES)
+def test_what_parameters_alone_make_is_made_apart_from_the_rest(shape):
+    apart = 0
+    for case in CASES:
+        if not case.name.startswith(shape):
+            continue
+        rows, function, whole = states(case.motion, POINTS), everything(case.motion), recorded(case)
+        own, rest = hoisted(whole)
+        assert operations(own) + operations(rest) == operations(whole)
+        constants = (graph.PARAMETER, graph.CONSTANT)
+        assert not [
+            node
+            for node in rest.nodes
+            if node.operands and all(operand.name in constants for operand in node.operands)
+        ]
+        apart += operations(own)
+        given = [*case.parameters, *played(own, (), case.parameters)]
+        found = by_floats(lambda y, p, rest=rest: played(rest, y, p), rows, given)
+        exact = by_floats(function, rows, case.parameters)
+        assert [row is None for row in found] == [row is None for row in exact]
+        assert_same(found, exact)
+    assert apart > len(CASES) / len(SURFACES)
 
 
 def test_the_reports_sliding_equations_are_few_operations():

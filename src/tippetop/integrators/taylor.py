@@ -4,7 +4,7 @@ import math
 import pickle
 import threading
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from inspect import getsource
@@ -13,6 +13,8 @@ from typing import Any, ClassVar
 import heyoka as hy
 import numpy as np
 
+from tippetop.emit.hoisting import hoisted, played
+from tippetop.emit.recording import recordable
 from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Expansion, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.sealed_folders import kept_content
@@ -79,15 +81,15 @@ class Taylor:
     def expansion(self, motion: Motion, parameters: Sequence[float], degree: int, count: int) -> Expansion:
         """The coefficients of the first numbers of a motion's solutions in powers of time, compiled."""
         compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree))
-        numbers = np.array(parameters)
+        numbers = np.array(compiled.numbers(parameters))
         return lambda start: compiled.expanded(start, numbers, count)
 
 
 class _Compiled:
-    """An integrator, and a lock that it is used under."""
+    """An integrator, the parameters it takes by those of the motion, and a lock that it is used under."""
 
-    def __init__(self, integrator: Any) -> None:
-        self.integrator, self.lock = integrator, threading.Lock()
+    def __init__(self, integrator: Any, numbers: Callable[[Sequence[float]], Sequence[float]]) -> None:
+        self.integrator, self.numbers, self.lock = integrator, numbers, threading.Lock()
         self._coefficients, self._state, self._parameters = integrator.tc, integrator.state, integrator.pars
 
     def arc(
@@ -96,10 +98,10 @@ class _Compiled:
         """An arc whose steps leave out no more of any number, its end, what ended it, and steps taken."""
         (time, state), parts, left, longest, most = start, list[DenseSolution](), LONG, math.inf, LONG
         taken = 0
-        run, outcome = self.integrator, hy.taylor_outcome.step_limit
+        run, outcome, numbers = self.integrator, hy.taylor_outcome.step_limit, self.numbers(parameters)
         with self.lock:
             # Those that appear in no equation, beyond the last that does, it has no room for.
-            run.pars[:] = parameters[: len(run.pars)]
+            run.pars[:] = numbers[: len(run.pars)]
             while left and outcome == hy.taylor_outcome.step_limit:
                 run.time = time
                 run.state[:] = state
@@ -151,9 +153,9 @@ class _Compiled:
 def _compiled(motion: Motion, tolerance: float) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
     state = [hy.make_vars(f"y{i}") for i in range(motion.size)]
-    parameters = [hy.par[i] for i in range(motion.parameters)]
-    rates = [hy.expression(rate) for rate in motion.rates(state, parameters)]
-    guards = [GUARDED * guard.value(state, parameters) for guard in motion.guards]
+    values, numbers = _expressions(motion, state)
+    rates = [hy.expression(rate) for rate in values[: motion.size]]
+    guards = [GUARDED * guard for guard in values[motion.size :]]
 
     def make() -> Any:
         falling = hy.event_direction.negative
@@ -174,9 +176,33 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
     )
     content = heard(lambda: kept_content(made, lambda: pickle.dumps(make())))
     try:
-        return _Compiled(pickle.loads(content))
+        return _Compiled(pickle.loads(content), numbers)
     except Exception:  # noqa: BLE001 - whatever is wrong with what was kept, it can be made anew
-        return _Compiled(make())
+        return _Compiled(make(), numbers)
+
+
+def _expressions(
+    motion: Motion, state: Sequence[Any]
+) -> tuple[Sequence[Any], Callable[[Sequence[float]], Sequence[float]]]:
+    """The rates and guards in heyoka's terms, and the parameters in them by those of the motion.
+
+    To heyoka, what is made of parameters alone is a series like any other, expanded in every step: so it is
+    made once and is a parameter.
+    """
+
+    def values(y: Sequence[Any], p: Sequence[Any]) -> list[Any]:
+        return [*motion.rates(y, p), *[guard.value(y, p) for guard in motion.guards]]
+
+    recorded = recordable(values, motion.size, motion.parameters)
+    if recorded is None:
+        return values(state, [hy.par[i] for i in range(motion.parameters)]), list
+    own, rest = hoisted(recorded)
+
+    def numbers(parameters: Sequence[float]) -> list[float]:
+        with np.errstate(all="ignore"):  # what is infinite, heyoka tells
+            return [*parameters, *played(own, (), list(np.array(parameters)))]
+
+    return played(rest, state, [hy.par[i] for i in range(rest.parameters)]), numbers
 
 
 def _cut(solution: DenseSolution, accuracy: float) -> DenseSolution | None:
