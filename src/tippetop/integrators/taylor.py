@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from inspect import getsource
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeAlias
 
 import heyoka as hy
 import numpy as np
@@ -39,6 +39,9 @@ GUARDED = 2.0**-5
 """Weight of guards beside the numbers of the motion where the compiler chooses steps by the largest of all. A
 guard's zero needs fewer digits than they do, since the state there is theirs: by itself a guard would cost
 steps."""
+
+Numbers: TypeAlias = Callable[[tuple[float, ...]], Sequence[float]]
+"""From the parameters of a motion to those of what is compiled."""
 
 # For the whole process: what it says of guards on the terminal, its makers understand; and what is compiled
 # is kept by this package, whole or not at all.
@@ -81,14 +84,14 @@ class Taylor:
     def expansion(self, motion: Motion, parameters: Sequence[float], degree: int, count: int) -> Expansion:
         """The coefficients of the first numbers of a motion's solutions in powers of time, compiled."""
         compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree))
-        numbers = np.array(compiled.numbers(parameters))
+        numbers = np.array(compiled.numbers(tuple(parameters)))
         return lambda start: compiled.expanded(start, numbers, count)
 
 
 class _Compiled:
     """An integrator, the parameters it takes by those of the motion, and a lock that it is used under."""
 
-    def __init__(self, integrator: Any, numbers: Callable[[Sequence[float]], Sequence[float]]) -> None:
+    def __init__(self, integrator: Any, numbers: Numbers) -> None:
         self.integrator, self.numbers, self.lock = integrator, numbers, threading.Lock()
         self._coefficients, self._state, self._parameters = integrator.tc, integrator.state, integrator.pars
 
@@ -98,7 +101,7 @@ class _Compiled:
         """An arc whose steps leave out no more of any number, its end, what ended it, and steps taken."""
         (time, state), parts, left, longest, most = start, list[DenseSolution](), LONG, math.inf, LONG
         taken = 0
-        run, outcome, numbers = self.integrator, hy.taylor_outcome.step_limit, self.numbers(parameters)
+        run, outcome, numbers = self.integrator, hy.taylor_outcome.step_limit, self.numbers(tuple(parameters))
         with self.lock:
             # Those that appear in no equation, beyond the last that does, it has no room for.
             run.pars[:] = numbers[: len(run.pars)]
@@ -181,9 +184,7 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
         return _Compiled(make(), numbers)
 
 
-def _expressions(
-    motion: Motion, state: Sequence[Any]
-) -> tuple[Sequence[Any], Callable[[Sequence[float]], Sequence[float]]]:
+def _expressions(motion: Motion, state: Sequence[Any]) -> tuple[Sequence[Any], Numbers]:
     """The rates and guards in heyoka's terms, and the parameters in them by those of the motion.
 
     To heyoka, what is made of parameters alone is a series like any other, expanded in every step: so it is
@@ -195,10 +196,11 @@ def _expressions(
 
     recorded = recordable(values, motion.size, motion.parameters)
     if recorded is None:
-        return values(state, [hy.par[i] for i in range(motion.parameters)]), list
+        return values(state, [hy.par[i] for i in range(motion.parameters)]), tuple
     own, rest = hoisted(recorded)
 
-    def numbers(parameters: Sequence[float]) -> list[float]:
+    @lru_cache(maxsize=16)
+    def numbers(parameters: tuple[float, ...]) -> Sequence[float]:
         with np.errstate(all="ignore"):  # what is infinite, heyoka tells
             return [*parameters, *played(own, (), list(np.array(parameters)))]
 
