@@ -26,10 +26,12 @@ LONGEST_NAME = 300
 """How much of a path a sentence shows, letters."""
 
 
-def require_ending(field: str, path: Path, endings: Sequence[str]) -> None:
-    """Raise `InvalidInput` if the name of a file does not end in one of these."""
-    if path.suffix.lower() not in endings:
+def require_ending(field: str, path: Path, endings: Sequence[str]) -> str:
+    """The ending of a file's name; raises `InvalidInput` if it is none of these."""
+    ending = path.suffix.lower()
+    if ending not in endings:
         raise InvalidInput(field, str(path), f"a file name that ends in {' or '.join(endings)}")
+    return ending
 
 
 def refuse_overwriting(path: Path, overwrite: bool, otherwise: str = "") -> None:

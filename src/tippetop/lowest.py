@@ -1,9 +1,6 @@
 """Which surface of a body is lowest, for many states at once."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from tippetop.mechanics.hull import Hull, each_surface, outer_height
 from tippetop.mechanics.state import State
@@ -18,23 +15,11 @@ LOOKS = 65
 """Tilts at which the height of the centre of mass is looked at."""
 
 
-def lowest_number(surface: Surface, c: Any) -> NDArray[np.intp]:
-    """Number of the surface that reaches lowest for each c = n_z."""
-    level = _level(surface, c)
-    found: NDArray[np.intp] = np.argmax([one.height(c) >= level for one in each_surface(surface)], axis=0)
-    return found
-
-
-def _level(surface: Surface, c: Scalar) -> Scalar:
-    """Height from which on a surface is as low as the lowest."""
-    return outer_height(surface, c) - LEVEL * surface.size
-
-
 def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
     """Vectors from the centre of mass to the lowest point of the body; of numbers, or arrays of one shape."""
     if not isinstance(surface, Hull):
         return contact_vector(axis, surface)
-    level = _level(surface, axis[2])
+    level = outer_height(surface, axis[2]) - LEVEL * surface.size
     last, *others = reversed(each_surface(surface))
     with np.errstate(divide="ignore", invalid="ignore"):
         x, y, z = contact_vector(axis, last)

@@ -19,7 +19,7 @@ from tippetop.emit.recording import record
 from tippetop.integrators import has_llvm
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.euler import published_rates
-from tippetop.mechanics.series import horner, solution
+from tippetop.mechanics.series import Series, horner, solved, unknown
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.presets import report_problem
@@ -174,7 +174,8 @@ def test_what_is_rarely_needed_is_there_for_those_who_need_it():
 @pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 def test_series_of_nodes_solve_what_they_are_given():
     def exponential(y, p):
-        (series,) = solution(y, lambda y: (p[0] * y[0] - y[0] * p[0] + y[0] / p[1],), NodeArithmetic())
+        series = Series(unknown, NodeArithmetic())
+        solved([series], y, lambda y: (p[0] * y[0] - y[0] * p[0] + y[0] / p[1],))
         return (horner([series[k] for k in range(20)], 1.0),)
 
     starts = np.linspace(1.0, 2.0, 8)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tippetop.mechanics.series import Series, horner, solution
+from tippetop.mechanics.series import Series, horner, solved, unknown
 from tippetop.sweeps.stepper import NumPyArithmetic
 
 PLAIN = NumPyArithmetic()
@@ -45,12 +45,12 @@ def test_powers_of_series_are_those_of_their_values():
 
 
 def test_solution_of_a_harmonic_oscillator_is_a_circle():
-    y = solution([np.ones(1), np.zeros(1)], lambda y: (-y[1], y[0]), PLAIN)
+    y = solved([Series(unknown, PLAIN) for _ in range(2)], [np.ones(1), np.zeros(1)], lambda y: (-y[1], y[0]))
     for k in range(DEGREE):
         assert y[0][k] == pytest.approx((1, 0, -1, 0)[k % 4] / math.factorial(k), abs=1e-17)
         assert y[1][k] == pytest.approx((0, 1, 0, -1)[k % 4] / math.factorial(k), abs=1e-17)
 
 
 def test_solution_with_a_constant_rate_is_a_line():
-    (y,) = solution([np.array([2.0])], lambda _: (3.0,), PLAIN)
+    (y,) = solved([Series(unknown, PLAIN)], [np.array([2.0])], lambda _: (3.0,))
     assert np.ravel(terms_of(y)).tolist() == [2.0, 3.0, *([0.0] * (DEGREE - 2))]

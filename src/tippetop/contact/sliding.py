@@ -91,12 +91,11 @@ class Sliding(SlidingMode):
         return rolling_stopping_guard(SlidingState.unpack(y), SlidingState.unpack(self.rates(y)), self.top)
 
 
-def sliding_motion(kind: Kind, guarded: bool, near: bool = False, held: bool = False) -> Motion:
+def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
     """Equations of motion of a sliding top of this kind, whose rolling may be held.
 
-    If `guarded`, the first guard is of lift-off. Where slip can end, it is watched how long it lasts if that
-    may be soon (`near`), and else whether it may.
+    If `guarded`, the first guard is of lift-off. Where slip can end, it is watched whether it may be soon.
     """
     nothing: Any = None
-    form = (SlidingWithoutRolling if held else Sliding)(nothing, nothing, near, guarded)
+    form = (SlidingWithoutRolling if held else Sliding)(nothing, nothing, False, guarded)
     return motion_of(form, (kind,))

@@ -49,7 +49,6 @@ GIVEN = {
 LEFT = {
     "rules_of",
     "touching",
-    "lowest_number",
     "_shape",
     "_a_profile",
     "Body.turned",

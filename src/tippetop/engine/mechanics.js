@@ -1682,12 +1682,7 @@ function is_exactly(value, number) {
   return py.and(py.isinstance(value, [py.int, py.float]), () => py.eq(value, number));
 }
 
-/** The series of the solution of y' = rates(y) that starts at y = start. */
-function solution(start, rates, arithmetic) {
-  return solved([...start].map((_) => new Series(unknown, arithmetic)), start, rates);
-}
-
-/** Series that are unknown, made the solution. */
+/** Series that are unknown, made the solution of y' = rates(y) that starts at y = start. */
 function solved(series, start, rates) {
   var rule = (first, slope) => {
     if (!py.isinstance(slope, Series)) {
@@ -3341,9 +3336,9 @@ class Sliding extends SlidingMode {
 }
 
 /** Equations of motion of a sliding top of this kind, whose rolling may be held. */
-function sliding_motion(kind, guarded, near = false, held = false) {
+function sliding_motion(kind, guarded, held = false) {
   var nothing = null;
-  var form = new (py.truth(held) ? SlidingWithoutRolling : Sliding)(nothing, nothing, near, guarded);
+  var form = new (py.truth(held) ? SlidingWithoutRolling : Sliding)(nothing, nothing, false, guarded);
   return motion_of(form, [kind]);
 }
 
@@ -10652,17 +10647,12 @@ class Flights extends py.Thing {
 const LEVEL = 1e-09;
 const LOOKS_of_lowest = 65;
 
-/** Height from which on a surface is as low as the lowest. */
-function _level(surface, c) {
-  return py.sub(outer_height(surface, c), py.mul(LEVEL, surface.size));
-}
-
 /** Vectors from the centre of mass to the lowest point of the body; of numbers, or arrays of one shape. */
 function lowest_contact_vector(axis, surface) {
   if (!py.isinstance(surface, Hull)) {
     return contact_vector(axis, surface);
   }
-  var level = _level(surface, axis[2]);
+  var level = py.sub(outer_height(surface, axis[2]), py.mul(LEVEL, surface.size));
   var [last, ...others] = py.reversed(each_surface(surface));
   py.heed(false);
   try {
@@ -11892,7 +11882,6 @@ export {
   _leads,
   _left,
   _left_of_two_resolver,
-  _level,
   _lying_flat,
   _marks,
   _meetings,
@@ -12168,7 +12157,6 @@ export {
   slipping,
   slips_of,
   smoothly_joined,
-  solution,
   solve,
   solved,
   spared,

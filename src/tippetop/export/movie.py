@@ -72,8 +72,7 @@ def write_movie(
     """
     require_run(run)
     path = path_of(path)
-    require_ending("path", path, (".mp4", ".gif"))
-    encoder = ffmpeg() if path.suffix.lower() == ".mp4" else ""
+    encoder = ffmpeg() if require_ending("path", path, (".mp4", ".gif")) == ".mp4" else ""
     place_for(path, overwrite)
     rate = fps if fps is not None else 30.0 if encoder else 20.0
     extent = pixels or ((640, 480) if encoder else (360, 270))

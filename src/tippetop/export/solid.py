@@ -52,8 +52,7 @@ def write_solid(piece: Workpiece, path: Path | str, overwrite: bool = False, *, 
     """
     require("piece", piece, Workpiece, "a Workpiece")
     place = path_of(path)
-    suffix = place.suffix.lower()
-    require_ending("path", place, (".stl", ".3mf"))
+    suffix = require_ending("path", place, (".stl", ".3mf"))
     if isinstance(facets, bool) or not isinstance(facets, int) or facets < 8:
         raise InvalidInput("facets", facets, "a whole number at least 8")
     meshes = solids(piece, facets)

@@ -194,19 +194,10 @@ def is_exactly(value: object, number: float) -> bool:
     return isinstance(value, (int, float)) and value == number
 
 
-def solution(
-    start: Sequence[Scalar],
-    rates: Callable[[Sequence[Series]], Sequence[Any]],
-    arithmetic: Sums,
-) -> list[Series]:
-    """The series of the solution of y' = rates(y) that starts at y = start."""
-    return solved([Series(unknown, arithmetic) for _ in start], start, rates)
-
-
 def solved(
     series: list[Series], start: Sequence[Scalar], rates: Callable[[Sequence[Series]], Sequence[Any]]
 ) -> list[Series]:
-    """Series that are unknown, made the solution."""
+    """Series that are unknown, made the solution of y' = rates(y) that starts at y = start."""
 
     def rule(first: Scalar, slope: Any) -> Callable[[int], Scalar]:
         if not isinstance(slope, Series):
