@@ -50,10 +50,6 @@ class StribeckLaw(NamedTuple):
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         return (self.mu, self.more, self.slow / units.speed)
 
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
-        return cls(*coefficients)
-
 
 class StribeckFriction(tt.Friction):
     kind: Literal["stribeck"] = "stribeck"

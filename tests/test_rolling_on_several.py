@@ -1,6 +1,6 @@
 """Rolling resistance of bodies of several surfaces: what is known exactly, and what must hold."""
 
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -205,10 +205,6 @@ class SmoothedLaw(NamedTuple):
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         return (self.mu, self.eps / units.speed, self.arm / units.length, self.slow * units.time)
-
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
-        return cls(*coefficients)
 
 
 def ends(problem: tt.Problem, duration: float, law: SmoothedLaw | None = None) -> tuple[np.ndarray, set[str]]:

@@ -42,6 +42,13 @@ class Point(NamedTuple):
     def of(cls, numbers):
         return cls(*numbers)
 
+class Maker(NamedTuple):
+    made: type[Any]
+    number: Any
+
+    def two(self):
+        return [self.made(*one) for one in ((self.number,), (1.0, self.number))]
+
 @dataclass(frozen=True)
 class Base:
     name: str
@@ -107,6 +114,7 @@ def tuples():
     point = Point(y=1.0, x=a)
     x, y = point._replace(x=8.0)
     return [a, rest, b, c, x, y, point == (1.0, 1.0), point == Point.of([1.0, 1.0]), Point(3.0, 4.0).size,
+            Maker(Point, 0.75).two()[1].size, Maker(Point, 0.0).two()[0].y,
             rest[-1], rest[::-1], rest[1:], rest[:-1], [*rest, *point], (0.0,) * 3, point != (1.0, 2.0)]
 
 def records():

@@ -61,6 +61,6 @@ def test_regularized_coulomb_friction_is_viscous_for_slow_slip(mu, slip, ratio):
 @given(ANY_LAW, SLIPS, numbers(0.1, 10.0), numbers(0.1, 10.0))
 def test_friction_is_the_same_force_whatever_the_units(law, slip, long, slow):
     units = Units(1.0, long, slow)
-    there = type(law).from_coefficients(law.coefficients(units))
+    there = type(law)(*law.coefficients(units))
     force = there.traction((slip[0] / units.speed, slip[1] / units.speed), AT_REST).force
     assert force == pytest.approx(law.traction(slip, AT_REST).force, rel=1e-13)

@@ -97,9 +97,7 @@ def test_a_larger_top_under_other_gravity_moves_alike_in_slower_time(launch, lar
         transverse_inertia=top.transverse_inertia * larger**2,
         axial_inertia=top.axial_inertia * larger**2,
         surface=type(top.surface)(*(length * larger for length in top.surface)),
-        friction=type(top.friction).from_coefficients(
-            top.friction.coefficients(Units(1.0, 1.0 / larger, 1.0 / slower))
-        ),
+        friction=type(top.friction)(*top.friction.coefficients(Units(1.0, 1.0 / larger, 1.0 / slower))),
         gravity=top.gravity * stronger,
     )
     far = motion._replace(

@@ -32,6 +32,8 @@ class Calls(Expressions):
             case ast.Attribute(value=value, attr=attr) if attr in METHODS:
                 given = filter(None, [self.text(value), self._given(node)])
                 return f"py.{METHODS[attr]}({', '.join(given)})"
+            case ast.Attribute(attr=attr) if attr in self.program.makers:
+                return f"new {self.text(node.func)}({self._given(node)})"
             case ast.Attribute(value=value, attr=attr):
                 return f"{self.text(value, ATOM)}.{RENAMED.get(attr, attr)}({self._given(node)})"
             case ast.Subscript(value=ast.Name(id="list" | "dict" | "set" as word)):

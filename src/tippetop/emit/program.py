@@ -86,6 +86,8 @@ class Program:
         self.functions: dict[str, list[str]] = {}
         self.methods: dict[str, list[list[str]]] = {"model_copy": [["update"]]}
         self.values: set[str] = set()
+        # Fields that are classes.
+        self.makers: set[str] = set()
         for module, tree in self.trees.items():
             for node in tree.body:
                 self._enter(module, node)
@@ -156,6 +158,8 @@ class Program:
                 case ast.AnnAssign(target=ast.Name(id=name)) if found.kind in (*RECORDS, "Part"):
                     if not ast.unparse(node.annotation).startswith("ClassVar"):
                         found.fields[name] = node.value
+                    if ast.unparse(node.annotation).startswith("type["):
+                        self.makers.add(name)
                 case ast.FunctionDef(name="__init__"):
                     found.fields = dict.fromkeys(parameters(node))
                 case ast.FunctionDef(name=name) if "property" in " ".join(marks_of(node)):

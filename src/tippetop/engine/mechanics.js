@@ -573,10 +573,6 @@ class ViscousLaw extends py.NamedTuple {
   coefficients(units) {
     return [py.mul(this.mu, units.speed)];
   }
-  /** Make the law with this mu. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
 }
 
 /** Coulomb friction smoothed below the slip speed eps (m/s): f = -mu v / sqrt(v^2 + eps^2), no torque. */
@@ -604,10 +600,6 @@ class RegularizedCoulombLaw extends py.NamedTuple {
   /** Friction coefficient mu, and eps in units of speed. */
   coefficients(units) {
     return [this.mu, py.div(this.eps, units.speed)];
-  }
-  /** Make the law with these mu and eps. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
   }
 }
 
@@ -642,10 +634,6 @@ class CoulombLaw extends py.NamedTuple {
   /** Friction coefficient mu. */
   coefficients(units) {
     return [this.mu];
-  }
-  /** Make the law with this mu. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
   }
 }
 
@@ -755,16 +743,16 @@ class Top extends py.NamedTuple {
 
 /** What remains of a top when its numbers are taken away: how it is shaped and how it rubs. */
 class Kind extends py.NamedTuple {
-  static fields = ["surface", "friction", "proportions", "coefficients", "resists_rolling"];
+  static fields = ["surface", "law", "proportions", "coefficients", "resists_rolling"];
   get 0() { return this.surface; }
-  get 1() { return this.friction; }
+  get 1() { return this.law; }
   get 2() { return this.proportions; }
   get 3() { return this.coefficients; }
   get 4() { return this.resists_rolling; }
-  constructor(surface, friction, proportions, coefficients, resists_rolling) {
+  constructor(surface, law, proportions, coefficients, resists_rolling) {
     super();
     this.surface = surface;
-    this.friction = friction;
+    this.law = law;
     this.proportions = proportions;
     this.coefficients = coefficients;
     this.resists_rolling = resists_rolling;
@@ -782,7 +770,7 @@ class Kind extends py.NamedTuple {
     var first = py.add(2, this.proportions);
     var last = py.add(py.add(2, this.proportions), this.coefficients);
     var surface = this.surface.from_proportions(py.tuple(numbers.slice(2, first)));
-    var friction = this.friction.from_coefficients(py.tuple(numbers.slice(first, last)));
+    var friction = new this.law(...numbers.slice(first, last));
     var resistance = py.truth(this.resists_rolling) ? new RollingResistance(py.item(numbers, last)) : null;
     return new Top(1.0, numbers[0], numbers[1], surface, friction, 1.0, resistance);
   }
@@ -7965,10 +7953,6 @@ class PatchLaw extends py.NamedTuple {
   coefficients(units) {
     return [this.mu, py.div(this.patch_radius, units.length)];
   }
-  /** Make the law with this coefficient and patch radius. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
-  }
 }
 
 /** Contensou friction with an ellipsoidal limit surface (Leine and Glocker 2003). */
@@ -8239,10 +8223,6 @@ class HertzBranch extends py.NamedTuple {
   /** Friction coefficient, patch radius in units of length, and which branch it is. */
   coefficients(units) {
     return [this.mu, py.div(this.patch_radius, units.length), this.drills];
-  }
-  /** Make the branch of these numbers. */
-  static from_coefficients(coefficients) {
-    return new this(...coefficients);
   }
 }
 

@@ -6,7 +6,7 @@ depend on kappa = v / (R |w|) alone, and derive from one convex dissipation pote
 and w = 0.
 """
 
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 from tippetop.mechanics.friction import Traction
 from tippetop.mechanics.units import Units
@@ -39,11 +39,6 @@ class PatchLaw(NamedTuple):
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """Friction coefficient, and patch radius in units of length."""
         return (self.mu, self.patch_radius / units.length)
-
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
-        """Make the law with this coefficient and patch radius."""
-        return cls(*coefficients)
 
 
 class EllipsoidalLaw(PatchLaw):

@@ -203,11 +203,6 @@ class HertzBranch(NamedTuple):
         """Friction coefficient, patch radius in units of length, and which branch it is."""
         return (self.mu, self.patch_radius / units.length, self.drills)
 
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "HertzBranch":
-        """Make the branch of these numbers."""
-        return cls(*coefficients)
-
 
 class HertzLaw(PatchLaw):
     """Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of them."""

@@ -34,11 +34,6 @@ class CoulombLaw(NamedTuple):
         """Friction coefficient mu."""
         return (self.mu,)
 
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> "CoulombLaw":
-        """Make the law with this mu."""
-        return cls(*coefficients)
-
 
 class RollingResistance(NamedTuple):
     """A torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity."""

@@ -1,6 +1,6 @@
 """Friction laws: the force and torque of the table per unit normal force, given the slip."""
 
-from typing import NamedTuple, Protocol, Self
+from typing import NamedTuple, Protocol
 
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
@@ -27,11 +27,7 @@ class FrictionLaw(Protocol):
         """Force and torque per unit normal force at this slip velocity (m/s) and angular velocity (rad/s)."""
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
-        """The law's numbers, which may carry a length or a time, in these units."""
-
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
-        """Make the law with these numbers."""
+        """What its class makes the law of, numbers that may carry a length or a time, in these units."""
 
 
 class ViscousLaw(NamedTuple):
@@ -51,11 +47,6 @@ class ViscousLaw(NamedTuple):
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """Friction coefficient mu in units of 1 / speed."""
         return (self.mu * units.speed,)
-
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
-        """Make the law with this mu."""
-        return cls(*coefficients)
 
 
 class RegularizedCoulombLaw(NamedTuple):
@@ -77,8 +68,3 @@ class RegularizedCoulombLaw(NamedTuple):
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
         """Friction coefficient mu, and eps in units of speed."""
         return (self.mu, self.eps / units.speed)
-
-    @classmethod
-    def from_coefficients(cls, coefficients: tuple[Scalar, ...]) -> Self:
-        """Make the law with these mu and eps."""
-        return cls(*coefficients)

@@ -82,7 +82,7 @@ class Kind(NamedTuple):
     """What remains of a top when its numbers are taken away: how it is shaped and how it rubs."""
 
     surface: Any
-    friction: Any
+    law: type[Any]
     proportions: int
     coefficients: int
     resists_rolling: bool
@@ -101,7 +101,7 @@ class Kind(NamedTuple):
         """Make the top of this kind, in natural units, with these dimensionless numbers."""
         first, last = 2 + self.proportions, 2 + self.proportions + self.coefficients
         surface: Surface = self.surface.from_proportions(tuple(numbers[2:first]))
-        friction = self.friction.from_coefficients(tuple(numbers[first:last]))
+        friction = self.law(*numbers[first:last])
         resistance = RollingResistance(numbers[last]) if self.resists_rolling else None
         return Top(1.0, numbers[0], numbers[1], surface, friction, 1.0, resistance)
 
