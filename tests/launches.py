@@ -197,7 +197,7 @@ def in_python(fields: dict[str, Any], duration: float) -> Any:
     """The same launch in Python; None if it is refused."""
     try:
         return tt.simulate(
-            tt.Problem(**fields), duration, samples=SAMPLES, integrator="dop853", tolerance=TOLERANCE
+            tt.Problem(**fields), duration, samples=SAMPLES, integrator="compiled", tolerance=TOLERANCE
         )
     except tt.InvalidInput as refusal:
         return str(refusal)
