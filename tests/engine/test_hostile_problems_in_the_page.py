@@ -28,7 +28,7 @@ def named(fields: dict[str, Any]) -> str:
                 samples=2,
                 step_limit=STEPS,
                 phase_limit=MODES,
-                integrator="dop853",
+                integrator="compiled",
                 tolerance=TOLERANCE,
             )
         except tt.InvalidInput as refusal:
