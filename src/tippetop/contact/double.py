@@ -212,5 +212,9 @@ def _branch(number: int) -> Callable[[Any, Row], Scalar]:
 
 
 def _left(*slips: Slip) -> Scalar:
-    """Falls through zero where so little is left of all these that they are followed no further."""
-    return sum(inner(slip, slip) for slip in slips) - SLOWEST_SLIP * SLOWEST_SLIP
+    """Falls through zero where so little is left of all these that they are followed no further.
+
+    A length: it falls straight through, where its square would only touch zero. In straight motion steps may
+    lead beyond the end of slip, and rounding hides so slight a touch.
+    """
+    return sum(inner(slip, slip) for slip in slips) ** 0.5 - SLOWEST_SLIP

@@ -7028,7 +7028,7 @@ function _branch(number) {
 
 /** Falls through zero where so little is left of all these that they are followed no further. */
 function _left(...slips) {
-  return py.sub(py.sum([...slips].map((slip) => inner(slip, slip))), py.mul(SLOWEST_SLIP, SLOWEST_SLIP));
+  return py.sub(py.pow(py.sum([...slips].map((slip) => inner(slip, slip))), 0.5), SLOWEST_SLIP);
 }
 
 // tippetop.contact.double_sticking
