@@ -71,3 +71,19 @@ def test_a_guard_that_is_below_zero_in_the_end_has_fallen():
     number, time, _ = fall(lambda t: (0.1 * ERROR * (1.0 + t), 1.0), end=(-1e-17, 1.0))
     assert number == 0
     assert time == pytest.approx(STEP[1], abs=1e-12)
+
+
+@pytest.mark.parametrize("pole", [0.5, 0.7])
+def test_a_pole_beyond_which_a_guard_is_negative_hides_no_fall_before_it(pole):
+    """Among the places that are looked at, and among those that are found, one may be the pole."""
+
+    def along(time):
+        return np.array([time - STEP[0]])
+
+    beyond = Guard("beyond", lambda y, p: 1.0 / (pole + STEP[0] - (y[0] + STEP[0])))
+    before = Guard("before", lambda y, p: pole - 1e-3 - y[0])
+    with pytest.raises(ZeroDivisionError):
+        beyond.value(along(STEP[0] + pole).tolist(), ())
+    number, time, _ = first_fall((beyond, before), (), along, along, STEP)
+    assert number == 1
+    assert time == pytest.approx(STEP[0] + pole - 1e-3, abs=1e-14)

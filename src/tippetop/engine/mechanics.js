@@ -10298,7 +10298,7 @@ function _fall_along(guards, parameters, dense, advance, step, least) {
   );
   var states = [...probes].map((time) => py.list(dense(time)));
   for (var [index, guard] of py.enumerate(guards)) {
-    var values = [...states].map((state) => py.float(guard.value(state, parameters)));
+    var values = [...states].map((state) => _value_of(guard, state, parameters));
     var value = _along(guard, parameters, dense);
     var exact = _along(guard, parameters, advance);
     for (var [low, high, function_] of brackets(probes, values, value, exact)) {
@@ -10322,7 +10322,17 @@ function _fall_along(guards, parameters, dense, advance, step, least) {
 
 /** A guard along a solution. */
 function _along(guard, parameters, solution) {
-  return (time) => py.float(guard.value(py.list(solution(time)), parameters));
+  return (time) => _value_of(guard, py.list(solution(time)), parameters);
+}
+
+/** The value of a guard; infinite at a pole, before which another guard may fall. */
+function _value_of(guard, state, parameters) {
+  try {
+    return py.float(guard.value(state, parameters));
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return py.math.inf;
+  }
 }
 
 /** The intervals over which the guard falls from positive to not positive, in turn; in which solution. */
@@ -10383,11 +10393,11 @@ function _polished(guard, parameters, advance, step, guess) {
   var other = py.sub(guess, shift) > start ? py.sub(guess, shift) : py.add(guess, shift);
   var state = advance(time);
   var beside = advance(other);
-  var [value, theirs] = [state, beside].map((one) => py.float(guard.value(py.list(one), parameters)));
+  var [value, theirs] = [state, beside].map((one) => _value_of(guard, py.list(one), parameters));
   var moved = shift;
   var finest = py.mul(0.001, shift);
   for (var turn = 0; turn < 8; turn += 1) {
-    if (py.eq(value, theirs)) {
+    if (!(0.0 < py.abs(py.sub(value, theirs)) && py.abs(py.sub(value, theirs)) < py.math.inf)) {
       break;
     }
     var new_ = py.sub(time, py.div(py.mul(value, py.sub(time, other)), py.sub(value, theirs)));
@@ -10398,7 +10408,7 @@ function _polished(guard, parameters, advance, step, guess) {
     }
     [time, other, beside, theirs] = [new_, time, state, value];
     state = advance(new_);
-    value = py.float(guard.value(py.list(state), parameters));
+    value = _value_of(guard, py.list(state), parameters);
   }
   if (
     moved > py.max(
@@ -11889,6 +11899,7 @@ export {
   _touch,
   _turn,
   _unit,
+  _value_of,
   _without_rolling,
   _written,
   acting,

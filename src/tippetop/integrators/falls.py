@@ -1,5 +1,6 @@
 """Where a guard falls through zero within a step of an integrator."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 
 from tippetop.integrators.base import Array, Guard
@@ -80,7 +81,7 @@ def _fall_along(
     probes = [start + look / LOOKS * (end - start) for look in range(LOOKS)] + [end]
     states = [dense(time).tolist() for time in probes]
     for index, guard in enumerate(guards):
-        values = [float(guard.value(state, parameters)) for state in states]
+        values = [_value_of(guard, state, parameters) for state in states]
         value, exact = _along(guard, parameters, dense), _along(guard, parameters, advance)
         for low, high, function in brackets(probes, values, value, exact):
             time = crossing(function, low, high)
@@ -94,7 +95,15 @@ def _fall_along(
 
 def _along(guard: Guard, parameters: Sequence[Scalar], solution: Dense) -> Value:
     """A guard along a solution."""
-    return lambda time: float(guard.value(solution(time).tolist(), parameters))
+    return lambda time: _value_of(guard, solution(time).tolist(), parameters)
+
+
+def _value_of(guard: Guard, state: Sequence[float], parameters: Sequence[Scalar]) -> float:
+    """The value of a guard; infinite at a pole, before which another guard may fall."""
+    try:
+        return float(guard.value(state, parameters))
+    except ArithmeticError:
+        return math.inf
 
 
 def brackets(
@@ -146,10 +155,10 @@ def _polished(
     shift = min(1e-4 * (end - start), 0.1 * (guess - start))
     time, other = guess, guess - shift if guess - shift > start else guess + shift
     state, beside = advance(time), advance(other)
-    value, theirs = (float(guard.value(one.tolist(), parameters)) for one in (state, beside))
+    value, theirs = (_value_of(guard, one.tolist(), parameters) for one in (state, beside))
     moved, finest = shift, 1e-3 * shift
     for _ in range(8):
-        if value == theirs:
+        if not 0.0 < abs(value - theirs) < math.inf:
             break
         new = time - value * (time - other) / (value - theirs)
         moved = abs(new - time)
@@ -158,7 +167,7 @@ def _polished(
             break
         time, other, beside, theirs = new, time, state, value
         state = advance(new)
-        value = float(guard.value(state.tolist(), parameters))
+        value = _value_of(guard, state.tolist(), parameters)
     if moved > max(finest, 4e-16 * max(1.0, abs(time))) or abs(time - guess) > 0.5 * (guess - start):
         return None
     return (time, state) if abs(value) <= abs(theirs) else (other, beside)
