@@ -14,7 +14,7 @@ OPERATIONS: Mapping[str, Callable[..., Any]] = {
     graph.QUOTIENT: operator.truediv,
     graph.NEGATIVE: operator.neg,
     graph.SIZE: abs,
-    graph.LESS: operator.lt,
+    graph.LESS: lambda a, b: 1.0 * (a < b),
     graph.ROOT: lambda number: number**0.5,
     graph.POWER: operator.pow,
 }
