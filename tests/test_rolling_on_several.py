@@ -290,6 +290,17 @@ def test_time_stepping_converges_to_our_runs_at_first_order(seed: int, duration:
     assert sizes[0] / sizes[1] == pytest.approx(2.0, rel=0.1)
 
 
+@pytest.mark.parametrize("tolerance", [None, 1e-14, 1e-12])
+def test_straight_slip_on_two_ends_when_friction_has_taken_it(tolerance: float | None) -> None:
+    """At v / (mu g): a step may lead beyond, as nothing of straight motion tells it to be short."""
+    for speed in np.linspace(0.05, 0.4, 15):
+        problem = dumbbell(velocity=(0.0, float(speed), 0.0)).replace({"rolling_resistance": 2e-3})
+        run = tt.simulate(problem, 1.0, samples=2, tolerance=tolerance)
+        assert run.attrs["outcome"] == "at_rest"
+        friction = float(getattr(problem.friction, "mu", 0.0))
+        assert float(run["end_time"]) == pytest.approx(speed / (friction * problem.gravity), rel=1e-7)
+
+
 def test_sweeps_find_what_runs_find() -> None:
     problem = dumbbell(velocity=(0.0, 0.2, 0.0))
     arms = [2e-4, 2e-3]

@@ -43,9 +43,9 @@ def rods(law):
 
 
 @st.composite
-def blows(draw, laws):
+def blows(draw, law):
     """A rod on its side, of which the second end strikes while the first one touches."""
-    top = draw(rods(draw(laws)))
+    top = draw(rods(law))
     azimuth = draw(numbers(-math.pi, math.pi))
     axis = (math.cos(azimuth), math.sin(azimuth), 0.0)
     momentum = tuple(draw(numbers(-1.0, 1.0)) for _ in range(3))
@@ -56,7 +56,7 @@ def blows(draw, laws):
     return state, (second, first)
 
 
-@given(blows(st.just(ViscousLaw(0.0))), numbers(0.0, 1.0))
+@given(blows(ViscousLaw(0.0)), numbers(0.0, 1.0))
 def test_without_friction_it_is_a_linear_complementarity_problem(blow, restitution):
     """M_ij = 1/m + h_i' h_j' s^2 / I1, and the first contact gives what keeps its velocity zero."""
     state, tops = blow
@@ -200,7 +200,7 @@ def naive(state, tops, steps):
 @pytest.mark.parametrize("law", [ViscousLaw(0.3), RegularizedCoulombLaw(0.2, 0.3)])
 def test_with_friction_it_is_what_small_steps_find(law):
     @settings(max_examples=5, phases=(Phase.explicit, Phase.generate))
-    @given(blows(st.just(law)))
+    @given(blows(law))
     def agree(blow):
         state, tops = blow
         found = impact(state, 0.0, *tops)
@@ -258,7 +258,7 @@ def test_its_impulse_is_all_that_lifts_the_body(law, restitution):
     """m dv_z = p, whichever of the surfaces gives it."""
 
     @settings(max_examples=10, phases=(Phase.explicit, Phase.generate))
-    @given(blows(st.just(law)))
+    @given(blows(law))
     def balance(blow):
         state, tops = blow
         found = impact(state, restitution, *tops)
@@ -336,76 +336,6 @@ def test_a_steep_law_holds_both_ends_and_takes_few_steps(falling, most):
 
 def cross_matrix(a):
     return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
-
-
-STEEP = st.builds(
-    RegularizedCoulombLaw, numbers(0.2, 3.5), numbers(-6.0, -4.0).map(lambda power: 10.0**power)
-)
-
-
-@given(blows(STEEP), numbers(0.0, 1.0))
-@settings(max_examples=20, phases=(Phase.explicit, Phase.generate))
-def test_a_steep_law_holds_either_end_or_none_and_takes_few_steps(blow, restitution):
-    """One end may be held while the other slips 10^4 times as fast: explicit steps would be as many."""
-    state, tops = blow
-    found = impact(state, restitution, *tops)
-    assert found.steps < 2000
-    change = energy(state, tops[0]) - energy(found.state, tops[0])
-    assert found.energy_lost == pytest.approx(change, abs=1e-12)
-    assert change > 0.0
-    assert gap_rate(found.state, tops[0]) > -1e-8
-
-
-def pivoting(eps):
-    """A rod that turns about its first end while the second one falls, and its tops."""
-    inertia, axial, turning, tilting = 1.5, 0.8, -4.0, -0.6
-    arm = (2.0, 0.0, -1.0)
-    velocity = np.cross(arm, (0.0, tilting, turning))
-    momentum = (0.0, inertia * tilting, inertia * turning)
-    state, tops = rod((2.0, 3.0), (inertia, axial), RegularizedCoulombLaw(2.5, eps), momentum, velocity[:2])
-    assert gap_rate(state, tops[1]) == pytest.approx(0.0, abs=1e-15)
-    return state, tops
-
-
-def by_a_joint(state, tops):
-    """Momentum and velocity after an impact of what slips across the rod, of which a joint holds one end."""
-    top = tops[0]
-    inertias = (top.axial_inertia, top.transverse_inertia, top.transverse_inertia, *[top.mass] * 3)
-    inverse = np.diag(1.0 / np.array(inertias))
-    arms = [contact_vector(state.axis, one.surface) for one in tops]
-    struck, held = (np.hstack([-cross_matrix(arm), np.eye(3)]) for arm in arms)
-    push = struck.T @ (0.0, -top.friction.mu, 1.0)
-    reaction = np.linalg.solve(held @ inverse @ held.T, -held @ inverse @ push)
-    assert math.hypot(*reaction[:2]) < 0.95 * top.friction.mu * reaction[2], "friction can be the joint"
-    changes = inverse @ (push + held.T @ reaction)
-    before = inverse @ (*state.momentum, *state.velocity)
-    after = before - changes * (struck[2] @ before) / (struck[2] @ changes)
-    assert struck[1] @ after > 0.1, "it slips on"
-    return np.linalg.solve(inverse, after)
-
-
-def test_an_end_that_is_held_is_a_joint_as_the_law_becomes_set_valued():
-    """What is left of its slip is of the order of eps."""
-    off = []
-    for eps in (1e-4, 1e-5, 1e-6):
-        state, tops = pivoting(eps)
-        found = impact(state, 0.0, *tops)
-        assert found.steps < 200
-        exact = by_a_joint(state, tops)
-        off.append(math.dist((*found.state.momentum, *found.state.velocity), exact))
-    assert off[0] < 1e-3
-    assert np.divide(off[:-1], off[1:]) == pytest.approx(np.full(2, 10.0), rel=1e-2)
-
-
-@pytest.mark.parametrize("falling", [pivoting(1e-6), *(falling for falling, _ in HELD.values())])
-def test_it_is_independent_of_the_steps(falling, monkeypatch):
-    state, tops = falling
-    found = impact(state, 0.0, *tops)
-    monkeypatch.setattr(impact_process, "TOLERANCE", 1e-7)
-    rough = impact(state, 0.0, *tops)
-    assert rough.steps < 0.8 * found.steps
-    assert rough.state.momentum == pytest.approx(found.state.momentum, abs=1e-7)
-    assert rough.state.velocity == pytest.approx(found.state.velocity, abs=1e-7)
 
 
 @pytest.mark.parametrize("number", [0, 1])

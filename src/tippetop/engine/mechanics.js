@@ -5363,19 +5363,17 @@ const POWER = -0.125;
 
 /** A step: the numbers at its start, the rates there and at the stages, the numbers at its end. */
 class RungeKuttaStep extends py.NamedTuple {
-  static fields = ["here", "there", "slopes", "size", "error"];
+  static fields = ["here", "there", "slopes", "size"];
   get 0() { return this.here; }
   get 1() { return this.there; }
   get 2() { return this.slopes; }
   get 3() { return this.size; }
-  get 4() { return this.error; }
-  constructor(here, there, slopes, size, error = null) {
+  constructor(here, there, slopes, size) {
     super();
     this.here = here;
     this.there = there;
     this.slopes = slopes;
     this.size = size;
-    this.error = error;
   }
   /** The rates at its end. */
   get new_slope() {
@@ -5383,9 +5381,6 @@ class RungeKuttaStep extends py.NamedTuple {
   }
   /** Its error, given a measure of errors. */
   doubt(measure) {
-    if (this.error !== null) {
-      return measure(this.error);
-    }
     var nothing = py.mul([0.0], py.len(this.here));
     var fine = measure(combined(nothing, this.size, FINE, this.slopes));
     var rough = measure(combined(nothing, this.size, ROUGH, this.slopes));
@@ -5414,6 +5409,11 @@ function step_from(here, slope, size, rates) {
   return new RungeKuttaStep(here, there, [...slopes, rates(there)], size);
 }
 
+/** Where such a step leads. */
+function step_to(here, slope, size, rates) {
+  return combined(here, size, py.item(STAGES_of_runge_kutta, -1), stages(here, slope, size, rates));
+}
+
 /** The rates at its start and at its stages. */
 function stages(here, slope, size, rates) {
   var slopes = [slope];
@@ -5421,6 +5421,15 @@ function stages(here, slope, size, rates) {
     slopes.push(rates(combined(here, size, weights, slopes)));
   }
   return slopes;
+}
+
+/** Where a step leads that is short beside those of order 8: Kutta's, of order 4, costs a third. */
+function short_step(here, slope, size, rates) {
+  var half = py.mul(0.5, size);
+  var second = rates(moved(here, half, slope));
+  var third = rates(moved(here, half, second));
+  var last = rates(moved(here, size, third));
+  return combined(here, py.div(size, 6.0), [1.0, 2.0, 2.0, 1.0], [slope, second, third, last]);
 }
 
 /** A point moved straight on. */
@@ -5442,9 +5451,8 @@ function combined(here, size, weights, slopes) {
 const LONGEST_of_impact_process = 5.0;
 const TOLERANCE = 1e-09;
 const STUCK = 1e-08;
-const SLOWEST_of_impact_process = 1e-09;
 const SHORTEST_of_impact_process = 1e-12;
-const [NEWTON_of_impact_process, STRAIGHT] = [4, 1e-08];
+const [NEWTON_of_impact_process, SHORT_of_impact_process, STRAIGHT] = [4, 0.002, 1e-08];
 const MOST_of_impact_process = 20000;
 
 /** An impact under some law of friction: what may be asked of any, however its impulses are found. */
@@ -5524,14 +5532,10 @@ class SteppedProcess extends ImpactProcess {
       [...unit, velocity[2]]
     );
   }
-  /** A step of the clock. */
-  step(here, slope, size) {
-    return step_from(here, slope, size, py.bound(this, "slope"));
-  }
   /** What an error in the six velocities counts as, that is one of a step. */
   wrong(taken, off) {
     var velocities = [taken.here, taken.there].map((end) => this.body.velocities(end));
-    return slip_error(velocities, off, this.speed, py.mul(SLOWEST_of_impact_process, this.speed));
+    return slip_error(velocities, off, this.speed);
   }
   /** Where a straight line leads after some steps, and whether to the goal; None if there is none. */
   straight(here, goal, guess, taken) {
@@ -5576,7 +5580,7 @@ class SteppedProcess extends ImpactProcess {
         slope = now.slope(here);
         continue;
       }
-      var taking = now.step(here, slope, step);
+      var taking = step_from(here, slope, step, py.bound(now, "slope"));
       var ends = now.ends(goal);
       var doubt = doubt_of(now, taking);
       var reached = py.max([...ends].map((end) => end(taking.there))) >= 0.0;
@@ -5606,8 +5610,8 @@ class SteppedProcess extends ImpactProcess {
 }
 
 /** An error in velocities, known at a step's ends: of slip beside it, and of the normal one by a speed. */
-function slip_error(ends, off, speed, least) {
-  var slip = py.max(least, ...[...ends].map((end) => py.math.hypot(...end.slice(0, 2))));
+function slip_error(ends, off, speed) {
+  var slip = py.max(py.mul(1e-09, speed), ...[...ends].map((end) => py.math.hypot(...end.slice(0, 2))));
   return py.float(py.max(py.div(py.math.hypot(...off.slice(0, 2)), slip), py.div(py.abs(off[2]), speed)));
 }
 
@@ -5622,12 +5626,11 @@ function landing(now, taking, ends) {
     return py.max([...ends].map((end) => end(point)));
   };
   var along = (size) => {
-    return now.step(taking.here, taking.slopes[0], size).there;
+    return step_to(taking.here, taking.slopes[0], size, py.bound(now, "slope"));
   };
   var last = taking.size;
-  var size = py.mul(last, crossing((part) => missing(taking.between(part)), 0.0, 1.0));
+  var here = along(py.mul(last, crossing((part) => missing(taking.between(part)), 0.0, 1.0)));
   for (var turn = 0; turn < NEWTON_of_impact_process; turn += 1) {
-    var here = along(size);
     var slope = now.slope(here);
     var left = missing(here);
     var nudge = py.mul(0.001, taking.size);
@@ -5639,7 +5642,11 @@ function landing(now, taking, ends) {
     if (py.abs(more) > py.mul(0.1, last)) {
       break;
     }
-    [last, size] = [py.abs(more), py.add(size, more)];
+    var short = py.abs(more) < py.mul(SHORT_of_impact_process, taking.size);
+    [last, here] = [
+      py.abs(more),
+      (py.truth(short) ? short_step : step_to)(here, slope, more, py.bound(now, "slope"))
+    ];
   }
   return along(crossing((size) => missing(along(size)), 0.0, taking.size));
 }
@@ -5820,40 +5827,9 @@ function struck_motion(point, slip, rolling) {
   return [wrench, point.response(wrench)];
 }
 
-// tippetop.mechanics.implicit_step
-const COUNTS = [2, 3, 4, 5, 6, 7];
-
-/** A step from a point with known rates, and known derivatives of each by all numbers, at least nearly. */
-function implicit_step(here, slope, size, rates, jacobian) {
-  var rougher = [];
-  var found = rougher;
-  for (var count of COUNTS) {
-    var part = py.div(size, count);
-    var point = here;
-    var matrix = py.enumerate(jacobian).map(
-      ([i, row]) => py.enumerate(row).map(
-        ([j, entry]) => py.sub(py.eq(i, j) ? 1.0 : 0.0, py.mul(part, entry))
-      )
-    );
-    for (var taken = 0; taken < count; taken += 1) {
-      point = moved(point, part, py.tuple(solve(matrix, py.list(py.truth(taken) ? rates(point) : slope))));
-    }
-    [rougher, found] = [found, [point]];
-    for (var [fewer, rough] of py.zip(py.reversed(COUNTS.slice(0, py.len(rougher))), rougher)) {
-      var finer = py.item(found, -1);
-      var off = moved(finer, -1.0, rough);
-      found.push(moved(finer, py.div(fewer, py.sub(count, fewer)), off));
-    }
-  }
-  var there = py.item(found, -1);
-  return new RungeKuttaStep(here, there, [slope, rates(there)], size, moved(there, -1.0, py.item(found, -2)));
-}
-
 // tippetop.mechanics.impact_on_two
 const OPEN = 1e-09;
 const SUNK = 1e-07;
-const HELD = 0.001;
-const NUDGED = 1e-05;
 const OTHER = 7;
 
 /** Slip, or rolling, ends under a law that then leaves what resists it open. */
@@ -5862,22 +5838,17 @@ class SlipEnds extends py.ArithmeticError {
 
 /** Such an impact, floats: impulses are those of both contacts at what strikes, and work is its own. */
 class ProcessOnTwo extends SteppedProcess {
-  static fields = ["body", "apart", "before", "pressed", "sunk", "held"];
-  constructor(body, apart, before, pressed = true, sunk = false, held = false) {
+  static fields = ["body", "apart", "before", "pressed", "sunk"];
+  constructor(body, apart, before, pressed = true, sunk = false) {
     super(body);
     this.apart = apart;
     this.before = before;
     this.pressed = pressed;
     this.sunk = sunk;
-    this.held = held;
   }
   /** The impact of a body at what strikes, and at what touches. */
   static of(body, other) {
     return new this(body, add(other.contact.arm, scale(-1.0, body.contact.arm)), other.before);
-  }
-  /** Whether the law says the friction at any slip. */
-  get is_smooth() {
-    return !py.truth(is_set_valued(this.body.contact.top.friction));
   }
   /** No impulse. */
   get begin() {
@@ -5901,22 +5872,13 @@ class ProcessOnTwo extends SteppedProcess {
   there(here) {
     return plus(this.before, this.beside(this.body.change(here)));
   }
-  /** The impact from some impulses on, as the contacts then are. */
+  /** The impact from some impulses on, whether or not the other contact is closed, or sinks, then. */
   settled(here) {
-    var there = this.there(here);
-    var rise = py.div(there[2], this.speed);
+    var rise = py.div(this.there(here)[2], this.speed);
     var pressed = py.bool(rise <= OPEN);
     var sunk = py.bool(rise < py.neg(py.truth(this.sunk) ? OPEN : SUNK));
-    var closed = [this.body.velocities(here), there].slice(0, py.add(1, pressed));
-    var held = py.and(
-      this.is_smooth,
-      () => py.bool(py.mul(py.mul(HELD, this.steepness(closed)), this.speed) > 1.0)
-    );
-    var same = py.and(
-      py.eq(pressed, this.pressed),
-      () => py.and(py.eq(sunk, this.sunk), () => py.eq(held, this.held))
-    );
-    return py.truth(same) ? this : py.replace(this, { pressed: pressed, sunk: sunk, held: held });
+    var same = py.and(py.eq(pressed, this.pressed), () => py.eq(sunk, this.sunk));
+    return py.truth(same) ? this : py.replace(this, { pressed: pressed, sunk: sunk });
   }
   /** The goal, and that the other contact closes, or has come back. */
   ends(goal) {
@@ -5928,10 +5890,7 @@ class ProcessOnTwo extends SteppedProcess {
   }
   /** Rate of the numbers in a clock in which slip that ends decays exponentially. */
   slope(here) {
-    return this.rates(this.body.velocities(here), this.there(here));
-  }
-  /** The same at these velocities; what is held slips on, and normal impulses are the clock. */
-  rates(velocity, there) {
+    var velocity = this.body.velocities(here);
     var resistance = this.body.contact.top.rolling_resistance;
     var rate = py.div(1.0, this.speed);
     if (resistance !== null) {
@@ -5948,6 +5907,7 @@ class ProcessOnTwo extends SteppedProcess {
     var share = 0.0;
     var pace = this.pace(velocity, unit);
     if (py.truth(this.pressed)) {
+      var there = this.there(here);
       var [x, y, z, ...torque] = this.sliding(there);
       var more = this.sliding(there);
       var moment = add([torque[0], torque[1], torque[2]], cross(this.apart, [x, y, z]));
@@ -5959,39 +5919,7 @@ class ProcessOnTwo extends SteppedProcess {
       pace = py.add(py.mul(py.sub(1.0, share), pace), py.mul(share, this.pace(there, more)));
     }
     var work = py.mul(py.sub(1.0, share), velocity[2]);
-    return py.tuple(
-      [...unit, work, share].map((number) => py.div(number, py.truth(this.held) ? rate : py.add(rate, pace)))
-    );
-  }
-  /** A step of the clock, implicit where a law may be steep: it holds one slip, and not the other. */
-  step(here, slope, size) {
-    if (!py.truth(this.held)) {
-      return super.step(here, slope, size);
-    }
-    return implicit_step(here, slope, size, py.bound(this, "slope"), this.jacobian(here, slope));
-  }
-  /** How the rates of the numbers change with them: a row each, by differences of velocities. */
-  jacobian(here, slope) {
-    var velocity = this.body.velocities(here);
-    var there = this.there(here);
-    var response = this.body.response;
-    var nudge = py.div(NUDGED, this.steepness([velocity, there].slice(0, py.add(1, this.pressed))));
-    var columns = [];
-    for (var number = 0; number < 6; number += 1) {
-      var size = number < 3 ? nudge : py.div(nudge, this.body.lever);
-      var off = py.tuple(py.range(6).map((place) => py.eq(number, place) ? size : 0.0));
-      var beside = this.beside(off);
-      var after = this.rates(plus(velocity, off), plus(there, beside));
-      var before = this.rates(plus(velocity, scaled(-1.0, off)), plus(there, scaled(-1.0, beside)));
-      columns.push(py.zip(before, after).map(([a, b]) => py.div(py.sub(b, a), py.mul(2.0, size))));
-    }
-    var rows = py.zip(...columns);
-    var impulses = py.list(py.zip(...response));
-    return [...rows].map((row) => [...[...impulses].map((column) => inner(row, column)), 0.0, 0.0]);
-  }
-  /** Friction per unit normal impulse over slip where some velocities make that the most, s/m. */
-  steepness(closed) {
-    return py.max([...closed].map((velocity) => this.pace(velocity, this.friction(velocity))));
+    return py.tuple([...unit, work, share].map((number) => py.div(number, py.add(rate, pace))));
   }
   /** Part of the normal impulses that acts at the other contact, which they keep closed. */
   share(unit, other) {
@@ -6004,22 +5932,33 @@ class ProcessOnTwo extends SteppedProcess {
   /** The friction at a contact with these velocities; see `friction`. */
   sliding(velocity) {
     var slip = length([velocity[0], velocity[1], 0.0]);
-    if (!py.truth(this.is_smooth) && slip < py.mul(OPEN, this.speed)) {
+    if (py.truth(is_set_valued(this.body.contact.top.friction)) && slip < py.mul(OPEN, this.speed)) {
       throw new SlipEnds("slip ends in an impact on two surfaces");
     }
     return this.friction(velocity);
   }
-  /** None: what friction holds takes few implicit steps. */
-  straight(here, goal, guess, taken) {
-    return null;
-  }
   /** What an error counts as: that of the contact where it is the larger. */
   wrong(taken, off) {
-    var least = py.mul(py.truth(this.is_smooth) ? HELD : OPEN, this.speed);
-    var ends = [taken.here, taken.there];
-    var one = slip_error([...ends].map((end) => this.body.velocities(end)), off, this.speed, least);
-    var other = slip_error([...ends].map((end) => this.there(end)), this.beside(off), this.speed, least);
-    return py.max(one, other);
+    var velocities = [taken.here, taken.there].map((end) => this.there(end));
+    return py.max(super.wrong(taken, off), slip_error(velocities, this.beside(off), this.speed));
+  }
+  /** The rest if friction has come to hold both slips constant. */
+  straight(here, goal, guess, taken) {
+    if (!py.truth(this.pressed)) {
+      return null;
+    }
+    var rates = this.slope(here);
+    if (!(this.normal(rates) > 0.0)) {
+      return null;
+    }
+    var unit = py.tuple([...rates].map((rate) => py.div(rate, this.normal(rates))));
+    var change = this.body.change(unit);
+    var [x, y, rise, ..._] = change;
+    var other = this.beside(change);
+    if (!(py.add(length([x, y, 0.0]), length([other[0], other[1], 0.0])) < py.mul(STUCK, rise))) {
+      return null;
+    }
+    return [first_reach(this.body.straight(here, unit), goal, py.div(this.speed, rise)), true];
   }
 }
 
@@ -7257,7 +7196,7 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
 const TOGETHER = 30.0;
 const ABOUT = py.add(1.0, 0.001);
 const [FIRST_of_two_closed, SECOND, BOTH, NEITHER] = ["first", "second", "both", "neither"];
-const [OPENS, HELD_of_two_closed, CLOSES] = ["opens", "held", "closes"];
+const [OPENS, HELD, CLOSES] = ["opens", "held", "closes"];
 
 /** Two contacts that are closed and have no normal velocities. */
 class TwoClosed extends py.Record {
@@ -7313,7 +7252,7 @@ class TwoClosed extends py.Record {
       return answers;
     }
     var ways = [0, 1].map((number) => this._alone(number));
-    var held = [0, 1].filter((number) => py.eq(py.item(ways, number), HELD_of_two_closed));
+    var held = [0, 1].filter((number) => py.eq(py.item(ways, number), HELD));
     if (py.truth(held) && !py.truth(answers)) {
       return [
         py.item([FIRST_of_two_closed, SECOND], py.max(held, { key: (number) => py.item(normal, number) }))
@@ -7343,7 +7282,7 @@ class TwoClosed extends py.Record {
       return CLOSES;
     }
     if (found.rolling === null) {
-      return HELD_of_two_closed;
+      return HELD;
     }
     var opens = py.item(this.pair.under([[number, found.wrench]]), py.sub(1, number))[2] >= 0.0;
     return py.truth(opens) ? OPENS : CLOSES;
@@ -11475,7 +11414,6 @@ export {
   CONSTANT,
   CONSTANTS,
   COSINE,
-  COUNTS,
   COUPLES,
   CUTS,
   ClosedMode,
@@ -11545,7 +11483,6 @@ export {
   Guard,
   HALVINGS,
   HELD,
-  HELD_of_two_closed,
   HORIZON,
   HeldOnTwo,
   HertzBranch,
@@ -11638,7 +11575,6 @@ export {
   NO_START,
   NO_STEP,
   NO_TORQUE,
-  NUDGED,
   Node,
   NodeValues,
   NotRecordable,
@@ -11738,6 +11674,7 @@ export {
   SHORTER_of_slipping,
   SHORTEST,
   SHORTEST_of_impact_process,
+  SHORT_of_impact_process,
   SINE,
   SINGULAR,
   SINKING,
@@ -11750,7 +11687,6 @@ export {
   SLOWEST_REBOUND,
   SLOWEST_ROCKING,
   SLOWEST_SLIP,
-  SLOWEST_of_impact_process,
   SMALL,
   SMOOTH,
   SOON,
@@ -11997,7 +11933,6 @@ export {
   impact_between,
   impact_motion,
   impact_of_patch,
-  implicit_step,
   in_one_step,
   in_order,
   inertia_ratio,
@@ -12129,6 +12064,7 @@ export {
   series_of,
   settled,
   settling,
+  short_step,
   shown,
   size,
   sizes,
@@ -12164,6 +12100,7 @@ export {
   steady_states,
   step_from,
   step_terms,
+  step_to,
   stepped,
   straight,
   struck_motion,

@@ -8,17 +8,15 @@ and none of its own while it is open. At both, friction follows the law along th
 the other contact is a force and a torque at the first, too: that of its moment about it.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tippetop.mechanics.impact_process import SteppedProcess, slip_error
-from tippetop.mechanics.implicit_step import implicit_step
-from tippetop.mechanics.impulse import NO_IMPULSE, NORMAL, Goal, Impulse, Striking
+from tippetop.mechanics.impact_process import STUCK, SteppedProcess, slip_error
+from tippetop.mechanics.impulse import NO_IMPULSE, NORMAL, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.motion import point_velocity
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.runge_kutta import RungeKuttaStep
-from tippetop.mechanics.stick_slip import inner, plus, scaled
+from tippetop.mechanics.stick_slip import plus
 from tippetop.mechanics.vectors import Vector, add, cross, length, scale
 from tippetop.mechanics.wrench import Slip
 
@@ -27,12 +25,6 @@ OPEN = 1e-9
 
 SUNK = 1e-7
 """Normal velocity below zero at which it sinks, in the same units: beyond all errors of steps."""
-
-HELD = 1e-3
-"""Slip over friction at which a law may be steep, in the same units: its errors are measured by this."""
-
-NUDGED = 1e-5
-"""Part of that by which velocities are changed to tell derivatives."""
 
 OTHER = 7
 """Place of the other contact's normal impulse."""
@@ -57,18 +49,11 @@ class ProcessOnTwo(SteppedProcess):
     """Whether the other contact is closed."""
     sunk: bool = False
     """Whether it sinks, as friction has jammed it."""
-    held: bool = False
-    """Whether friction answers steeply to slip at a closed contact."""
 
     @classmethod
     def of(cls, body: Striking, other: Striking) -> Self:
         """The impact of a body at what strikes, and at what touches."""
         return cls(body, add(other.contact.arm, scale(-1.0, body.contact.arm)), other.before)
-
-    @property
-    def is_smooth(self) -> bool:
-        """Whether the law says the friction at any slip."""
-        return not is_set_valued(self.body.contact.top.friction)
 
     @property
     def begin(self) -> Impulse:
@@ -95,14 +80,11 @@ class ProcessOnTwo(SteppedProcess):
         return plus(self.before, self.beside(self.body.change(here)))
 
     def settled(self, here: Impulse) -> Self:
-        """The impact from some impulses on, as the contacts then are."""
-        there = self.there(here)
-        rise = there[2] / self.speed
+        """The impact from some impulses on, whether or not the other contact is closed, or sinks, then."""
+        rise = self.there(here)[2] / self.speed
         pressed, sunk = bool(rise <= OPEN), bool(rise < -(OPEN if self.sunk else SUNK))
-        closed = (self.body.velocities(here), there)[: 1 + pressed]
-        held = self.is_smooth and bool(HELD * self.steepness(closed) * self.speed > 1.0)
-        same = pressed == self.pressed and sunk == self.sunk and held == self.held
-        return self if same else replace(self, pressed=pressed, sunk=sunk, held=held)
+        same = pressed == self.pressed and sunk == self.sunk
+        return self if same else replace(self, pressed=pressed, sunk=sunk)
 
     def ends(self, goal: Goal) -> list[Goal]:
         """The goal, and that the other contact closes, or has come back."""
@@ -113,11 +95,8 @@ class ProcessOnTwo(SteppedProcess):
 
     def slope(self, here: Impulse) -> Impulse:
         """Rate of the numbers in a clock in which slip that ends decays exponentially."""
-        return self.rates(self.body.velocities(here), self.there(here))
-
-    def rates(self, velocity: Slip, there: Slip) -> Impulse:
-        """The same at these velocities; what is held slips on, and normal impulses are the clock."""
-        resistance, rate = self.body.contact.top.rolling_resistance, 1.0 / self.speed
+        velocity, resistance = self.body.velocities(here), self.body.contact.top.rolling_resistance
+        rate = 1.0 / self.speed
         if resistance is not None:
             rolling = length((velocity[3], velocity[4], 0.0))
             if self.body.lever * rolling < OPEN * self.speed:
@@ -126,6 +105,7 @@ class ProcessOnTwo(SteppedProcess):
         unit, share = self.sliding(velocity), 0.0
         pace = self.pace(velocity, unit)
         if self.pressed:
+            there = self.there(here)
             x, y, z, *torque = more = self.sliding(there)
             moment = add((torque[0], torque[1], torque[2]), cross(self.apart, (x, y, z)))
             at_first = (x, y, z, *moment)
@@ -133,32 +113,7 @@ class ProcessOnTwo(SteppedProcess):
             unit = tuple((1.0 - share) * a + share * b for a, b in zip(unit, at_first, strict=True))
             pace = (1.0 - share) * pace + share * self.pace(there, more)
         work = (1.0 - share) * velocity[2]
-        return tuple(number / (rate if self.held else rate + pace) for number in (*unit, work, share))
-
-    def step(self, here: Impulse, slope: Impulse, size: float) -> RungeKuttaStep:
-        """A step of the clock, implicit where a law may be steep: it holds one slip, and not the other."""
-        if not self.held:
-            return super().step(here, slope, size)
-        return implicit_step(here, slope, size, self.slope, self.jacobian(here, slope))
-
-    def jacobian(self, here: Impulse, slope: Impulse) -> list[list[float]]:
-        """How the rates of the numbers change with them: a row each, by differences of velocities."""
-        velocity, there, response = self.body.velocities(here), self.there(here), self.body.response
-        nudge = NUDGED / self.steepness((velocity, there)[: 1 + self.pressed])
-        columns = []
-        for number in range(6):
-            size = nudge if number < 3 else nudge / self.body.lever
-            off = tuple(size if number == place else 0.0 for place in range(6))
-            beside = self.beside(off)
-            after = self.rates(plus(velocity, off), plus(there, beside))
-            before = self.rates(plus(velocity, scaled(-1.0, off)), plus(there, scaled(-1.0, beside)))
-            columns.append([(b - a) / (2.0 * size) for a, b in zip(before, after, strict=True)])
-        rows, impulses = zip(*columns, strict=True), list(zip(*response, strict=True))
-        return [[*[inner(row, column) for column in impulses], 0.0, 0.0] for row in rows]
-
-    def steepness(self, closed: Sequence[Slip]) -> float:
-        """Friction per unit normal impulse over slip where some velocities make that the most, s/m."""
-        return max(self.pace(velocity, self.friction(velocity)) for velocity in closed)
+        return tuple(number / (rate + pace) for number in (*unit, work, share))
 
     def share(self, unit: Slip, other: Slip) -> float:
         """Part of the normal impulses that acts at the other contact, which they keep closed.
@@ -175,18 +130,33 @@ class ProcessOnTwo(SteppedProcess):
     def sliding(self, velocity: Slip) -> Slip:
         """The friction at a contact with these velocities; see `friction`."""
         slip = length((velocity[0], velocity[1], 0.0))
-        if not self.is_smooth and slip < OPEN * self.speed:
+        if is_set_valued(self.body.contact.top.friction) and slip < OPEN * self.speed:
             raise SlipEnds("slip ends in an impact on two surfaces")
         return self.friction(velocity)
 
-    def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> None:
-        """None: what friction holds takes few implicit steps."""
-        return None  # noqa: RET501 - in JavaScript, too
-
     def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
-        """What an error counts as: that of the contact where it is the larger."""
-        least = (HELD if self.is_smooth else OPEN) * self.speed
-        ends = taken.here, taken.there
-        one = slip_error([self.body.velocities(end) for end in ends], off, self.speed, least)
-        other = slip_error([self.there(end) for end in ends], self.beside(off), self.speed, least)
-        return max(one, other)
+        """What an error counts as: that of the contact where it is the larger.
+
+        A steep law may hold slip so slow that its force has no digits but those beside it.
+        """
+        velocities = [self.there(end) for end in (taken.here, taken.there)]
+        return max(super().wrong(taken, off), slip_error(velocities, self.beside(off), self.speed))
+
+    def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
+        """The rest if friction has come to hold both slips constant.
+
+        Where they change less along it than a step may err, a steep law would take many steps, and no other
+        way.
+        """
+        if not self.pressed:
+            return None
+        rates = self.slope(here)
+        if not self.normal(rates) > 0.0:
+            return None
+        unit = tuple(rate / self.normal(rates) for rate in rates)
+        change = self.body.change(unit)
+        x, y, rise, *_ = change
+        other = self.beside(change)
+        if not length((x, y, 0.0)) + length((other[0], other[1], 0.0)) < STUCK * rise:
+            return None
+        return first_reach(self.body.straight(here, unit), goal, self.speed / rise), True

@@ -8,7 +8,14 @@ from typing import Self
 
 from tippetop.mechanics.impulse import FUZZ, NO_IMPULSE, NORMAL, Goal, Impulse, Striking, first_reach
 from tippetop.mechanics.roots import crossing
-from tippetop.mechanics.runge_kutta import POWER, RungeKuttaStep, moved, step_from
+from tippetop.mechanics.runge_kutta import (
+    POWER,
+    RungeKuttaStep,
+    moved,
+    short_step,
+    step_from,
+    step_to,
+)
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import scaled
 from tippetop.mechanics.unsolved import Unsolved
@@ -23,14 +30,12 @@ TOLERANCE = 1e-9
 STUCK = 1e-8
 """How near the traction must be to the one that holds the slip constant to count as equal to it."""
 
-SLOWEST = 1e-9
-"""Slip that has its own error no more, in units of what strikes."""
-
 SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
 
-NEWTON, STRAIGHT = 4, 1e-8
-"""Improvements of an impact's end, and how near to it, in parts of its last step, the way is straight."""
+NEWTON, SHORT, STRAIGHT = 4, 2e-3, 1e-8
+"""Improvements of the end of an impact, and how near to it, in parts of its last step, the way is short, and
+straight."""
 
 MOST = 20_000
 """Steps after which an impact is given up, within seconds; most take some ten, on small patches thousands."""
@@ -125,14 +130,10 @@ class SteppedProcess(ImpactProcess):
         unit = self.friction(velocity)
         return scaled(1.0 / (self.pace(velocity, unit) + 1.0 / self.speed), (*unit, velocity[2]))
 
-    def step(self, here: Impulse, slope: Impulse, size: float) -> RungeKuttaStep:
-        """A step of the clock."""
-        return step_from(here, slope, size, self.slope)
-
     def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
         """What an error in the six velocities counts as, that is one of a step."""
         velocities = [self.body.velocities(end) for end in (taken.here, taken.there)]
-        return slip_error(velocities, off, self.speed, SLOWEST * self.speed)
+        return slip_error(velocities, off, self.speed)
 
     def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
         """Where a straight line leads after some steps, and whether to the goal; None if there is none.
@@ -168,7 +169,7 @@ class SteppedProcess(ImpactProcess):
                 now, waiting = now.settled(here), False
                 slope = now.slope(here)
                 continue
-            taking, ends = now.step(here, slope, step), now.ends(goal)
+            taking, ends = step_from(here, slope, step, now.slope), now.ends(goal)
             doubt, reached = doubt_of(now, taking), max(end(taking.there) for end in ends) >= 0.0
             if (doubt > 1.0 and step > SHORTEST * longest) or (reached and waiting):
                 step *= min(0.5, max(0.1, 0.9 * doubt**POWER))
@@ -182,12 +183,9 @@ class SteppedProcess(ImpactProcess):
         raise Unsolved("an impact does not come to its end")
 
 
-def slip_error(ends: Sequence[Slip], off: Slip, speed: float, least: float) -> float:
-    """An error in velocities, known at a step's ends: of slip beside it, and of the normal one by a speed.
-
-    Slip counts as no slower than the least.
-    """
-    slip = max(least, *[math.hypot(*end[:2]) for end in ends])
+def slip_error(ends: Sequence[Slip], off: Slip, speed: float) -> float:
+    """An error in velocities, known at a step's ends: of slip beside it, and of the normal one by a speed."""
+    slip = max(1e-9 * speed, *[math.hypot(*end[:2]) for end in ends])
     return float(max(math.hypot(*off[:2]) / slip, abs(off[2]) / speed))
 
 
@@ -207,12 +205,11 @@ def landing(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Im
         return max(end(point) for end in ends)
 
     def along(size: float) -> Impulse:
-        return now.step(taking.here, taking.slopes[0], size).there
+        return step_to(taking.here, taking.slopes[0], size, now.slope)
 
     last = taking.size
-    size = last * crossing(lambda part: missing(taking.between(part)), 0.0, 1.0)
+    here = along(last * crossing(lambda part: missing(taking.between(part)), 0.0, 1.0))
     for _ in range(NEWTON):
-        here = along(size)
         slope, left, nudge = now.slope(here), missing(here), 1e-3 * taking.size
         rate = (missing(moved(here, nudge, slope)) - left) / nudge
         more = -left / rate if rate > 0.0 else taking.size
@@ -220,5 +217,6 @@ def landing(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Im
             return moved(here, more, slope)
         if abs(more) > 0.1 * last:
             break
-        last, size = abs(more), size + more
+        short = abs(more) < SHORT * taking.size
+        last, here = abs(more), (short_step if short else step_to)(here, slope, more, now.slope)
     return along(crossing(lambda size: missing(along(size)), 0.0, taking.size))
