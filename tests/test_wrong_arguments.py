@@ -54,6 +54,11 @@ def test_what_is_no_problem(name, wrong):
     refused("problem", OF_A_PROBLEM[name], NONE[wrong])
 
 
+def test_a_whole_number_beyond_all_floats():
+    for duration in (10**400, -(10**400)):
+        refused("duration", tt.simulate, PROBLEM, duration)
+
+
 @pytest.mark.parametrize("name", OF_A_RUN)
 def test_what_is_no_run(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -8,10 +8,10 @@
 How a run ends is not an error: see `tippetop.contact.mode.Outcome`.
 """
 
-import math
 from collections.abc import Mapping
 from difflib import get_close_matches
 from numbers import Integral, Real
+from sys import float_info
 from typing import TypeGuard
 
 
@@ -129,7 +129,7 @@ def require(field: str, value: object, kind: type, accepted: str) -> None:
 
 def is_number(value: object) -> bool:
     """Whether a value is a finite real number."""
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, Real) and not isinstance(value, bool) and bool(abs(value) <= float_info.max)  # type: ignore[operator]
 
 
 def is_whole(value: object) -> TypeGuard[int]:

@@ -71,7 +71,8 @@ def simulate(
     phase_limit
         How many modes (slides and flights) the run may go through before it ends early.
     step_limit
-        How many steps of the integrator it may take before it ends early.
+        How many steps of the integrator it may take before it ends early: they are counted piece by piece,
+        of up to 4096 steps.
     callback
         Told now and then which part of the run is done, between 0 and 1.
 

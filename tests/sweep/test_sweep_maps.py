@@ -58,6 +58,9 @@ def test_one_axis_is_a_curve_and_draws_are_points():
     curve = compute(Sweep(report_problem(), Product((Spaced("launch.spin", 1, 9, 5),)), 0.1))
     (line,) = phase_map(curve, "final_theta").axes[0].lines
     assert line.get_ydata() == pytest.approx(curve["final_theta"].values)
+    never = phase_map(curve, "turns_over").axes[0]
+    assert never.get_xlim() == pytest.approx((0.0, 10.0))
+    assert never.get_title(loc="left").endswith("no point: never")
     ranges = Range("launch.spin", 1, 9), Range("launch.tilt", 0.1, 0.2)
     draws = compute(Sweep(report_problem(), Draws(ranges, 6), 0.1))
     points = phase_map(draws, "final_theta").axes[0].collections[-1]

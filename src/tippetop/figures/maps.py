@@ -127,6 +127,7 @@ def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
     axes.set_xlabel(_name(sweep, across))
     if _is_geometric(sweep[across].values):
         axes.set_xscale("log")
+    axes.set_xlim(*_ends(sweep[across].values))
     if variable == "final_theta":
         pi_ticks(axes.yaxis)
 
@@ -161,6 +162,8 @@ def _heading(words: str, units: str) -> str:
 
 def _title(sweep: xr.Dataset, variable: str) -> str:
     title = _heading(SWEPT[variable].label, SWEPT[variable].units) + GREY.get(variable, "")
+    if sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("draw" in sweep.coords):
+        title = title.replace("grey", "no point")
     if variable == "final_theta":
         there = [words for ending, words in UNFINISHED.items() if (sweep["outcome"].values == ending).any()]
         return "; grey: ".join([title, ", ".join(there)] if there else [title])
