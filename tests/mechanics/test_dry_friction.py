@@ -14,7 +14,7 @@ from tippetop.mechanics.contensou_hertz import HertzDrillingLaw, HertzLaw, Hertz
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hertz import MATERIALS, Material, hertz_patch_radius
-from tippetop.mechanics.series import solution
+from tippetop.mechanics.series import Series, solved, unknown
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.theory.derivatives import jacobian
@@ -225,7 +225,7 @@ def test_laws_run_on_arrays_and_power_series(law):
         return [force[0], force[1], torque[2] + 0.0 * y[2]]
 
     start, step = (*slip, turning[2]), 0.01
-    series = solution(start, rates, Floats())
+    series = solved([Series(unknown, Floats()) for _ in start], start, rates)
     later = [sum(y[k] * step**k for k in range(12)) for y in series]
     slope = [sum(k * y[k] * step ** (k - 1) for k in range(1, 13)) for y in series]
     assert slope == pytest.approx(rates(later), rel=1e-11, abs=1e-13)
