@@ -22,8 +22,8 @@ SHORT = {
 }  # fmt: skip
 """What some fields are called, in few words; others on axes by what they are, elsewhere by their name."""
 
-GREY = {"turns_over": "; grey: never", "flights": "; grey: none", "first_lift_off": "; grey: never"}
-"""What grey means in maps of some variables."""
+NOTHING = {"turns_over": ["never"], "flights": ["none"], "first_lift_off": ["never"]}
+"""What it means where some variables have no value: grey in maps, and no point of a curve."""
 
 UNFINISHED = {
     Ending.LIFTED_OFF: "left the table before the end",
@@ -161,13 +161,12 @@ def _heading(words: str, units: str) -> str:
 
 
 def _title(sweep: xr.Dataset, variable: str) -> str:
-    title = _heading(SWEPT[variable].label, SWEPT[variable].units) + GREY.get(variable, "")
-    if sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("draw" in sweep.coords):
-        title = title.replace("grey", "no point")
+    title, means = _heading(SWEPT[variable].label, SWEPT[variable].units), NOTHING.get(variable, [])
     if variable == "final_theta":
-        there = [words for ending, words in UNFINISHED.items() if (sweep["outcome"].values == ending).any()]
-        return "; grey: ".join([title, ", ".join(there)] if there else [title])
-    return title
+        means = [words for ending, words in UNFINISHED.items() if (sweep["outcome"].values == ending).any()]
+    single = sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("draw" in sweep.coords)
+    sign = "no point" if single else "grey"
+    return f"{title}; {sign}: {', '.join(means)}" if means else title
 
 
 def _shown(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
