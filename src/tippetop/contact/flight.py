@@ -1,7 +1,7 @@
 """The top flies, in closed form."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -67,13 +67,9 @@ class Flight(Mode):
                 reach = end if landing is None else reach
                 low = None if landing is None else lowest
                 transition = self._transition(reach, here, low, integrator)
-            solution = DenseSolution.fitted(self._numbers(state), elapsed, DEGREE).moved(time, reach)
+            solution = DenseSolution.fitted(flown, elapsed, DEGREE, self, state.pack()).moved(time, reach)
             highest = highest_gap(state, self.top, elapsed[-1])
             yield Segment(self, solution, here, transition, highest_gap=highest)
-
-    def _numbers(self, state: State) -> Callable[[Scalar], tuple[Scalar, ...]]:
-        """The numbers of the flight as a function of the time since its start."""
-        return lambda elapsed: fly(state, elapsed, self.top, ELEMENTARY).pack()
 
     def _landing(self, state: State, horizon: float) -> tuple[float | None, Top]:
         """When the first surface touches the table, and the top with that surface active."""
@@ -97,6 +93,11 @@ class Flight(Mode):
         if lowest == self.top:
             return self.rules.touchdown(time, here, integrator)
         return self.rules.touch(number_of(lowest), time, here, integrator)
+
+
+def flown(flight: Flight, y: Row, elapsed: Scalar) -> Row:
+    """The numbers of a flight, a time after it had others."""
+    return fly(flight.state(y), elapsed, flight.top, ELEMENTARY).pack()
 
 
 def start_of(state: State, top: Top) -> Start:

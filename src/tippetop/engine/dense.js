@@ -1,8 +1,9 @@
 // Solutions as polynomials in time, one a step, as in tippetop.integrators.dense.
+import { reader } from "./compile.js";
 import { crossing } from "./mechanics.js";
 import { CHEBYSHEV } from "./tables.js";
 
-export const ELEMENTARY = Math;
+export const ELEMENTARY = { sin: (x) => x.graph.node("sin", [x]), cos: (x) => x.graph.node("cos", [x]) };
 export const as_array = (numbers) => Float64Array.from(numbers);
 
 const SHORTEST = 1e-8;
@@ -137,11 +138,12 @@ export class DenseSolution {
   }
 
   /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
-  static fitted(function_, knots, degree) {
-    const { places, transform, powers } = CHEBYSHEV[degree], size = function_(knots[0]).length, wide = degree + 1;
+  static fitted(function_, knots, degree, mode, y) {
+    const code = mode && reader(mode, y.length)(function_, y.length), look = code ? (time) => code(y, time).slice() : function_;
+    const { places, transform, powers } = CHEBYSHEV[degree], size = look(knots[0]).length, wide = degree + 1;
     const terms = new Float64Array((knots.length - 1) * size * wide), [values, weights] = [new Float64Array(wide), new Float64Array(wide)];
     for (let step = 1, at = 0; step < knots.length; step += 1) {
-      const rows = places.map((place) => function_(knots[step - 1] + place * (knots[step] - knots[step - 1])));
+      const rows = places.map((place) => look(knots[step - 1] + place * (knots[step] - knots[step - 1])));
       for (let number = 0; number < size; number += 1, at += wide) {
         for (let place = 0; place < wide; place += 1) values[place] = rows[place][number];
         multiply(transform, values, weights, 0);

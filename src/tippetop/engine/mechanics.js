@@ -2084,14 +2084,16 @@ class Flight extends Mode {
         var low = landing === null ? null : lowest;
         transition = this._transition(reach, here, low, integrator);
       }
-      var solution = DenseSolution.fitted(this._numbers(state), elapsed, DEGREE_of_flight).moved(time, reach);
+      var solution = DenseSolution.fitted(
+        flown,
+        elapsed,
+        DEGREE_of_flight,
+        this,
+        state.pack()
+      ).moved(time, reach);
       var highest = highest_gap(state, this.top, py.item(elapsed, -1));
       yield new Segment(this, solution, here, transition, undefined, undefined, highest);
     }
-  }
-  /** The numbers of the flight as a function of the time since its start. */
-  _numbers(state) {
-    return (elapsed) => fly(state, elapsed, this.top, ELEMENTARY).pack();
   }
   /** When the first surface touches the table, and the top with that surface active. */
   _landing(state, horizon) {
@@ -2120,6 +2122,11 @@ class Flight extends Mode {
     }
     return this.rules.touch(number_of(lowest), time, here, integrator);
   }
+}
+
+/** The numbers of a flight, a time after it had others. */
+function flown(flight, y, elapsed) {
+  return fly(flight.state(y), elapsed, flight.top, ELEMENTARY).pack();
 }
 
 /** How a flight starts for a surface that did not decide it: far, or just opened. */
@@ -11911,6 +11918,7 @@ export {
   first_step,
   fixed,
   flat,
+  flown,
   fly,
   fold,
   follow_surface,

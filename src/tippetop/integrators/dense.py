@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -156,22 +156,25 @@ class DenseSolution:
 
     @classmethod
     def fitted(
-        cls, function: Callable[[Array], Row], knots: Sequence[float] | Array, degree: int
+        cls, function: Callable[..., Row], knots: Sequence[float] | Array, degree: int, *given: Any
     ) -> "DenseSolution":
         """Polynomials that agree with a function at Chebyshev's points of every step.
 
         Parameters
         ----------
         function
-            Takes times, shape (m,), and returns numbers, each of shape (m,), or one for all.
+            Takes what is given and times, shape (m,), and returns numbers, each of shape (m,), or one for
+            all.
         knots
             Ends of the steps, shape (k + 1,).
         degree
             Of the polynomials.
+        given
+            A mode and numbers of its motion, if the function takes those.
         """
         places, transform, to_powers = chebyshev(degree)
         knots = np.asarray(knots, dtype=float)
-        rows = function((knots[:-1, None] + places * np.diff(knots)[:, None]).ravel())
+        rows = function(*given, (knots[:-1, None] + places * np.diff(knots)[:, None]).ravel())
         values = np.stack(np.broadcast_arrays(*rows), axis=-1)
         values = values.reshape(len(knots) - 1, degree + 1, values.shape[-1])
         # Through Chebyshev's polynomials, whose coefficients fall off, so that no digits are lost.
