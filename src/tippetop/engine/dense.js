@@ -1,12 +1,10 @@
 // Solutions as polynomials in time, one a step, as in tippetop.integrators.dense.
 import { reader } from "./compile.js";
 import { crossing } from "./mechanics.js";
-import { CHEBYSHEV } from "./tables.js";
+import { CHEBYSHEV, SHORTEST } from "./tables.js";
 
 export const ELEMENTARY = { sin: (x) => x.graph.node("sin", [x]), cos: (x) => x.graph.node("cos", [x]) };
 export const as_array = (numbers) => Float64Array.from(numbers);
-
-const SHORTEST = 1e-8;
 
 /** The first of some places, from 0 on, from which on something holds; the last if it does nowhere. */
 export function earliest(count, holds) {

@@ -13,7 +13,7 @@ from tippetop.bodies import Body
 from tippetop.contact import flight, passing
 from tippetop.contacts import Contact
 from tippetop.frictions import Friction
-from tippetop.integrators.dense import chebyshev
+from tippetop.integrators.dense import SHORTEST, chebyshev
 from tippetop.launch import Launch
 from tippetop.problem import Problem
 from tippetop.shapes import Shape
@@ -41,6 +41,7 @@ def tables(command: str) -> str:
         "NEAR_FINAL": catalogue.NEAR_FINAL,
     }
     numbers = {
+        "SHORTEST": SHORTEST,
         "GAUSS": {count: gauss(count) for count in (4, 8)},
         "CHEBYSHEV": {degree: interpolation(degree) for degree in (flight.DEGREE, passing.DEGREE)},
     }
