@@ -163,3 +163,18 @@ def test_what_is_no_dataset_to_write(wrong, tmp_path):
 def test_more_values_than_fields():
     refused("Listed", Listed, "launch.spin", (1.0, 2.0), 3)
     refused("Sweep", Sweep, PROBLEM, Product([Listed("launch.spin", (1.0, 2.0))]), 1.0, 1e-9, None, 7)
+
+
+@pytest.mark.parametrize("wrong", [0.0, -1.0, float("nan"), "x", None, True])
+def test_no_patch_of_contact(wrong):
+    steel = tt.MATERIALS["steel"]
+    refused("load", tt.hertz_patch_radius, wrong, 0.02, steel)
+    refused("radius", tt.hertz_patch_radius, 0.2, wrong, steel)
+    refused("body", tt.hertz_patch_radius, 0.2, 0.02, wrong)
+    refused("modulus", lambda: tt.Material(modulus=wrong, poisson=0.3))
+
+
+@pytest.mark.parametrize("wrong", [-1.0, 0.6, float("nan"), "x"])
+def test_no_material(wrong):
+    refused("poisson", lambda: tt.Material(modulus=1e9, poisson=wrong))
+    refused("table", tt.hertz_patch_radius, 0.2, 0.02, tt.MATERIALS["wood"], wrong)

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from strategies import numbers
+from tippetop.hertz import MATERIALS, Material, hertz_patch_radius
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzDrillingLaw, HertzLaw, HertzSlidingLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.hertz import MATERIALS, Material, hertz_patch_radius
 from tippetop.mechanics.series import Series, solved, unknown
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_units
@@ -247,6 +247,6 @@ def test_the_patch_carries_its_load_and_has_the_shape_of_the_sphere(name):
 
 
 def test_two_like_bodies_are_twice_as_compliant_as_one_on_a_rigid_table():
-    material = Material(3e9, 0.35)
+    material = Material(modulus=3e9, poisson=0.35)
     ratio = hertz_patch_radius(0.1, 0.02, material, material) / hertz_patch_radius(0.1, 0.02, material)
     assert ratio == pytest.approx(2.0 ** (1.0 / 3.0), rel=1e-13)

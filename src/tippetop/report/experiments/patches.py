@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 
 from tippetop.frictions import ContensouFriction, ViscousFriction
+from tippetop.hertz import MATERIALS, hertz_patch_radius
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
-from tippetop.mechanics.hertz import MATERIALS, hertz_patch_radius
 from tippetop.presets import LEINE_GLOCKER, report_problem
 from tippetop.report import quoted
 from tippetop.report.experiment import dataset, experiment

@@ -1,9 +1,14 @@
 """The patch of two elastic bodies pressed together (Hertz 1882; Johnson, Contact Mechanics, chapter 4)."""
 
-from typing import NamedTuple
+from typing import Annotated
+
+from pydantic import Field
+
+from tippetop.errors import InvalidInput, is_number, require
+from tippetop.validation import NO_WORD, Part, Positive
 
 
-class Material(NamedTuple):
+class Material(Part):
     """An isotropic elastic material.
 
     Attributes
@@ -11,7 +16,7 @@ class Material(NamedTuple):
     modulus
         Young's modulus, Pa.
     poisson
-        Poisson's ratio.
+        Poisson's ratio, above -1 and at most 1/2.
 
     Examples
     --------
@@ -21,14 +26,14 @@ class Material(NamedTuple):
     Material(modulus=207000000000.0, poisson=0.3)
     """
 
-    modulus: float
-    poisson: float
+    modulus: Positive
+    poisson: Annotated[float, Field(gt=-1, le=0.5), NO_WORD]
 
 
-GLASS = Material(69e9, 0.23)
-STEEL = Material(207e9, 0.30)
-WOOD = Material(12e9, 0.29)
-PLASTIC = Material(2.8e9, 0.33)
+GLASS = Material(modulus=69e9, poisson=0.23)
+STEEL = Material(modulus=207e9, poisson=0.30)
+WOOD = Material(modulus=12e9, poisson=0.29)
+PLASTIC = Material(modulus=2.8e9, poisson=0.33)
 MATERIALS = {"glass": GLASS, "steel": STEEL, "wood": WOOD, "plastic": PLASTIC}
 """Soda-lime glass, plain carbon steel, Douglas fir along its grain and polystyrene (Callister, Materials
 Science and Engineering, 7th edition, appendix B). Wood is not isotropic: for it the patch is an order of
@@ -47,6 +52,11 @@ def hertz_patch_radius(load: float, radius: float, body: Material, table: Materi
     body, table
         Their materials; a table of None is rigid. 1/E* = (1 - nu^2)/E of both added up.
 
+    Raises
+    ------
+    InvalidInput
+        If the load or the radius is not positive, or a material is none.
+
     Examples
     --------
     >>> import tippetop as tt
@@ -55,5 +65,11 @@ def hertz_patch_radius(load: float, radius: float, body: Material, table: Materi
     >>> round(1e6 * radius, 1)  # micrometres
     64.2
     """
+    for field, value in {"load": load, "radius": radius}.items():
+        if not (is_number(value) and value > 0.0):
+            raise InvalidInput(field, value, "a number greater than 0")
+    require("body", body, Material, "a Material")
+    if table is not None:
+        require("table", table, Material, "a Material, or None for a rigid one")
     compliance = sum((1.0 - m.poisson**2) / m.modulus for m in (body, table) if m is not None)
     return float((0.75 * load * radius * compliance) ** (1.0 / 3.0))
