@@ -59,6 +59,29 @@ def test_axes_that_cannot_be_are_refused_by_what_is_wrong(entry, field):
     assert refusal.value.field == field
 
 
+@pytest.mark.parametrize(
+    ("entry", "field"),
+    [
+        (lambda: Range("launch.spin", 2, 1), "launch.spin"),
+        (lambda: Range("launch.spin", 2), "launch.spin.to"),
+        (lambda: Range(3, 1, 2), "field"),
+        (lambda: Spaced("launch.spin", 1, 1, 2), "launch.spin"),
+        (lambda: Spaced("launch.spin", 1, 2, 0), "launch.spin.count"),
+        (lambda: Axis.of("launch.spin", 3), "launch.spin"),
+        (lambda: Axis.of("launch.spin", ["x"]), "launch.spin.values.0"),
+    ],
+)
+def test_an_axis_or_range_alone_is_refused_by_its_field(entry, field):
+    with pytest.raises(InvalidInput) as refusal:
+        entry()
+    assert refusal.value.field == field
+
+
+def test_fields_of_words_are_no_axes():
+    with pytest.raises(InvalidInput, match=r"friction\.kind.*fields of words cannot be swept"):
+        Product.of({"friction.kind": ["viscous", "coulomb"]})
+
+
 def test_cells_of_a_product_are_counted_row_by_row():
     grid = Product((Axis.of("launch.spin", [1, 2]), Axis.of("friction.mu", [0.1, 0.2, 0.3])))
     values = grid.values(np.arange(6))

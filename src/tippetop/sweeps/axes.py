@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
@@ -25,13 +26,24 @@ def _in_full(word: Any) -> Any:
     return {"geo": "geometric", "lin": "linear"}.get(word, word) if isinstance(word, str) else word
 
 
+def _no_word(value: Any) -> Any:
+    if isinstance(value, str):
+        raise PydanticCustomError("word", "a finite number: fields of words cannot be swept")
+    return value
+
+
 class Entry(Part):
     """A part of a grid: its fields may also be given in their order, and by the names they have in Python."""
 
     model_config = ConfigDict(populate_by_name=True)
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
-        super().__init__(**in_order(type(self), type(self).model_fields, values), **fields)
+        ordered = in_order(type(self), type(self).model_fields, values)
+        named = fields.get("field", ordered.get("field"))
+        try:
+            super().__init__(**ordered, **fields)
+        except InvalidInput as error:
+            raise error.within(named if isinstance(named, str) else "") from None
 
 
 class Axis(Entry):
@@ -45,7 +57,7 @@ class Axis(Entry):
         if isinstance(entry, np.ndarray | list | tuple | range):
             entry = {"values": tuple(entry)}
         if not isinstance(entry, Mapping):
-            raise InvalidInput("", entry, "a list of values, or { from, to, count, spacing }")
+            raise InvalidInput(field, entry, "a list of values, or { from, to, count, spacing }")
         return (Listed if "values" in entry else Spaced)(**{"field": field} | dict(entry))
 
     @property
@@ -102,7 +114,7 @@ def between(first: float, last: float, shares: Array, geometric: bool) -> Array:
 class Listed(Axis):
     """These values: "values" where they are written."""
 
-    numbers: tuple[Number, ...] = Field(alias="values", min_length=1)
+    numbers: tuple[Annotated[Number, BeforeValidator(_no_word)], ...] = Field(alias="values", min_length=1)
 
     @model_validator(mode="after")
     def _differ(self) -> Self:

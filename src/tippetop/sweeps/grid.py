@@ -103,7 +103,7 @@ class Range(Entry):
     def of(cls, field: str, entry: Any) -> "Range":
         """The range of a field that is written as a table."""
         if not isinstance(entry, Mapping):
-            raise InvalidInput("", entry, "{ from, to, law }")
+            raise InvalidInput(field, entry, "{ from, to, law }")
         return cls(**{"field": field} | dict(entry))
 
 
@@ -191,13 +191,8 @@ def _read(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind
     pairs = isinstance(table, list) and all(isinstance(one, tuple | list) and len(one) == 2 for one in table)
     if not (pairs or isinstance(table, Mapping)):
         raise InvalidInput(name, table, "a table of fields")
-    found = []
-    for field, entry in _flattened(name, table) if isinstance(table, Mapping) else table:
-        try:
-            found.append(of(field, entry))
-        except InvalidInput as fault:
-            raise fault.within(field) from None
-    return tuple(found)
+    fields = _flattened(name, table) if isinstance(table, Mapping) else table
+    return tuple(of(field, entry) for field, entry in fields)
 
 
 def _flattened(name: str, table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
