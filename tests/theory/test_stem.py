@@ -51,6 +51,10 @@ def test_what_is_no_tip_is_refused() -> None:
         tt.least_jellett_to_stand(tt.presets.REPORT_STEM, 2)
     with pytest.raises(tt.InvalidInput, match="that of a sphere"):
         tt.least_jellett_to_stand(tt.presets.COIN, 1)
+    with pytest.raises(tt.InvalidInput, match="surface = 1 is"):
+        tt.least_jellett_to_stand(tt.presets.REPORT_STEM, 1.0)  # type: ignore[arg-type]
+    with pytest.raises(tt.InvalidInput, match=r"body\.shape = 'one surface' .* the stem's tip"):
+        tt.least_jellett_to_stand(tt.presets.REPORT)
 
 
 STEMMED = tt.presets.report_problem().model_copy(update={"body": tt.presets.REPORT_STEM})

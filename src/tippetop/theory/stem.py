@@ -1,7 +1,7 @@
 """What it takes to stand on a stem: the least Jellett's integral about its tip."""
 
 from tippetop.bodies import Body
-from tippetop.errors import InvalidInput, is_number, require
+from tippetop.errors import InvalidInput, is_number, is_whole, require
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hull import each_surface
 from tippetop.mechanics.surface import contact_vector
@@ -55,8 +55,10 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
     require("body", body, Body, "a Body")
     if not (is_number(gravity) and gravity > 0.0):
         raise InvalidInput("gravity", gravity, "a number greater than 0")
-    if surface not in range(len(body.shapes)):
-        raise InvalidInput("surface", surface, f"a number from 0 to {len(body.shapes) - 1}")
+    if len(body.shapes) == 1 and surface:
+        raise InvalidInput("body.shape", "one surface", "several, of which one is the stem's tip")
+    if not is_whole(surface) or surface not in range(len(body.shapes)):
+        raise InvalidInput("surface", surface, f"a whole number from 0 to {len(body.shapes) - 1}")
     tip = body.shapes[surface].surface
     if not tip.spherical:
         raise InvalidInput("surface", surface, "that of a sphere; Jellett's integral holds for no other")
