@@ -39,6 +39,13 @@ def test_what_there_is_not_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> 
     assert "leaves the table" not in lines
 
 
+def test_the_drift_of_jellett_is_told_where_it_is_conserved_alone() -> None:
+    brief = ("--duration", "0.1", "--integrator", "dop853")
+    told = [said(*brief, "--preset", name) for name in ("report", "egg", "report-stem")]
+    assert ["Jellett" in words for words in told] == [True, False, False]
+    assert "Jellett" not in said(*brief, "--set", "rolling_resistance=1e-4")
+
+
 def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
     kinds = {"out": "nc", "plot": "png", "csv": "csv", "glb": "glb", "html": "html", "gif": "gif"}
     options = [word for kind, end in kinds.items() for word in (f"--{kind}", str(tmp_path / f"run.{end}"))]

@@ -107,7 +107,7 @@ def simulate(
     else:
         show(
             f"[bold]{summary['outcome'].replace('_', ' ')}[/]: {summary['advice']}",
-            facts(_rows(summary)),
+            facts(_rows(summary, chosen.top.conserves_jellett)),
             f"[dim]{summary['steps']} steps of {summary['integrator']} in {elapsed:.3g} s[/]",
             files=wanted.values(),
         )
@@ -154,13 +154,15 @@ def _check_files(wanted: dict[str, Path], force: bool) -> None:
         ffmpeg()
 
 
-def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
+def _rows(summary: dict[str, Any], jellett_conserved: bool) -> list[tuple[str, str, str]]:
     lift_off = next((event["time"] for event in summary["events"] if event["kind"] == "lift-off"), None)
     numbers = {**summary, **summary["final"], "first_lift_off": lift_off}
     resisted = summary["energy_lost_drilling"] or summary["energy_lost_rolling"]
     shown = [*ROWS, *(LOSS_ROWS if resisted else ()), *(FLIGHT_ROWS if summary["flights"] else ())]
     rows = []
     for text, key, unit, form, otherwise in shown:
+        if key == "jellett_drift" and not jellett_conserved:
+            continue
         value = numbers[key]
         if value is not None:
             rows.append((text, format(value, form), unit))
