@@ -111,6 +111,30 @@ def test_settings_of_a_film(field, wrong, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("wrong", [3, "told", 0])
+def test_what_cannot_be_called_back(wrong, tmp_path):
+    over = {"launch.spin": [50.0]}
+    refused("callback", lambda: tt.simulate(PROBLEM, 0.1, callback=wrong))
+    refused("callback", lambda: tt.sweep(PROBLEM, over, duration=0.1, workers=1, callback=wrong))
+    refused("progress", lambda: tt.write_movie(run(), tmp_path / "run.gif", progress=wrong))
+
+
+@pytest.mark.parametrize("wrong", ["no", 1, None])
+def test_what_is_neither_true_nor_false(wrong, tmp_path):
+    (tmp_path / "run.nc").write_text("mine")
+    refused("overwrite", lambda: tt.write_run(run(), tmp_path / "run.nc", wrong))
+    assert (tmp_path / "run.nc").read_text() == "mine"
+    for name in ("overwrite", "resume"):
+        asked = {"duration": 0.1, "workers": 1, "out": tmp_path / "a.zarr", name: wrong}
+        refused(name, lambda asked=asked: tt.sweep(PROBLEM, {"launch.spin": [50.0]}, **asked))
+    assert not (tmp_path / "a.zarr").exists()
+
+
+@pytest.mark.parametrize("name", ["overwrite", "resume"])
+def test_there_is_nothing_to_overwrite_or_resume_in_memory(name):
+    refused(name, lambda: tt.sweep(PROBLEM, {"launch.spin": [50.0]}, duration=0.1, workers=1, **{name: True}))
+
+
 @pytest.mark.parametrize("height", [0, -3, "tall", 1.5, float("nan"), None])
 def test_the_height_of_a_player(height):
     refused("height", lambda: tt.view(run(), height))

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from tippetop.errors import OVERWRITE, FileTrouble, InvalidInput
+from tippetop.errors import OVERWRITE, FileTrouble, InvalidInput, require
 from tippetop.interrupts import deferred
 
 if sys.platform != "win32":
@@ -39,6 +39,7 @@ def refuse_overwriting(path: Path, overwrite: bool, otherwise: str = "") -> None
 
     What else may be done with it is told, if anything: "it is <otherwise>overwritten only with ...".
     """
+    require("overwrite", overwrite, bool, "True or False")
     if os.path.lexists(path) and not overwrite:
         raise FileTrouble(f"{named(path)} exists; it is {otherwise}overwritten only with {OVERWRITE}")
 

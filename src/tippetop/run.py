@@ -26,6 +26,7 @@ from tippetop.observables import Recorder
 from tippetop.problem import Problem, require_problem
 from tippetop.samples import continuous, event_in_si, observe
 from tippetop.tally import Tally
+from tippetop.validation import require_callback
 
 BYTES_PER_SAMPLE = 1600
 """Memory that a sample takes at most while a result is being made."""
@@ -89,7 +90,8 @@ def simulate(
     Raises
     ------
     InvalidInput
-        If the problem is none, or the duration, samples, integrator, tolerance, step or a limit cannot be.
+        If the problem is none, or the duration, samples, integrator, tolerance, step, a limit or the callback
+        cannot be.
     Unavailable
         If the integrator is not installed.
 
@@ -103,6 +105,7 @@ def simulate(
     True
     """
     require_problem(problem)
+    require_callback("callback", callback)
     units = natural_units(problem.top)
     require_limits(duration, units.time, phase_limit, step_limit)
     grid = sample_times(duration, samples, times)

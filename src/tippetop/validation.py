@@ -62,6 +62,12 @@ Points: TypeAlias = Annotated[tuple[tuple[Number, ...], ...], BeforeValidator(_l
 """Points of a profile: distance from the axis, height along it and, at the end of an arc, its radius."""
 
 
+def require_callback(field: str, value: object) -> None:
+    """Raise `InvalidInput` unless a value can be called, or is None."""
+    if not (value is None or callable(value)):
+        raise InvalidInput(field, value, "a function, or None")
+
+
 class Quantity(NamedTuple):
     """What a field of numbers measures."""
 

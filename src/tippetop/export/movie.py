@@ -20,6 +20,7 @@ from tippetop.figures.style import INK
 from tippetop.figures.toy import Toy
 from tippetop.files import path_of, place_for, require_ending, written_beside
 from tippetop.problem import Problem
+from tippetop.validation import require_callback
 
 Frame = NDArray[np.uint8]
 
@@ -36,7 +37,7 @@ def write_movie(
     fps: float | None = None,
     speed: float = 1.0,
     pixels: tuple[int, int] | None = None,
-    progress: Callable[[int, int], None] = lambda drawn, count: None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Path:
     """Write a run as a film, .mp4 or .gif by the path's suffix.
 
@@ -71,6 +72,7 @@ def write_movie(
     'run.gif'
     """
     require_run(run)
+    require_callback("progress", progress)
     path = path_of(path)
     encoder = ffmpeg() if require_ending("path", path, (".mp4", ".gif")) == ".mp4" else ""
     place_for(path, overwrite)
@@ -80,7 +82,7 @@ def write_movie(
     if not encoder:
         # What a .gif can hold; browsers slow down what is faster than 50.
         rate = 100.0 / min(max(round(100.0 / rate), 2), 0xFFFF)
-    pictures = frames(run, rate, speed, extent, progress)
+    pictures = frames(run, rate, speed, extent, progress or (lambda drawn, count: None))
     with written_beside(path, overwrite) as beside:
         if encoder:
             _encode(encoder, pictures, beside, rate, extent)

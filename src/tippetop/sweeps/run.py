@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from tippetop.errors import InvalidInput, require
 from tippetop.problem import Problem
 from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.sweeps.layout import CONTENTS, Status, coordinate_attributes, layout_attributes
 from tippetop.sweeps.store import Store
 from tippetop.sweeps.tasks import Cluster, Found, need_workers, results
+from tippetop.validation import require_callback
 
 
 @dataclass(frozen=True)
@@ -158,7 +160,8 @@ def sweep(
     Raises
     ------
     InvalidInput
-        If there is no such field, or it cannot have such values.
+        If there is no such field, or it cannot have such values; if `overwrite` or `resume` is asked for
+        without `out`.
     FileTrouble
         If there is something at `out` already, or it cannot be written.
 
@@ -171,6 +174,11 @@ def sweep(
     """
     grid = over if isinstance(over, Draws) else Product.of(over)
     chosen = Sweep(problem, grid, duration, tolerance, settled)
+    require_callback("callback", callback)
+    for field, asked in {"overwrite": overwrite, "resume": resume}.items():
+        require(field, asked, bool, "True or False")
+        if asked and out is None:
+            raise InvalidInput(field, asked, "False, unless out says where the sweep is kept")
     if out is None:
         return compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
     with need_workers(chosen, workers, scheduler) as cluster:
