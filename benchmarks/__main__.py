@@ -1,9 +1,9 @@
 """Measure what is promised of speed and memory; print tables, and keep the figures as JSON.
 
 A measurement is `simulate` (a run against the bare integration inside it), `compilers` (the same run by
-heyoka, by numba and by SciPy at the same error), `sweep` (the sweep's engine
-against other programs at the same error), `scale` (what sweeps cost by size, workers and flights) or
-`friction` (what friction of a patch costs beside viscous friction).
+heyoka, by numba and by SciPy at the same error), `page` (the page's engine in Node against Python's),
+`sweep` (the sweep's engine against other programs at the same error), `scale` (what sweeps cost by size,
+workers and flights) or `friction` (what friction of a patch costs beside viscous friction).
 """
 
 import argparse
@@ -14,10 +14,17 @@ from pathlib import Path
 from rich.console import Console
 from rich.markdown import Markdown
 
-from benchmarks import bench_compilers, bench_friction, bench_simulate, bench_sweep, bench_sweep_scale
+from benchmarks import (
+    bench_compilers,
+    bench_friction,
+    bench_page,
+    bench_simulate,
+    bench_sweep,
+    bench_sweep_scale,
+)
 from benchmarks.surroundings import machine
 
-MEASUREMENTS = ("simulate", "compilers", "sweep", "scale", "friction")
+MEASUREMENTS = ("simulate", "compilers", "page", "sweep", "scale", "friction")
 
 
 def main() -> None:
@@ -42,6 +49,9 @@ def main() -> None:
         elif name == "compilers":
             found = bench_compilers.measure(options.quick)
             table = bench_compilers.tables(found)
+        elif name == "page":
+            found = bench_page.measure(options.quick)
+            table = bench_page.tables(found)
         elif name == "sweep":
             found = bench_sweep.measure(options.quick, progress.print)
             table = bench_sweep.tables(found)
