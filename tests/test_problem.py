@@ -17,6 +17,7 @@ from tippetop import bodies, contacts, frictions, launch, presets, problem, shap
 from tippetop.bodies import Body
 from tippetop.contacts import Contact
 from tippetop.errors import FileTrouble, InvalidInput, TippetopError
+from tippetop.fields import part_at
 from tippetop.frictions import (
     ContensouFriction,
     CoulombFriction,
@@ -682,6 +683,7 @@ class TestValues:
             ("contact.liftoff", "ignore"),
             ("launch.gap", 0.1),
             ("launch.velocity", (0.1, 0.2, -0.3)),
+            ("launch.slip.1", 0.3),
             ("body", presets.REPORT_TABLE_1),
             ("friction", RegularizedCoulombFriction(mu=0.2)),
         ],
@@ -690,9 +692,7 @@ class TestValues:
         original = top_problem()
         before = copy.deepcopy(original)
         changed = original.replace({name: value})
-        at, at_original = changed, original
-        for step in name.split("."):
-            at, at_original = getattr(at, step), getattr(at_original, step)
+        at, at_original = part_at(changed, name), part_at(original, name)
         assert at == value
         assert original == before
         assert changed != original

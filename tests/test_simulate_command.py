@@ -107,6 +107,14 @@ def test_a_command_line_that_is_none_is_refused_in_one_sentence(command: str, se
     assert "\n" not in str(done.exception)
 
 
+@pytest.mark.parametrize(
+    "twice", ["--spin 2 --set launch.spin=1", "--set launch.spin=1 --set launch.spin=1"], ids=str
+)
+def test_a_field_is_given_once(twice: str) -> None:
+    done = CliRunner().invoke(app, ["problem", *twice.split()])
+    assert str(done.exception).startswith("launch.spin = 1 is not possible; accepted: one value")
+
+
 def test_critical_refuses_friction_in_the_words_of_users() -> None:
     done = CliRunner().invoke(app, ["critical", "--set", "friction.kind=coulomb"])
     assert isinstance(done.exception, tt.InvalidInput)

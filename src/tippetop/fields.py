@@ -35,6 +35,15 @@ def table_at(fields: dict[str, Any], where: str) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
+def with_its_list(fields: dict[str, Any], name: str, value: Any) -> tuple[str, Any]:
+    """A field and a value for it; of what is in a list, named by its place, the list with that in it."""
+    where, _, place = name.rpartition(".")
+    whole = part_at(fields, where)
+    if not (isinstance(whole, tuple) and place.isdecimal() and int(place) < len(whole)):
+        return name, value
+    return with_its_list(fields, where, (*whole[: int(place)], value, *whole[int(place) + 1 :]))
+
+
 def dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
     """Every field's name with dots, depth first."""
     for name, value in fields.items():

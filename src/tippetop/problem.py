@@ -15,7 +15,7 @@ from pydantic import model_validator
 from tippetop.bodies import Body
 from tippetop.contacts import Contact
 from tippetop.errors import MISSING, InvalidInput, one_of, require
-from tippetop.fields import dotted_names, numbers_of, part_at, table_at
+from tippetop.fields import dotted_names, numbers_of, part_at, table_at, with_its_list
 from tippetop.files import made_of, read_text
 from tippetop.frictions import LEAST_PATCH, Friction
 from tippetop.launch import Launch
@@ -148,7 +148,8 @@ class Problem(Part):
                 table, kept = table_at(fields, where), part.fields_of(value)
                 for field in table.keys() - kept:
                     del table[field]
-        for name, value in changes.items():
+        for given, new in changes.items():
+            name, value = with_its_list(fields, given, new)
             where, _, last = name.rpartition(".")
             table = table_at(fields, where)
             if last not in table and where not in renewed:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Concatenate, NamedTuple
 import typer
 
 import tippetop as tt
-from tippetop.errors import InvalidInput
+from tippetop.errors import InvalidInput, short
 from tippetop.files import written_beside
 
 if TYPE_CHECKING:
@@ -70,7 +70,12 @@ class Choice(NamedTuple):
         """Another problem with what is other."""
         if self.preset is not None:
             problem = problem.model_copy(update={"body": tt.presets.body(self.preset)})
-        return problem.replace({**self.settings, **dict(_parsed(change) for change in self.changes)})
+        changes = dict(self.settings)
+        for field, value in map(_parsed, self.changes):
+            if field in changes:
+                raise InvalidInput(field, value, f"one value, and {short(changes[field])} is given, too")
+            changes[field] = value
+        return problem.replace(changes)
 
 
 def of_a_problem(
