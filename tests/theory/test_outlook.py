@@ -4,6 +4,7 @@ import itertools
 import json
 import math
 import random
+import re
 import warnings
 
 import numpy as np
@@ -238,8 +239,8 @@ def test_without_friction_nothing_ends_and_the_tilt_swings(kind):
     assert outlook(problem).swings is None
 
 
-def critical(*options):
-    result = CliRunner().invoke(app, ["critical", *options])
+def critical(*options, columns=80):
+    result = CliRunner().invoke(app, ["critical", *options], env={"COLUMNS": str(columns)})
     assert result.exit_code == 0, result.output
     return result.output
 
@@ -254,6 +255,22 @@ def test_the_command_tells_what_stays_what_swings_and_what_its_spins_are_for():
     smooth = critical("--mu", "0", "--tilt", "0.2")
     assert "swings for ever" in smooth
     assert "ends as" not in smooth
+
+
+SEVERAL = ("--set", "body.I1=2e-6", "--set", "launch.tilt_rate=1")
+"""Of a top of group I that two stable spins are within reach of."""
+
+
+@pytest.mark.parametrize("options", [(), ("--tilt", "0"), SEVERAL], ids=str)
+def test_no_row_is_broken_on_a_terminal_of_80_columns(options):
+    found = [critical(*options, columns=columns).splitlines() for columns in (80, 200)]
+    narrow, wide = ([line.split() for line in lines if re.search(r"\S {2,}\S", line)] for lines in found)
+    assert narrow == wide
+    assert ("of several" in str(found)) is (options == SEVERAL)
+
+
+def test_no_spin_is_no_less_than_none():
+    assert " -0 " not in critical("--spin", "0")
 
 
 def test_the_command_tells_programs_the_same():

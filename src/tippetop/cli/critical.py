@@ -131,20 +131,20 @@ def _end_rows(found: "Outlook") -> list[tuple[str, str, str]]:
         until = "" if stable else " until disturbed"
         rows.append(("stays exactly on", _told(state), f"rad{until}"))
     if found.prediction is not None and not (found.stays and found.stays.spectrum.stable):
-        final, certain = found.prediction.final, found.prediction.certain
-        doubt = "" if certain else " (least energy of several within reach)"
-        rows.append(("and then ends as" if found.stays else "ends as", _told(final), f"rad{doubt}"))
+        rows.append(("and then ends as" if found.stays else "ends as", _told(found.prediction.final), "rad"))
+        if not found.prediction.certain:
+            rows.append(("", "of several, by least energy", ""))
     return rows
 
 
 def _told(state: "SteadyState[float]") -> str:
-    return f"{state.kind.value} at θ = {state.tilt:.9g}"
+    return f"{state.kind.value} at θ = {state.tilt:.7g}"
 
 
 def _state_row(judged: "Judged") -> tuple[str, ...]:
     state, spectrum = judged.state, judged.spectrum
     verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "neutral"
-    motion = (f"{value:.6g}" for value in (state.tilt, state.precession, state.spin))
+    motion = (spelled(value, 6) for value in (state.tilt, state.precession, state.spin))
     return (state.kind.value, *motion, f"{state.energy:.5g}", verdict, f"{spectrum.growth_rate:.5g}")
 
 

@@ -20,7 +20,7 @@ def facts(rows: Iterable[Sequence[str]]) -> "Table":
     """What is told, a name, a number and perhaps a remark to a row, as a table."""
     from rich.table import Table  # noqa: PLC0415 - slow to import, like what follows
 
-    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
     table.add_column(style="dim")
     table.add_column(justify="right", style="bold")
     table.add_column()
