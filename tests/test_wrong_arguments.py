@@ -69,6 +69,24 @@ def test_what_is_no_run(name, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("lost", ["problem", "outcome", "outcome_advice", "integrator"])
+def test_a_run_that_lost_an_attribute(lost):
+    poor = run().copy()
+    del poor.attrs[lost]
+    refused(f"run.attrs.{lost}", tt.summarize, poor)
+
+
+@pytest.mark.parametrize("wrong", [[], {}, None, "reprot"])
+def test_no_body_of_such_a_name(wrong):
+    refused("preset", tt.presets.body, wrong)
+
+
+@pytest.mark.parametrize("name", ["run.csv", "run.HTML", "run.toml", "run.stl"])
+def test_a_run_is_not_written_under_the_ending_of_another_kind(name, tmp_path):
+    refused("path", lambda: tt.write_run(run(), tmp_path / name))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_some_samples_of_a_run_are_a_run():
     assert tt.summarize(run().isel(time=slice(2, 4)))["final"]["theta"] == run()["theta"][3]
 
@@ -103,7 +121,7 @@ def test_limits_and_times_of_a_run(field, wrong):
     [
         *(("fps", bad) for bad in (0, "a", float("nan"), True)),
         *(("speed", bad) for bad in (0, "a", float("nan"), None)),
-        *(("pixels", bad) for bad in (3, "ab", (64,), (64, 64, 64), (64.0, 64.0), (65, 64))),
+        *(("pixels", bad) for bad in (3, "ab", (64,), (64, 64, 64), (64.0, 64.0), (65, 64), 0)),
     ],
 )
 def test_settings_of_a_film(field, wrong, tmp_path):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from xarray.indexes import Index, PandasIndex
 
 from tippetop.catalogue import LISTED, METRICS, MONITORS, SAMPLED, Variable
-from tippetop.errors import InvalidInput
+from tippetop.errors import MISSING, InvalidInput
 
 NAMED = {
     name: PandasIndex(np.array(list(components)), name, coord_dtype=np.dtype("<U1"))
@@ -30,6 +30,11 @@ def require_run(run: object) -> None:
     named = {"time", *SAMPLED, *METRICS, *MONITORS, *LISTED}
     if not (isinstance(run, xr.Dataset) and named <= set(run.variables) and run.sizes.get("time")):
         raise InvalidInput("run", run, "a run that simulate returned, whole or some of its samples")
+    for name in ("problem", "outcome", "outcome_advice", "integrator"):
+        if name not in run.attrs:
+            raise InvalidInput(
+                f"run.attrs.{name}", MISSING, "a run that simulate returned, with its attributes"
+            )
 
 
 def assemble(

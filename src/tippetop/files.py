@@ -34,6 +34,18 @@ def require_ending(field: str, path: Path, endings: Sequence[str]) -> str:
     return ending
 
 
+def refuse_ending_of_others(field: str, path: Path) -> None:
+    """Raise `InvalidInput` if the name of a NetCDF file, which needs no ending, ends as others."""
+    if path.suffix.lower() in _OF_OTHERS:
+        require_ending(field, path, (".nc",))
+
+
+_OF_OTHERS = {
+    *(".png", ".svg", ".pdf", ".html", ".htm", ".csv", ".glb", ".mp4", ".gif", ".json", ".toml", ".zarr"),
+    *(".stl", ".3mf"),
+}
+
+
 def refuse_overwriting(path: Path, overwrite: bool, otherwise: str = "") -> None:
     """Raise `FileTrouble` if something is there, even a link to nothing, and may not be overwritten.
 

@@ -13,7 +13,7 @@ import psutil
 import xarray as xr
 
 from tippetop.errors import FileTrouble, require
-from tippetop.files import in_words, named, place_for, written_beside
+from tippetop.files import in_words, named, path_of, place_for, refuse_ending_of_others, written_beside
 
 SEAL = b"\ntippetop sha256 "
 """What stands between the NetCDF and its digest."""
@@ -27,7 +27,7 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     Raises
     ------
     InvalidInput
-        If it is no dataset.
+        If it is no dataset, or the name ends as that of another kind of file.
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
 
@@ -39,6 +39,7 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     'run.nc'
     """
     require("run", run, xr.Dataset, "a dataset, such as simulate returns")
+    refuse_ending_of_others("path", path_of(path))
     place_for(path, overwrite)
     # In memory first: where a disk is full HDF5 takes the whole process with it.
     memory = BytesIO()

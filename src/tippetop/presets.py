@@ -167,7 +167,7 @@ def body(name: str) -> Body:
     """The body of this name; `InvalidInput` if there is no such preset."""
     try:
         return BODIES[name]
-    except KeyError:
+    except (KeyError, TypeError):
         raise InvalidInput("preset", name, one_of(name, list(BODIES))) from None
 
 

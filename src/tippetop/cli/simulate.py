@@ -10,7 +10,7 @@ import typer
 import tippetop as tt
 from tippetop.cli.options import DRAWINGS, Choice, Force, Json, of_a_problem, write_figure
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
-from tippetop.files import place_for, require_ending
+from tippetop.files import place_for, refuse_ending_of_others, require_ending
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,9 +19,6 @@ DEFAULT_SAMPLES = 2001
 MOVING = ("glb", "html", "mp4", "gif")
 ENDINGS = {"plot": DRAWINGS, "html": (".html", ".htm")}
 """How the names of files may end; of the other kinds but `out`, as the kind is called."""
-
-OF_OTHERS = (*DRAWINGS, ".html", ".htm", ".csv", ".glb", ".mp4", ".gif", ".json", ".toml", ".zarr")
-"""How that of the run's NetCDF may not end, which has no ending of its own."""
 
 ROWS = (
     ("simulated", "duration", "s", ".6g", ""),
@@ -145,8 +142,8 @@ def _check_files(wanted: dict[str, Path], force: bool) -> None:
     for kind, path in wanted.items():
         if kind != "out":
             require_ending(f"--{kind}", path, ENDINGS.get(kind, (f".{kind}",)))
-        elif path.suffix.lower() in OF_OTHERS:
-            require_ending("--out", path, (".nc",))
+        else:
+            refuse_ending_of_others("--out", path)
         place_for(path, force)
     if "mp4" in wanted:
         from tippetop.export.movie import ffmpeg  # noqa: PLC0415 - slow to import

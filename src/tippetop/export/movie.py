@@ -77,7 +77,7 @@ def write_movie(
     encoder = ffmpeg() if require_ending("path", path, (".mp4", ".gif")) == ".mp4" else ""
     place_for(path, overwrite)
     rate = fps if fps is not None else 30.0 if encoder else 20.0
-    extent = pixels or ((640, 480) if encoder else (360, 270))
+    extent = pixels if pixels is not None else (640, 480) if encoder else (360, 270)
     _check(rate, speed, extent)
     if not encoder:
         # What a .gif can hold; browsers slow down what is faster than 50.
