@@ -26,6 +26,13 @@ LONGEST_NAME = 300
 """How much of a path a sentence shows, letters."""
 
 
+_OF_OTHERS = {
+    *(".png", ".svg", ".pdf", ".html", ".htm", ".csv", ".glb", ".mp4", ".gif", ".json", ".toml", ".zarr"),
+    *(".stl", ".3mf"),
+}
+"""How the names of files of other kinds than NetCDF end."""
+
+
 def require_ending(field: str, path: Path, endings: Sequence[str]) -> str:
     """The ending of a file's name; raises `InvalidInput` if it is none of these."""
     ending = path.suffix.lower()
@@ -38,12 +45,6 @@ def refuse_ending_of_others(field: str, path: Path) -> None:
     """Raise `InvalidInput` if the name of a NetCDF file, which needs no ending, ends as others."""
     if path.suffix.lower() in _OF_OTHERS:
         require_ending(field, path, (".nc",))
-
-
-_OF_OTHERS = {
-    *(".png", ".svg", ".pdf", ".html", ".htm", ".csv", ".glb", ".mp4", ".gif", ".json", ".toml", ".zarr"),
-    *(".stl", ".3mf"),
-}
 
 
 def refuse_overwriting(path: Path, overwrite: bool, otherwise: str = "") -> None:
