@@ -620,6 +620,17 @@ def test_origin_of_a_result_can_be_read_off_it(usual):
     assert usual.steps.item() > 0
 
 
+def test_numbers_of_numpy_are_numbers_of_floats_and_none_may_be_infinite():
+    duration, tolerance = np.float32(0.25), np.float32(1e-8)
+    found = tt.simulate(report(), duration, samples=3, tolerance=tolerance)
+    xr.testing.assert_identical(
+        found, tt.simulate(report(), float(duration), samples=3, tolerance=float(tolerance))
+    )
+    for infinite in (np.float32("inf"), np.float16("inf"), 10**400, np.float32("nan")):
+        with pytest.raises(tt.InvalidInput, match=r"^duration = "):
+            tt.simulate(report(), infinite)
+
+
 def test_tolerance_and_step_are_written_down_as_they_were_given():
     assert tt.simulate(report(), 0.01, integrator="dop853", tolerance=1e-7).attrs["tolerance"] == 1e-7
     classical = tt.simulate(report(), 0.01, integrator="rk4", step=1e-4).attrs

@@ -115,6 +115,28 @@ def test_a_field_is_given_once(twice: str) -> None:
     assert str(done.exception).startswith("launch.spin = 1 is not possible; accepted: one value")
 
 
+@pytest.mark.parametrize(
+    "twice",
+    [
+        ["--set", "launch.slip=[1, 2]", "--set", "launch.slip.0=3"],
+        ["--set", "launch.slip.0=3", "--set", "launch.slip=[1, 2]"],
+        ["--set", 'launch={"tilt": 0.1, "spin": 3}', "--set", "launch.slip.0=3"],
+    ],
+    ids=str,
+)
+def test_a_field_is_not_given_beside_its_whole(twice: list[str]) -> None:
+    done = CliRunner().invoke(app, ["problem", *twice])
+    assert str(done.exception).startswith(
+        "launch.slip.0 = 3 is not possible; accepted: none beside a value of"
+    )
+
+
+def test_a_place_is_written_in_one_way() -> None:
+    for place in ("00", "\u0660", "2", "-1", "9" * 5000):
+        with pytest.raises(tt.InvalidInput, match=r"^field = "):
+            tt.presets.report_problem().replace({f"launch.slip.{place}": 3.0})
+
+
 def test_critical_refuses_friction_in_the_words_of_users() -> None:
     done = CliRunner().invoke(app, ["critical", "--set", "friction.kind=coulomb"])
     assert isinstance(done.exception, tt.InvalidInput)

@@ -10,8 +10,8 @@ How a run ends is not an error: see `tippetop.contact.mode.Outcome`.
 
 from collections.abc import Mapping
 from difflib import get_close_matches
+from math import isfinite
 from numbers import Integral, Real
-from sys import float_info
 from typing import TypeGuard
 
 
@@ -128,8 +128,11 @@ def require(field: str, value: object, kind: type, accepted: str) -> None:
 
 
 def is_number(value: object) -> bool:
-    """Whether a value is a finite real number."""
-    return isinstance(value, Real) and not isinstance(value, bool) and bool(abs(value) <= float_info.max)  # type: ignore[operator]
+    """Whether a value is a finite real number, as a float too."""
+    try:
+        return isinstance(value, Real) and not isinstance(value, bool) and isfinite(value)
+    except OverflowError:
+        return False
 
 
 def is_whole(value: object) -> TypeGuard[int]:

@@ -22,7 +22,7 @@ def part_at(whole: Any, where: str) -> Any:
     for name in where.split(".") if where else ():
         if isinstance(whole, dict):
             whole = whole.get(name)
-        elif isinstance(whole, tuple) and name.isdecimal() and int(name) < len(whole):
+        elif isinstance(whole, tuple) and _is_place(name, whole):
             whole = whole[int(name)]
         else:
             whole = getattr(whole, name, None)
@@ -39,9 +39,14 @@ def with_its_list(fields: dict[str, Any], name: str, value: Any) -> tuple[str, A
     """A field and a value for it; of what is in a list, named by its place, the list with that in it."""
     where, _, place = name.rpartition(".")
     whole = part_at(fields, where)
-    if not (isinstance(whole, tuple) and place.isdecimal() and int(place) < len(whole)):
+    if not (isinstance(whole, tuple) and _is_place(place, whole)):
         return name, value
     return with_its_list(fields, where, (*whole[: int(place)], value, *whole[int(place) + 1 :]))
+
+
+def _is_place(name: str, whole: tuple[Any, ...]) -> bool:
+    """Whether a name counts a place that a list has: 0, 1, ..., written in one way."""
+    return name in map(str, range(len(whole)))
 
 
 def dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:

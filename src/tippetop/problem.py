@@ -134,10 +134,14 @@ class Problem(Part):
         Raises
         ------
         InvalidInput
-            If there is no such field, or it cannot have such a value.
+            If there is no such field, it cannot have such a value, or is given again within another's.
         """
         if not (isinstance(changes, Mapping) and all(isinstance(name, str) for name in changes)):
             raise InvalidInput("changes", changes, "a dict of values by the names of fields")
+        for name in changes:
+            whole = next((other for other in changes if name.startswith(f"{other}.")), None)
+            if whole is not None:
+                raise InvalidInput(name, changes[name], f"none beside a value of {whole}, its whole")
         fields = self.model_dump()
         renewed = set()
         for name, value in changes.items():

@@ -108,6 +108,7 @@ def simulate(
     require_callback("callback", callback)
     units = natural_units(problem.top)
     require_limits(duration, units.time, phase_limit, step_limit)
+    duration = float(duration)
     grid = sample_times(duration, samples, times)
     top = natural(problem.top)
     method = integrator_of(integrator, tolerance, step, units)

@@ -85,7 +85,7 @@ def make_integrator(
         raise InvalidInput("step", step, f"none with {name}, which chooses its own")
     if tolerance is not None:
         require_tolerance(tolerance, name)
-    return _adaptive(name, TOLERANCES[name] if tolerance is None else tolerance)
+    return _adaptive(name, TOLERANCES[name] if tolerance is None else float(tolerance))
 
 
 def _adaptive(name: str, tolerance: float) -> Integrator:

@@ -161,7 +161,7 @@ def sweep(
     ------
     InvalidInput
         If there is no such field, or it cannot have such values; if `overwrite` or `resume` is asked for
-        without `out`.
+        without `out`, or both are.
     FileTrouble
         If there is something at `out` already, or it cannot be written.
 
@@ -179,6 +179,8 @@ def sweep(
         require(field, asked, bool, "True or False")
         if asked and out is None:
             raise InvalidInput(field, asked, "False, unless out says where the sweep is kept")
+    if overwrite and resume:
+        raise InvalidInput("overwrite", overwrite, "False with resume=True, which keeps what is there")
     if out is None:
         return compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
     with need_workers(chosen, workers, scheduler) as cluster:
