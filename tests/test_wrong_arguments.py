@@ -163,9 +163,14 @@ def test_changes_that_are_no_dict(wrong):
     refused("changes", PROBLEM.replace, wrong)
 
 
-@pytest.mark.parametrize("wrong", [[1], [("launch.spin", [50.0], 3)], ["launch.spin"], 3])
+@pytest.mark.parametrize("wrong", [[1], [("launch.spin", [50.0], 3)], [(None, [50.0])], ["launch.spin"], 3])
 def test_axes_that_are_no_table(wrong):
     refused("axes", lambda: tt.sweep(PROBLEM, wrong, duration=1.0, workers=1))
+
+
+@pytest.mark.parametrize("wrong", [3, None])
+def test_a_product_of_no_axes(wrong):
+    refused("axes", Product, wrong)
 
 
 @pytest.mark.parametrize("wrong", [(1.0, 2.0, 3.0, 4.0), "ab", 3])
@@ -205,6 +210,25 @@ def test_what_is_no_dataset_to_write(wrong, tmp_path):
 def test_more_values_than_fields():
     refused("Listed", Listed, "launch.spin", (1.0, 2.0), 3)
     refused("Sweep", Sweep, PROBLEM, Product([Listed("launch.spin", (1.0, 2.0))]), 1.0, 1e-9, None, 7)
+
+
+@pytest.mark.parametrize("name", ["numbers", "values", "field"])
+def test_a_field_in_its_place_and_by_its_name(name):
+    refused(name, lambda: Listed("launch.spin", (1.0,), **{name: (2.0,)}))
+
+
+@pytest.mark.parametrize("entry", [{"values": [1.0]}, {"from": 1.0, "to": 2.0, "count": 2}])
+def test_a_field_in_the_table_of_its_axis(entry):
+    refused("launch.spin.field", Product.of, {"launch.spin": entry | {"field": "launch.tilt"}})
+
+
+@pytest.mark.parametrize("wrong", [np.array(3.0), {1.0, 2.0}, "ab", None])
+def test_values_in_no_order(wrong):
+    refused("launch.spin", Product.of, {"launch.spin": wrong})
+
+
+def test_a_truth_value_of_numpy_is_no_number():
+    refused("launch.spin.values.0", Product.of, {"launch.spin": np.array([True, False])})
 
 
 @pytest.mark.parametrize("wrong", [0.0, -1.0, float("nan"), "x", None, True])

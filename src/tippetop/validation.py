@@ -4,6 +4,7 @@ import inspect
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
 
+import numpy as np
 from pydantic import (
     BaseModel,
     BeforeValidator,
@@ -23,7 +24,7 @@ from tippetop.fields import part_at
 
 def _no_word(value: Any) -> Any:
     """Refuse what Python would turn into a number although nobody would call it one."""
-    if isinstance(value, (bool, str, bytes)):
+    if isinstance(value, (bool, np.bool_, str, bytes)):
         raise PydanticCustomError("float_type", "a finite number")
     return value
 

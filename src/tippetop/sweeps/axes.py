@@ -39,11 +39,21 @@ class Entry(Part):
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
         ordered = in_order(type(self), type(self).model_fields, values)
+        given = {name for field in ordered for name in (field, type(self).model_fields[field].alias)}
+        for name in fields.keys() & given:
+            raise InvalidInput(name, fields[name], "a field once: in its place, or by its name")
         named = fields.get("field", ordered.get("field"))
         try:
             super().__init__(**ordered, **fields)
         except InvalidInput as error:
             raise error.within(named if isinstance(named, str) else "") from None
+
+    @classmethod
+    def written(cls, field: str, table: Mapping[str, Any]) -> Self:
+        """The entry of a field, from the table of its others."""
+        if "field" in table:
+            raise InvalidInput(f"{field}.field", table["field"], "no field: it is the name of the table")
+        return cls(**{"field": field} | dict(table))
 
 
 class Axis(Entry):
@@ -54,11 +64,11 @@ class Axis(Entry):
     @classmethod
     def of(cls, field: str, entry: Any) -> "Axis":
         """The axis that is written as a list, or an array, or a table."""
-        if isinstance(entry, np.ndarray | list | tuple | range):
+        if isinstance(entry, list | tuple | range) or (isinstance(entry, np.ndarray) and entry.ndim):
             entry = {"values": tuple(entry)}
         if not isinstance(entry, Mapping):
             raise InvalidInput(field, entry, "a list of values, or { from, to, count, spacing }")
-        return (Listed if "values" in entry else Spaced)(**{"field": field} | dict(entry))
+        return (Listed if "values" in entry else Spaced).written(field, entry)
 
     @property
     def size(self) -> int:

@@ -28,6 +28,8 @@ class Product(Entry):
     axes: tuple[Axis, ...]
 
     def __init__(self, axes: Iterable[Axis] = (), /, **fields: Any) -> None:
+        if not isinstance(axes, Iterable):
+            raise InvalidInput("axes", axes, "a list of axes")
         super().__init__(**{"axes": tuple(axes)} | fields)
 
     @model_validator(mode="after")
@@ -104,7 +106,7 @@ class Range(Entry):
         """The range of a field that is written as a table."""
         if not isinstance(entry, Mapping):
             raise InvalidInput(field, entry, "{ from, to, law }")
-        return cls(**{"field": field} | dict(entry))
+        return cls.written(field, entry)
 
 
 class Draws(Entry):
@@ -188,11 +190,15 @@ def _read(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind
     """The axes, or ranges, of a table, or of pairs of a field and what stands there."""
     if isinstance(table, tuple):
         return table
-    pairs = isinstance(table, list) and all(isinstance(one, tuple | list) and len(one) == 2 for one in table)
-    if not (pairs or isinstance(table, Mapping)):
+    if not (_pairs(table) or isinstance(table, Mapping)):
         raise InvalidInput(name, table, "a table of fields")
     fields = _flattened(name, table) if isinstance(table, Mapping) else table
     return tuple(of(field, entry) for field, entry in fields)
+
+
+def _pairs(table: Any) -> bool:
+    several = isinstance(table, list) and all(isinstance(one, tuple | list) for one in table)
+    return several and all(len(one) == 2 and isinstance(one[0], str) for one in table)
 
 
 def _flattened(name: str, table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
