@@ -170,7 +170,8 @@ def test_what_polynomials_leave_unresolved_is_the_last_of_chebyshevs():
 
     solution = DenseSolution.fitted(numbers, knots, 14)
     assert solution.unresolved == pytest.approx(0.3, rel=1e-12)
-    assert DenseSolution.fitted(lambda t: [np.exp(-0.1 * t)], knots, 14).unresolved < 1e-16
+    # Values near 1 are known to a rounding, and so is what is left of their last polynomial.
+    assert DenseSolution.fitted(lambda t: [np.exp(-0.1 * t)], knots, 14).unresolved < np.finfo(float).eps
 
 
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other allocators have other rules")
