@@ -217,6 +217,18 @@ def test_a_field_in_its_place_and_by_its_name(name):
     refused(name, lambda: Listed("launch.spin", (1.0,), **{name: (2.0,)}))
 
 
+@pytest.mark.parametrize("name", ["problem", "grid", "axes"])
+def test_a_part_of_a_sweep_in_its_place_and_by_its_name(name):
+    grid = Product.of({"launch.spin": [1.0]})
+    refused(name, lambda: Sweep(PROBLEM, grid, **{name: grid}))
+
+
+def test_axes_in_their_place_and_by_their_name():
+    axes = (Listed("launch.spin", (1.0,)),)
+    assert Product(axes=axes) == Product(axes)
+    refused("axes", lambda: Product(axes, axes=axes))
+
+
 @pytest.mark.parametrize("entry", [{"values": [1.0]}, {"from": 1.0, "to": 2.0, "count": 2}])
 def test_a_field_in_the_table_of_its_axis(entry):
     refused("launch.spin.field", Product.of, {"launch.spin": entry | {"field": "launch.tilt"}})

@@ -139,12 +139,22 @@ class Part(BaseModel):
 _PACKAGE = __name__.partition(".")[0]
 
 
-def in_order(part: type[Part], names: Iterable[str], values: Sequence[Any]) -> dict[str, Any]:
-    """Fields of a part by values given without their names; raises `InvalidInput` if there are too many."""
+def in_order(
+    part: type[Part], names: Iterable[str], values: Sequence[Any], fields: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Fields of a part, of which the first may be given without their names.
+
+    Raises `InvalidInput` if there are too many, or one both in its place and by its name.
+    """
     names = list(names)
     if len(values) > len(names):
         raise InvalidInput(part.__name__, values, f"at most these, in order: {', '.join(names)}")
-    return dict(zip(names, values, strict=False))
+    ordered = dict(zip(names, values, strict=False))
+    aliases = {info.alias: name for name, info in part.model_fields.items()}
+    for name, value in fields.items():
+        if aliases.get(name, name) in ordered:
+            raise InvalidInput(name, value, "a field once: in its place, or by its name")
+    return ordered | dict(fields)
 
 
 class Variant(Part):

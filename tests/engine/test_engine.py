@@ -48,10 +48,7 @@ def test_what_is_generated_is_current() -> None:
         words_there, numbers_there = told((HERE / name).read_text(encoding="utf-8"))
         assert words == words_there, f"{name} is out of date: run `{COMMAND}`"
         # The last digits are the processor's: libraries of linear algebra sum in another order on each.
-        # So is what is left where exact arithmetic would leave 0.
-        size = np.maximum(np.abs(numbers), np.abs(numbers_there))
-        alike = np.isclose(numbers, numbers_there, rtol=1e-13, atol=0.0) | (size < 1e-14)
-        assert alike.all(), f"{name} is out of date: run `{COMMAND}`"
+        np.testing.assert_allclose(numbers_there, numbers, rtol=1e-13, atol=0.0, err_msg=f"run `{COMMAND}`")
 
 
 def told(text: str) -> tuple[list[str], list[float]]:

@@ -128,8 +128,8 @@ def _chosen_sweep(
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else kept
     given = {name: limit for name, limit in limits.items() if limit is not None}
     if base is not None:
-        update = {"problem": choice.changed(base.problem), "grid": grid or base.grid, **given}
-        return base.model_copy(update=update)
+        cells = {"axes": None, "draws": None, "grid": grid or base.grid}
+        return base.model_copy(update={"problem": choice.changed(base.problem), **cells, **given})
     problem = choice.problem()
     if grid is None:
         raise InvalidInput("--axis", MISSING, "at least one axis, or --draw, or a sweep's file")

@@ -227,12 +227,18 @@ def powers(numbers: Array, count: int) -> Array:
 @lru_cache
 def chebyshev(degree: int) -> tuple[Array, Array, Array]:
     """Chebyshev's points in [0, 1], and the matrices from values there to his coefficients and to powers."""
-    angles = np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)
+    size = degree + 1
+    angles = np.pi * (np.arange(size) + 0.5) / size
     places: Array = 0.5 - 0.5 * np.cos(angles)
-    transform = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * places - 1.0, degree))
-    to_powers = np.zeros((degree + 1, degree + 1))
-    for k in range(degree + 1):
+    # Orthogonal on these points: the inverse of the matrix of values is its transposed one, scaled.
+    # Angles are whole parts of a turn, and reduced as such: no rounding is multiplied.
+    turns = np.outer(np.arange(size), 2 * np.arange(size)[::-1] + 1) % (4 * size)
+    quarters = 1.0 - np.minimum(turns, 4 * size - turns) / size
+    transform: Array = np.sin(np.pi / 2.0 * quarters) * (2.0 / size)
+    transform[0] = 1.0 / size
+    to_powers = np.zeros((size, size))
+    for k in range(size):
         basis = np.polynomial.Chebyshev.basis(k, domain=[0.0, 1.0])
         terms = basis.convert(kind=np.polynomial.Polynomial, domain=[-1.0, 1.0], window=[-1.0, 1.0]).coef
         to_powers[: len(terms), k] = terms
-    return places, np.asarray(transform, dtype=float), to_powers
+    return places, transform, to_powers

@@ -38,13 +38,10 @@ class Entry(Part):
     model_config = ConfigDict(populate_by_name=True)
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
-        ordered = in_order(type(self), type(self).model_fields, values)
-        given = {name for field in ordered for name in (field, type(self).model_fields[field].alias)}
-        for name in fields.keys() & given:
-            raise InvalidInput(name, fields[name], "a field once: in its place, or by its name")
-        named = fields.get("field", ordered.get("field"))
+        fields = in_order(type(self), type(self).model_fields, values, fields)
+        named = fields.get("field")
         try:
-            super().__init__(**ordered, **fields)
+            super().__init__(**fields)
         except InvalidInput as error:
             raise error.within(named if isinstance(named, str) else "") from None
 

@@ -54,11 +54,12 @@ class Sweep(Part):
     `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration."""
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
-        fields |= in_order(type(self), ("problem", "grid", "duration", "tolerance", "settled"), values)
+        fields = in_order(type(self), ("problem", "grid", "duration", "tolerance", "settled"), values, fields)
         grid = fields.pop("grid", None)
         if grid is not None:
-            product = isinstance(grid, Product)
-            fields |= {"axes": grid if product else None, "draws": None if product else grid}
+            kind = "axes" if isinstance(grid, Product) else "draws"
+            others = {name: value for name, value in fields.items() if value is not None}
+            fields = in_order(type(self), [kind], (grid,), others)
         super().__init__(**fields)
 
     @model_validator(mode="after")

@@ -27,10 +27,9 @@ class Product(Entry):
 
     axes: tuple[Axis, ...]
 
-    def __init__(self, axes: Iterable[Axis] = (), /, **fields: Any) -> None:
-        if not isinstance(axes, Iterable):
-            raise InvalidInput("axes", axes, "a list of axes")
-        super().__init__(**{"axes": tuple(axes)} | fields)
+    def __init__(self, /, *axes: Iterable[Axis], **fields: Any) -> None:
+        # Said again for mypy, which takes it that values need names.
+        super().__init__(*axes, **fields)
 
     @model_validator(mode="after")
     def _crosses(self) -> Self:
