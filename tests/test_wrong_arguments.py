@@ -223,6 +223,15 @@ def test_a_part_of_a_sweep_in_its_place_and_by_its_name(name):
     refused(name, lambda: Sweep(PROBLEM, grid, **{name: grid}))
 
 
+def test_a_sweep_of_both_axes_and_draws():
+    draws = tt.Draws((tt.Range("launch.spin", 1.0, 2.0),), count=2)
+    refused("axes and draws", lambda: Sweep(PROBLEM, Product.of({"launch.tilt": [0.1]}), draws=draws))
+
+
+def test_a_sweep_that_is_to_last_nothing():
+    refused("duration", lambda: Sweep(PROBLEM, Product.of({"launch.spin": [1.0]}), duration=None))
+
+
 def test_axes_in_their_place_and_by_their_name():
     axes = (Listed("launch.spin", (1.0,)),)
     assert Product(axes=axes) == Product(axes)

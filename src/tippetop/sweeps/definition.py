@@ -58,8 +58,9 @@ class Sweep(Part):
         grid = fields.pop("grid", None)
         if grid is not None:
             kind = "axes" if isinstance(grid, Product) else "draws"
-            others = {name: value for name, value in fields.items() if value is not None}
-            fields = in_order(type(self), [kind], (grid,), others)
+            if fields.get(kind) is None:
+                fields.pop(kind, None)
+            fields = in_order(type(self), [kind], (grid,), fields)
         super().__init__(**fields)
 
     @model_validator(mode="after")
