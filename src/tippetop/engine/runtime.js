@@ -1,4 +1,6 @@
 // What Python means where JavaScript means something else: for the translated modules.
+import { repr } from "./words.js";
+export * from "./words.js";
 
 export class ArithmeticError extends Error {}
 export class ZeroDivisionError extends ArithmeticError {}
@@ -26,8 +28,7 @@ function applied(a, b, word, turned, plain) {
 }
 
 export function add(a, b) {
-  if (typeof a === "number" && typeof b === "number") return a + b;
-  if (typeof a === "string") return a + b;
+  if ((typeof a === "number" && typeof b === "number") || typeof a === "string") return a + b;
   if (Array.isArray(a)) return [...a, ...b];
   return applied(a, b, "__add__", "__radd__", add);
 }
@@ -76,7 +77,6 @@ export const abs = (a) => (typeof a === "number" ? Math.abs(a) : a.__abs__());
 export const float = (a) => (a === "inf" ? Infinity : Number(a));
 export const int = (a) => Math.trunc(Number(a));
 export const str = (a) => (a instanceof Error ? a.message : a instanceof Enum ? a.name : typeof a === "string" ? a : repr(a));
-export const repr = (a) => (typeof a === "string" ? `'${JSON.stringify(a).slice(1, -1).replaceAll('\\"', '"')}'` : Object.is(a, -0) ? "-0" : String(a));
 export function sum(values, start = 0) {
   for (const value of values) start = add(start, value);
   return start;
@@ -279,28 +279,6 @@ export function min(a, b) {
 }
 export const sorted = (all, { key: worth = (one) => one } = {}) =>
   [...all].sort((a, b) => below(worth(b), worth(a)) - below(worth(a), worth(b)));
-
-export const join = (between, all) => [...all].join(between);
-export const isprintable = (text) => !/[\p{C}\p{Zl}\p{Zp}]|(?! )\p{Zs}/u.test(text);
-export const removeprefix = (text, part) => (text.startsWith(part) ? text.slice(part.length) : text);
-/** A number as it is typed, with powers of ten from some size on. */
-export function typed(value, most = 1e16) {
-  if (!Number.isFinite(value)) return String(value).toLowerCase().replace("inity", "");
-  const size = Math.abs(value), plainly = value === 0 || (size >= 1e-4 && size < most);
-  return plainly ? String(value) : value.toExponential().replace(/([+-])(\d)$/, "$10$2");
-}
-/** The same of so many digits, as the format `g` says. */
-export function format(value, how_) {
-  const digits = how_.length > 1 ? Number(how_.slice(1, -1)) : 6;
-  return typed(Number(value.toPrecision(digits)), 10 ** digits);
-}
-
-/** A value in a sentence, as it would be typed. */
-export function short(value) {
-  const text = Array.isArray(value) ? `(${value.map(short).join(", ")})` : typeof value === "number" ? typed(value)
-    : value === null ? "None" : typeof value === "object" ? JSON.stringify(value) : repr(value);
-  return text.length <= 60 ? text : `${text.slice(0, 57)}...`;
-}
 
 // ---- objects
 
