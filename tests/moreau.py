@@ -125,10 +125,10 @@ class OnSpheres(Moreau):
         along = np.array([R[0, 2], R[1, 2], 0.0]) / np.hypot(R[0, 2], R[1, 2])
         linear, angular, shut = [], [], []
         for radius, zeta in self.spheres:
-            push = np.column_stack([np.eye(3)[0], np.eye(3)[1], np.zeros(3), UP])
-            turn = cross_matrix(R.T @ (zeta * R[:, 2] - radius * UP)) @ R.T @ push
+            directions = np.column_stack([np.eye(3)[0], np.eye(3)[1], np.zeros(3), UP])
+            turn = cross_matrix(R.T @ (zeta * R[:, 2] - radius * UP)) @ R.T @ directions
             turn[:, 2] = R.T @ along
-            linear.append(push)
+            linear.append(directions)
             angular.append(turn)
             shut.append(self.position[2] + zeta * R[2, 2] - radius <= 0.0)
         linear, angular = np.hstack(linear), np.hstack(angular)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tippetop as tt
-from independent_hops import Toy, hop_along
+from independent_flights import Toy, slide_and_fly
 from tippetop.presets import REPORT, report_problem
 
 FIRST_LIFT_OFF = {175.0: 5.361332, 170.0: 5.85182}
@@ -47,7 +47,7 @@ def test_onset_of_lift_off():
     assert high == pytest.approx(ONSET, abs=1e-4)
 
 
-def test_an_independent_simulation_in_small_steps_hops_alike():
+def test_an_independent_simulation_in_small_steps_flies_alike():
     before = tt.simulate(report_problem(175.0), 5.3, times=[5.3]).isel(time=-1)
     launch = {
         "tilt": float(before.theta),
@@ -61,7 +61,7 @@ def test_an_independent_simulation_in_small_steps_hops_alike():
     run = tt.simulate(problem, duration, samples=2)
     toy = Toy(m=0.02, R=0.02, alpha=0.3, I1=REPORT.I1, I3=REPORT.I3, mu=0.3, g=9.8)
     start = [launch["tilt"], launch["tilt_rate"], 0.0, launch["precession"], launch["spin"], *launch["slip"]]
-    final, lifts, lands = hop_along(toy, start, duration, 1e-5)
+    final, lifts, lands = slide_and_fly(toy, start, duration, 1e-5)
 
     kinds, times = run.event_kind.values, run.event_time.values
     assert len(lifts) > 5

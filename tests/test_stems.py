@@ -170,14 +170,14 @@ def test_two_patches_which_each_drill_or_slide_move_a_body_as_newton_and_euler_s
         for slip in slips
     ]
     forces = [np.array([*traction.force, 1.0]) for traction in tractions]
-    pushed = [
+    wrenches = [
         [*force, *(np.cross(arm, force) + traction.torque)]
         for arm, force, traction in zip(arms, forces, tractions, strict=True)
     ]
     told = np.array([*rates[6:], 1.0, *rates[3:6]])
-    normal, *_ = np.linalg.lstsq(np.array(pushed).T, told, rcond=None)
+    normal, *_ = np.linalg.lstsq(np.array(wrenches).T, told, rcond=None)
     assert (normal > 0.0).all()
-    assert np.array(pushed).T @ normal == pytest.approx(told, abs=1e-14)
+    assert np.array(wrenches).T @ normal == pytest.approx(told, abs=1e-14)
 
     def tilting(y: np.ndarray) -> float:
         return np.cross(y[3:6], y[:3])[2] / inertia[0]

@@ -150,10 +150,10 @@ def test_force_across_leaves_less_along() -> None:
     for along in np.linspace(0.0, 2.0, 41) * limits.sum():
         forces = across[0] * t + along * e, across[1] * t
         wrenches = [Wrench((f[0], f[1], n), NO_TORQUE) for f, n in zip(forces, held.normal, strict=True)]
-        pushed = held._replace(wrenches=tuple(wrenches))
+        motion = held._replace(wrenches=tuple(wrenches))
         fits = np.hypot(shares, across[0]) <= limits[0]
         fits &= np.hypot(along - shares, across[1]) <= limits[1]
-        assert (pushed.both_reserve >= 0.0) == fits.any(), along
+        assert (motion.both_reserve >= 0.0) == fits.any(), along
         seen.add(bool(fits.any()))
     assert seen == {False, True}
 

@@ -104,16 +104,16 @@ def test_extremes_of_a_parabola_are_exact(vertex):
 
 def test_an_extreme_at_an_end_is_the_end():
     rising = Polynomials(np.array([[1.0], [2.0]]), ones(3.0))
-    for course, where, what in ((rising, 0.0, 1.0), (rising.negative(), 3.0, -7.0)):
-        place, value = course.refined_least()
+    for polynomial, where, what in ((rising, 0.0, 1.0), (rising.negative(), 3.0, -7.0)):
+        place, value = polynomial.refined_least()
         assert place[0] == where
         assert value[0] == what
 
 
 def test_a_dip_between_an_end_and_the_next_look_is_found():
     terms = np.array([[0.0], [-0.02], [1.0]])
-    for course in (terms, np.array([[0.98], [-1.98], [1.0]])):
-        assert Polynomials(course, ones()).refined_least()[1][0] == pytest.approx(-1e-4, rel=1e-12)
+    for coefficients in (terms, np.array([[0.98], [-1.98], [1.0]])):
+        assert Polynomials(coefficients, ones()).refined_least()[1][0] == pytest.approx(-1e-4, rel=1e-12)
 
 
 def test_the_least_values_of_lots_are_found_whatever_their_degrees():

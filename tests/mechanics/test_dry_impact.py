@@ -28,7 +28,7 @@ def test_slip_that_ends_in_compression_stays_ended(restitution):
     """It ends at p_s = slip / (mu M_tt - M_tn); then friction is -M_tn / M_tt, within the cone."""
     mu, slip, falling = 0.9, 0.3, -1.0
     state, top = planar(slip, falling, CoulombLaw(mu))
-    M = Rigid(state, top).answer
+    M = Rigid(state, top).delassus
     stop = slip / (mu * M[0, 0] - M[0, 2])
     left = falling + stop * (M[2, 2] - mu * M[0, 2])
     compression = stop - left / (M[2, 2] - M[0, 2] ** 2 / M[0, 0])
@@ -47,7 +47,7 @@ def test_slip_that_ends_in_compression_stays_ended(restitution):
 def test_slip_that_cannot_end_turns_back():
     """Below mu = |M_tn| / M_tt slip comes to zero and goes on the other way, friction with it."""
     mu, falling = 0.02, -1.0
-    M = Rigid(*planar(-0.05, falling, CoulombLaw(mu))).answer
+    M = Rigid(*planar(-0.05, falling, CoulombLaw(mu))).delassus
     assert M[0, 2] > mu * M[0, 0]
     state, top = planar(-0.05, falling, CoulombLaw(mu))
     stop = 0.05 / (M[0, 2] + mu * M[0, 0])

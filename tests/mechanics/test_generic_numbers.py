@@ -211,7 +211,7 @@ def test_algebraic_published_equations_agree_with_floats():
 
 
 class ArbitraryFriction(NamedTuple):
-    """A friction law that pushes and twists in any way at all."""
+    """A friction law of any force and any torque."""
 
     force: Any
     torque: Any = NO_TORQUE

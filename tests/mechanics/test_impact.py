@@ -58,7 +58,7 @@ class Rigid:
         self.arm = np.array(contact_vector(state.axis, top.surface))
         x, y, z = self.arm
         self.lever = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        self.answer = np.eye(3) / top.mass - self.lever @ self.inverse_inertia @ self.lever
+        self.delassus = np.eye(3) / top.mass - self.lever @ self.inverse_inertia @ self.lever
         self.omega = self.inverse_inertia @ self.momentum
         self.point = self.velocity_of_point(state)
         self.speed = np.linalg.norm(state.velocity) + np.linalg.norm(self.omega) * np.linalg.norm(self.arm)
@@ -71,12 +71,12 @@ class Rigid:
 
         def rates(_, y):
             force, torque = law.traction(
-                (y[0], y[1]), tuple(self.omega + self.inverse_inertia @ self.twist(y))
+                (y[0], y[1]), tuple(self.omega + self.inverse_inertia @ self.angular_impulse(y))
             )
             turning = np.cross(self.inverse_inertia @ np.array(torque), self.arm)
-            return [*(self.answer @ [*force, 1.0] + turning), *force, 1.0, *torque, y[2]]
+            return [*(self.delassus @ [*force, 1.0] + turning), *force, 1.0, *torque, y[2]]
 
-        self.twist = lambda y: np.cross(self.arm, y[3:6]) + y[6:9]
+        self.angular_impulse = lambda y: np.cross(self.arm, y[3:6]) + y[6:9]
         # absolute tolerance far below the slip at which a steep law turns
         atol = rtol * np.array([1e-3] * 3 + [impulse + 1e-300] * 6 + [impulse * self.speed + 1e-300])
         start = [*self.point, *[0.0] * 7]
@@ -153,7 +153,7 @@ def test_a_body_that_does_not_approach_is_not_struck(slide, rising):
     assert impact(rising, 0.5, top) == Impact(rising, 0.0, 0.0, 0.0)
 
 
-# Exact answers ------------------------------------------------------------------------------------------
+# Exact solutions ----------------------------------------------------------------------------------------
 
 
 ON_THE_POLE = (
@@ -171,13 +171,13 @@ def test_without_friction_the_normal_velocity_is_reversed_and_nothing_else_happe
     state, restitution, top = collision
     top = top._replace(friction=law)
     result, rigid = impact(state, restitution, top), Rigid(state, top)
-    falling, answer = rigid.point[2], rigid.answer[2, 2]
+    falling, m_nn = rigid.point[2], rigid.delassus[2, 2]
     assert result.state.velocity[:2] == state.velocity[:2]
-    assert result.impulse == pytest.approx(-(1 + restitution) * falling / answer, rel=1e-8)
+    assert result.impulse == pytest.approx(-(1 + restitution) * falling / m_nn, rel=1e-8)
     assert gap_rate(result.state, top) == pytest.approx(
         -restitution * falling, rel=1e-7, abs=1e-12 * rigid.speed
     )
-    lost = 0.5 * (1 - restitution**2) * falling**2 / answer
+    lost = 0.5 * (1 - restitution**2) * falling**2 / m_nn
     assert result.energy_lost == pytest.approx(lost, rel=1e-7, abs=1e-13 * rigid.speed * result.impulse)
 
 
@@ -187,18 +187,18 @@ def test_very_rough_bodies_stick(collision):
     state, restitution, top = collision
     top = top._replace(friction=ViscousLaw(1e12 / speed_unit(top)))
     rigid = Rigid(state, top)
-    grip, coupling = rigid.answer[:2, :2], rigid.answer[:2, 2]
+    grip, coupling = rigid.delassus[:2, :2], rigid.delassus[:2, 2]
     stopping = -np.linalg.solve(grip, rigid.point[:2])
     falling = rigid.point[2] + coupling @ stopping
     assume(falling < -1e-3 * speed_unit(top))
-    held = rigid.answer[2, 2] - coupling @ np.linalg.solve(grip, coupling)
+    held = rigid.delassus[2, 2] - coupling @ np.linalg.solve(grip, coupling)
     result = impact(state, restitution, top)
     point = rigid.velocity_of_point(result.state)
     assert result.impulse == pytest.approx(-(1 + restitution) * falling / held, rel=1e-6)
     assert point == pytest.approx(np.array([0.0, 0.0, -restitution * falling]), abs=1e-6 * rigid.speed)
     if restitution == 0.0:
-        impulse = -np.linalg.solve(rigid.answer, rigid.point)
-        lost = 0.5 * impulse @ rigid.answer @ impulse
+        impulse = -np.linalg.solve(rigid.delassus, rigid.point)
+        lost = 0.5 * impulse @ rigid.delassus @ impulse
         assert result.energy_lost == pytest.approx(lost, rel=1e-6)
 
 
@@ -219,14 +219,14 @@ def test_coulomb_friction_in_a_plane_slides_all_through_at_high_slip(slip, resti
     """dP_t = -mu sign(slip) dp throughout (Whittaker), so that p_c = -v_n / (M_nn - mu sign(slip) M_tn)."""
     mu = 0.2
     state, top = planar(slip, -0.3, RegularizedCoulombLaw(mu, 1e-6))
-    answer = Rigid(state, top).answer
-    push = math.copysign(mu, -slip)
-    compression = 0.3 / (answer[2, 2] + push * answer[0, 2])
+    delassus = Rigid(state, top).delassus
+    friction = math.copysign(mu, -slip)
+    compression = 0.3 / (delassus[2, 2] + friction * delassus[0, 2])
     result = impact(state, restitution, top)
     assert result.compression == pytest.approx(compression, rel=1e-9)
     assert result.impulse == pytest.approx((1 + restitution) * compression, rel=1e-9)
     gained = top.mass * (result.state.velocity[0] - state.velocity[0])
-    assert gained == pytest.approx(push * result.impulse, rel=1e-9)
+    assert gained == pytest.approx(friction * result.impulse, rel=1e-9)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
@@ -235,8 +235,8 @@ def test_coulomb_friction_in_a_plane_sticks_once_slip_has_ended(eps, restitution
     """Slip ends at p_s = slip / (mu M_tt - M_tn); then f = -M_tn / M_tt, but for errors of order eps."""
     mu, slip, falling = 0.9, 0.3, -1.0
     state, top = planar(slip, falling, RegularizedCoulombLaw(mu, eps))
-    answer = Rigid(state, top).answer
-    m_tt, m_tn, m_nn = answer[0, 0], answer[0, 2], answer[2, 2]
+    delassus = Rigid(state, top).delassus
+    m_tt, m_tn, m_nn = delassus[0, 0], delassus[0, 2], delassus[2, 2]
     assert abs(m_tn) < mu * m_tt
     stop = slip / (mu * m_tt - m_tn)
     left = falling + stop * (m_nn - mu * m_tn)
@@ -258,13 +258,13 @@ def test_coulomb_friction_in_a_plane_sticks_once_slip_has_ended(eps, restitution
 def check_against_integration(state, restitution, top, method, rtol, tolerance):
     """Velocity after, end of compression and work of the normal impulse, from equations in the impulse p."""
     result, rigid = impact(state, restitution, top), Rigid(state, top)
-    course = rigid.integrate(top.friction, result.impulse, method, rtol)
-    end = course.y[:, -1]
+    trajectory = rigid.integrate(top.friction, result.impulse, method, rtol)
+    end = trajectory.y[:, -1]
     after = rigid.velocity_of_point(result.state)
     assert after == pytest.approx(end[:3], abs=tolerance * rigid.speed)
-    assert course.sol(result.compression)[2] == pytest.approx(0.0, abs=tolerance * rigid.speed)
+    assert trajectory.sol(result.compression)[2] == pytest.approx(0.0, abs=tolerance * rigid.speed)
     inside = np.linspace(0.0, result.compression, 50)[1:-1]
-    assert np.all(course.sol(inside)[2] < tolerance * rigid.speed)
+    assert np.all(trajectory.sol(inside)[2] < tolerance * rigid.speed)
     fuzz = tolerance * rigid.speed * result.impulse
     assert end[9] < fuzz
     full = result.impulse == pytest.approx((1 + restitution) * result.compression, rel=1e-6)
@@ -357,7 +357,7 @@ class SteadyDrilling(NamedTuple):
 def test_slip_that_is_held_against_a_torque_stays_held(restitution):
     """The body sticks early, with f = -M_tt^-1 (M_tn + what the torque does), and drilling goes on.
 
-    The straight rest of the course costs next to nothing: step by step it would take some 50 000 evaluations.
+    The straight rest of the trajectory costs next to nothing: in steps it would take some 50 000 evaluations.
     """
     law = SteadyDrilling(0.9, 1e-4, 1e-4, [])
     top = Top(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), law, 9.8)
@@ -367,13 +367,13 @@ def test_slip_that_is_held_against_a_torque_stays_held(restitution):
     result, end = check_against_integration(state, restitution, top, "Radau", 1e-9, 1e-6)
     rigid = Rigid(state, top)
     torque = rigid.inverse_inertia @ np.array([0.0, 0.0, -1e-4])
-    pull = (rigid.answer[:, 2] + np.cross(torque, rigid.arm))[:2]
-    holding = -np.linalg.solve(rigid.answer[:2, :2], pull)
+    pull = (rigid.delassus[:, 2] + np.cross(torque, rigid.arm))[:2]
+    holding = -np.linalg.solve(rigid.delassus[:2, :2], pull)
     assert top.friction.traction((end[0], end[1]), (0.0, 0.0, 1.0)).force == pytest.approx(holding, abs=1e-3)
     turned = np.array(result.state.momentum) - rigid.momentum
     impulse = top.mass * (np.array(result.state.velocity) - np.array(state.velocity))
-    twist = np.array([0.0, 0.0, -1e-4 * result.impulse])
-    assert turned == pytest.approx(np.cross(rigid.arm, impulse) + twist, rel=1e-9, abs=1e-15)
+    angular_impulse = np.array([0.0, 0.0, -1e-4 * result.impulse])
+    assert turned == pytest.approx(np.cross(rigid.arm, impulse) + angular_impulse, rel=1e-9, abs=1e-15)
     assert result.energy_lost == pytest.approx(lose(state, result.state, top), rel=1e-10)
 
 
@@ -398,7 +398,7 @@ def test_a_jam_is_an_impact_even_without_approach(law, approach):
     state = state._replace(velocity=(state.velocity[0], 0.0, approach))
     rigid = Rigid(state, top)
     force = law.traction((state.velocity[0], 0.0), (0.0,) * 3).force
-    assert rigid.answer[2, 2] + force[0] * rigid.answer[2, 0] < 0.0
+    assert rigid.delassus[2, 2] + force[0] * rigid.delassus[2, 0] < 0.0
     result, _ = check_against_integration(state, 0.0, top, "Radau", 1e-9, 1e-6)
     assert result.impulse > 0.01 * top.mass * 1.0
     assert result.energy_lost > 0.0
@@ -412,8 +412,8 @@ def test_restitution_ends_before_it_gives_back_more_than_compression_took():
     """
     mu, slip = 0.9, 0.3
     law = RegularizedCoulombLaw(mu, 1e-6)
-    answer = Rigid(*planar(slip, -1.0, law)).answer
-    m_tt, m_tn, m_nn = answer[0, 0], answer[0, 2], answer[2, 2]
+    delassus = Rigid(*planar(slip, -1.0, law)).delassus
+    m_tt, m_tn, m_nn = delassus[0, 0], delassus[0, 2], delassus[2, 2]
     sliding, sticking = m_nn - mu * m_tn, m_nn - m_tn**2 / m_tt
     compression = slip / (mu * m_tt - m_tn)
     assert 0.0 < sliding < 0.9 * sticking

@@ -43,7 +43,7 @@ def rods(law):
 
 
 @st.composite
-def blows(draw, law):
+def collisions(draw, law):
     """A rod on its side, of which the second end strikes while the first one touches."""
     top = draw(rods(law))
     azimuth = draw(numbers(-math.pi, math.pi))
@@ -56,10 +56,10 @@ def blows(draw, law):
     return state, (second, first)
 
 
-@given(blows(ViscousLaw(0.0)), numbers(0.0, 1.0))
-def test_without_friction_it_is_a_linear_complementarity_problem(blow, restitution):
+@given(collisions(ViscousLaw(0.0)), numbers(0.0, 1.0))
+def test_without_friction_it_is_a_linear_complementarity_problem(collision, restitution):
     """M_ij = 1/m + h_i' h_j' s^2 / I1, and the first contact gives what keeps its velocity zero."""
-    state, tops = blow
+    state, tops = collision
     slopes = np.array([top.surface.slope(state.axis[2]) for top in tops])
     matrix = 1.0 + np.outer(slopes, slopes) / tops[0].transverse_inertia
     assert matrix[0, 1] < 0.0
@@ -93,7 +93,7 @@ def test_slow_impact_of_a_fast_body_is_no_harder_than_a_quick_one():
 
 
 def test_a_contact_that_friction_all_but_jams_takes_over_without_a_jump():
-    """Its normal velocity answers to its own normal impulse by 1 + (x^2 - f x) / I1, which f makes zero."""
+    """Its normal velocity responds to its own normal impulse by 1 + (x^2 - f x) / I1, which f makes zero."""
     reach, inertia, speed, turning, eps = 2.0, 0.5, 1.0, 0.2, 0.1
     hull = Hull.of((SphereSurface(1.0, reach), SphereSurface(1.0, -3.0)))
     slip, found = speed + turning, []
@@ -177,7 +177,7 @@ def naive(state, tops, steps):
         share = max(0.0, -normal(one, arms[1]) / normal(other, arms[1])) if closed else 0.0
         return one + share * other, share
 
-    y, pushed, others = np.array([*state.momentum, *state.velocity]), 0.0, []
+    y, impulse, others = np.array([*state.momentum, *state.velocity]), 0.0, []
     step = -normal(y, arms[0]) / steps
     while True:
         closed = normal(y, arms[1]) < 1e-12
@@ -191,8 +191,8 @@ def naive(state, tops, steps):
             there = there + more * unit
         before, after = normal(y, arms[0]), normal(there, arms[0])
         part = before / (before - after) if after >= 0.0 else 1.0
-        y, pushed = y + part * (there - y), pushed + part * more
-        others.append((pushed, normal(y, arms[1])))
+        y, impulse = y + part * (there - y), impulse + part * more
+        others.append((impulse, normal(y, arms[1])))
         if after >= 0.0:
             return y[:3], y[3:], np.array(others).T
 
@@ -200,9 +200,9 @@ def naive(state, tops, steps):
 @pytest.mark.parametrize("law", [ViscousLaw(0.3), RegularizedCoulombLaw(0.2, 0.3)])
 def test_with_friction_it_is_what_small_steps_find(law):
     @settings(max_examples=5, phases=(Phase.explicit, Phase.generate))
-    @given(blows(law))
-    def agree(blow):
-        state, tops = blow
+    @given(collisions(law))
+    def agree(collision):
+        state, tops = collision
         found = impact(state, 0.0, *tops)
         momentum, velocity, _ = naive(state, tops, 2000)
         assert found.impulse == pytest.approx(velocity[2] - state.velocity[2], rel=1e-5)
@@ -258,9 +258,9 @@ def test_its_impulse_is_all_that_lifts_the_body(law, restitution):
     """m dv_z = p, whichever of the surfaces gives it."""
 
     @settings(max_examples=10, phases=(Phase.explicit, Phase.generate))
-    @given(blows(law))
-    def balance(blow):
-        state, tops = blow
+    @given(collisions(law))
+    def balance(collision):
+        state, tops = collision
         found = impact(state, restitution, *tops)
         lifted = tops[0].mass * (found.state.velocity[2] - state.velocity[2])
         assert found.impulse == pytest.approx(lifted, rel=1e-12)

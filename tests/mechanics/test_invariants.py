@@ -94,7 +94,7 @@ def test_jelletts_integral_is_the_angular_momentum_against_the_contact_vector(sl
     )
 
 
-class Twist(NamedTuple):
+class SteadyTorque(NamedTuple):
     """A torque that the table exerts on whatever slides on it, per unit normal force."""
 
     torque: Vector
@@ -108,20 +108,20 @@ class Twist(NamedTuple):
 
 
 @given(slides(), st.sampled_from([NO_TORQUE, (0.0, 0.0, 1e-3), (2e-3, -1e-3, 0.0)]), st.booleans())
-def test_a_top_conserves_jelletts_integral_where_its_body_and_its_friction_say_so(slide, torque, twists):
+def test_a_top_conserves_jelletts_integral_where_its_body_and_its_friction_say_so(slide, torque, acts):
     top, state = slide
-    top = top._replace(friction=Twist(torque)) if twists else top
+    top = top._replace(friction=SteadyTorque(torque)) if acts else top
     moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.surface.size
     turning = length(state.momentum) ** 2 / top.transverse_inertia
     unit = (moment + turning) * top.surface.size
     rate = rate_along_motion(jellett, state, top)
     if top.conserves_jellett:
         assert rate == pytest.approx(0.0, abs=1e-12 * unit)
-    assert top.conserves_jellett == (top.surface.spherical and (not twists or torque == NO_TORQUE))
+    assert top.conserves_jellett == (top.surface.spherical and (not acts or torque == NO_TORQUE))
 
 
 def test_drilling_takes_from_jelletts_integral_at_the_rate_of_its_moment_times_the_height():
-    top = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), Twist((0.0, 0.0, -1e-3)), 9.8)
+    top = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), SteadyTorque((0.0, 0.0, -1e-3)), 9.8)
     state = state_from_angles(Angles(0.7, 0.0, 0.0, 5.0, 100.0, (0.0, 0.1)), top, math)
     moment = 1e-3 * normal_force(state, top)
     assert rate_along_motion(jellett, state, top) == pytest.approx(

@@ -166,8 +166,8 @@ def test_arrays_make_the_steps_that_are_compiled():
     for row, number in enumerate((*state.axis, *state.momentum, *state.velocity[:2])):
         before[row] = number
     before[layout.left] = launches.end
-    cares = np.tile([[1.0], [1.0], [np.inf], [-np.inf]], 16)
-    numbers = np.concatenate((launches.numbers, cares))
+    pauses = np.tile([[1.0], [1.0], [np.inf], [-np.inf]], 16)
+    numbers = np.concatenate((launches.numbers, pauses))
     compiled, order, plain = stepper(motion, 1e-9), order_for(1e-9), NumPyArithmetic()
     one = np.empty_like(before)
     compiled.step(before, one, numbers)

@@ -167,7 +167,7 @@ def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, m
     status = store.path.joinpath("status", "c", *map(str, task))
     sync = disk._sync
 
-    def watched(path):
+    def recorded(path):
         if not status.exists():
             assert path != status
         synced.add(path)
@@ -176,7 +176,7 @@ def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, m
             assert others | {folder for chunk in others for folder in chunk.parents[:3]} <= synced
         sync(path)
 
-    monkeypatch.setattr(disk, "_sync", watched)
+    monkeypatch.setattr(disk, "_sync", recorded)
     put = zarr.storage.LocalStore.set
 
     async def after_the_others(self, key, value):

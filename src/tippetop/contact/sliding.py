@@ -29,7 +29,7 @@ class SlidingMode(ClosedMode):
     """Sliding, as long as the normal force is positive or the table may pull, and slip does not end."""
 
     near: bool = False
-    """Whether slip is so small that it may be about to end: it is watched how long it lasts."""
+    """Whether slip is so small that it may be about to end, which then is guarded."""
     guarded: bool = True
     """Whether it ends where the table would have to pull; of a mode without rules."""
 
@@ -61,7 +61,7 @@ class SlidingMode(ClosedMode):
         return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
-        """It is to be watched, or no longer, how long slip lasts; or what follows any contact."""
+        """The end of slip is to be guarded, or no longer; or what follows any contact."""
         if guard in (NEARING, PARTING):
             return Transition((), self.rules.going_on(state, slips=True), state)
         return super().follow(guard, time, state)
@@ -94,7 +94,7 @@ class Sliding(SlidingMode):
 def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
     """Equations of motion of a sliding top of this kind, whose rolling may be held.
 
-    If `guarded`, the first guard is of lift-off. Where slip can end, it is watched whether it may be soon.
+    If `guarded`, the first guard is of lift-off. Where slip can end, another tells whether it may be soon.
     """
     nothing: Any = None
     form = (SlidingWithoutRolling if held else Sliding)(nothing, nothing, False, guarded)

@@ -109,20 +109,20 @@ class TwoClosed:
         return resolution(self.pair, self.xi, self.ended, self.rolls)
 
     def consistent(self, found: Resolution) -> list[str]:
-        """Which contacts may stay closed: exactly one answer is expected.
+        """Which contacts may stay closed: exactly one candidate is expected.
 
         Where rolling is held, what one contact may do alone both may; else that which is pressed the more.
         """
         normal, free = found.motion.normal, self.pair.free
-        answers = [BOTH] if normal[0] > 0.0 and normal[1] > 0.0 else []
-        if self.stopped and answers and not found.rolls:
-            return answers
+        candidates = [BOTH] if normal[0] > 0.0 and normal[1] > 0.0 else []
+        if self.stopped and candidates and not found.rolls:
+            return candidates
         ways = [self._alone(number) for number in (0, 1)]
         held = [number for number in (0, 1) if ways[number] == HELD]
-        if held and not answers:
+        if held and not candidates:
             return [(FIRST, SECOND)[max(held, key=lambda number: normal[number])]]
-        answers += [name for way, name in zip(ways, (FIRST, SECOND), strict=True) if way == OPENS]
-        return answers + ([NEITHER] if free[0][2] >= 0.0 and free[1][2] >= 0.0 else [])
+        candidates += [name for way, name in zip(ways, (FIRST, SECOND), strict=True) if way == OPENS]
+        return candidates + ([NEITHER] if free[0][2] >= 0.0 and free[1][2] >= 0.0 else [])
 
     def _alone(self, number: int) -> str:
         """What the other contact does where one alone is pressed: opens, or is held as it is."""

@@ -36,13 +36,13 @@ def settled(
     here = TwoClosed.of(rules, state, tops, rolls)
     try:
         found = here.resolved()
-        answers = here.consistent(found)
+        consistent = here.consistent(found)
     except ArithmeticError as error:
         return failed("The forces on two surfaces that touch", error, state, events)
-    if len(answers) != 1:
+    if len(consistent) != 1:
         detail = "not exactly one set of forces is consistent with two surfaces that touch"
         return Transition(events, Outcome.FAILED, state, detail)
-    if answers == [BOTH]:
+    if consistent == [BOTH]:
         if arrived:
             lost = float(energy(state, tops[0]) - energy(here.state, tops[0]))
             events = (*events, rules.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost))
@@ -52,7 +52,7 @@ def settled(
         events = (*events, *_marks((ended, turned), here, found, before))
         return replace(here.going_on(found), events=events)
     numbers = [number_of(top) for top in here.tops]
-    left, kept = numbers if answers == [SECOND] else numbers[::-1]
+    left, kept = numbers if consistent == [SECOND] else numbers[::-1]
     events = (*events, Event(EventKind.OPENING, time, surface=left))
     return rules.on(kept).resting_alone(time, here.state, events)
 

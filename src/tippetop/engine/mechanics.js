@@ -326,7 +326,7 @@ function contact_vector(axis, surface) {
 
 // tippetop.mechanics.hull
 
-/** The surfaces of a body: a `Surface` that answers for the active one. */
+/** The surfaces of a body: a `Surface` that stands for the active one. */
 class Hull extends py.NamedTuple {
   static fields = ["units", "sizes", "active"];
   get 0() { return this.units; }
@@ -799,7 +799,7 @@ function natural_state(state, units) {
 
 // tippetop.mechanics.unsolved
 
-/** There is no answer, or none is found; it says why, in words for those who launched the top. */
+/** There is no solution, or none is found; it says why, in words for those who launched the top. */
 class Unsolved extends py.ArithmeticError {
 }
 
@@ -2553,19 +2553,19 @@ function slip_part(accelerations, reach) {
   return [accelerations[0], accelerations[1], py.mul(reach, accelerations[5])];
 }
 
-/** Falls through zero where slip becomes so small that it is to be watched, (m/s)^2. */
+/** Falls through zero where slip becomes so small that its end is to be guarded, (m/s)^2. */
 function nearing_guard(state, top) {
   var slip = slip_of(...state, top);
   return py.sub(inner(slip, slip), py.mul(NEAR, NEAR));
 }
 
-/** Falls through zero where slip is so large again that it need not be watched, (m/s)^2. */
+/** Falls through zero where slip is so large again that its end need not be guarded, (m/s)^2. */
 function parting_guard(state, top) {
   var slip = slip_of(...state, top);
   return py.sub(py.mul(APART, APART), inner(slip, slip));
 }
 
-/** Whether slip is to be watched from here on; a truth value of floats, or an array of them. */
+/** Whether the end of slip is to be guarded from here on; a truth value of floats, or an array of them. */
 function is_near(state, top) {
   var slip = slip_of(...state, top);
   return inner(slip, slip) < py.mul(NEAR, APART);
@@ -2581,9 +2581,9 @@ function rolling_stopping_guard(state, rate, top) {
     py.mul(py.sub(spin, py.mul(turning, state.axis[2])), spinning),
     py.mul(py.mul(spin, turning), rate.axis[2])
   );
-  var pushed = py.add(py.mul(x, rate.momentum[0]), py.mul(y, rate.momentum[1]));
+  var power = py.add(py.mul(x, rate.momentum[0]), py.mul(y, rate.momentum[1]));
   var excess = py.sub(top.transverse_inertia, top.axial_inertia);
-  var change = py.div(py.add(pushed, py.mul(excess, along)), top.transverse_inertia);
+  var change = py.div(py.add(power, py.mul(excess, along)), top.transverse_inertia);
   return py.add(py.add(py.mul(x, x), py.mul(y, y)), py.mul(HORIZON, change));
 }
 
@@ -3293,7 +3293,7 @@ class SlidingMode extends ClosedMode {
     var change = slip_part(flat(this.found(y)[3]), slip_length(this.top.friction));
     return remaining(slip_of(...SlidingState.unpack(y), this.top), change);
   }
-  /** It is to be watched, or no longer, how long slip lasts; or what follows any contact. */
+  /** The end of slip is to be guarded, or no longer; or what follows any contact. */
   follow(guard, time, state) {
     if (py.contains([NEARING, PARTING], guard)) {
       return new Transition([], this.rules.going_on(state, true), state);
@@ -3654,7 +3654,7 @@ function sweep(y, p, ending, kind, points) {
   var way = [py.item(y, free), py.item(y, py.add(free, 1))];
   var step = py.item(p, layout.size);
   var across = [py.neg(way[1]), way[0]];
-  var [rates, slopes, normal] = _answers(y.slice(0, free), way, across, ending, top);
+  var [rates, slopes, normal] = _rates_and_slopes(y.slice(0, free), way, across, ending, top);
   var xi = _moved(py.tuple(p.slice(free, layout.size)), step, rates.slice(free), integrals, points);
   var speed = inner(xi, way);
   var columns = [];
@@ -3720,7 +3720,7 @@ function _solved(columns, right, units, points) {
 }
 
 /** Rates of y and xi, their derivatives as the direction turns, and the normal force. */
-function _answers(y, way, beside, ending, top) {
+function _rates_and_slopes(y, way, beside, ending, top) {
   var here = new Closing([y[0], y[1], y[2]], [y[3], y[4], y[5]], py.tuple(y.slice(6)), way, 0.0, 0.0);
   var point = ContactPoint.of(here.axis, here.momentum, top);
   var slip = slip_beside(here, ending, top);
@@ -4073,12 +4073,14 @@ function directions(response, start) {
   for (var turn = 0; turn < ROUNDS; turn += 1) {
     for (var step = 0; step < ITERATIONS; step += 1) {
       var before = ways;
-      var answers = response(ways);
-      ways = py.zip(answers, ways).map(
-        ([answer, e]) => _unit(plus(scaled(py.add(answer.strength, size(answer.rate)), e), answer.rate))
+      var responses = response(ways);
+      ways = py.zip(responses, ways).map(
+        ([resisted, e]) => _unit(
+          plus(scaled(py.add(resisted.strength, size(resisted.rate)), e), resisted.rate)
+        )
       );
       if (_apart(ways, before) < EXACT) {
-        if (py.add(turn, step) === 0 && py.truth(_leads(answers, before))) {
+        if (py.add(turn, step) === 0 && py.truth(_leads(responses, before))) {
           return before;
         }
         break;
@@ -4088,7 +4090,7 @@ function directions(response, start) {
     if (found !== null) {
       return found;
     }
-    var rates = [...response(ways)].map((answer) => answer.rate);
+    var rates = [...response(ways)].map((resisted) => resisted.rate);
     var along = py.zip(rates, ways).map(([rate, e]) => inner(rate, e));
     var against = py.min(0.0, ...along);
     ways = py.range(py.len(ways)).map(
@@ -4120,24 +4122,24 @@ function _improved(response, ways) {
 }
 
 /** Whether velocities in these directions grow, or stay. */
-function _grow(answers, ways) {
+function _grow(responses, ways) {
   return py.all(
-    py.zip(answers, ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength))
+    py.zip(responses, ways).map(([a, e]) => inner(a.rate, e) >= py.mul(py.neg(DIRECTED), a.strength))
   );
 }
 
 /** Whether directions that do not turn at once are known: slip alone, in a plane, never turns slowly. */
-function _leads(answers, ways) {
-  return py.and(py.len(ways) === 1, () => py.and(py.len(ways[0]) === 2, () => _grow(answers, ways)));
+function _leads(responses, ways) {
+  return py.and(py.len(ways) === 1, () => py.and(py.len(ways[0]) === 2, () => _grow(responses, ways)));
 }
 
 /** One step towards directions across which nothing changes. */
 function _newton(response, ways) {
   var bases = [...ways].map((e) => tangents(e));
   var across = (ways) => {
-    var answers = response(ways);
-    var lefts = py.zip(answers, ways).map(
-      ([answer, e]) => plus(answer.rate, scaled(py.neg(inner(answer.rate, e)), e))
+    var responses = response(ways);
+    var lefts = py.zip(responses, ways).map(
+      ([resisted, e]) => plus(resisted.rate, scaled(py.neg(inner(resisted.rate, e)), e))
     );
     return py.zip(lefts, bases).flatMap(([left, basis]) => [...basis].map((b) => inner(left, b)));
   };
@@ -4213,16 +4215,16 @@ function beginning(point, slip, rolling, begins, held = null, moved = contact_mo
     }
     var each = py.dict(py.zip([...parts].map((part) => part.slip), ways));
     var both = [each.get(true, slip), each.get(false, rolling)];
-    var answer = [...both, ...moved(point, ...both)];
-    tried.push([ways, answer]);
-    return answer;
+    var result = [...both, ...moved(point, ...both)];
+    tried.push([ways, result]);
+    return result;
   };
   var response = (ways) => {
-    var answer = motion(ways);
+    var [, , wrench, acceleration] = motion(ways);
     return py.zip(parts, stiffness).map(
       ([part, stiff]) => new Resisted(
-        part.rate(answer[3], point.top),
-        py.mul(stiff, size(part.resisting(answer[2], point.top)))
+        part.rate(acceleration, point.top),
+        py.mul(stiff, size(part.resisting(wrench, point.top)))
       )
     );
   };
@@ -4284,10 +4286,10 @@ function _admits(point, found) {
   );
 }
 
-/** How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2). */
+/** How strongly the contact responds to what resists slip, or rolling, 1/kg or 1/(kg m^2). */
 function _stiffness(part, point) {
-  var answers = [...part.wrenches(point.top)].map((unit) => part.rate(point.response(unit), point.top));
-  var sizes = py.enumerate(answers).map(([i, answer]) => py.abs(py.item(answer, i)));
+  var responses = [...part.wrenches(point.top)].map((unit) => part.rate(point.response(unit), point.top));
+  var sizes = py.enumerate(responses).map(([i, response]) => py.abs(py.item(response, i)));
   return py.float(
     py.add(
       py.sum(sizes.slice(0, 2)),
@@ -5930,11 +5932,11 @@ class ProcessOnTwo extends SteppedProcess {
   }
   /** Part of the normal impulses that acts at the other contact, which they keep closed. */
   share(unit, other) {
-    var [pushed, answer] = [unit, other].map((wrench) => this.beside(this.body.change(wrench))[2]);
-    if (py.truth(this.sunk) || pushed < 0.0 && answer <= 0.0) {
+    var [coupling, own] = [unit, other].map((wrench) => this.beside(this.body.change(wrench))[2]);
+    if (py.truth(this.sunk) || coupling < 0.0 && own <= 0.0) {
       return 1.0;
     }
-    return pushed < 0.0 ? py.div(py.neg(pushed), py.sub(answer, pushed)) : 0.0;
+    return coupling < 0.0 ? py.div(py.neg(coupling), py.sub(own, coupling)) : 0.0;
   }
   /** The friction at a contact with these velocities; see `friction`. */
   sliding(velocity) {
@@ -6387,18 +6389,18 @@ class ContactPair extends py.NamedTuple {
     );
   }
   /** Moment of some wrenches about the centre of mass, N m. */
-  moment(pushes) {
+  moment(wrenches) {
     var total = NO_TORQUE;
-    for (var [number, wrench] of pushes) {
+    for (var [number, wrench] of wrenches) {
       total = add(total, py.item(this, number).moment(wrench));
     }
     return total;
   }
   /** Accelerations under some wrenches. */
-  under(pushes) {
+  under(wrenches) {
     var [one, other, turning] = this.free;
-    for (var push of pushes) {
-      var more = this.response(push);
+    for (var at of wrenches) {
+      var more = this.response(at);
       [one, other, turning] = [add(one, more[0]), add(other, more[1]), add(turning, more[2])];
     }
     return [one, other, turning];
@@ -6460,10 +6462,10 @@ function at_rest(pair, velocity, ended, stopped) {
   var omega = pair.first.turning;
   var up = new Wrench(VERTICAL, NO_TORQUE);
   var [one, other] = [...pair].map((point) => add(velocity, cross(omega, point.arm)));
-  var pushes = pair.holding(ended, [up, up], [one, other, omega], stopped);
-  var momentum = add(pair.first.momentum, pair.moment(pushes));
-  for (var [, push] of pushes) {
-    velocity = add(velocity, scale(py.div(1.0, pair.first.top.mass), push.force));
+  var impulses = pair.holding(ended, [up, up], [one, other, omega], stopped);
+  var momentum = add(pair.first.momentum, pair.moment(impulses));
+  for (var [, impulse] of impulses) {
+    velocity = add(velocity, scale(py.div(1.0, pair.first.top.mass), impulse.force));
   }
   return [momentum, velocity];
 }
@@ -6582,13 +6584,13 @@ function pair_motion(pair, slips, rolls) {
   var couple = resistance === null ? null : scale(py.mul(py.neg(rolls), resistance.length), along);
   var [one, other] = py.zip(pair, slips).map((contact) => normal_wrench(...contact, couple));
   var stopped = py.and(resistance !== null, () => !py.truth(rolls));
-  var pushes = pair.holding([slips[0] === null, slips[1] === null], [one, other], pair.free, stopped);
+  var wrenches = pair.holding([slips[0] === null, slips[1] === null], [one, other], pair.free, stopped);
   var found = [new Wrench(NO_TORQUE, NO_TORQUE), new Wrench(NO_TORQUE, NO_TORQUE)];
-  for (var [number, push] of pushes) {
-    py.put(found, number, new Wrench(...py.zip(py.item(found, number), push).map(([a, b]) => add(a, b))));
+  for (var [number, wrench] of wrenches) {
+    py.put(found, number, new Wrench(...py.zip(py.item(found, number), wrench).map(([a, b]) => add(a, b))));
   }
-  var holding = py.truth(stopped) ? dot(py.item(pushes, -1)[1].torque, along) : 0.0;
-  return new PairMotion(pair, [found[0], found[1]], pair.under(pushes), holding);
+  var holding = py.truth(stopped) ? dot(py.item(wrenches, -1)[1].torque, along) : 0.0;
+  return new PairMotion(pair, [found[0], found[1]], pair.under(wrenches), holding);
 }
 
 // tippetop.mechanics.pair_resolver
@@ -6717,8 +6719,8 @@ function both_letting_go(pair, rolls) {
 }
 
 function _stiffness_of_pair_resolver(pair) {
-  var answers = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
-  return py.float(py.add(py.abs(answers[0][0]), py.abs(answers[1][1])));
+  var responses = [EAST, NORTH].map((way) => pair.response([0, new Wrench(way, NO_TORQUE)])[0]);
+  return py.float(py.add(py.abs(responses[0][0]), py.abs(responses[1][1])));
 }
 
 /** Direction of xi against which friction exerts all it can along e, and what is needed across it. */
@@ -7250,29 +7252,29 @@ class TwoClosed extends py.Record {
   resolved() {
     return resolution(this.pair, this.xi, this.ended, this.rolls);
   }
-  /** Which contacts may stay closed: exactly one answer is expected. */
+  /** Which contacts may stay closed: exactly one candidate is expected. */
   consistent(found) {
     var normal = found.motion.normal;
     var free = this.pair.free;
-    var answers = normal[0] > 0.0 && normal[1] > 0.0 ? [BOTH] : [];
-    if (py.truth(this.stopped) && py.truth(answers) && !py.truth(found.rolls)) {
-      return answers;
+    var candidates = normal[0] > 0.0 && normal[1] > 0.0 ? [BOTH] : [];
+    if (py.truth(this.stopped) && py.truth(candidates) && !py.truth(found.rolls)) {
+      return candidates;
     }
     var ways = [0, 1].map((number) => this._alone(number));
     var held = [0, 1].filter((number) => py.eq(py.item(ways, number), HELD));
-    if (py.truth(held) && !py.truth(answers)) {
+    if (py.truth(held) && !py.truth(candidates)) {
       return [
         py.item([FIRST_of_two_closed, SECOND], py.max(held, { key: (number) => py.item(normal, number) }))
       ];
     }
-    answers = py.add(
-      answers,
+    candidates = py.add(
+      candidates,
       py.zip(
         ways,
         [FIRST_of_two_closed, SECOND]
       ).filter(([way, name]) => py.eq(way, OPENS)).map(([way, name]) => name)
     );
-    return py.add(answers, free[0][2] >= 0.0 && free[1][2] >= 0.0 ? [NEITHER] : []);
+    return py.add(candidates, free[0][2] >= 0.0 && free[1][2] >= 0.0 ? [NEITHER] : []);
   }
   /** What the other contact does where one alone is pressed: opens, or is held as it is. */
   _alone(number) {
@@ -7410,16 +7412,16 @@ function settled(rules, time, state, tops, before, rolls, events = [], arrived =
   var here = TwoClosed.of(rules, state, tops, rolls);
   try {
     var found = here.resolved();
-    var answers = here.consistent(found);
+    var consistent = here.consistent(found);
   } catch (error) {
     if (!(error instanceof py.ArithmeticError)) throw error;
     return failed("The forces on two surfaces that touch", error, state, events);
   }
-  if (py.len(answers) !== 1) {
+  if (py.len(consistent) !== 1) {
     var detail = "not exactly one set of forces is consistent with two surfaces that touch";
     return new Transition(events, Outcome.FAILED, state, detail);
   }
-  if (py.eq(answers, [BOTH])) {
+  if (py.eq(consistent, [BOTH])) {
     if (py.truth(arrived)) {
       var lost = py.float(py.sub(energy(state, tops[0]), energy(here.state, tops[0])));
       events = [...events, rules.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost)];
@@ -7430,7 +7432,7 @@ function settled(rules, time, state, tops, before, rolls, events = [], arrived =
     return py.replace(here.going_on(found), { events: events });
   }
   var numbers = [...here.tops].map((top) => number_of(top));
-  var [left, kept] = py.eq(answers, [SECOND]) ? numbers : py.slice(numbers, null, null, -1);
+  var [left, kept] = py.eq(consistent, [SECOND]) ? numbers : py.slice(numbers, null, null, -1);
   events = [...events, new Event(EventKind.OPENING, time, undefined, undefined, left)];
   return rules.on(kept).resting_alone(time, here.state, events);
 }
@@ -11795,7 +11797,6 @@ export {
   _Missing,
   _admits,
   _along,
-  _answers,
   _apart,
   _at_rest,
   _branch,
@@ -11828,6 +11829,7 @@ export {
   _polished,
   _precession,
   _precession_tilts,
+  _rates_and_slopes,
   _reach,
   _reaches_out,
   _refuse_what_does_not_fit,

@@ -79,14 +79,14 @@ def beginning(
             return tried[-1][1]
         each = dict(zip([part.slip for part in parts], ways, strict=True))
         both = each.get(True, slip), each.get(False, rolling)
-        answer = (*both, *moved(point, *both))
-        tried.append((ways, answer))
-        return answer
+        result = (*both, *moved(point, *both))
+        tried.append((ways, result))
+        return result
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
-        answer = motion(ways)
+        _, _, wrench, acceleration = motion(ways)
         return [
-            Resisted(part.rate(answer[3], point.top), stiff * size(part.resisting(answer[2], point.top)))
+            Resisted(part.rate(acceleration, point.top), stiff * size(part.resisting(wrench, point.top)))
             for part, stiff in zip(parts, stiffness, strict=True)
         ]
 
@@ -145,7 +145,7 @@ def _admits(point: ContactPoint, found: Beginning) -> bool:
 
 
 def _stiffness(part: Vanishing, point: ContactPoint) -> float:
-    """How strongly the contact answers to what resists slip, or rolling, 1/kg or 1/(kg m^2)."""
-    answers = [part.rate(point.response(unit), point.top) for unit in part.wrenches(point.top)]
-    sizes = [abs(answer[i]) for i, answer in enumerate(answers)]
+    """How strongly the contact responds to what resists slip, or rolling, 1/kg or 1/(kg m^2)."""
+    responses = [part.rate(point.response(unit), point.top) for unit in part.wrenches(point.top)]
+    sizes = [abs(response[i]) for i, response in enumerate(responses)]
     return float(sum(sizes[:2]) + sum(sizes[2:]) * (slip_length(point.top.friction) or 0.0))

@@ -118,18 +118,18 @@ class ContactPair(NamedTuple):
             for size, (number, unit) in zip(sizes, units, strict=True)
         ]
 
-    def moment(self, pushes: Sequence[At]) -> Vector:
+    def moment(self, wrenches: Sequence[At]) -> Vector:
         """Moment of some wrenches about the centre of mass, N m."""
         total = NO_TORQUE
-        for number, wrench in pushes:
+        for number, wrench in wrenches:
             total = add(total, self[number].moment(wrench))
         return total
 
-    def under(self, pushes: Sequence[At]) -> Moving:
+    def under(self, wrenches: Sequence[At]) -> Moving:
         """Accelerations under some wrenches."""
         one, other, turning = self.free
-        for push in pushes:
-            more = self.response(push)
+        for at in wrenches:
+            more = self.response(at)
             one, other, turning = add(one, more[0]), add(other, more[1]), add(turning, more[2])
         return one, other, turning
 
@@ -187,8 +187,8 @@ def at_rest(
     """
     omega, up = pair.first.turning, Wrench(VERTICAL, NO_TORQUE)
     one, other = (add(velocity, cross(omega, point.arm)) for point in pair)
-    pushes = pair.holding(ended, (up, up), (one, other, omega), stopped=stopped)
-    momentum = add(pair.first.momentum, pair.moment(pushes))
-    for _, push in pushes:
-        velocity = add(velocity, scale(1.0 / pair.first.top.mass, push.force))
+    impulses = pair.holding(ended, (up, up), (one, other, omega), stopped=stopped)
+    momentum = add(pair.first.momentum, pair.moment(impulses))
+    for _, impulse in impulses:
+        velocity = add(velocity, scale(1.0 / pair.first.top.mass, impulse.force))
     return momentum, velocity

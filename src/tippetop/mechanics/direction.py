@@ -2,7 +2,7 @@
 
 Under dry friction the rate A of a velocity xi depends on its direction e = xi / s alone. Friction takes
 energy, so that e -> c e + A(e), normalized, comes to such a direction if c is large enough. It comes there
-slowly where one component of xi answers much less than another to what resists it, such as drilling of a
+slowly where one component of xi responds much less than another to what resists it, such as drilling of a
 small patch: Newton's method ends the search.
 """
 
@@ -55,20 +55,20 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
     ways = [_unit(direction) for direction in start]
     for turn in range(ROUNDS):
         for step in range(ITERATIONS):
-            before, answers = ways, response(ways)
+            before, responses = ways, response(ways)
             ways = [
-                _unit(plus(scaled(answer.strength + size(answer.rate), e), answer.rate))
-                for answer, e in zip(answers, ways, strict=True)
+                _unit(plus(scaled(resisted.strength + size(resisted.rate), e), resisted.rate))
+                for resisted, e in zip(responses, ways, strict=True)
             ]
             if _apart(ways, before) < EXACT:
-                if turn + step == 0 and _leads(answers, before):
+                if turn + step == 0 and _leads(responses, before):
                     return before
                 break
         found = _improved(response, ways)
         if found is not None:
             return found
         # Exactly against what drives it, as may be in a plane, a direction stays so: it is turned round.
-        rates = [answer.rate for answer in response(ways)]
+        rates = [resisted.rate for resisted in response(ways)]
         along = [inner(rate, e) for rate, e in zip(rates, ways, strict=True)]
         against = min(0.0, *along)
         ways = [
@@ -92,14 +92,14 @@ def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
     return None
 
 
-def _grow(answers: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
+def _grow(responses: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
     """Whether velocities in these directions grow, or stay."""
-    return all(inner(a.rate, e) >= -DIRECTED * a.strength for a, e in zip(answers, ways, strict=True))
+    return all(inner(a.rate, e) >= -DIRECTED * a.strength for a, e in zip(responses, ways, strict=True))
 
 
-def _leads(answers: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
+def _leads(responses: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
     """Whether directions that do not turn at once are known: slip alone, in a plane, never turns slowly."""
-    return len(ways) == 1 and len(ways[0]) == 2 and _grow(answers, ways)
+    return len(ways) == 1 and len(ways[0]) == 2 and _grow(responses, ways)
 
 
 def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
@@ -107,10 +107,10 @@ def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
     bases = [tangents(e) for e in ways]
 
     def across(ways: Sequence[Slip]) -> list[float]:
-        answers = response(ways)
+        responses = response(ways)
         lefts = [
-            plus(answer.rate, scaled(-inner(answer.rate, e), e))
-            for answer, e in zip(answers, ways, strict=True)
+            plus(resisted.rate, scaled(-inner(resisted.rate, e), e))
+            for resisted, e in zip(responses, ways, strict=True)
         ]
         return [inner(left, b) for left, basis in zip(lefts, bases, strict=True) for b in basis]
 

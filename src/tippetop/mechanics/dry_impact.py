@@ -6,7 +6,7 @@ the impulse that keeps it so; else it goes on along a direction with A = R e, R 
 as in contact (see `beginning`), with unit normal impulses for forces that weight calls for.
 
 A direction along which A(e) = R e stays so: all impulses then grow in a straight line, until slip has ended
-if R < 0. Slip comes to such a direction much faster than it ends where one component of it answers much more
+if R < 0. Slip comes to such a direction much faster than it ends where one component of it responds much more
 to friction than another, as sliding does on a small patch, on which drilling lasts: equations that are stiff.
 """
 

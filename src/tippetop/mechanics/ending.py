@@ -194,8 +194,8 @@ def overtaking_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
 def jamming_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     """Falls through zero where the normal force grows beyond all bounds: Painleve's paradox begins.
 
-    Friction that turns is about to press the contact as much as that is pushed apart. There xi changes as
-    fast, and would seem to end, however much of it is left.
+    Friction that turns is about to press the contact as much as the normal force opens it. There xi changes
+    as fast, and would seem to end, however much of it is left.
     """
     point = ContactPoint.of(state.axis, state.momentum, top)
     pressed = going_on(point, *ending.beside(point, state.direction, slip_beside(state, ending, top)))[0]

@@ -7,13 +7,13 @@ from tippetop.mechanics.vectors import Scalar
 
 
 class Hull(NamedTuple):
-    """The surfaces of a body: a `Surface` that answers for the active one."""
+    """The surfaces of a body: a `Surface` that stands for the active one."""
 
     units: tuple[Surface, ...]
     sizes: tuple[Scalar, ...]
     """The surfaces, each of unit size, and their sizes, m."""
     active: int = 0
-    """Number of the surface that answers."""
+    """Number of the active surface."""
 
     @classmethod
     def of(cls, surfaces: tuple[Surface, ...]) -> "Hull":

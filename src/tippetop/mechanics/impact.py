@@ -13,7 +13,7 @@ for another law it is integrated (Glocker 2014, Meccanica 49, and Leine and Gloc
 treat set-valued laws in the same setting).
 
 *Compression* lasts until the normal velocity v_n returns to zero from below. It may sink first: where
-friction presses the contact together more than p pushes it apart (Painleve's paradox), an impact starts even
+friction presses the contact together more than p opens it (Painleve's paradox), an impact starts even
 at v_n = 0 and ends only when the slip has changed. It always ends, since M is positive definite and slip
 that friction has stopped leaves dv_n/dp = M_nn - M_nt M_tt^-1 M_tn > 0.
 

@@ -118,14 +118,14 @@ class ProcessOnTwo(SteppedProcess):
     def share(self, unit: Slip, other: Slip) -> float:
         """Part of the normal impulses that acts at the other contact, which they keep closed.
 
-        Where friction presses it as much as that pushes it apart (Painleve's paradox) it sinks, and has all
+        Where friction presses it as much as its impulse opens it (Painleve's paradox) it sinks, and has all
         of them until its slip has changed and it is back, as in an impact of its own.
         Those, with the friction that they cause, are given: `unit` at what strikes, `other` at the other one.
         """
-        pushed, answer = (self.beside(self.body.change(wrench))[2] for wrench in (unit, other))
-        if self.sunk or (pushed < 0.0 and answer <= 0.0):
+        coupling, own = (self.beside(self.body.change(wrench))[2] for wrench in (unit, other))
+        if self.sunk or (coupling < 0.0 and own <= 0.0):
             return 1.0
-        return -pushed / (answer - pushed) if pushed < 0.0 else 0.0
+        return -coupling / (own - coupling) if coupling < 0.0 else 0.0
 
     def sliding(self, velocity: Slip) -> Slip:
         """The friction at a contact with these velocities; see `friction`."""

@@ -136,9 +136,9 @@ def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
     couple = None if resistance is None else scale(-rolls * resistance.length, along)
     one, other = (normal_wrench(*contact, couple) for contact in zip(pair, slips, strict=True))
     stopped = resistance is not None and not rolls
-    pushes = pair.holding((slips[0] is None, slips[1] is None), (one, other), pair.free, stopped=stopped)
+    wrenches = pair.holding((slips[0] is None, slips[1] is None), (one, other), pair.free, stopped=stopped)
     found = [Wrench(NO_TORQUE, NO_TORQUE), Wrench(NO_TORQUE, NO_TORQUE)]
-    for number, push in pushes:
-        found[number] = Wrench(*(add(a, b) for a, b in zip(found[number], push, strict=True)))
-    holding = dot(pushes[-1][1].torque, along) if stopped else 0.0
-    return PairMotion(pair, (found[0], found[1]), pair.under(pushes), holding)
+    for number, wrench in wrenches:
+        found[number] = Wrench(*(add(a, b) for a, b in zip(found[number], wrench, strict=True)))
+    holding = dot(wrenches[-1][1].torque, along) if stopped else 0.0
+    return PairMotion(pair, (found[0], found[1]), pair.under(wrenches), holding)

@@ -143,8 +143,8 @@ def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
 
 
 def _stiffness(pair: ContactPair) -> float:
-    answers = [pair.response((0, Wrench(way, NO_TORQUE)))[0] for way in (EAST, NORTH)]
-    return float(abs(answers[0][0]) + abs(answers[1][1]))
+    responses = [pair.response((0, Wrench(way, NO_TORQUE)))[0] for way in (EAST, NORTH)]
+    return float(abs(responses[0][0]) + abs(responses[1][1]))
 
 
 def against(held: PairMotion) -> Slip:

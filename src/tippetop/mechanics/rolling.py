@@ -1,4 +1,4 @@
-"""How the contact point answers to forces, and the forces that hold it: rolling without slipping.
+"""How the contact point responds to forces, and the forces that hold it: rolling without slipping.
 
 The body's point of contact, with velocity v = r' + omega x a, and its angular velocity change at the rates
 

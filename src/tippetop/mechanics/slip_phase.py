@@ -191,7 +191,7 @@ def sweep(
     top, integrals, units = kind.top(tuple(p[given:last])), p[last : last + STAGES], p[last + STAGES :]
     way, step = (y[free], y[free + 1]), p[layout.size]
     across = (-way[1], way[0])
-    rates, slopes, normal = _answers(y[:free], way, across, ending, top)
+    rates, slopes, normal = _rates_and_slopes(y[:free], way, across, ending, top)
     xi = _moved(tuple(p[free : layout.size]), step, rates[free:], integrals, points)
     speed = inner(xi, way)
     columns = []
@@ -249,12 +249,12 @@ def _solved(columns: list[Scalar], right: Scalar, units: Sequence[Scalar], point
     return right / diagonal
 
 
-def _answers(
+def _rates_and_slopes(
     y: Sequence[Scalar], way: Slip, beside: Slip, ending: Vanishing, top: Top
 ) -> tuple[Slip, Slip, Scalar]:
     """Rates of y and xi, their derivatives as the direction turns, and the normal force.
 
-    Friction that turns is another one that is added, and the contact answers to it as it does to gravity.
+    Friction that turns is another one that is added, and the contact responds to it as it does to gravity.
     """
     here = Closing((y[0], y[1], y[2]), (y[3], y[4], y[5]), tuple(y[6:]), way, 0.0, 0.0)
     point, slip = ContactPoint.of(here.axis, here.momentum, top), slip_beside(here, ending, top)

@@ -27,9 +27,9 @@ HORIZON = 0.05
 """How long before its end slip is followed in a clock of its own, in natural units of time."""
 
 NEAR, APART = 1e-3, 0.1
-"""Slip, in natural units, below which it is watched how long it lasts, and from which it no longer is.
+"""Slip, in natural units, below which its end is guarded, and from which it no longer is.
 
-To watch it costs as much again as to follow the motion, and most of a motion it does not end.
+To guard it costs as much again as to follow the motion, and most of a motion it does not end.
 """
 
 ROUNDING = 1e-14
@@ -96,19 +96,19 @@ def slip_part(accelerations: Sequence[Scalar], reach: Scalar | None) -> Slip:
 
 
 def nearing_guard(state: SlidingState, top: Top) -> Scalar:
-    """Falls through zero where slip becomes so small that it is to be watched, (m/s)^2."""
+    """Falls through zero where slip becomes so small that its end is to be guarded, (m/s)^2."""
     slip = slip_of(*state, top)
     return inner(slip, slip) - NEAR * NEAR
 
 
 def parting_guard(state: SlidingState, top: Top) -> Scalar:
-    """Falls through zero where slip is so large again that it need not be watched, (m/s)^2."""
+    """Falls through zero where slip is so large again that its end need not be guarded, (m/s)^2."""
     slip = slip_of(*state, top)
     return APART * APART - inner(slip, slip)
 
 
 def is_near(state: SlidingState, top: Top) -> Scalar:
-    """Whether slip is to be watched from here on; a truth value of floats, or an array of them."""
+    """Whether the end of slip is to be guarded from here on; a truth value of floats, or an array of them."""
     slip = slip_of(*state, top)
     return inner(slip, slip) < NEAR * APART
 
@@ -121,9 +121,9 @@ def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top) ->
     x, y, turning = angular_velocity(state.axis, state.momentum, top)
     spin, spinning = (axial_spin(state.axis, momentum, top) for momentum in (state.momentum, rate.momentum))
     along = (spin - turning * state.axis[2]) * spinning - spin * turning * rate.axis[2]
-    pushed = x * rate.momentum[0] + y * rate.momentum[1]
+    power = x * rate.momentum[0] + y * rate.momentum[1]
     excess = top.transverse_inertia - top.axial_inertia
-    change = (pushed + excess * along) / top.transverse_inertia
+    change = (power + excess * along) / top.transverse_inertia
     return x * x + y * y + HORIZON * change
 
 

@@ -200,7 +200,7 @@ def rolls(state: State, top: Top) -> Flags:
 def slips(state: State, top: Top, *, far: bool = False) -> Flags:
     """Whether tops in contact slip on for a while, for all that their law says of the end of slip.
 
-    If `far`, so fast that it need not be watched how long.
+    If `far`, so fast that its end need not be guarded.
     """
     count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
     if not is_set_valued(top.friction):

@@ -16,7 +16,7 @@ from tippetop.integrators.relief import PATIENCE, is_stiff
 from tippetop.metrics import Ends
 from tippetop.sweeps.arcs import arcs
 from tippetop.sweeps.crossings import Crossings
-from tippetop.sweeps.launches import Flags, Indices, Launches, Note, picked
+from tippetop.sweeps.launches import Checkpoint, Flags, Indices, Launches, picked
 from tippetop.sweeps.slots import Slots
 from tippetop.sweeps.stepper import Stepper
 from tippetop.sweeps.stride import LANES
@@ -28,7 +28,7 @@ LOST = 4.0
 some costs Python as much as several steps of all."""
 
 WINDOW = 64
-"""Steps between notes of the states, from which a part of the run can be done again."""
+"""Steps between checkpoints of the states, from which a part of the run can be done again."""
 
 SHORTEST, ROUNDED = 1e-13, float(np.finfo(float).eps)
 """Step, in natural units and over the time left, both of which it is below where a motion is singular."""
@@ -57,7 +57,7 @@ class Lanes:
     ) -> None:
         self.tolerance, self.banded, self.settled = tolerance, band is not None, settled
         self.slots = slots = Slots(launches, stepper, band)
-        self.crossings, self.notes = Crossings(slots, tolerance, band is not None), list[Note]()
+        self.crossings, self.checkpoints = Crossings(slots, tolerance, band is not None), list[Checkpoint]()
         self._launched = slots.alive.copy()
         if resumed is None:
             lanes = np.arange(len(slots.cell))
@@ -72,11 +72,11 @@ class Lanes:
 
     def run(self) -> Ends:
         """Follow every launch to its end."""
-        # Launches that ended in the flight they began with are noted in the first window.
-        noted, slots = self._launched, self.slots
-        while noted.any():
+        # Launches that ended in the flight they began with are recorded in the first window.
+        recorded, slots = self._launched, self.slots
+        while recorded.any():
             begun, lost, waiting = slots.rows[: slots.layout.kept].copy(), 0, 0
-            bearable = LOST * np.count_nonzero(noted)
+            bearable = LOST * np.count_nonzero(recorded)
             for _ in range(WINDOW):
                 waiting += self._stride()
                 lost += waiting
@@ -84,8 +84,8 @@ class Lanes:
                     self._look()
                     lost = waiting = 0
             self._look()
-            self._close(noted, begun)
-            noted = slots.alive.copy()
+            self._close(recorded, begun)
+            recorded = slots.alive.copy()
         return slots.ends
 
     def _stride(self) -> int:
@@ -135,12 +135,12 @@ class Lanes:
         if self.banded:
             slots.rows[layout.left, ~np.isnan(slots.tip.reached)] = 0.0
 
-    def _close(self, noted: Flags, begun: Array) -> None:
-        """End a window: note it, take out what has ended, and close ranks."""
+    def _close(self, recorded: Flags, begun: Array) -> None:
+        """End a window: record it, take out what has ended, and close ranks."""
         slots, layout = self.slots, self.slots.layout
-        cells, (_, down, up) = slots.cell[noted], slots.tip.lately[:, noted]
+        cells, (_, down, up) = slots.cell[recorded], slots.tip.lately[:, recorded]
         if not self.banded:
-            self.notes.append(Note(cells, begun[: layout.left + 1, noted], down, -up))
+            self.checkpoints.append(Checkpoint(cells, begun[: layout.left + 1, recorded], down, -up))
         slots.tip.put_aside()
         ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
         if len(ended):
@@ -152,7 +152,7 @@ class Lanes:
             slots.retire(which, slots.whole(which), slots.time(which), outcome)
         if self.settled is not None:
             self._end_the_settled(self.settled)
-        self._relieve(np.flatnonzero(noted & slots.alive), begun)
+        self._relieve(np.flatnonzero(recorded & slots.alive), begun)
         working = np.flatnonzero(slots.alive)
         if len(working) and len(working) + LANES < CROWDED * len(slots.alive):
             slots.keep(working)
@@ -184,7 +184,7 @@ class Lanes:
 def arrivals(followed: Lanes, band: tuple[Array, Array]) -> Array:
     """First times at which n_z is in a band, shape (n,); nan where it never is while a lane slides or flies.
 
-    The window in which that happens is known from the notes; it is done again, up to that moment.
+    The window in which that happens is known from the checkpoints; it is done again, up to that moment.
     """
     slots = followed.slots
     launches, size = slots.launches, slots.layout.size
@@ -192,11 +192,11 @@ def arrivals(followed: Lanes, band: tuple[Array, Array]) -> Array:
     window = np.full(count, -1)
     rows = np.zeros((size + 1, count))
     low, high = band
-    for index, note in enumerate(followed.notes):
-        meets = (note.down <= high[note.cells]) & (note.up >= low[note.cells])
-        fresh = meets & (window[note.cells] < 0)
-        window[note.cells[fresh]] = index
-        rows[:, note.cells[fresh]] = note.rows[:, fresh]
+    for index, checkpoint in enumerate(followed.checkpoints):
+        meets = (checkpoint.down <= high[checkpoint.cells]) & (checkpoint.up >= low[checkpoint.cells])
+        fresh = meets & (window[checkpoint.cells] < 0)
+        window[checkpoint.cells[fresh]] = index
+        rows[:, checkpoint.cells[fresh]] = checkpoint.rows[:, fresh]
     found = np.full(count, np.nan)
     for first in (True, False):
         which = np.flatnonzero((window == 0) if first else (window > 0))

@@ -91,8 +91,8 @@ def branched(top: Top, state: State) -> Top:
 
 
 @dataclass(frozen=True)
-class Note:
-    """A window of steps of some launches: where they were at its start, and how far n_z went in it."""
+class Checkpoint:
+    """Where some launches were at the start of a window of steps, and how far n_z went in it."""
 
     cells: Indices
     """Which launches, shape (n,)."""

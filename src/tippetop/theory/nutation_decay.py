@@ -106,7 +106,7 @@ class Goals(NamedTuple):
     """Tilts of the stable steady states, rad."""
     distance: float
     """How close the whole nutation is to come to one of them, rad."""
-    pushed: bool
+    unilateral: bool
     """Whether the table only pushes, so that there is no flow where a nutation needs more."""
 
 
@@ -155,7 +155,7 @@ def follow_nutation(
     final, done, pulled = math.nan, True, False
     for _ in range(_MOST_STEPS):
         seen = orbit_of_amplitudes(_amplitudes_of(solver.y), float(solver.y[2]), jellett, seen_numbers)
-        pulled = goals.pushed and least_reaction(seen, seen_numbers) < 0.0
+        pulled = goals.unilateral and least_reaction(seen, seen_numbers) < 0.0
         if pulled:
             break
         final = _reached(_tilts_of(solver.y, turned), goals)

@@ -30,8 +30,8 @@ class Toy:
         top = self.m * self.g * self.I1 + self.m * self.R * self.alpha * (
             c * self.I1 * (dph**2 * s**2 + dth**2) - self.I3 * dph * w * s**2
         )
-        rub = self.m * self.R**2 * self.alpha * s * (1 - self.alpha * c) * self.mu * vx
-        return top / (self.I1 + self.m * self.R**2 * self.alpha**2 * s**2 - rub)
+        friction = self.m * self.R**2 * self.alpha * s * (1 - self.alpha * c) * self.mu * vx
+        return top / (self.I1 + self.m * self.R**2 * self.alpha**2 * s**2 - friction)
 
     def slide(self, y):
         th, dth, _, dph, w, vx, vy = y
@@ -100,8 +100,8 @@ class Toy:
         point = np.array([*u, dz]) + np.cross(omega, arm)
 
         def rates(_, state):
-            push = np.array([-self.mu * state[0], -self.mu * state[1], 1.0])
-            return np.concatenate((response @ push, push))
+            force = np.array([-self.mu * state[0], -self.mu * state[1], 1.0])
+            return np.concatenate((response @ force, force))
 
         def stopped(_, state):
             return state[2]
@@ -135,7 +135,7 @@ def bisect(rates, y, h, value):
     return high
 
 
-def hop_along(toy, y, duration, h):
+def slide_and_fly(toy, y, duration, h):
     """Follow y = (theta, theta', phi, phi', omega3, v_x, v_y) from sliding; no restitution.
 
     Returns the final (theta, theta', phi, phi', omega3), the times of lift-off and those of touchdown.
