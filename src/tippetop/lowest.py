@@ -30,11 +30,14 @@ def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
 
 
 def highest_between(surface: Surface, low: Scalar, high: Scalar) -> Scalar:
-    """Largest height of the centre of mass on the table for n_z from `low` to `high`, in some looks."""
+    """Largest height of the centre of mass on the table for n_z from `low` to `high`, in some looks.
+
+    A sphere's is linear in n_z: there it is at one of the ends.
+    """
     low, high = np.maximum(low, -1.0), np.minimum(high, 1.0)
-    found = outer_height(surface, low)
-    for look in range(1, LOOKS):
-        found = np.maximum(found, outer_height(surface, low + look / (LOOKS - 1) * (high - low)))
+    found, last = outer_height(surface, low), 1 if surface.spherical else LOOKS - 1
+    for look in range(1, last + 1):
+        found = np.maximum(found, outer_height(surface, low + look / last * (high - low)))
     return found
 
 

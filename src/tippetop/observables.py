@@ -5,7 +5,7 @@ import numpy as np
 from tippetop.contact.block import NODES, WEIGHTS, Block
 from tippetop.contact.choice import as_begun
 from tippetop.contact.flight import Flight
-from tippetop.contact.mode import Outcome
+from tippetop.contact.mode import Mode, Outcome
 from tippetop.contact.readings import TOLD, Instants, instants, read
 from tippetop.contact.sliding import Sliding
 from tippetop.contact.trajectory import Trajectory
@@ -13,6 +13,7 @@ from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of, powers
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Row, Scalar
 from tippetop.monitor import Monitor, kept
 from tippetop.samples import Samples
 
@@ -26,6 +27,11 @@ _INTEGRALS = np.array(
     ]
 )
 """The integrals of Lagrange's polynomials on Gauss's points, from 0, in powers from -1 to 1 over a step."""
+
+
+def kept_in(mode: Mode, y: Row) -> tuple[Scalar, ...]:
+    """What the monitor sees of the numbers of a mode."""
+    return kept(mode.state(y), mode.top)
 
 
 class Recorder:
@@ -143,9 +149,12 @@ class Recorder:
         struck += self._struck
         self._struck = float(struck[-1])
         self._sums, self._pole = values[:, -1], float(poles[-1])
-        with np.errstate(divide="ignore", invalid="ignore"):  # of edges on which the axis is vertical
-            for group in block.groups:
-                self.monitor.see(*kept(group.begun, self.top), values[3, group.which])
+        for group in block.groups:
+            size, cosine, height, energy, jellett = read(
+                kept_in, group.mode, group.begun, total=len(group.which)
+            )
+            with np.errstate(invalid="ignore"):  # of edges on which the axis is vertical
+                self.monitor.see(size, cosine, height, energy, jellett, values[3, group.which])
         return rates, values[:, :-1], poles, struck[:-1]
 
 

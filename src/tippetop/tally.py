@@ -15,8 +15,8 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.vectors import Scalar
 from tippetop.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
 
-AT_ONCE = 16
-"""Steps that are searched together for the first time at which something happens."""
+AT_ONCE = 4
+"""Steps that are searched together for the first time at which something happens; then so many times more."""
 
 FORCE_DEGREE = 20
 """Degree of the polynomials in which the least normal force is looked for."""
@@ -105,9 +105,9 @@ def _first(
     known: float, tip: Polynomials, starts: Array, near: Flags, find: Callable[[Polynomials], Array]
 ) -> float:
     """The first time that is found on steps where it may be, or the one that is known if that is earlier."""
-    which = np.flatnonzero(near & ~(starts > known))
-    for first in range(0, len(which), AT_ONCE):
-        some = which[first : first + AT_ONCE]
+    which, count = np.flatnonzero(near & ~(starts > known)), AT_ONCE
+    while len(which):
+        some, which, count = which[:count], which[count:], AT_ONCE * count
         times = find(tip.some(some)) + starts[some]
         if not np.all(np.isnan(times)):
             return float(np.fmin(known, np.fmin.reduce(times)))

@@ -224,6 +224,7 @@ class ArbitraryShape(NamedTuple):
     """A body of revolution of any shape, through its support function."""
 
     support: Any
+    spherical: bool = False
 
     def height(self, c):
         return self.support(c)

@@ -12,7 +12,6 @@ from tippetop.contact.mode import Mode, Segment
 from tippetop.contact.readings import Rates, instants, read
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, evaluated
-from tippetop.mechanics.state import State
 
 STEPS = 4096
 """Steps in a block, about."""
@@ -52,9 +51,9 @@ class ModeSteps:
         return read(Rates.of, self.mode, y, nearer_pole(y[2]), total=len(NODES) * len(self.which))
 
     @property
-    def begun(self) -> State:
-        """The states in which the steps begin, every number of shape (k,)."""
-        return self.mode.state(np.ascontiguousarray(self.terms[:, :, 0].T))
+    def begun(self) -> Array:
+        """The numbers with which the steps begin, shape (size, k)."""
+        return np.ascontiguousarray(self.terms[:, :, 0].T)
 
 
 def nearer_pole(axis: Array) -> Array:

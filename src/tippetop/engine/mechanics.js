@@ -324,6 +324,14 @@ function contact_vector(axis, surface) {
   return [py.mul(py.neg(slope), axis[0]), py.mul(py.neg(slope), axis[1]), py.neg(surface.height(c))];
 }
 
+/** Transverse radius of curvature at the lowest point, h(c) - c h'(c), m: how far it is below the axis. */
+function transverse_radius(c, surface) {
+  return py.truth(surface.spherical) ? surface.height(0.0) : py.sub(
+    surface.height(c),
+    py.mul(c, surface.slope(c))
+  );
+}
+
 // tippetop.mechanics.hull
 
 /** The surfaces of a body: a `Surface` that stands for the active one. */
@@ -1193,12 +1201,24 @@ function point_velocity(velocity, omega, arm) {
   return add(velocity, cross(omega, arm));
 }
 
+/** Horizontal velocity of the contact point relative to the centre of mass, omega x a, m/s. */
+function contact_swing(axis, momentum, top) {
+  var omega = angular_velocity(axis, momentum, top);
+  var tilting = axis_rate(axis, momentum, top);
+  var slope = top.surface.slope(axis[2]);
+  var radius = transverse_radius(axis[2], top.surface);
+  return [
+    py.neg(py.add(py.mul(slope, tilting[0]), py.mul(radius, omega[1]))),
+    py.sub(py.mul(radius, omega[0]), py.mul(slope, tilting[1]))
+  ];
+}
+
 /** Geometry, slip and contact force of the body on the table. */
 function contact(axis, momentum, velocity, top) {
   var arm = contact_vector(axis, top.surface);
   var omega = angular_velocity(axis, momentum, top);
-  var point = point_velocity([velocity[0], velocity[1], 0.0], omega, arm);
-  var slip = [point[0], point[1]];
+  var swing = contact_swing(axis, momentum, top);
+  var slip = [py.add(velocity[0], swing[0]), py.add(velocity[1], swing[1])];
   var traction = top.traction(slip, omega);
   var free = free_acceleration(axis, momentum, top);
   var delassus = driven_acceleration(axis, 1.0, moment_per_normal_force(arm, traction), top);
@@ -2447,9 +2467,8 @@ function turning_with(point, slip) {
 
 /** Horizontal velocity of the centre of mass of a body whose contact point is at rest, m/s. */
 function velocity_without_slip(axis, momentum, top) {
-  var turning = angular_velocity(axis, momentum, top);
-  var moving = cross(contact_vector(axis, top.surface), turning);
-  return [moving[0], moving[1]];
+  var [x, y] = contact_swing(axis, momentum, top);
+  return [py.neg(x), py.neg(y)];
 }
 
 /** The angular momentum for which the body does not turn about the vertical, kg m^2/s. */
@@ -2488,10 +2507,10 @@ const STILL = 0.1;
 
 /** The velocity zeta of a body in contact whose centre of mass has this horizontal velocity. */
 function slip_of(axis, momentum, velocity, top) {
-  var turning = angular_velocity(axis, momentum, top);
-  var point = point_velocity([...velocity, 0.0], turning, contact_vector(axis, top.surface));
+  var swing = contact_swing(axis, momentum, top);
   var reach = slip_length(top.friction);
-  return reach === null ? point.slice(0, 2) : [point[0], point[1], py.mul(reach, turning[2])];
+  var slip = [py.add(velocity[0], swing[0]), py.add(velocity[1], swing[1])];
+  return reach === null ? slip : [...slip, py.mul(reach, angular_velocity(axis, momentum, top)[2])];
 }
 
 /** Horizontal velocity of the centre of mass with this slip, m/s. */
@@ -10610,10 +10629,11 @@ function lowest_contact_vector(axis, surface) {
 function highest_between(surface, low, high) {
   [low, high] = [py.np.maximum(low, -1.0), py.np.minimum(high, 1.0)];
   var found = outer_height(surface, low);
-  for (var look = 1; look < LOOKS_of_lowest; look += 1) {
+  var last = py.truth(surface.spherical) ? 1 : py.sub(LOOKS_of_lowest, 1);
+  for (var look = 1; look < py.add(last, 1); look += 1) {
     found = py.np.maximum(
       found,
-      outer_height(surface, py.add(low, py.mul(py.div(look, py.sub(LOOKS_of_lowest, 1)), py.sub(high, low))))
+      outer_height(surface, py.add(low, py.mul(py.div(look, last), py.sub(high, low))))
     );
   }
   return found;
@@ -11882,6 +11902,7 @@ export {
   compiled_step,
   contact,
   contact_motion,
+  contact_swing,
   contact_vector,
   contact_velocity,
   critical_jellett,
@@ -12128,6 +12149,7 @@ export {
   time_to,
   touchdown,
   touching_tilts,
+  transverse_radius,
   turn_rate,
   turned,
   turned_slopes,

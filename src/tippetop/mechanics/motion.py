@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.friction import Traction
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surface import contact_vector, transverse_radius
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
@@ -81,6 +81,17 @@ def point_velocity(velocity: Vector, omega: Vector, arm: Vector) -> Vector:
     return add(velocity, cross(omega, arm))
 
 
+def contact_swing(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
+    """Horizontal velocity of the contact point relative to the centre of mass, omega x a, m/s.
+
+    The vertical through the contact point meets the axis at -h' n, r = h - c h' higher: a = -h' n - r z. As
+    n' = omega x n, that is -h' n' - r omega x z, in fewer products.
+    """
+    omega, tilting = angular_velocity(axis, momentum, top), axis_rate(axis, momentum, top)
+    slope, radius = top.surface.slope(axis[2]), transverse_radius(axis[2], top.surface)
+    return (-(slope * tilting[0] + radius * omega[1]), radius * omega[0] - slope * tilting[1])
+
+
 def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> SlidingContact:
     """Geometry, slip and contact force of the body on the table.
 
@@ -98,8 +109,8 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> S
     """
     arm = contact_vector(axis, top.surface)
     omega = angular_velocity(axis, momentum, top)
-    point = point_velocity((velocity[0], velocity[1], 0.0), omega, arm)
-    slip = (point[0], point[1])
+    swing = contact_swing(axis, momentum, top)
+    slip = (velocity[0] + swing[0], velocity[1] + swing[1])
     traction = top.traction(slip, omega)
 
     free = free_acceleration(axis, momentum, top)

@@ -32,6 +32,7 @@ from tippetop.mechanics.motion import (
     angular_velocity,
     axial_spin,
     axis_rate,
+    contact_swing,
     driven_acceleration,
     free_acceleration,
 )
@@ -255,9 +256,8 @@ def turning_with(point: "ContactPoint", slip: Slip) -> Vector:
 
 def velocity_without_slip(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
     """Horizontal velocity of the centre of mass of a body whose contact point is at rest, m/s."""
-    turning = angular_velocity(axis, momentum, top)
-    moving = cross(contact_vector(axis, top.surface), turning)
-    return (moving[0], moving[1])
+    x, y = contact_swing(axis, momentum, top)
+    return (-x, -y)
 
 
 def without_drilling(axis: Vector, momentum: Vector, top: Top) -> Vector:

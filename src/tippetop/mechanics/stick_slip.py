@@ -15,10 +15,9 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity
+from tippetop.mechanics.motion import angular_velocity, axial_spin, contact_swing
 from tippetop.mechanics.rolling import slip_length, velocity_without_slip, without_drilling, without_rolling
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 from tippetop.mechanics.wrench import Slip
@@ -42,10 +41,9 @@ STILL = 0.1
 
 def slip_of(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Slip:
     """The velocity zeta of a body in contact whose centre of mass has this horizontal velocity."""
-    turning = angular_velocity(axis, momentum, top)
-    point = point_velocity((*velocity, 0.0), turning, contact_vector(axis, top.surface))
-    reach = slip_length(top.friction)
-    return point[:2] if reach is None else (point[0], point[1], reach * turning[2])
+    swing, reach = contact_swing(axis, momentum, top), slip_length(top.friction)
+    slip = (velocity[0] + swing[0], velocity[1] + swing[1])
+    return slip if reach is None else (*slip, reach * angular_velocity(axis, momentum, top)[2])
 
 
 def velocity_of(axis: Vector, momentum: Vector, slip: Slip, top: Top) -> Horizontal:
