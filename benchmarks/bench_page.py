@@ -5,7 +5,8 @@ tolerance at which the axis ends within 1e-8 of where Taylor's method puts it. P
 at the same tolerance, without samples. Of runs repeated in one process the least time counts: the first ones
 are the compilers'; how long the very first takes is told, too. The map is of 64 spins by 32 coefficients of
 friction, for 20 s each, shared by two workers, at the loosest tolerance at which n_z, which tells how a top
-stands, ends within 1e-5 in a launch of every cell of a coarser map.
+stands, ends within 1e-5 in a launch of every cell of a coarser map. What is wanted of both is wanted of a
+machine as fast as usual, and is told as that is here (`surroundings.slowness`).
 """
 
 import json
@@ -17,7 +18,7 @@ from typing import Any
 import numpy as np
 
 import tippetop as tt
-from benchmarks.surroundings import markdown, rounded
+from benchmarks.surroundings import markdown, rounded, slowness
 from tippetop.engine import HERE
 from tippetop.presets import report_problem
 
@@ -29,7 +30,7 @@ SINGLE_ERROR, MAP_ERROR = 1e-8, 1e-5
 
 WORKERS = 2
 TARGETS_MS = {"175 rad/s, with flights": 15.0, "map": 10e3}
-"""Wanted of Node on a machine that imports heyoka and xarray in 0.5 s."""
+"""Wanted of Node on a machine that is as fast as usual."""
 
 FOLLOW = """
 const { simulate } = await import(process.argv[1]);
@@ -117,6 +118,9 @@ def measure(quick: bool) -> dict[str, Any]:
     share = 64 * 32 / len(launches) / WORKERS
     node_ms = share * sum(one["ms"][0] for one in in_node(launches, tolerance))
     found["map"] = {"tolerance": tolerance, "error": off, "node_ms": node_ms}
+    slow = slowness()
+    for name, wanted in TARGETS_MS.items():
+        found[name] |= {"wanted_ms": slow * wanted}
     return found
 
 
@@ -133,7 +137,7 @@ def tables(found: dict[str, Any]) -> str:
             f"{one['error']:.1e}",
             told(one, "first_ms"),
             told(one, "node_ms"),
-            rounded(TARGETS_MS[name]) if name in TARGETS_MS else "",
+            told(one, "wanted_ms"),
             rounded(one["node_ms"] / one["python_ms"]) if "python_ms" in one else "",
         ]
         for name, one in found.items()
@@ -144,7 +148,7 @@ def tables(found: dict[str, Any]) -> str:
         "error",
         "first, ms",
         "least, ms",
-        "wanted, ms",
+        "wanted here, ms",
         "over Python's compiled",
     ]
     return markdown(heads, rows)

@@ -3,12 +3,19 @@
 import importlib.metadata
 import os
 import platform
+import statistics
+import subprocess
+import sys
+import time
 from typing import Any
 
 import psutil
 
 COMMAND_LINE = "import sys; from tippetop.cli.main import main; sys.exit(main())"
 """Given to `python -c`, this is `tippetop`."""
+
+IMPORTS, USUAL = "import heyoka, xarray", 0.5
+"""By how long this takes in a new process, machines are compared; and that, s, for which times are wanted."""
 
 PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 """How many processors may be used."""
@@ -31,6 +38,17 @@ def machine() -> dict[str, Any]:
         "processors": PROCESSORS,
         "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
     }
+
+
+def slowness(rounds: int = 5) -> float:
+    """How many times as long as usual this machine takes at present."""
+    times = []
+    for _ in range(rounds + 1):
+        began = time.perf_counter()
+        subprocess.run([sys.executable, "-c", IMPORTS], check=True)
+        times.append(time.perf_counter() - began)
+    # The first one reads from the disk.
+    return statistics.median(times[1:]) / USUAL
 
 
 def memory_of(process: psutil.Process) -> int:
