@@ -19,22 +19,26 @@ M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
 pytestmark = pytest.mark.skipif(not has_taylor(), reason="the other integrators take long to come so near")
 
 
-def jamming(liftoff: str = "fly") -> tt.Problem:
+SLOW, FAST = 0.05, 1.0
+"""Slip that is followed in a clock of its own as it jams, and slip that is not, m/s."""
+
+
+def jamming(liftoff: str = "fly", slip: float = SLOW) -> tt.Problem:
     """The sphere, which slips across the direction in which it leans."""
     return tt.Problem(
         body=tt.Body(
             mass=M, shape=tt.EccentricSphere(radius=R, eccentricity=OFF / R), I1=INERTIA, I3=INERTIA
         ),
         friction=tt.CoulombFriction(mu=MU),
-        launch=tt.Launch(tilt=1.2, spin=0.0, slip=(0.0, 0.05)),
+        launch=tt.Launch(tilt=1.2, spin=0.0, slip=(0.0, slip)),
         contact=tt.Contact(liftoff=liftoff, restitution=0.0),
         gravity=G,
     )
 
 
-def on_springs(stiffness: float, jams: float, eps: float = 1e-6) -> np.ndarray:
+def on_springs(slip: float, stiffness: float, jams: float, eps: float = 1e-6) -> np.ndarray:
     """Angular velocity at the end of compression on an elastic table, without any notion of an impact."""
-    start = jamming().start()
+    start = jamming(slip=slip).start()
 
     def contact(y: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         arm = OFF * y[:3] - np.array([0.0, 0.0, R])
@@ -51,7 +55,7 @@ def on_springs(stiffness: float, jams: float, eps: float = 1e-6) -> np.ndarray:
         return float(contact(y)[1][2])
 
     rebounding.direction = 1.0  # type: ignore[attr-defined]
-    pressed = float(tt.simulate(jamming(), 1e-6, samples=2)["normal_force"][0]) / stiffness
+    pressed = float(tt.simulate(jamming(slip=slip), 1e-6, samples=2)["normal_force"][0]) / stiffness
     begin = np.array([*start.axis, *start.momentum, *start.velocity, start.height - pressed])
     found = solve_ivp(
         rates, (0.0, 1.5 * jams), begin, method="LSODA", rtol=1e-8, atol=1e-14, events=rebounding
@@ -60,16 +64,17 @@ def on_springs(stiffness: float, jams: float, eps: float = 1e-6) -> np.ndarray:
     return np.asarray(ends[0][3:6]) / INERTIA
 
 
-def test_a_contact_that_jams_is_struck_as_the_limit_of_elastic_ones_is() -> None:
-    run = tt.simulate(jamming(), 1e-3, times=[0.0, 1e-4])
+@pytest.mark.parametrize("slip", [SLOW, FAST])
+def test_a_contact_that_jams_is_struck_as_the_limit_of_elastic_ones_is(slip: float) -> None:
+    run = tt.simulate(jamming(slip=slip), 2e-3 * slip / SLOW, samples=2)
     assert run["event_kind"].values.tolist() == ["impact", "stick"]
     assert float(run["event_energy_lost"][0]) > 0.0
     assert float(run["energy_error"]) < 1e-9
     jams = float(run["event_time"][0])
     # It has slipped until then, and while it sticks weight alone turns it.
-    after = tt.simulate(jamming(), 1e-3, times=[0.0, jams * (1.0 + 1e-9)])
+    after = tt.simulate(jamming(slip=slip), 1.1 * jams, times=[0.0, jams * (1.0 + 1e-9)])
     turning = angular_velocity(after)
-    off = [np.abs(on_springs(stiffness, jams) - turning) for stiffness in (1e8, 1e9, 1e10)]
+    off = [np.abs(on_springs(slip, stiffness, jams) - turning) for stiffness in (1e8, 1e9, 1e10)]
     size = np.linalg.norm(turning)
     assert np.linalg.norm(off[2]) < 1e-4 * size
     # What gravity does meanwhile falls as the time of compression, and the rest faster.
@@ -81,9 +86,10 @@ def angular_velocity(run) -> np.ndarray:
     return np.asarray(run["angular_momentum"].values[-1]) / INERTIA
 
 
+@pytest.mark.parametrize("slip", [SLOW, FAST])
 @pytest.mark.parametrize("liftoff", ["stop", "ignore"])
-def test_a_contact_that_jams_ends_a_run_without_impacts(liftoff: str) -> None:
-    run = tt.simulate(jamming(liftoff), 1e-3, samples=11)
+def test_a_contact_that_jams_ends_a_run_without_impacts(liftoff: str, slip: float) -> None:
+    run = tt.simulate(jamming(liftoff, slip), 1e-3 * slip / SLOW, samples=11)
     assert run.attrs["outcome"] == "failed"
     assert "no contact force is consistent" in run.attrs["outcome_advice"]
     assert float(run["energy_error"]) < 1e-9

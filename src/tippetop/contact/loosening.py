@@ -86,7 +86,7 @@ class Loosening(Passing):
         reach = end if duration >= end - time else time + duration
         solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach)
         if phase.ended:
-            then = self.rules.settled(reach, last, new=(True, False), held=False)
+            then = self.rules.beside_others(reach, self.rules.settled(reach, last, new=(True, False)))
         else:
             mode = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=True)
             then = Transition((), mode, last)

@@ -256,6 +256,10 @@ class IntegratedMode(Mode):
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """What follows when a guard falls through zero."""
 
+    def unable(self, failure: str, time: float, state: State) -> Transition:
+        """What follows when the integrator cannot go on: nothing, where a mode does not say otherwise."""
+        return Transition((), Outcome.FAILED, state, failure)
+
     def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
         """Integrate the equations of motion."""
         begin = time, as_array(self.numbers(state))
@@ -263,7 +267,7 @@ class IntegratedMode(Mode):
             last = self.state(arc.end_state.tolist())
             transition = None
             if arc.failure is not None:
-                transition = Transition((), Outcome.FAILED, last, arc.failure)
+                transition = self.unable(arc.failure, arc.solution.end, last)
             elif arc.guard is not None:
                 transition = self.follow(arc.guard, arc.solution.end, last)
             elif arc.solution.end >= end:

@@ -14,6 +14,7 @@ from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.jamming import past_jamming
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
 from tippetop.mechanics.rolling import ContactPoint, contact_motion, is_set_valued
@@ -101,6 +102,10 @@ class Rules:
             return failed("The force that holds the contact", error, state, events)
         events = (*events, *self._marks(time, new, begins))
         return self._settle(time, state, found, begins, ended, events)
+
+    def beside_others(self, time: float, found: Transition) -> Transition:
+        """What follows on this contact, of which else touches: it alone, where no rules say otherwise."""
+        return found
 
     def giving_way(
         self, state: State, events: tuple[Event, ...], beginning: Vanishing, wrench: Wrench | None = None
@@ -208,10 +213,14 @@ class Rules:
     def jammed(self, time: float, state: State) -> Transition:
         """What follows where the normal force has grown beyond all bounds, and slip goes on."""
         try:
-            beyond = on_table(past_jamming(along_table(state), self.top), self.top)
+            sliding, impulse = past_jamming(along_table(state), self.top)
         except ArithmeticError as error:
             return failed("What follows where friction jams the contact", error, state)
-        return self.inconsistent(time, beyond, ())
+        beyond = on_table(sliding, self.top)
+        lost = float(energy(state, self.top) - energy(beyond, self.top))
+        found = self.inconsistent(time, beyond, ())
+        first = [began_with(event, impulse, lost) for event in found.events[:1]]
+        return replace(found, events=(*first, *found.events[1:]))
 
     def _leaving(self, time: float, state: State) -> Transition:
         """What follows when the normal force falls to zero."""
@@ -235,6 +244,11 @@ class Rules:
     def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """What follows where no contact force is consistent with the friction."""
         return Transition(events, Outcome.FAILED, state, "no contact force is consistent with the friction")
+
+
+def began_with(event: Event, impulse: float, lost: float) -> Event:
+    """An event that began with some impulse, which took energy."""
+    return replace(event, impulse=event.impulse + impulse, energy_lost=event.energy_lost + lost)
 
 
 def rests(state: State, *rates: Scalar) -> bool:

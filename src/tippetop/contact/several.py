@@ -7,7 +7,7 @@ from typing import Self
 from tippetop.contact.double import SLOWEST_SLIP
 from tippetop.contact.flight import TOUCHING
 from tippetop.contact.liftoff import FreeToFly
-from tippetop.contact.mode import Before, Event, EventKind, Outcome, Transition
+from tippetop.contact.mode import Before, Event, EventKind, IntegratedMode, Outcome, Transition
 from tippetop.contact.surfaces import number_of
 from tippetop.contact.two_closed import rolling_of
 from tippetop.contact.two_resolver import settled, slipping
@@ -22,6 +22,7 @@ from tippetop.mechanics.rolling import contact_motion, is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import size, slip_of
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.wrench import Wrench
 
 SLOWEST_ROCKING = 1e-7
 """Velocity, in units of sqrt(g R), below which rocking between two surfaces has come to its end.
@@ -91,6 +92,23 @@ class OnSeveral(FreeToFly):
         before = Before((), bool(rolling_of(state, self.top)))
         rolls = rolling_of(without_tilting(state, self.top), self.top)
         return settled(self._of(tops[0]), time, state, tops, before, rolls, events, arrived=True)
+
+    def beside_others(self, time: float, found: Transition) -> Transition:
+        """As it is, unless it presses another surface that touches onto the table: then both are resolved."""
+        mode = found.then
+        if isinstance(mode, IntegratedMode) and self._presses(mode, found.state):
+            return self.resting(time, found.state)
+        return found
+
+    def _presses(self, mode: IntegratedMode, state: State) -> bool:
+        """Whether one of the others that touch, and open no faster than what stays, is drawn to the table."""
+        reaction = mode.reaction(mode.numbers(state))
+        wrench = Wrench(reaction.force, reaction.torque)
+        return any(
+            gap_rate(state, other) <= self._slowest(other, state)
+            and ContactPair.of(state.axis, state.momentum, (self.top, other)).under([(0, wrench)])[1][2] < 0.0
+            for other in self._beside(state)
+        )
 
     def _impact(self, state: State, restitution: float, integrator: Integrator | None) -> Impact:
         """That of the active surface alone, unless it presses another that touches onto the table.

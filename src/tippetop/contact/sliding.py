@@ -6,7 +6,8 @@ from typing import Any, ClassVar, Self
 from tippetop.contact.closed import BRANCH, LIFT_OFF, STOPPING, ClosedMode, GuardValue, motion_of
 from tippetop.contact.mode import Transition
 from tippetop.integrators.base import Motion
-from tippetop.mechanics.motion import sliding_rates
+from tippetop.mechanics.jamming import is_jammed
+from tippetop.mechanics.motion import along_table, sliding_rates
 from tippetop.mechanics.rolling import flat, is_set_valued, slip_length
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
@@ -85,6 +86,12 @@ class Sliding(SlidingMode):
     def rates(self, y: Row) -> tuple[Scalar, ...]:
         """Time derivatives of the 8 numbers of a sliding state, in the fewest operations."""
         return sliding_rates(SlidingState.unpack(y), self.top).pack()
+
+    def unable(self, failure: str, time: float, state: State) -> Transition:
+        """Friction that turns may have jammed the contact: no step is short enough then."""
+        if is_jammed(along_table(state), self.top):
+            return self.rules.jammed(time, state)
+        return super().unable(failure, time, state)
 
     def rolling_left(self, y: Row) -> Scalar:
         """Positive while rolling goes on for a while."""

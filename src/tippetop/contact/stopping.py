@@ -114,7 +114,8 @@ class Stopping(Passing):
     def _next(self, arc: Arc | None, time: float, state: State) -> Transition:
         ending, stuck = self.ending, not self.ending.slip and self.ending.held
         if arc is None or arc.guard == LANDED:
-            return self.rules.settled(time, state, new=(ending.slip, not ending.slip), held=ending.held)
+            new = ending.slip, not ending.slip
+            return self.rules.beside_others(time, self.rules.settled(time, state, new, held=ending.held))
         if arc.failure is not None or arc.guard is None:
             return Transition((), Outcome.FAILED, state, arc.failure or "the slip neither ends nor goes on")
         found = follow_surface(self, arc.guard, time, state)

@@ -1014,6 +1014,10 @@ class IntegratedMode extends Mode {
   get parameters() {
     return this.top.numbers;
   }
+  /** What follows when the integrator cannot go on: nothing, where a mode does not say otherwise. */
+  unable(failure, time, state) {
+    return new Transition([], Outcome.FAILED, state, failure);
+  }
   /** Integrate the equations of motion. */
   *segments(time, state, end, integrator) {
     var begin = [time, as_array(this.numbers(state))];
@@ -1021,7 +1025,7 @@ class IntegratedMode extends Mode {
       var last = this.state(py.list(arc.end_state));
       var transition = null;
       if (arc.failure !== null) {
-        transition = new Transition([], Outcome.FAILED, last, arc.failure);
+        transition = this.unable(arc.failure, arc.solution.end, last);
       } else if (arc.guard !== null) {
         transition = this.follow(arc.guard, arc.solution.end, last);
       } else if (arc.solution.end >= end) {
@@ -3270,6 +3274,36 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
   );
 });
 
+// tippetop.mechanics.jamming
+const PROBED = 1e-06;
+const JAMMED = 0.001;
+
+/** Whether the normal force of a slipping contact grows beyond all bounds; of floats. */
+function is_jammed(state, top) {
+  return py.bool(
+    0.0 < contact(...state, top).delassus && contact(...state, top).delassus < py.div(JAMMED, top.mass)
+  );
+}
+
+/** The state past the normal impulse over which friction comes to press the contact, and that, N s. */
+function past_jamming(state, top) {
+  var touch = contact(...state, top);
+  var force = touch.traction.force;
+  var moment = moment_per_normal_force(touch.arm, touch.traction);
+  var after = (impulse) => {
+    var [x, y] = plus(state.velocity, scaled(py.div(impulse, top.mass), force));
+    return new SlidingState(state.axis, add(state.momentum, scale(impulse, moment)), [x, y]);
+  };
+  var before = slip_of(...state, top);
+  var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
+  var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
+  if (!(fall > 0.0)) {
+    throw new Unsolved("it is not friction that jams it");
+  }
+  var impulse = py.mul(py.mul(py.div(py.mul(2.0, touch.delassus), fall), PROBED), whole);
+  return [after(impulse), py.float(impulse)];
+}
+
 // tippetop.contact.sliding
 const [NEARING, PARTING] = ["nearing", "parting"];
 
@@ -3342,6 +3376,13 @@ class Sliding extends SlidingMode {
   /** Time derivatives of the 8 numbers of a sliding state, in the fewest operations. */
   rates(y) {
     return sliding_rates(SlidingState.unpack(y), this.top).pack();
+  }
+  /** Friction that turns may have jammed the contact: no step is short enough then. */
+  unable(failure, time, state) {
+    if (py.truth(is_jammed(along_table(state), this.top))) {
+      return this.rules.jammed(time, state);
+    }
+    return super.unable(failure, time, state);
   }
   /** Positive while rolling goes on for a while. */
   rolling_left(y) {
@@ -4376,7 +4417,7 @@ class Loosening extends Passing {
     var reach = duration >= py.sub(end, time) ? end : py.add(time, duration);
     var solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach);
     if (py.truth(phase.ended)) {
-      var then = this.rules.settled(reach, last, [true, false], false);
+      var then = this.rules.beside_others(reach, this.rules.settled(reach, last, [true, false]));
     } else {
       var mode = reach >= end ? Outcome.COMPLETED : this.rules.going_on(last, true);
       then = new Transition([], mode, last);
@@ -4634,7 +4675,13 @@ function time_to(speed, rows, guess) {
 }
 
 // tippetop.contact.closing
-const [REOPENING, LANDED, TIME, OVERTAKEN, JAMMED] = ["reopening", "landed", "time", "overtaken", "jammed"];
+const [
+  REOPENING,
+  LANDED,
+  TIME,
+  OVERTAKEN,
+  JAMMED_of_closing
+] = ["reopening", "landed", "time", "overtaken", "jammed"];
 const OWN = [REOPENING, LANDED, TIME];
 const LONGEST = 100.0;
 const SOON = [0.3, 2.0];
@@ -4700,7 +4747,7 @@ const closing_motion = py.cached((kind, ending, guarded) => {
     guards.push(guard(LIFT_OFF, (state, top, _) => held_by(state, top).force[2]));
   }
   if (!py.truth(ending.held)) {
-    guards.push(guard(JAMMED, (state, top, _) => jamming_guard(state, ending, top)));
+    guards.push(guard(JAMMED_of_closing, (state, top, _) => jamming_guard(state, ending, top)));
   }
   if (!py.truth(ending.held) && py.truth(top.resists_rolling) && py.truth(is_set_valued(law))) {
     guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
@@ -4868,7 +4915,8 @@ class Stopping extends Passing {
     var ending = this.ending;
     var stuck = py.and(!py.truth(this.ending.slip), () => this.ending.held);
     if (arc === null || py.eq(arc.guard, LANDED)) {
-      return this.rules.settled(time, state, [ending.slip, !py.truth(ending.slip)], ending.held);
+      var new_ = [ending.slip, !py.truth(ending.slip)];
+      return this.rules.beside_others(time, this.rules.settled(time, state, new_, ending.held));
     }
     if (arc.failure !== null || arc.guard === null) {
       return new Transition(
@@ -4947,25 +4995,21 @@ function thinned(knots) {
   return [...found, end];
 }
 
-// tippetop.mechanics.jamming
-const PROBED = 1e-06;
+// tippetop.mechanics.invariants
 
-/** The state past the normal impulse over which friction comes to press the contact, which it jams. */
-function past_jamming(state, top) {
-  var touch = contact(...state, top);
-  var force = touch.traction.force;
-  var moment = moment_per_normal_force(touch.arm, touch.traction);
-  var after = (impulse) => {
-    var [x, y] = plus(state.velocity, scaled(py.div(impulse, top.mass), force));
-    return new SlidingState(state.axis, add(state.momentum, scale(impulse, moment)), [x, y]);
-  };
-  var before = slip_of(...state, top);
-  var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
-  var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
-  if (!(fall > 0.0)) {
-    throw new Unsolved("it is not friction that jams it");
-  }
-  return after(py.mul(py.mul(py.div(py.mul(2.0, touch.delassus), fall), PROBED), whole));
+/** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
+function energy(state, top) {
+  var omega = angular_velocity(state.axis, state.momentum, top);
+  var translation = py.mul(top.mass, dot(state.velocity, state.velocity));
+  return py.add(
+    py.mul(0.5, py.add(translation, dot(omega, state.momentum))),
+    py.mul(py.mul(top.mass, top.gravity), state.height)
+  );
+}
+
+/** Jellett's integral lambda = -L.a, kg m^3/s. */
+function jellett(state, top) {
+  return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
 }
 
 // tippetop.contact.rules
@@ -5032,6 +5076,10 @@ class Rules extends py.Record {
     }
     events = [...events, ...this._marks(time, new_, begins)];
     return this._settle(time, state, found, begins, ended, events);
+  }
+  /** What follows on this contact, of which else touches: it alone, where no rules say otherwise. */
+  beside_others(time, found) {
+    return found;
   }
   /** Slip, or rolling, begins from the limit of what the table can hold, which is a wrench. */
   giving_way(state, events, beginning, wrench = null) {
@@ -5151,12 +5199,16 @@ class Rules extends py.Record {
   /** What follows where the normal force has grown beyond all bounds, and slip goes on. */
   jammed(time, state) {
     try {
-      var beyond = on_table(past_jamming(along_table(state), this.top), this.top);
+      var [sliding, impulse] = past_jamming(along_table(state), this.top);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return failed("What follows where friction jams the contact", error, state);
     }
-    return this.inconsistent(time, beyond, []);
+    var beyond = on_table(sliding, this.top);
+    var lost = py.float(py.sub(energy(state, this.top), energy(beyond, this.top)));
+    var found = this.inconsistent(time, beyond, []);
+    var first = [...found.events.slice(0, 1)].map((event) => began_with(event, impulse, lost));
+    return py.replace(found, { events: [...first, ...found.events.slice(1)] });
   }
   /** What follows when the normal force falls to zero. */
   _leaving(time, state) {
@@ -5179,6 +5231,14 @@ class Rules extends py.Record {
   inconsistent(time, state, events) {
     return new Transition(events, Outcome.FAILED, state, "no contact force is consistent with the friction");
   }
+}
+
+/** An event that began with some impulse, which took energy. */
+function began_with(event, impulse, lost) {
+  return py.replace(
+    event,
+    { impulse: py.add(event.impulse, impulse), energy_lost: py.add(event.energy_lost, lost) }
+  );
 }
 
 /** Whether a body in contact neither moves nor begins to, by the rates of its velocities. */
@@ -7407,23 +7467,6 @@ function ended_slips(state, tops) {
   return [one <= py.mul(TOGETHER, limit), other <= py.mul(TOGETHER, limit)];
 }
 
-// tippetop.mechanics.invariants
-
-/** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
-function energy(state, top) {
-  var omega = angular_velocity(state.axis, state.momentum, top);
-  var translation = py.mul(top.mass, dot(state.velocity, state.velocity));
-  return py.add(
-    py.mul(0.5, py.add(translation, dot(omega, state.momentum))),
-    py.mul(py.mul(top.mass, top.gravity), state.height)
-  );
-}
-
-/** Jellett's integral lambda = -L.a, kg m^3/s. */
-function jellett(state, top) {
-  return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
-}
-
 // tippetop.contact.two_resolver
 
 /** The resolver of two contacts, where the body rolls as signed, or not (0). */
@@ -7591,6 +7634,27 @@ class OnSeveral extends FreeToFly {
     var before = new Before([], py.bool(rolling_of(state, this.top)));
     var rolls = rolling_of(without_tilting(state, this.top), this.top);
     return settled(this._of(tops[0]), time, state, tops, before, rolls, events, true);
+  }
+  /** As it is, unless it presses another surface that touches onto the table: then both are resolved. */
+  beside_others(time, found) {
+    var mode = found.then;
+    if (py.isinstance(mode, IntegratedMode) && py.truth(this._presses(mode, found.state))) {
+      return this.resting(time, found.state);
+    }
+    return found;
+  }
+  /** Whether one of the others that touch, and open no faster than what stays, is drawn to the table. */
+  _presses(mode, state) {
+    var reaction = mode.reaction(mode.numbers(state));
+    var wrench = new Wrench(reaction.force, reaction.torque);
+    return py.any(
+      [...this._beside(state)].map(
+        (other) => py.and(
+          gap_rate(state, other) <= this._slowest(other, state),
+          () => ContactPair.of(state.axis, state.momentum, [this.top, other]).under([[0, wrench]])[1][2] < 0.0
+        )
+      )
+    );
   }
   /** That of the active surface alone, unless it presses another that touches onto the table. */
   _impact(state, restitution, integrator) {
@@ -11531,6 +11595,7 @@ export {
   IntegratedMode,
   InvalidInput,
   JAMMED,
+  JAMMED_of_closing,
   JAMMING,
   JellettLine,
   KEPT,
@@ -11883,6 +11948,7 @@ export {
   axial_spin,
   axis_rate,
   axis_sine,
+  began_with,
   beginning,
   both_letting_go,
   brackets,
@@ -11974,6 +12040,7 @@ export {
   is_dry,
   is_edge,
   is_exactly,
+  is_jammed,
   is_near,
   is_one_way,
   is_outline,

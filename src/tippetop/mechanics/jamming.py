@@ -1,4 +1,4 @@
-"""What an impulse does where friction that turns comes to press the contact, which it jams."""
+"""Friction that turns and comes to press the contact, which it jams, and what an impulse does then."""
 
 import math
 
@@ -12,9 +12,17 @@ from tippetop.mechanics.vectors import add, scale
 PROBED = 1e-6
 """Part of the slip that an impulse takes or turns that tells how the Delassus number changes with it."""
 
+JAMMED = 1e-3
+"""Delassus number of a slipping contact, in 1/m, below which its normal force leaves no step to take."""
 
-def past_jamming(state: SlidingState, top: Top) -> SlidingState:
-    """The state past the normal impulse over which friction comes to press the contact, which it jams.
+
+def is_jammed(state: SlidingState, top: Top) -> bool:
+    """Whether the normal force of a slipping contact grows beyond all bounds; of floats."""
+    return bool(0.0 < contact(*state, top).delassus < JAMMED / top.mass)
+
+
+def past_jamming(state: SlidingState, top: Top) -> tuple[SlidingState, float]:
+    """The state past the normal impulse over which friction comes to press the contact, and that, N s.
 
     There the Delassus number of the slipping contact falls through zero. A little before, it is as much above
     as it is below after twice that impulse, while the contact opens by nothing.
@@ -43,4 +51,5 @@ def past_jamming(state: SlidingState, top: Top) -> SlidingState:
     fall = touch.delassus - contact(*after(PROBED * whole), top).delassus
     if not fall > 0.0:
         raise Unsolved("it is not friction that jams it")
-    return after(2.0 * touch.delassus / fall * PROBED * whole)
+    impulse = 2.0 * touch.delassus / fall * PROBED * whole
+    return after(impulse), float(impulse)
