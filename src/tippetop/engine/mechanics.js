@@ -3278,11 +3278,15 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
 const PROBED = 1e-06;
 const JAMMED = 0.001;
 
-/** Whether the normal force of a slipping contact grows beyond all bounds; of floats. */
+/** Whether the normal force of a slipping contact grows beyond all bounds; of floats, however large. */
 function is_jammed(state, top) {
-  return py.bool(
-    0.0 < contact(...state, top).delassus && contact(...state, top).delassus < py.div(JAMMED, top.mass)
-  );
+  try {
+    var delassus = contact(...state, top).delassus;
+  } catch (error) {
+    if (!(error instanceof py.ArithmeticError)) throw error;
+    return false;
+  }
+  return py.bool(0.0 < delassus && delassus < py.div(JAMMED, top.mass));
 }
 
 /** The state past the normal impulse over which friction comes to press the contact, and that, N s. */

@@ -17,8 +17,12 @@ JAMMED = 1e-3
 
 
 def is_jammed(state: SlidingState, top: Top) -> bool:
-    """Whether the normal force of a slipping contact grows beyond all bounds; of floats."""
-    return bool(0.0 < contact(*state, top).delassus < JAMMED / top.mass)
+    """Whether the normal force of a slipping contact grows beyond all bounds; of floats, however large."""
+    try:
+        delassus = contact(*state, top).delassus
+    except ArithmeticError:
+        return False
+    return bool(0.0 < delassus < JAMMED / top.mass)
 
 
 def past_jamming(state: SlidingState, top: Top) -> tuple[SlidingState, float]:
