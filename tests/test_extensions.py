@@ -218,7 +218,8 @@ def test_the_law_is_the_one_defined() -> None:
     slip = np.hypot(run["slip_x"], run["slip_y"]).values
     force = np.hypot(*run["contact_force"].values[:, :2].T) / run["normal_force"].values
     expected = 0.2 * (1 + 0.5 / (1 + (slip / 0.05) ** 2)) * slip / np.hypot(slip, 0.05)
-    np.testing.assert_allclose(force, expected, rtol=1e-9, atol=1e-15)
+    # At launch slip is zero: what is left of it is rounding of 3 m/s, which the law multiplies by 0.3 / 0.05.
+    np.testing.assert_allclose(force, expected, rtol=1e-9, atol=6.0 * np.spacing(3.0))
 
 
 def test_rolling_resistance_is_a_torque_beside_the_law_defined() -> None:

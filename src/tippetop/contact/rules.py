@@ -14,7 +14,6 @@ from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.jamming import past_jamming
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
 from tippetop.mechanics.rolling import ContactPoint, contact_motion, is_set_valued
@@ -100,7 +99,7 @@ class Rules:
             found, begins = settling(point, slip, rolling)
         except ArithmeticError as error:
             return failed("The force that holds the contact", error, state, events)
-        events = (*events, *self._marks(time, new, begins))
+        events = (*events, *_marks(self, time, new, begins))
         return self._settle(time, state, found, begins, ended, events)
 
     def beside_others(self, time: float, found: Transition) -> Transition:
@@ -135,18 +134,6 @@ class Rules:
         if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
             return Transition(events, Resting(self.top, self, mode), state)
         return Transition(events, mode, state)
-
-    def _marks(self, time: float, new: tuple[bool, bool], begins: tuple[bool, bool]) -> tuple[Event, ...]:
-        """What is told where slip, or rolling, has newly ended and is held, or was held and begins."""
-        told = []
-        for ended, starts, stop, start in zip(
-            new, begins, (EventKind.STICK, EventKind.HALT), (EventKind.SLIP, EventKind.ROLL), strict=True
-        ):
-            if ended and not starts:
-                told.append(self.event(stop, time))
-            elif starts and not ended:
-                told.append(self.event(start, time))
-        return tuple(told)
 
     def _rolls(self, state: State) -> bool:
         """Whether nothing holds rolling."""
@@ -213,14 +200,10 @@ class Rules:
     def jammed(self, time: float, state: State) -> Transition:
         """What follows where the normal force has grown beyond all bounds, and slip goes on."""
         try:
-            sliding, impulse = past_jamming(along_table(state), self.top)
+            beyond, *taken = past_jamming(state, self.top)
         except ArithmeticError as error:
             return failed("What follows where friction jams the contact", error, state)
-        beyond = on_table(sliding, self.top)
-        lost = float(energy(state, self.top) - energy(beyond, self.top))
-        found = self.inconsistent(time, beyond, ())
-        first = [began_with(event, impulse, lost) for event in found.events[:1]]
-        return replace(found, events=(*first, *found.events[1:]))
+        return begun_with(self.inconsistent(time, beyond, ()), *taken)
 
     def _leaving(self, time: float, state: State) -> Transition:
         """What follows when the normal force falls to zero."""
@@ -246,9 +229,26 @@ class Rules:
         return Transition(events, Outcome.FAILED, state, "no contact force is consistent with the friction")
 
 
-def began_with(event: Event, impulse: float, lost: float) -> Event:
-    """An event that began with some impulse, which took energy."""
-    return replace(event, impulse=event.impulse + impulse, energy_lost=event.energy_lost + lost)
+def _marks(rules: Rules, time: float, new: tuple[bool, bool], begins: tuple[bool, bool]) -> tuple[Event, ...]:
+    """What is told where slip, or rolling, has newly ended and is held, or was held and begins."""
+    told = []
+    for ended, starts, stop, start in zip(
+        new, begins, (EventKind.STICK, EventKind.HALT), (EventKind.SLIP, EventKind.ROLL), strict=True
+    ):
+        if ended and not starts:
+            told.append(rules.event(stop, time))
+        elif starts and not ended:
+            told.append(rules.event(start, time))
+    return tuple(told)
+
+
+def begun_with(found: Transition, impulse: float, lost: float) -> Transition:
+    """What follows with an impact that had begun with some normal impulse, which took energy."""
+    hit = [
+        replace(event, impulse=event.impulse + impulse, energy_lost=event.energy_lost + lost)
+        for event in found.events[:1]
+    ]
+    return replace(found, events=(*hit, *found.events[1:]))
 
 
 def rests(state: State, *rates: Scalar) -> bool:

@@ -3274,6 +3274,23 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
   );
 });
 
+// tippetop.mechanics.invariants
+
+/** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
+function energy(state, top) {
+  var omega = angular_velocity(state.axis, state.momentum, top);
+  var translation = py.mul(top.mass, dot(state.velocity, state.velocity));
+  return py.add(
+    py.mul(0.5, py.add(translation, dot(omega, state.momentum))),
+    py.mul(py.mul(top.mass, top.gravity), state.height)
+  );
+}
+
+/** Jellett's integral lambda = -L.a, kg m^3/s. */
+function jellett(state, top) {
+  return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
+}
+
 // tippetop.mechanics.jamming
 const PROBED = 1e-06;
 const JAMMED = 0.001;
@@ -3289,23 +3306,25 @@ function is_jammed(state, top) {
   return py.bool(0.0 < delassus && delassus < py.div(JAMMED, top.mass));
 }
 
-/** The state past the normal impulse over which friction comes to press the contact, and that, N s. */
+/** The state past the normal impulse over which friction comes to press the contact, which it jams. */
 function past_jamming(state, top) {
-  var touch = contact(...state, top);
+  var sliding = along_table(state);
+  var touch = contact(...sliding, top);
   var force = touch.traction.force;
   var moment = moment_per_normal_force(touch.arm, touch.traction);
   var after = (impulse) => {
-    var [x, y] = plus(state.velocity, scaled(py.div(impulse, top.mass), force));
-    return new SlidingState(state.axis, add(state.momentum, scale(impulse, moment)), [x, y]);
+    var [x, y] = plus(sliding.velocity, scaled(py.div(impulse, top.mass), force));
+    return new SlidingState(sliding.axis, add(sliding.momentum, scale(impulse, moment)), [x, y]);
   };
-  var before = slip_of(...state, top);
+  var before = slip_of(...sliding, top);
   var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
   var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
   if (!(fall > 0.0)) {
     throw new Unsolved("it is not friction that jams it");
   }
   var impulse = py.mul(py.mul(py.div(py.mul(2.0, touch.delassus), fall), PROBED), whole);
-  return [after(impulse), py.float(impulse)];
+  var beyond = on_table(after(impulse), top);
+  return [beyond, py.float(impulse), py.float(py.sub(energy(state, top), energy(beyond, top)))];
 }
 
 // tippetop.contact.sliding
@@ -4999,23 +5018,6 @@ function thinned(knots) {
   return [...found, end];
 }
 
-// tippetop.mechanics.invariants
-
-/** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
-function energy(state, top) {
-  var omega = angular_velocity(state.axis, state.momentum, top);
-  var translation = py.mul(top.mass, dot(state.velocity, state.velocity));
-  return py.add(
-    py.mul(0.5, py.add(translation, dot(omega, state.momentum))),
-    py.mul(py.mul(top.mass, top.gravity), state.height)
-  );
-}
-
-/** Jellett's integral lambda = -L.a, kg m^3/s. */
-function jellett(state, top) {
-  return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
-}
-
 // tippetop.contact.rules
 const REST = 1e-13;
 
@@ -5078,7 +5080,7 @@ class Rules extends py.Record {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return failed("The force that holds the contact", error, state, events);
     }
-    events = [...events, ...this._marks(time, new_, begins)];
+    events = [...events, ..._marks(this, time, new_, begins)];
     return this._settle(time, state, found, begins, ended, events);
   }
   /** What follows on this contact, of which else touches: it alone, where no rules say otherwise. */
@@ -5107,25 +5109,6 @@ class Rules extends py.Record {
       return new Transition(events, new Resting(this.top, this, mode), state);
     }
     return new Transition(events, mode, state);
-  }
-  /** What is told where slip, or rolling, has newly ended and is held, or was held and begins. */
-  _marks(time, new_, begins) {
-    var told = [];
-    for (
-      var [ended, starts, stop, start] of py.zip(
-        new_,
-        begins,
-        [EventKind.STICK, EventKind.HALT],
-        [EventKind.SLIP, EventKind.ROLL]
-      )
-    ) {
-      if (py.truth(ended) && !py.truth(starts)) {
-        told.push(this.event(stop, time));
-      } else if (py.truth(starts) && !py.truth(ended)) {
-        told.push(this.event(start, time));
-      }
-    }
-    return py.tuple(told);
   }
   /** Whether nothing holds rolling. */
   _rolls(state) {
@@ -5203,16 +5186,12 @@ class Rules extends py.Record {
   /** What follows where the normal force has grown beyond all bounds, and slip goes on. */
   jammed(time, state) {
     try {
-      var [sliding, impulse] = past_jamming(along_table(state), this.top);
+      var [beyond, ...taken] = past_jamming(state, this.top);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return failed("What follows where friction jams the contact", error, state);
     }
-    var beyond = on_table(sliding, this.top);
-    var lost = py.float(py.sub(energy(state, this.top), energy(beyond, this.top)));
-    var found = this.inconsistent(time, beyond, []);
-    var first = [...found.events.slice(0, 1)].map((event) => began_with(event, impulse, lost));
-    return py.replace(found, { events: [...first, ...found.events.slice(1)] });
+    return begun_with(this.inconsistent(time, beyond, []), ...taken);
   }
   /** What follows when the normal force falls to zero. */
   _leaving(time, state) {
@@ -5237,12 +5216,35 @@ class Rules extends py.Record {
   }
 }
 
-/** An event that began with some impulse, which took energy. */
-function began_with(event, impulse, lost) {
-  return py.replace(
-    event,
-    { impulse: py.add(event.impulse, impulse), energy_lost: py.add(event.energy_lost, lost) }
+/** What is told where slip, or rolling, has newly ended and is held, or was held and begins. */
+function _marks(rules, time, new_, begins) {
+  var told = [];
+  for (
+    var [ended, starts, stop, start] of py.zip(
+      new_,
+      begins,
+      [EventKind.STICK, EventKind.HALT],
+      [EventKind.SLIP, EventKind.ROLL]
+    )
+  ) {
+    if (py.truth(ended) && !py.truth(starts)) {
+      told.push(rules.event(stop, time));
+    } else if (py.truth(starts) && !py.truth(ended)) {
+      told.push(rules.event(start, time));
+    }
+  }
+  return py.tuple(told);
+}
+
+/** What follows with an impact that had begun with some normal impulse, which took energy. */
+function begun_with(found, impulse, lost) {
+  var hit = [...found.events.slice(0, 1)].map(
+    (event) => py.replace(
+      event,
+      { impulse: py.add(event.impulse, impulse), energy_lost: py.add(event.energy_lost, lost) }
+    )
   );
+  return py.replace(found, { events: [...hit, ...found.events.slice(1)] });
 }
 
 /** Whether a body in contact neither moves nor begins to, by the rates of its velocities. */
@@ -7494,7 +7496,7 @@ function settled(rules, time, state, tops, before, rolls, events = [], arrived =
     }
     var ended = py.add(time, _left_of_two_resolver(state, here));
     var turned = !py.eq(found.rolls, rolls) ? ended : time;
-    events = [...events, ..._marks([ended, turned], here, found, before)];
+    events = [...events, ..._marks_of_two_resolver([ended, turned], here, found, before)];
     return py.replace(here.going_on(found), { events: events });
   }
   var numbers = [...here.tops].map((top) => number_of(top));
@@ -7523,12 +7525,12 @@ function slipping(rules, time, state, tops, which, rolls) {
     return failed("The direction in which slip, or rolling, begins on two surfaces", error, state);
   }
   var stuck = py.truth(alone) ? [number_of(tops[0])] : [number_of(tops[0]), number_of(tops[1])];
-  var marks = _marks([time, time], here, found, new Before(stuck, py.bool(rolls)));
+  var marks = _marks_of_two_resolver([time, time], here, found, new Before(stuck, py.bool(rolls)));
   return py.replace(here.letting_go(found, 2), { events: marks });
 }
 
 /** What is told where a contact sticks that did not, or slips that stuck; and the same of rolling. */
-function _marks(times, here, found, before) {
+function _marks_of_two_resolver(times, here, found, before) {
   var told = [];
   for (var [top, held] of py.zip(here.tops, found.sticks)) {
     var surface = number_of(top);
@@ -11907,6 +11909,7 @@ export {
   _left_of_two_resolver,
   _lying_flat,
   _marks,
+  _marks_of_two_resolver,
   _meetings,
   _moved,
   _newton,
@@ -11952,8 +11955,8 @@ export {
   axial_spin,
   axis_rate,
   axis_sine,
-  began_with,
   beginning,
+  begun_with,
   both_letting_go,
   brackets,
   branch_guard,

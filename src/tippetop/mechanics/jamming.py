@@ -2,8 +2,9 @@
 
 import math
 
-from tippetop.mechanics.motion import contact, moment_per_normal_force
-from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import along_table, contact, moment_per_normal_force, on_table
+from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import plus, scaled, size, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
@@ -25,8 +26,8 @@ def is_jammed(state: SlidingState, top: Top) -> bool:
     return bool(0.0 < delassus < JAMMED / top.mass)
 
 
-def past_jamming(state: SlidingState, top: Top) -> tuple[SlidingState, float]:
-    """The state past the normal impulse over which friction comes to press the contact, and that, N s.
+def past_jamming(state: State, top: Top) -> tuple[State, float, float]:
+    """The state past the normal impulse over which friction comes to press the contact, which it jams.
 
     There the Delassus number of the slipping contact falls through zero. A little before, it is as much above
     as it is below after twice that impulse, while the contact opens by nothing.
@@ -34,26 +35,33 @@ def past_jamming(state: SlidingState, top: Top) -> tuple[SlidingState, float]:
     Parameters
     ----------
     state
-        The state before, floats: see `tippetop.mechanics.ending.jamming_guard`.
+        The state before, floats: see `is_jammed`, and `tippetop.mechanics.ending.jamming_guard`.
     top
         The body and the friction law.
+
+    Returns
+    -------
+    tuple
+        The state after, the normal impulse, N s, and the energy that went with it, J.
 
     Raises
     ------
     ArithmeticError
         If that number does not fall as the impulse grows.
     """
-    touch = contact(*state, top)
+    sliding = along_table(state)
+    touch = contact(*sliding, top)
     force, moment = touch.traction.force, moment_per_normal_force(touch.arm, touch.traction)
 
     def after(impulse: float) -> SlidingState:
-        x, y = plus(state.velocity, scaled(impulse / top.mass, force))
-        return SlidingState(state.axis, add(state.momentum, scale(impulse, moment)), (x, y))
+        x, y = plus(sliding.velocity, scaled(impulse / top.mass, force))
+        return SlidingState(sliding.axis, add(sliding.momentum, scale(impulse, moment)), (x, y))
 
-    before = slip_of(*state, top)
+    before = slip_of(*sliding, top)
     whole = size(before) / math.dist(slip_of(*after(1.0), top), before)
     fall = touch.delassus - contact(*after(PROBED * whole), top).delassus
     if not fall > 0.0:
         raise Unsolved("it is not friction that jams it")
     impulse = 2.0 * touch.delassus / fall * PROBED * whole
-    return after(impulse), float(impulse)
+    beyond = on_table(after(impulse), top)
+    return beyond, float(impulse), float(energy(state, top) - energy(beyond, top))
