@@ -9,16 +9,13 @@ import cProfile
 import os
 import pstats
 import statistics
-import subprocess
-import sys
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import heyoka as hy
 
 import tippetop as tt
-from benchmarks.surroundings import COMMAND_LINE, IMPORTS, markdown
+from benchmarks.surroundings import COMMAND_LINE, IMPORTS, markdown, new_process, seconds
 from tippetop.mechanics.top import natural_units
 from tippetop.presets import report_problem
 
@@ -89,13 +86,6 @@ def bare_integration(problem: tt.Problem, duration: float) -> Callable[[], tuple
     return integrate
 
 
-def seconds(action: Callable[[], Any]) -> float:
-    """How long an action takes, s."""
-    begin = time.perf_counter()
-    action()
-    return time.perf_counter() - begin
-
-
 def in_turns(actions: dict[str, Callable[[], Any]], rounds: int) -> dict[str, list[float]]:
     """Times of several actions, each once a round."""
     times: dict[str, list[float]] = {name: [] for name in actions}
@@ -103,15 +93,6 @@ def in_turns(actions: dict[str, Callable[[], Any]], rounds: int) -> dict[str, li
         for name, action in actions.items():
             times[name].append(seconds(action))
     return times
-
-
-def new_process(*arguments: str) -> Callable[[], None]:
-    """An action that runs Python in a new process, which must succeed."""
-
-    def run() -> None:
-        subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
-
-    return run
 
 
 def hot_spots(action: Callable[[], Any], repeats: int = 20, count: int = 15) -> list[dict[str, Any]]:

@@ -7,6 +7,7 @@ import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from typing import Any
 
 import psutil
@@ -40,15 +41,27 @@ def machine() -> dict[str, Any]:
     }
 
 
+def seconds(action: Callable[[], Any]) -> float:
+    """How long an action takes, s."""
+    begin = time.perf_counter()
+    action()
+    return time.perf_counter() - begin
+
+
+def new_process(*arguments: str) -> Callable[[], None]:
+    """An action that runs Python in a new process, which must succeed."""
+
+    def run() -> None:
+        subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
+
+    return run
+
+
 def slowness(rounds: int = 5) -> float:
     """How many times as long as usual this machine takes at present."""
-    times = []
-    for _ in range(rounds + 1):
-        began = time.perf_counter()
-        subprocess.run([sys.executable, "-c", IMPORTS], check=True)
-        times.append(time.perf_counter() - began)
-    # The first one reads from the disk.
-    return statistics.median(times[1:]) / USUAL
+    imports = new_process("-c", IMPORTS)
+    imports()  # reads from the disk
+    return statistics.median(seconds(imports) for _ in range(rounds)) / USUAL
 
 
 def memory_of(process: psutil.Process) -> int:

@@ -7,6 +7,8 @@ import pytest
 
 import tippetop as tt
 from tippetop.catalogue import Fault
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.stick_slip import is_slipping
 
 DISK_MASS, DISK_RADIUS, THICKNESS = 0.4, 0.0375, 0.0125
 DISK = tt.Body(
@@ -39,6 +41,17 @@ def steadily_rolling(body: tt.Body, tilt: float, precession: float, spin: float)
 def test_a_disk_rolls_on_its_edge_with_its_centre_at_rest() -> None:
     """With the precession and the spin that an independent solver finds for this disk."""
     steadily_rolling(DISK, 0.3, 59.96600573975, 2.95352773481)
+
+
+def test_a_disk_launched_without_slip_near_flat_has_none() -> None:
+    """There h' is large, and what slip is made of must not cancel."""
+    rng = np.random.default_rng(1)
+    for _ in range(400):
+        tilt, azimuth = rng.uniform(1.2e-3, 4e-3), rng.uniform(0.0, 6.0)
+        spin, precession, tilt_rate = rng.uniform(-100.0, 100.0, 3)
+        launch = tt.Launch(tilt=tilt, spin=spin, precession=precession, tilt_rate=tilt_rate, azimuth=azimuth)
+        problem = tt.Problem(body=DISK, friction=ROUGH, launch=launch)
+        assert not is_slipping(*along_table(problem.start()), problem.top), launch
 
 
 @pytest.mark.parametrize("precession", [55.0, 80.0, 200.0])

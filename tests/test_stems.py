@@ -317,33 +317,36 @@ def test_the_farther_of_two_surfaces_beside_the_centre_of_mass_opens_and_is_name
 
 
 @pytest.mark.parametrize(
-    "launch",
+    ("mu", "launch"),
     [
-        {
-            "mu": 1.5081334867200606,
-            "tilt": 0.0549151128704677,
-            "spin": 45.91477793050741,
-            "precession": -20.361931902467283,
-            "tilt_rate": -3.5751979423749294,
-            "slip": (-0.11997142274630551, -0.17284242294733398),
-        },
-        {
-            "mu": 1.9870328414506437,
-            "tilt": 1.3479679314123594,
-            "spin": 58.730575477736636,
-            "precession": -39.54220565012708,
-            "tilt_rate": 0.21720104498975434,
-            "slip": (0.30669173245653214, -0.024886961248926254),
-        },
+        (
+            1.5081334867200606,
+            {
+                "tilt": 0.0549151128704677,
+                "spin": 45.91477793050741,
+                "precession": -20.361931902467283,
+                "tilt_rate": -3.5751979423749294,
+                "slip": (-0.11997142274630551, -0.17284242294733398),
+            },
+        ),
+        (
+            1.9870328414506437,
+            {
+                "tilt": 1.3479679314123594,
+                "spin": 58.730575477736636,
+                "precession": -39.54220565012708,
+                "tilt_rate": 0.21720104498975434,
+                "slip": (0.30669173245653214, -0.024886961248926254),
+            },
+        ),
     ],
     ids=["first", "second"],
 )
-def test_a_surface_that_has_just_opened_is_drawn_back_where_the_other_sticks(launch) -> None:
+def test_a_surface_that_has_just_opened_is_drawn_back_where_the_other_sticks(mu, launch) -> None:
     """By rounding it touches still; what slip let rise, sticking draws to the table, and not through it."""
-    friction = tt.CoulombFriction(mu=launch.pop("mu"))
     problem = tt.Problem(
         body=tt.presets.HURRICANE_BALLS,
-        friction=friction,
+        friction=tt.CoulombFriction(mu=mu),
         launch=tt.Launch(**launch),
         contact=tt.Contact(liftoff="fly", restitution=0.5),
     )

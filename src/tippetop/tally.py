@@ -16,7 +16,7 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
 
 AT_ONCE = 4
-"""Steps that are searched together for the first time at which something happens; then so many times more."""
+"""Steps that are searched together for when something happens first; then so many times more, and again."""
 
 FORCE_DEGREE = 20
 """Degree of the polynomials in which the least normal force is looked for."""

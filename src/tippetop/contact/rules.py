@@ -203,7 +203,7 @@ class Rules:
             beyond, *taken = past_jamming(state, self.top)
         except ArithmeticError as error:
             return failed("What follows where friction jams the contact", error, state)
-        return begun_with(self.inconsistent(time, beyond, ()), *taken)
+        return begun_with(self.inconsistent(time, beyond, ()), state, *taken)
 
     def _leaving(self, time: float, state: State) -> Transition:
         """What follows when the normal force falls to zero."""
@@ -242,13 +242,19 @@ def _marks(rules: Rules, time: float, new: tuple[bool, bool], begins: tuple[bool
     return tuple(told)
 
 
-def begun_with(found: Transition, impulse: float, lost: float) -> Transition:
-    """What follows with an impact that had begun with some normal impulse, which took energy."""
+def begun_with(found: Transition, before: State, impulse: float, lost: float) -> Transition:
+    """What follows with an impact that had begun with some normal impulse, which took energy.
+
+    A run that ends without one ends in the state before.
+    """
+    if not found.events and isinstance(found.then, Outcome):
+        return replace(found, state=before)
     hit = [
         replace(event, impulse=event.impulse + impulse, energy_lost=event.energy_lost + lost)
         for event in found.events[:1]
+        if event.kind is EventKind.IMPACT
     ]
-    return replace(found, events=(*hit, *found.events[1:]))
+    return replace(found, events=(*hit, *found.events[len(hit) :]))
 
 
 def rests(state: State, *rates: Scalar) -> bool:

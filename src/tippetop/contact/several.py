@@ -97,7 +97,9 @@ class OnSeveral(FreeToFly):
         """As it is, unless it presses another surface that touches onto the table: then both are resolved."""
         mode = found.then
         if isinstance(mode, IntegratedMode) and self._presses(mode, found.state):
-            return self.resting(time, found.state)
+            # What sticks is told anew.
+            halts = [event for event in found.events if event.kind is EventKind.HALT]
+            return self.resting(time, found.state, tuple(halts))
         return found
 
     def _presses(self, mode: IntegratedMode, state: State) -> bool:

@@ -7,7 +7,7 @@ from tippetop.contact.closed import BRANCH, LIFT_OFF, STOPPING, ClosedMode, Guar
 from tippetop.contact.mode import Transition
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.jamming import is_jammed
-from tippetop.mechanics.motion import along_table, sliding_rates
+from tippetop.mechanics.motion import sliding_rates
 from tippetop.mechanics.rolling import flat, is_set_valued, slip_length
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
@@ -89,7 +89,7 @@ class Sliding(SlidingMode):
 
     def unable(self, failure: str, time: float, state: State) -> Transition:
         """Friction that turns may have jammed the contact: no step is short enough then."""
-        if is_jammed(along_table(state), self.top):
+        if is_jammed(state, self.top):
             return self.rules.jammed(time, state)
         return super().unable(failure, time, state)
 

@@ -324,14 +324,6 @@ function contact_vector(axis, surface) {
   return [py.mul(py.neg(slope), axis[0]), py.mul(py.neg(slope), axis[1]), py.neg(surface.height(c))];
 }
 
-/** Transverse radius of curvature at the lowest point, h(c) - c h'(c), m: how far it is below the axis. */
-function transverse_radius(c, surface) {
-  return py.truth(surface.spherical) ? surface.height(0.0) : py.sub(
-    surface.height(c),
-    py.mul(c, surface.slope(c))
-  );
-}
-
 // tippetop.mechanics.hull
 
 /** The surfaces of a body: a `Surface` that stands for the active one. */
@@ -1208,9 +1200,14 @@ function point_velocity(velocity, omega, arm) {
 /** Horizontal velocity of the contact point relative to the centre of mass, omega x a, m/s. */
 function contact_swing(axis, momentum, top) {
   var omega = angular_velocity(axis, momentum, top);
+  var surface = top.surface;
+  if (!py.truth(surface.spherical)) {
+    var [x, y] = cross(omega, contact_vector(axis, surface));
+    return [x, y];
+  }
   var tilting = axis_rate(axis, momentum, top);
-  var slope = top.surface.slope(axis[2]);
-  var radius = transverse_radius(axis[2], top.surface);
+  var slope = surface.slope(axis[2]);
+  var radius = surface.height(0.0);
   return [
     py.neg(py.add(py.mul(slope, tilting[0]), py.mul(radius, omega[1]))),
     py.sub(py.mul(radius, omega[0]), py.mul(slope, tilting[1]))
@@ -3295,15 +3292,19 @@ function jellett(state, top) {
 const PROBED = 1e-06;
 const JAMMED = 0.001;
 
-/** Whether the normal force of a slipping contact grows beyond all bounds; of floats, however large. */
+/** Whether friction that turns makes a normal force grow beyond all bounds; of floats, however large. */
 function is_jammed(state, top) {
   try {
-    var delassus = contact(...state, top).delassus;
+    var delassus = contact(...along_table(state), top).delassus;
+    if (!(0.0 < delassus && delassus < py.div(JAMMED, top.mass))) {
+      return false;
+    }
+    past_jamming(state, top);
   } catch (error) {
     if (!(error instanceof py.ArithmeticError)) throw error;
     return false;
   }
-  return py.bool(0.0 < delassus && delassus < py.div(JAMMED, top.mass));
+  return true;
 }
 
 /** The state past the normal impulse over which friction comes to press the contact, which it jams. */
@@ -3402,7 +3403,7 @@ class Sliding extends SlidingMode {
   }
   /** Friction that turns may have jammed the contact: no step is short enough then. */
   unable(failure, time, state) {
-    if (py.truth(is_jammed(along_table(state), this.top))) {
+    if (py.truth(is_jammed(state, this.top))) {
       return this.rules.jammed(time, state);
     }
     return super.unable(failure, time, state);
@@ -5191,7 +5192,7 @@ class Rules extends py.Record {
       if (!(error instanceof py.ArithmeticError)) throw error;
       return failed("What follows where friction jams the contact", error, state);
     }
-    return begun_with(this.inconsistent(time, beyond, []), ...taken);
+    return begun_with(this.inconsistent(time, beyond, []), state, ...taken);
   }
   /** What follows when the normal force falls to zero. */
   _leaving(time, state) {
@@ -5237,14 +5238,17 @@ function _marks(rules, time, new_, begins) {
 }
 
 /** What follows with an impact that had begun with some normal impulse, which took energy. */
-function begun_with(found, impulse, lost) {
-  var hit = [...found.events.slice(0, 1)].map(
+function begun_with(found, before, impulse, lost) {
+  if (!py.truth(found.events) && py.isinstance(found.then, Outcome)) {
+    return py.replace(found, { state: before });
+  }
+  var hit = [...found.events.slice(0, 1)].filter((event) => event.kind === EventKind.IMPACT).map(
     (event) => py.replace(
       event,
       { impulse: py.add(event.impulse, impulse), energy_lost: py.add(event.energy_lost, lost) }
     )
   );
-  return py.replace(found, { events: [...hit, ...found.events.slice(1)] });
+  return py.replace(found, { events: [...hit, ...found.events.slice(py.len(hit))] });
 }
 
 /** Whether a body in contact neither moves nor begins to, by the rates of its velocities. */
@@ -7645,7 +7649,8 @@ class OnSeveral extends FreeToFly {
   beside_others(time, found) {
     var mode = found.then;
     if (py.isinstance(mode, IntegratedMode) && py.truth(this._presses(mode, found.state))) {
-      return this.resting(time, found.state);
+      var halts = [...found.events].filter((event) => event.kind === EventKind.HALT);
+      return this.resting(time, found.state, py.tuple(halts));
     }
     return found;
   }
@@ -12223,7 +12228,6 @@ export {
   time_to,
   touchdown,
   touching_tilts,
-  transverse_radius,
   turn_rate,
   turned,
   turned_slopes,

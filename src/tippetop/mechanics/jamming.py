@@ -14,16 +14,19 @@ PROBED = 1e-6
 """Part of the slip that an impulse takes or turns that tells how the Delassus number changes with it."""
 
 JAMMED = 1e-3
-"""Delassus number of a slipping contact, in 1/m, below which its normal force leaves no step to take."""
+"""Delassus number times mass of a slipping contact, below which its normal force leaves no step to take."""
 
 
-def is_jammed(state: SlidingState, top: Top) -> bool:
-    """Whether the normal force of a slipping contact grows beyond all bounds; of floats, however large."""
+def is_jammed(state: State, top: Top) -> bool:
+    """Whether friction that turns makes a normal force grow beyond all bounds; of floats, however large."""
     try:
-        delassus = contact(*state, top).delassus
+        delassus = contact(*along_table(state), top).delassus
+        if not 0.0 < delassus < JAMMED / top.mass:
+            return False
+        past_jamming(state, top)
     except ArithmeticError:
         return False
-    return bool(0.0 < delassus < JAMMED / top.mass)
+    return True
 
 
 def past_jamming(state: State, top: Top) -> tuple[State, float, float]:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.friction import Traction
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.surface import contact_vector, transverse_radius
+from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
@@ -84,11 +84,14 @@ def point_velocity(velocity: Vector, omega: Vector, arm: Vector) -> Vector:
 def contact_swing(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
     """Horizontal velocity of the contact point relative to the centre of mass, omega x a, m/s.
 
-    The vertical through the contact point meets the axis at -h' n, r = h - c h' higher: a = -h' n - r z. As
-    n' = omega x n, that is -h' n' - r omega x z, in fewer products.
+    On a sphere of radius r that is -h' n' - r omega x z, in fewer products, as a = -h' n - r z and
+    n' = omega x n. Near the edge of a disk, both parts are large and would cancel.
     """
-    omega, tilting = angular_velocity(axis, momentum, top), axis_rate(axis, momentum, top)
-    slope, radius = top.surface.slope(axis[2]), transverse_radius(axis[2], top.surface)
+    omega, surface = angular_velocity(axis, momentum, top), top.surface
+    if not surface.spherical:
+        x, y, _ = cross(omega, contact_vector(axis, surface))
+        return (x, y)
+    tilting, slope, radius = axis_rate(axis, momentum, top), surface.slope(axis[2]), surface.height(0.0)
     return (-(slope * tilting[0] + radius * omega[1]), radius * omega[0] - slope * tilting[1])
 
 

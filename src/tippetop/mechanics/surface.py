@@ -183,11 +183,3 @@ def contact_vector(axis: Vector, surface: Surface) -> Vector:
     c = axis[2]
     slope = surface.slope(c)
     return (-slope * axis[0], -slope * axis[1], -surface.height(c))
-
-
-def transverse_radius(c: Scalar, surface: Surface) -> Scalar:
-    """Transverse radius of curvature at the lowest point, h(c) - c h'(c), m: how far it is below the axis.
-
-    On a sphere it is the radius, so that equations of motion have no product there.
-    """
-    return surface.height(0.0) if surface.spherical else surface.height(c) - c * surface.slope(c)
