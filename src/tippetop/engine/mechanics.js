@@ -1267,11 +1267,14 @@ function moment_per_normal_force(arm, traction) {
 /** Time derivative of the state of a sliding body. */
 function sliding_rates(state, top) {
   var touch = contact(state.axis, state.momentum, state.velocity, top);
-  var [normal, [x, y]] = [touch.normal_force, touch.traction.force];
+  var normal = touch.normal_force;
+  var force = touch.force;
+  var [x, y] = moment_per_normal_force(touch.arm, touch.traction);
+  var twisting = py.add(cross(touch.arm, force)[2], touch.torque[2]);
   return new SlidingState(
     axis_rate(state.axis, state.momentum, top),
-    scale(normal, moment_per_normal_force(touch.arm, touch.traction)),
-    [py.div(py.mul(normal, x), top.mass), py.div(py.mul(normal, y), top.mass)]
+    [py.mul(normal, x), py.mul(normal, y), twisting],
+    [py.div(force[0], top.mass), py.div(force[1], top.mass)]
   );
 }
 

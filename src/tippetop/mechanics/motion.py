@@ -162,11 +162,14 @@ def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:
 def sliding_rates(state: SlidingState, top: Top) -> SlidingState:
     """Time derivative of the state of a sliding body."""
     touch = contact(state.axis, state.momentum, state.velocity, top)
-    normal, (x, y) = touch.normal_force, touch.traction.force
+    normal, force = touch.normal_force, touch.force
+    x, y, _ = moment_per_normal_force(touch.arm, touch.traction)
+    # About the vertical only friction has a moment: as that of the force, it is a product less.
+    twisting = cross(touch.arm, force)[2] + touch.torque[2]
     return SlidingState(
         axis=axis_rate(state.axis, state.momentum, top),
-        momentum=scale(normal, moment_per_normal_force(touch.arm, touch.traction)),
-        velocity=(normal * x / top.mass, normal * y / top.mass),
+        momentum=(normal * x, normal * y, twisting),
+        velocity=(force[0] / top.mass, force[1] / top.mass),
     )
 
 
