@@ -197,12 +197,15 @@ class Rules:
             return self.resting(time, state)
         return self._leaving(time, state)
 
-    def jammed(self, time: float, state: State) -> Transition:
-        """What follows where the normal force has grown beyond all bounds, and slip goes on."""
+    def jammed(self, time: float, state: State) -> Transition | None:
+        """What follows where friction that turns made the normal force grow beyond all bounds, if it did."""
         try:
-            beyond, *taken = past_jamming(state, self.top)
-        except ArithmeticError as error:
-            return failed("What follows where friction jams the contact", error, state)
+            past = past_jamming(state, self.top)
+        except ArithmeticError:
+            return None
+        if past is None:
+            return None
+        beyond, *taken = past
         return begun_with(self.inconsistent(time, beyond, ()), state, *taken)
 
     def _leaving(self, time: float, state: State) -> Transition:

@@ -82,7 +82,7 @@ class OnSeveral(FreeToFly):
                 if sum(event.kind is EventKind.IMPACT for event in events) >= MOST_IN_TURNS:
                     return Transition(events, Outcome.FAILED, state, "surfaces strike in turns for ever")
                 return self._of(other)._collide(time, state, told, 0.0)
-            if rate <= self._slowest(other, state):
+            if self._stays(other, state):
                 closed = True
             else:
                 told = (*told, Event(EventKind.OPENING, time, surface=number_of(other)))
@@ -107,7 +107,7 @@ class OnSeveral(FreeToFly):
         reaction = mode.reaction(mode.numbers(state))
         wrench = Wrench(reaction.force, reaction.torque)
         return any(
-            gap_rate(state, other) <= self._slowest(other, state)
+            self._stays(other, state)
             and ContactPair.of(state.axis, state.momentum, (self.top, other)).under([(0, wrench)])[1][2] < 0.0
             for other in self._beside(state)
         )
@@ -131,8 +131,8 @@ class OnSeveral(FreeToFly):
     def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         return self.resting(time, state, events)
 
-    def _slowest(self, other: Top, state: State) -> float:
-        """Velocity of another surface that touches too below which it stays, or comes back at once.
+    def _stays(self, other: Top, state: State) -> bool:
+        """Whether another surface that touches too stays, or comes back at once.
 
         Or does not come out of the table, in which it is by no more than what is taken for touching.
         """
@@ -142,7 +142,8 @@ class OnSeveral(FreeToFly):
             slip = slip_of(*along_table(state), self.top)
             wrench = contact_motion(pair.first, slip, pair.first.turning[:2])[0]
             back = float(abs(pair.under([(0, wrench)])[1][2]))
-        return float(max(SLOWEST_ROCKING * max(1.0, back) ** 0.5, (2.0 * back * depth) ** 0.5))
+        slowest = max(SLOWEST_ROCKING * max(1.0, back) ** 0.5, (2.0 * back * depth) ** 0.5)
+        return bool(gap_rate(state, other) <= slowest)
 
     def _slips(self, other: Top, state: State) -> bool:
         """Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all."""

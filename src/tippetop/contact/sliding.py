@@ -6,7 +6,6 @@ from typing import Any, ClassVar, Self
 from tippetop.contact.closed import BRANCH, LIFT_OFF, STOPPING, ClosedMode, GuardValue, motion_of
 from tippetop.contact.mode import Transition
 from tippetop.integrators.base import Motion
-from tippetop.mechanics.jamming import is_jammed
 from tippetop.mechanics.motion import sliding_rates
 from tippetop.mechanics.rolling import flat, is_set_valued, slip_length
 from tippetop.mechanics.state import SlidingState, State
@@ -89,9 +88,7 @@ class Sliding(SlidingMode):
 
     def unable(self, failure: str, time: float, state: State) -> Transition:
         """Friction that turns may have jammed the contact: no step is short enough then."""
-        if is_jammed(state, self.top):
-            return self.rules.jammed(time, state)
-        return super().unable(failure, time, state)
+        return self.rules.jammed(time, state) or super().unable(failure, time, state)
 
     def rolling_left(self, y: Row) -> Scalar:
         """Positive while rolling goes on for a while."""

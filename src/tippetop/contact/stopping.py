@@ -124,7 +124,7 @@ class Stopping(Passing):
         if arc.guard == "time":
             return Transition((), Outcome.COMPLETED, state)
         if arc.guard == "jammed":
-            return self.rules.jammed(time, state)
+            return self.rules.jammed(time, state) or self.rules.inconsistent(time, state, ())
         if arc.guard == "lift-off":
             return self.rules.lift_off(time, state)
         if arc.guard == "reopening":

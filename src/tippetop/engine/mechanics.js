@@ -3274,63 +3274,6 @@ const driven_motion = py.cached((kind, ending, components, degree) => {
   );
 });
 
-// tippetop.mechanics.invariants
-
-/** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
-function energy(state, top) {
-  var omega = angular_velocity(state.axis, state.momentum, top);
-  var translation = py.mul(top.mass, dot(state.velocity, state.velocity));
-  return py.add(
-    py.mul(0.5, py.add(translation, dot(omega, state.momentum))),
-    py.mul(py.mul(top.mass, top.gravity), state.height)
-  );
-}
-
-/** Jellett's integral lambda = -L.a, kg m^3/s. */
-function jellett(state, top) {
-  return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
-}
-
-// tippetop.mechanics.jamming
-const PROBED = 1e-06;
-const JAMMED = 0.001;
-
-/** Whether friction that turns makes a normal force grow beyond all bounds; of floats, however large. */
-function is_jammed(state, top) {
-  try {
-    var delassus = contact(...along_table(state), top).delassus;
-    if (!(0.0 < delassus && delassus < py.div(JAMMED, top.mass))) {
-      return false;
-    }
-    past_jamming(state, top);
-  } catch (error) {
-    if (!(error instanceof py.ArithmeticError)) throw error;
-    return false;
-  }
-  return true;
-}
-
-/** The state past the normal impulse over which friction comes to press the contact, which it jams. */
-function past_jamming(state, top) {
-  var sliding = along_table(state);
-  var touch = contact(...sliding, top);
-  var force = touch.traction.force;
-  var moment = moment_per_normal_force(touch.arm, touch.traction);
-  var after = (impulse) => {
-    var [x, y] = plus(sliding.velocity, scaled(py.div(impulse, top.mass), force));
-    return new SlidingState(sliding.axis, add(sliding.momentum, scale(impulse, moment)), [x, y]);
-  };
-  var before = slip_of(...sliding, top);
-  var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
-  var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
-  if (!(fall > 0.0)) {
-    throw new Unsolved("it is not friction that jams it");
-  }
-  var impulse = py.mul(py.mul(py.div(py.mul(2.0, touch.delassus), fall), PROBED), whole);
-  var beyond = on_table(after(impulse), top);
-  return [beyond, py.float(impulse), py.float(py.sub(energy(state, top), energy(beyond, top)))];
-}
-
 // tippetop.contact.sliding
 const [NEARING, PARTING] = ["nearing", "parting"];
 
@@ -3406,10 +3349,7 @@ class Sliding extends SlidingMode {
   }
   /** Friction that turns may have jammed the contact: no step is short enough then. */
   unable(failure, time, state) {
-    if (py.truth(is_jammed(state, this.top))) {
-      return this.rules.jammed(time, state);
-    }
-    return super.unable(failure, time, state);
+    return py.or(this.rules.jammed(time, state), () => super.unable(failure, time, state));
   }
   /** Positive while rolling goes on for a while. */
   rolling_left(y) {
@@ -4702,13 +4642,7 @@ function time_to(speed, rows, guess) {
 }
 
 // tippetop.contact.closing
-const [
-  REOPENING,
-  LANDED,
-  TIME,
-  OVERTAKEN,
-  JAMMED_of_closing
-] = ["reopening", "landed", "time", "overtaken", "jammed"];
+const [REOPENING, LANDED, TIME, OVERTAKEN, JAMMED] = ["reopening", "landed", "time", "overtaken", "jammed"];
 const OWN = [REOPENING, LANDED, TIME];
 const LONGEST = 100.0;
 const SOON = [0.3, 2.0];
@@ -4774,7 +4708,7 @@ const closing_motion = py.cached((kind, ending, guarded) => {
     guards.push(guard(LIFT_OFF, (state, top, _) => held_by(state, top).force[2]));
   }
   if (!py.truth(ending.held)) {
-    guards.push(guard(JAMMED_of_closing, (state, top, _) => jamming_guard(state, ending, top)));
+    guards.push(guard(JAMMED, (state, top, _) => jamming_guard(state, ending, top)));
   }
   if (!py.truth(ending.held) && py.truth(top.resists_rolling) && py.truth(is_set_valued(law))) {
     guards.push(guard(OVERTAKEN, (state, top, _) => overtaking_guard(state, ending, top)));
@@ -4961,7 +4895,7 @@ class Stopping extends Passing {
       return new Transition([], Outcome.COMPLETED, state);
     }
     if (arc.guard === "jammed") {
-      return this.rules.jammed(time, state);
+      return py.or(this.rules.jammed(time, state), () => this.rules.inconsistent(time, state, []));
     }
     if (arc.guard === "lift-off") {
       return this.rules.lift_off(time, state);
@@ -5020,6 +4954,51 @@ function thinned(knots) {
     }
   }
   return [...found, end];
+}
+
+// tippetop.mechanics.invariants
+
+/** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
+function energy(state, top) {
+  var omega = angular_velocity(state.axis, state.momentum, top);
+  var translation = py.mul(top.mass, dot(state.velocity, state.velocity));
+  return py.add(
+    py.mul(0.5, py.add(translation, dot(omega, state.momentum))),
+    py.mul(py.mul(top.mass, top.gravity), state.height)
+  );
+}
+
+/** Jellett's integral lambda = -L.a, kg m^3/s. */
+function jellett(state, top) {
+  return py.neg(dot(state.momentum, contact_vector(state.axis, top.surface)));
+}
+
+// tippetop.mechanics.jamming
+const PROBED = 1e-06;
+const JAMMED_of_jamming = 0.001;
+
+/** The state past the normal impulse over which friction comes to press the contact, which it jams. */
+function past_jamming(state, top) {
+  var sliding = along_table(state);
+  var touch = contact(...sliding, top);
+  if (!(py.abs(touch.delassus) < py.div(JAMMED_of_jamming, top.mass))) {
+    return null;
+  }
+  var force = touch.traction.force;
+  var moment = moment_per_normal_force(touch.arm, touch.traction);
+  var after = (impulse) => {
+    var [x, y] = plus(sliding.velocity, scaled(py.div(impulse, top.mass), force));
+    return new SlidingState(sliding.axis, add(sliding.momentum, scale(impulse, moment)), [x, y]);
+  };
+  var before = slip_of(...sliding, top);
+  var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
+  var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
+  if (!(fall > 0.0)) {
+    return null;
+  }
+  var impulse = py.mul(py.mul(py.div(py.mul(2.0, py.max(touch.delassus, 0.0)), fall), PROBED), whole);
+  var beyond = on_table(after(impulse), top);
+  return [beyond, py.float(impulse), py.float(py.sub(energy(state, top), energy(beyond, top)))];
 }
 
 // tippetop.contact.rules
@@ -5187,14 +5166,18 @@ class Rules extends py.Record {
     }
     return this._leaving(time, state);
   }
-  /** What follows where the normal force has grown beyond all bounds, and slip goes on. */
+  /** What follows where friction that turns made the normal force grow beyond all bounds, if it did. */
   jammed(time, state) {
     try {
-      var [beyond, ...taken] = past_jamming(state, this.top);
+      var past = past_jamming(state, this.top);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
-      return failed("What follows where friction jams the contact", error, state);
+      return null;
     }
+    if (past === null) {
+      return null;
+    }
+    var [beyond, ...taken] = past;
     return begun_with(this.inconsistent(time, beyond, []), state, ...taken);
   }
   /** What follows when the normal force falls to zero. */
@@ -7634,7 +7617,7 @@ class OnSeveral extends FreeToFly {
         }
         return this._of(other)._collide(time, state, told, 0.0);
       }
-      if (rate <= this._slowest(other, state)) {
+      if (py.truth(this._stays(other, state))) {
         closed = true;
       } else {
         told = [...told, new Event(EventKind.OPENING, time, undefined, undefined, number_of(other))];
@@ -7664,7 +7647,7 @@ class OnSeveral extends FreeToFly {
     return py.any(
       [...this._beside(state)].map(
         (other) => py.and(
-          gap_rate(state, other) <= this._slowest(other, state),
+          this._stays(other, state),
           () => ContactPair.of(state.axis, state.momentum, [this.top, other]).under([[0, wrench]])[1][2] < 0.0
         )
       )
@@ -7690,8 +7673,8 @@ class OnSeveral extends FreeToFly {
   _untouched(time, state, events) {
     return this.resting(time, state, events);
   }
-  /** Velocity of another surface that touches too below which it stays, or comes back at once. */
-  _slowest(other, state) {
+  /** Whether another surface that touches too stays, or comes back at once. */
+  _stays(other, state) {
     var back = 1.0;
     var depth = py.max(0.0, py.float(py.sub(gap(state, this.top), gap(state, other))));
     if (py.truth(this._slips(other, state))) {
@@ -7700,12 +7683,11 @@ class OnSeveral extends FreeToFly {
       var wrench = contact_motion(pair.first, slip, pair.first.turning.slice(0, 2))[0];
       back = py.float(py.abs(pair.under([[0, wrench]])[1][2]));
     }
-    return py.float(
-      py.max(
-        py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)),
-        py.pow(py.mul(py.mul(2.0, back), depth), 0.5)
-      )
+    var slowest = py.max(
+      py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)),
+      py.pow(py.mul(py.mul(2.0, back), depth), 0.5)
     );
+    return py.bool(gap_rate(state, other) <= slowest);
   }
   /** Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all. */
   _slips(other, state) {
@@ -11609,7 +11591,7 @@ export {
   IntegratedMode,
   InvalidInput,
   JAMMED,
-  JAMMED_of_closing,
+  JAMMED_of_jamming,
   JAMMING,
   JellettLine,
   KEPT,
@@ -12055,7 +12037,6 @@ export {
   is_dry,
   is_edge,
   is_exactly,
-  is_jammed,
   is_near,
   is_one_way,
   is_outline,

@@ -7,7 +7,6 @@ from tippetop.mechanics.motion import along_table, contact, moment_per_normal_fo
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import plus, scaled, size, slip_of
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import add, scale
 
 PROBED = 1e-6
@@ -17,19 +16,7 @@ JAMMED = 1e-3
 """Delassus number times mass of a slipping contact, below which its normal force leaves no step to take."""
 
 
-def is_jammed(state: State, top: Top) -> bool:
-    """Whether friction that turns makes a normal force grow beyond all bounds; of floats, however large."""
-    try:
-        delassus = contact(*along_table(state), top).delassus
-        if not 0.0 < delassus < JAMMED / top.mass:
-            return False
-        past_jamming(state, top)
-    except ArithmeticError:
-        return False
-    return True
-
-
-def past_jamming(state: State, top: Top) -> tuple[State, float, float]:
+def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     """The state past the normal impulse over which friction comes to press the contact, which it jams.
 
     There the Delassus number of the slipping contact falls through zero. A little before, it is as much above
@@ -38,22 +25,25 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float]:
     Parameters
     ----------
     state
-        The state before, floats: see `is_jammed`, and `tippetop.mechanics.ending.jamming_guard`.
+        The state before, floats: see `tippetop.mechanics.ending.jamming_guard`.
     top
         The body and the friction law.
 
     Returns
     -------
-    tuple
-        The state after, the normal impulse, N s, and the energy that went with it, J.
+    tuple or None
+        The state after, the normal impulse, N s, and the energy that went with it, J. None if that number is
+        not next to zero, or does not fall as the impulse grows: then it is not friction that jams.
 
     Raises
     ------
     ArithmeticError
-        If that number does not fall as the impulse grows.
+        If a number on the way to it is too large.
     """
     sliding = along_table(state)
     touch = contact(*sliding, top)
+    if not abs(touch.delassus) < JAMMED / top.mass:
+        return None
     force, moment = touch.traction.force, moment_per_normal_force(touch.arm, touch.traction)
 
     def after(impulse: float) -> SlidingState:
@@ -64,7 +54,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float]:
     whole = size(before) / math.dist(slip_of(*after(1.0), top), before)
     fall = touch.delassus - contact(*after(PROBED * whole), top).delassus
     if not fall > 0.0:
-        raise Unsolved("it is not friction that jams it")
-    impulse = 2.0 * touch.delassus / fall * PROBED * whole
+        return None
+    impulse = 2.0 * max(touch.delassus, 0.0) / fall * PROBED * whole
     beyond = on_table(after(impulse), top)
     return beyond, float(impulse), float(energy(state, top) - energy(beyond, top))
