@@ -139,8 +139,8 @@ def measure(quick: bool, profile: bool) -> dict[str, Any]:
             "import tippetop as tt; from tippetop.presets import report_problem;"
             f"tt.simulate(report_problem({SPIN}), {DURATION})",
         ),
-        "tippetop --help": ("-c", COMMAND_LINE, "--help"),
-        "tippetop simulate": ("-c", COMMAND_LINE, "simulate", "--json"),
+        "tippetop --help": (*COMMAND_LINE, "--help"),
+        "tippetop simulate": (*COMMAND_LINE, "simulate", "--json"),
     }
     actions = {name: new_process(*arguments) for name, arguments in commands.items()}
     for action in actions.values():

@@ -59,7 +59,7 @@ def sweep_by_command(liftoff: str, side: int, workers: int) -> Cost:
     with tempfile.TemporaryDirectory() as folder:
         axes = ["--axis", f"launch.spin=0:250:{side}", "--axis", f"friction.mu=0.05:1:{side}"]
         limits = ["--duration", str(DURATION), "--liftoff", liftoff, "--workers", str(workers)]
-        call = [sys.executable, "-c", COMMAND_LINE, "sweep", *axes, *limits]
+        call = [sys.executable, *COMMAND_LINE, "sweep", *axes, *limits]
         call += ["--out", f"{folder}/sweep.zarr", "--json", "--no-maps"]
         before, began, peak = os.times(), time.perf_counter(), 0
         process = subprocess.Popen(call, stdout=subprocess.PIPE, text=True)

@@ -12,8 +12,8 @@ from typing import Any
 
 import psutil
 
-COMMAND_LINE = "import sys; from tippetop.cli.main import main; sys.exit(main())"
-"""Given to `python -c`, this is `tippetop`."""
+COMMAND_LINE = "-m", "tippetop"
+"""Given to `python`, this is `tippetop`."""
 
 IMPORTS, USUAL = "import heyoka, xarray", 0.5
 """By how long this takes in a new process, machines are compared; and that, s, for which times are wanted."""

@@ -22,7 +22,7 @@ import pytest
 )
 def test_names_that_cannot_be_are_refused_before_anything_is_written(tmp_path, arguments, field):
     done = subprocess.run(
-        [sys.executable, "-c", "from tippetop.cli.main import main; main()", "simulate", *arguments.split()],
+        [sys.executable, "-m", "tippetop", "simulate", *arguments.split()],
         cwd=tmp_path,
         capture_output=True,
         text=True,

@@ -265,3 +265,8 @@ def test_no_patch_of_contact(wrong):
 def test_no_material(wrong):
     refused("poisson", lambda: tt.Material(modulus=1e9, poisson=wrong))
     refused("table", tt.hertz_patch_radius, 0.2, 0.02, tt.MATERIALS["wood"], wrong)
+
+
+@pytest.mark.parametrize("size", [1e300, 1e-300])
+def test_no_number_for_a_patch(size):
+    refused("load", tt.hertz_patch_radius, size, size, tt.MATERIALS["steel"])

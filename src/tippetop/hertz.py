@@ -1,5 +1,6 @@
 """The patch of two elastic bodies pressed together (Hertz 1882; Johnson, Contact Mechanics, chapter 4)."""
 
+import math
 from typing import Annotated
 
 from pydantic import Field
@@ -55,7 +56,7 @@ def hertz_patch_radius(load: float, radius: float, body: Material, table: Materi
     Raises
     ------
     InvalidInput
-        If the load or the radius is not positive, or a material is none.
+        If the load or the radius is not positive, or far too small or large, or a material is none.
 
     Examples
     --------
@@ -72,4 +73,7 @@ def hertz_patch_radius(load: float, radius: float, body: Material, table: Materi
     if table is not None:
         require("table", table, Material, "a Material, or None for a rigid one")
     compliance = sum((1.0 - m.poisson**2) / m.modulus for m in (body, table) if m is not None)
-    return float((0.75 * load * radius * compliance) ** (1.0 / 3.0))
+    found = float((0.75 * load * radius * compliance) ** (1.0 / 3.0))
+    if not 0.0 < found < math.inf:
+        raise InvalidInput("load", load, "a number whose product with the radius is neither 0 nor infinite")
+    return found

@@ -12,7 +12,6 @@ from tippetop.errors import short
 from tippetop.files import LONGEST_TEXT
 from tippetop.sweeps import Sweep
 
-MAIN = "from tippetop.cli.main import main; main()"
 PROBLEM = tt.presets.report_problem()
 FIELDS = json.loads(PROBLEM.to_json())
 
@@ -142,7 +141,7 @@ def test_numbers_too_large_to_reckon_with_are_refused(change):
 )
 def test_the_command_line_says_one_sentence(tmp_path, arguments):
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", MAIN, "simulate", *arguments],
+        [sys.executable, "-W", "error", "-m", "tippetop", "simulate", *arguments],
         cwd=tmp_path,
         capture_output=True,
         text=True,

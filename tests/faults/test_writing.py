@@ -330,7 +330,7 @@ def test_a_run_on_a_disk_too_small_is_refused(tmp_path, size):
         pytest.skip("no disk can be mounted here")
     try:
         done = subprocess.run(
-            [sys.executable, "-c", "from tippetop.cli.main import main; main()", "simulate", "--out", "a.nc"],
+            [sys.executable, "-m", "tippetop", "simulate", "--out", "a.nc"],
             cwd=tmp_path,
             capture_output=True,
             text=True,
@@ -362,7 +362,7 @@ def test_a_file_larger_than_the_disk_leaves_the_old_one(run, tmp_path):
 def test_the_command_line_names_its_option(tmp_path):
     (tmp_path / "a.csv").write_text("old")
     done = subprocess.run(
-        [sys.executable, "-c", "from tippetop.cli.main import main; main()", "simulate", "--csv", "a.csv"],
+        [sys.executable, "-m", "tippetop", "simulate", "--csv", "a.csv"],
         cwd=tmp_path,
         capture_output=True,
         text=True,

@@ -23,9 +23,6 @@ BALL = (
 )
 
 
-MAIN = "from tippetop.cli.main import main; main()"
-
-
 @pytest.fixture
 def files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -120,7 +117,7 @@ def test_misuse_is_refused_in_one_sentence_and_nothing_is_written(files, words, 
 def test_misuse_ends_with_exit_code_2(files):
     (files / "taken.png").write_text("mine")
     done = subprocess.run(
-        [sys.executable, "-c", MAIN, "body", "top.toml", "--plot", "taken.png"],
+        [sys.executable, "-m", "tippetop", "body", "top.toml", "--plot", "taken.png"],
         capture_output=True,
         text=True,
         timeout=60,
