@@ -9,9 +9,13 @@ import itertools
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import tippetop as tt
 from tippetop.integrators import has_taylor
+from tippetop.mechanics.jamming import past_jamming
+from tippetop.mechanics.motion import along_table, contact, contact_swing, on_table
+from tippetop.mechanics.state import SlidingState
 
 M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
 """Mass, radius, distance of the centres, moments of inertia, friction and gravity, SI."""
@@ -94,3 +98,70 @@ def test_a_contact_that_jams_ends_a_run_without_impacts(liftoff: str, slip: floa
     assert "no contact force is consistent" in run.attrs["outcome_advice"]
     assert float(run["energy_error"]) < 1e-9
     assert float(np.hypot(run["slip_x"], run["slip_y"])[-1]) > 1e-4
+
+
+@pytest.mark.parametrize("left", [1e-13, 1e-9, 1e-5])
+def test_past_jamming_no_rounding_decides_whether_friction_presses_the_contact(left: float) -> None:
+    """However near to zero the Delassus number is where it is told that friction jams."""
+    problem = jamming()
+    top, start = problem.top, along_table(problem.start())
+    swing = contact_swing(start.axis, start.momentum, top)
+
+    def slipping(angle: float) -> SlidingState:
+        return start._replace(
+            velocity=(FAST * np.cos(angle) - swing[0], FAST * np.sin(angle) - swing[1]),
+        )
+
+    def number(angle: float) -> float:
+        return float(contact(*slipping(angle), top).delassus * top.mass) - left
+
+    # What slips the way it leans is pressed onto the table, and what slips back is drawn off it.
+    jams = brentq(number, 0.0, np.pi, xtol=1e-15)
+    before = slipping(jams)
+    found = past_jamming(on_table(before, top), top)
+    assert found is not None
+    state, impulse, lost = found
+    assert impulse > 0.0
+    assert lost > 0.0
+    after = float(contact(*along_table(state), top).delassus * top.mass)
+    # As much below as it was above, but for what rounding could turn round.
+    assert -1.1 * max(left, 1e-6) < after < -0.9 * max(left, 1e-8)
+
+
+@pytest.mark.parametrize(
+    ("mu", "launch"),
+    [
+        (
+            2.635022678354613,
+            tt.Launch(
+                tilt=0.1260644689490918,
+                spin=-25.814386659165045,
+                precession=-14.559744171017421,
+                tilt_rate=-3.8728300827713005,
+                slip=(-0.00248107772950266, 0.1679454954010388),
+            ),
+        ),
+        (
+            2.5763813306579597,
+            tt.Launch(
+                tilt=0.6152806721131737,
+                spin=-20.524167556093076,
+                precession=3.161732715794763,
+                tilt_rate=-2.8494222036190644,
+                slip=(-0.6502876830993077, -0.10602306995446242),
+            ),
+        ),
+    ],
+)
+def test_a_ball_jams_beside_another_that_has_just_opened(mu: float, launch: tt.Launch) -> None:
+    """Where that was so near that rounding was all that told which way the contact accelerates."""
+    run = tt.simulate(
+        tt.Problem(
+            body=tt.presets.BODIES["hurricane-balls"],
+            friction=tt.CoulombFriction(mu=mu),
+            launch=launch,
+            contact=tt.Contact(liftoff="fly"),
+        ),
+        1.0,
+    )
+    assert run.attrs["outcome"] == "completed"

@@ -4975,7 +4975,7 @@ function jellett(state, top) {
 
 // tippetop.mechanics.jamming
 const PROBED = 1e-06;
-const JAMMED_of_jamming = 0.001;
+const [JAMMED_of_jamming, PAST] = [0.001, 1e-07];
 
 /** The state past the normal impulse over which friction comes to press the contact, which it jams. */
 function past_jamming(state, top) {
@@ -4996,7 +4996,10 @@ function past_jamming(state, top) {
   if (!(fall > 0.0)) {
     return null;
   }
-  var impulse = py.mul(py.mul(py.div(py.mul(2.0, py.max(touch.delassus, 0.0)), fall), PROBED), whole);
+  var impulse = py.mul(
+    py.mul(py.div(py.add(touch.delassus, py.max(touch.delassus, py.div(PAST, top.mass))), fall), PROBED),
+    whole
+  );
   var beyond = on_table(after(impulse), top);
   return [beyond, py.float(impulse), py.float(py.sub(energy(state, top), energy(beyond, top)))];
 }
@@ -11688,6 +11691,7 @@ export {
   PART,
   PARTING,
   PARTS,
+  PAST,
   PHASE_LIMIT,
   PI,
   PLAIN,

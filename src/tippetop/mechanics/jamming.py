@@ -12,15 +12,17 @@ from tippetop.mechanics.vectors import add, scale
 PROBED = 1e-6
 """Part of the slip that an impulse takes or turns that tells how the Delassus number changes with it."""
 
-JAMMED = 1e-3
-"""Delassus number times mass of a slipping contact, below which its normal force leaves no step to take."""
+JAMMED, PAST = 1e-3, 1e-7
+"""Delassus number times mass of a slipping contact, below which its normal force leaves no step to take; and
+how far it is below zero at least where it is past that, which rounding does not decide."""
 
 
 def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     """The state past the normal impulse over which friction comes to press the contact, which it jams.
 
     There the Delassus number of the slipping contact falls through zero. A little before, it is as much above
-    as it is below after twice that impulse, while the contact opens by nothing.
+    as it is below after twice that impulse, while the contact opens by nothing; next to nothing before, what
+    it closes by is of the square of `PAST`.
 
     Parameters
     ----------
@@ -55,6 +57,6 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     fall = touch.delassus - contact(*after(PROBED * whole), top).delassus
     if not fall > 0.0:
         return None
-    impulse = 2.0 * max(touch.delassus, 0.0) / fall * PROBED * whole
+    impulse = (touch.delassus + max(touch.delassus, PAST / top.mass)) / fall * PROBED * whole
     beyond = on_table(after(impulse), top)
     return beyond, float(impulse), float(energy(state, top) - energy(beyond, top))
