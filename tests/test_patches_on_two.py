@@ -211,3 +211,37 @@ def test_what_holds_hertz_s_patch_without_drilling_is_an_expression():
     found = law.reserve(normal, (0.1, 0.0), 0.0)
     value = heyoka.cfunc([found], [normal])([2.0])[0]
     assert value == pytest.approx(law.reserve(2.0, (0.1, 0.0), 0.0), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("mu", "launch"),
+    [
+        (
+            1.5506065568155263,
+            tt.Launch(
+                tilt=1.2920733759451828,
+                spin=52.41267965979179,
+                precession=-2.106238954529296,
+                tilt_rate=2.67910701178515,
+                slip=(0.2782247755752787, -0.5639138835596632),
+            ),
+        ),
+        (
+            2.3245753197486803,
+            tt.Launch(
+                tilt=0.9140875735578099,
+                spin=-46.39089017667182,
+                precession=25.421234302475554,
+                tilt_rate=-4.859790179379005,
+                slip=(-0.26004687289698464, -0.07174661181128668),
+            ),
+        ),
+    ],
+)
+def test_a_ball_comes_down_in_the_last_moments_of_slip_on_the_other(mu: float, launch: tt.Launch) -> None:
+    """Where slip and drilling end together, as power series tell, within milliseconds of the touch."""
+    law = tt.ContensouFriction(mu=mu, patch_radius=5e-4, pressure="ellipsoidal")
+    balls = tt.presets.BODIES["hurricane-balls"]
+    run = tt.simulate(tt.Problem(body=balls, friction=law, launch=launch), 0.3, samples=3001)
+    assert run.attrs["outcome"] == "completed"
+    assert float(run["gap"].min()) > -1e-12

@@ -25,6 +25,9 @@ direction has come to rest by then, and in any case."""
 SLOWEST = 1e-12
 """A velocity, in natural units, that has ended where it cannot be followed further."""
 
+ALMOST = 1e-6
+"""Part of the time to the end that is left at the last look at what else may happen: slip has a direction."""
+
 SHARE = 0.01
 """Part of the time to the end that a polynomial of `DEGREE` leaves: friction after it ends smoothly."""
 
@@ -95,8 +98,8 @@ class Stopping(Passing):
         if found is None or here.time + found.left > longest:
             return None
         numbers = (*self.top.numbers, longest, 0.0)
-        for look in range(1, LOOKS + 1):
-            then = found.at(look / LOOKS)
+        for look in range(LOOKS + 1):
+            then = found.at(look / LOOKS or ALMOST)
             xi = tuple(then[6:])
             clock = (*then[:6], *scaled(1.0 / size(xi), xi), size(xi), here.time)
             if not all(one.value(clock, numbers) > 0.0 for one in self.motion.guards if one.name not in OWN):

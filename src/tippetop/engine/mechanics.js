@@ -4758,6 +4758,7 @@ function closing_of(y, ending) {
 // tippetop.contact.stopping
 const LANDING = [3e-08, 1e-16];
 const SLOWEST = 1e-12;
+const ALMOST = 1e-06;
 const SHARE = 0.01;
 const RESOLVED = 1e-15;
 
@@ -4846,8 +4847,8 @@ class Stopping extends Passing {
       return null;
     }
     var numbers = [...this.top.numbers, longest, 0.0];
-    for (var look = 1; look < py.add(LOOKS_of_passing, 1); look += 1) {
-      var then = found.at(py.div(look, LOOKS_of_passing));
+    for (var look = 0; look < py.add(LOOKS_of_passing, 1); look += 1) {
+      var then = found.at(py.or(py.div(look, LOOKS_of_passing), () => ALMOST));
       var xi = py.tuple(then.slice(6));
       var clock = [...then.slice(0, 6), ...scaled(py.div(1.0, size(xi)), xi), size(xi), here.time];
       if (
@@ -11477,6 +11478,7 @@ export {
   ACCURACY_of_arriving,
   ACCURACY_of_loosening,
   ACROSS,
+  ALMOST,
   APART,
   APART_of_direction,
   AT_ONCE,
