@@ -39,6 +39,21 @@ def test_damping_neither_costs_steps_nor_digits(damping):
     assert np.abs(arc.solution(times) - exact(times)).max() < 1e-12
 
 
+def test_rounding_that_no_shorter_step_lessens_costs_no_steps():
+    """What drives the motion is known to 14 digits, as slip is that is a difference of velocities."""
+
+    def rounded(y, numbers):
+        followed, x, z = y
+        apart = ((followed + numbers[1]) - (x + 0.7 * numbers[1])) - 0.3 * numbers[1]
+        return (-numbers[0] * apart - z, -z, x)
+
+    arc = whole(Collocation().integrate(Motion(rounded, 3, 2), (1e6, 256.0), START, 20.0))
+    times = np.linspace(0.0, 20.0, 1001)
+    assert arc.failure is None
+    assert arc.steps < 200
+    assert np.abs(arc.solution(times) - exact(times)).max() < 1e-12
+
+
 @pytest.mark.parametrize("rate", [-1.0, -1.0 + 5.0j, 3.0j])
 def test_a_step_is_the_approximation_of_pade_that_vanishes_far_left(rate):
     """For y' = rate y a step of Radau's method is Pade's (s - 1, s), of order 2 s - 1 (Ehle 1969)."""

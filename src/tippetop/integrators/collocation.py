@@ -28,6 +28,10 @@ PARTS = 4
 LAST, SMOOTH = 2, 8
 """How many of the last coefficients tell the error of a step, and how many of the first guess at the next."""
 
+FLAT, FALLING = 0.1, (2, 6)
+"""Part of those before them that the last coefficients are at least where they fall off no more; and which of
+the first tell how they do."""
+
 NEWTON, SETTLED, ROUGH = 10, 1e-15, 1e-9
 """Newton's iterations; the correction, relatively, after which there is none; and the largest correction by
 rounding alone, which does not get smaller any more."""
@@ -120,9 +124,15 @@ class Collocation(StepByStep):
         if found is None:
             return None, SLOWER
         step = Step(start[0], end, transform @ np.vstack((start[1], found)), found[-1])
-        error = float(np.max(np.abs(step.terms[-LAST:]) / scale(np.vstack((start[1], found)))))
-        factor = SAFETY * (self.tolerance / (error + TINY)) ** (1.0 / STAGES)
-        return step if error <= self.tolerance else None, min(max(factor, SLOWER), FASTER)
+        sizes = np.max(np.abs(step.terms) / scale(np.vstack((start[1], found))), axis=1) + TINY
+        error = float(np.max(sizes[-LAST:]))
+        if error > self.tolerance:
+            return None, max(SAFETY * (self.tolerance / error) ** (1.0 / STAGES), SLOWER)
+        if error > FLAT * float(np.max(sizes[-2 * LAST : -LAST])):
+            # Rounding, that is, in stiff motion: the first ones tell how they would fall off but for that.
+            (low, a), (high, b) = ((k, float(sizes[k])) for k in FALLING)
+            error = min(error, b * (b / a) ** ((STAGES - high) / (high - low)) + TINY)
+        return step, min(SAFETY * (self.tolerance / error) ** (1.0 / STAGES), FASTER)
 
 
 @dataclass(frozen=True)
