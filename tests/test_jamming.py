@@ -165,3 +165,29 @@ def test_a_ball_jams_beside_another_that_has_just_opened(mu: float, launch: tt.L
         1.0,
     )
     assert run.attrs["outcome"] == "completed"
+
+
+def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
+    """The Delassus number and the acceleration it is to balance vanish together, and the force is finite."""
+    problem = tt.Problem(
+        body=tt.presets.BODIES["coin"],
+        friction=tt.ContensouFriction(mu=2.1580557528878686, patch_radius=0.00034573999501228336),
+        rolling_resistance=0.00032948797199892167,
+        launch=tt.Launch(
+            tilt=0.9547888712102552,
+            spin=72.6751369431422,
+            precession=17.420219048483283,
+            tilt_rate=-4.491285326734969,
+            slip=(0.03615965922258063, -0.04230135698976169),
+        ),
+        contact=tt.Contact(liftoff="fly"),
+    )
+    run = tt.simulate(problem, 0.2, samples=101)
+    assert run.attrs["outcome"] == "failed"
+    assert "rigid bodies do not tell" in run.attrs["outcome_advice"]
+    last = {name: run[name].values[-1] for name in ("axis", "angular_momentum", "velocity", "normal_force")}
+    touch = contact(last["axis"], last["angular_momentum"], last["velocity"][:2], problem.top)
+    weight = problem.body.mass * problem.gravity
+    assert abs(touch.delassus) * problem.body.mass < 1e-9
+    assert abs(touch.free_acceleration) < 1e-9 * problem.gravity
+    assert 0.01 * weight < float(last["normal_force"]) < 100.0 * weight

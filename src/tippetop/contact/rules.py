@@ -29,6 +29,7 @@ from tippetop.mechanics.stick_slip import (
     slip_of,
 )
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.wrench import Wrench
 
@@ -201,8 +202,9 @@ class Rules:
         """What follows where friction that turns made the normal force grow beyond all bounds, if it did."""
         try:
             past = past_jamming(state, self.top)
-        except ArithmeticError:
-            return None
+        except ArithmeticError as error:
+            what = "What follows where friction jams the contact"
+            return failed(what, error, state) if isinstance(error, Unsolved) else None
         if past is None:
             return None
         beyond, *taken = past

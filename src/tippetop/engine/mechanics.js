@@ -4995,7 +4995,7 @@ function past_jamming(state, top) {
   var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
   var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
   if (!(fall > 0.0)) {
-    return null;
+    throw new Unsolved("it would open there too, and whether it does or is struck rigid bodies do not tell");
   }
   var impulse = py.mul(
     py.mul(py.div(py.add(touch.delassus, py.max(touch.delassus, py.div(PAST, top.mass))), fall), PROBED),
@@ -5176,7 +5176,8 @@ class Rules extends py.Record {
       var past = past_jamming(state, this.top);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
-      return null;
+      var what = "What follows where friction jams the contact";
+      return py.isinstance(error, Unsolved) ? failed(what, error, state) : null;
     }
     if (past === null) {
       return null;

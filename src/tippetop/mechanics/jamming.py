@@ -7,6 +7,7 @@ from tippetop.mechanics.motion import along_table, contact, moment_per_normal_fo
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import plus, scaled, size, slip_of
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import add, scale
 
 PROBED = 1e-6
@@ -35,10 +36,15 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     -------
     tuple or None
         The state after, the normal impulse, N s, and the energy that went with it, J. None if that number is
-        not next to zero, or does not fall as the impulse grows: then it is not friction that jams.
+        not next to zero.
 
     Raises
     ------
+    Unsolved
+        If it does not fall as the impulse grows. Then the motion alone has led to where it is zero, and the
+        acceleration without a contact force with it, so that the force is finite: the singular point of Genot
+        and Brogliato (1999), past which motions as near as one likes lift off, or are struck (Nordmark,
+        Varkonyi and Champneys 2018).
     ArithmeticError
         If a number on the way to it is too large.
     """
@@ -56,7 +62,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     whole = size(before) / math.dist(slip_of(*after(1.0), top), before)
     fall = touch.delassus - contact(*after(PROBED * whole), top).delassus
     if not fall > 0.0:
-        return None
+        raise Unsolved("it would open there too, and whether it does or is struck rigid bodies do not tell")
     impulse = (touch.delassus + max(touch.delassus, PAST / top.mass)) / fall * PROBED * whole
     beyond = on_table(after(impulse), top)
     return beyond, float(impulse), float(energy(state, top) - energy(beyond, top))
