@@ -13,7 +13,7 @@ def assert_judged(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) 
     found = claim.judge(computed, quick=True)
     assert found.verdict is verdict
     assert claim.figure in PLATES
-    assert "nan" not in found.finding.note
+    assert "nan" not in found.finding.note + found.finding.right + found.finding.news
 
 
 def assert_judged_otherwise(

@@ -206,8 +206,3 @@ def in_python(fields: dict[str, Any], duration: float) -> Any:
 def nudged(fields: dict[str, Any]) -> dict[str, Any]:
     """The same launch but for a rounding of its tilt."""
     return fields | {"launch": fields["launch"] | {"tilt": math.nextafter(fields["launch"]["tilt"], 4.0)}}
-
-
-def is_rounding(a: float, b: float, error: float) -> bool:
-    """Whether two numbers are the same but for an error, or both are none."""
-    return (math.isnan(a) and math.isnan(b)) or abs(a - b) <= error * max(1.0, abs(a))

@@ -198,7 +198,8 @@ def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> N
     problem = tt.Problem(body=tt.presets.REPORT, friction=tt.CoulombFriction(mu=0.01), launch=launch)
     top = natural(problem.top)
     rules = rules_for(top, "ignore", 0.0)
-    assert type(rules.stopping(0.0, natural_state(problem.start(), natural_units(problem.top))).then) is mode
+    start = natural_state(problem.start(), natural_units(problem.top))
+    assert type(rules.stopping(start, slips=True).then) is mode
 
 
 def test_what_could_be_held_by_a_pull_only_slips():

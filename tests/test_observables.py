@@ -66,7 +66,6 @@ def test_place_orientation_and_work_of_a_run_are_those_of_an_integration_beside_
     times = np.linspace(0.0, 0.3, 61)
     run = tt.simulate(problem, 0.3, times=times)
     assert run.attrs["outcome"] == "completed"
-    assert run.attrs["outcome"] == "completed"
     assert run.axis.values[:, 2].min() < -0.05 < 0.05 < run.axis.values[:, 2].max()
 
     def rates(_, y):

@@ -32,9 +32,23 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
 from tippetop.problem import Problem
 from tippetop.shapes import EccentricSphere, Ring, Sphere, Spheroid
+from tippetop.validation import Quantity
 
 EGG = {"mass": 0.05, "shape": {"kind": "spheroid", "across": 0.02, "along": 0.03}, "I1": 1.3e-5, "I3": 8e-6}
 COULOMB = {"kind": "regularized_coulomb", "mu": 0.3, "eps": 1e-3}
+ENTRIES = re.MULTILINE | re.DOTALL
+WRITTEN = {
+    "1": "",
+    "kg": "kg",
+    "kg m2": "kg m^2",
+    "m": "m",
+    "m s-1": "m/s",
+    "m s-2": "m/s^2",
+    "rad": "rad",
+    "rad s-1": "rad/s",
+    "s m-1": "s/m",
+}
+"""Units as docstrings write them."""
 PARTS = [
     Body,
     Contact,
@@ -872,8 +886,13 @@ class TestSchema:
     def test_every_number_says_what_it_is_in_a_docstring_with_units(self):
         for part in PARTS:
             description = dict(objects_in(self.SCHEMA))[part.__name__]["description"]
-            for name in part.model_fields:
-                assert name in description or name == "kind"
+            for name, field in part.model_fields.items():
+                entry = re.search(
+                    rf"^ *(\w+, )*{name}(, \w+)*\n(?P<text>.*?)(^ *\w+$|\Z)", description, ENTRIES
+                )
+                assert entry or name == "kind", (part, name)
+                for quantity in [one for one in field.metadata if isinstance(one, Quantity)]:
+                    assert re.search(rf"\b{re.escape(WRITTEN[quantity.units])}", entry["text"]), (part, name)
 
     @given(problems())
     def test_it_accepts_every_problem(self, original):

@@ -154,7 +154,6 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
     in natural units and those units, have numbers, or arrays of shape (n,).
     """
     end = ends.state
-    force = units.mass * units.length / units.time**2
     with np.errstate(all="ignore"):
         moment = length(start.momentum) * outer_height(top.surface, start.axis[2])
         change = np.abs(lowest_jellett(end, top) - lowest_jellett(start, top))
@@ -168,7 +167,7 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         "final_phi_dot": precession / units.time,
         "turns_over": ends.turned * units.time,
         "arrives": ends.arrived * units.time,
-        "least_normal_force": ends.least_force * force,
+        "least_normal_force": ends.least_force * units.force,
         "first_lift_off": ends.lift_off * units.time,
         "flights": ends.flights,
         "airborne_time": ends.airborne * units.time,

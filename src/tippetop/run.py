@@ -131,7 +131,7 @@ def simulate(
     scalars = metrics(ends, begin, top, units) | {
         "end_time": end_time,
         "energy_start": float(energy(state, top)) * units.energy,
-        "impact_energy_lost": sum(event.energy_lost for event in trajectory.events) * units.energy,
+        "impact_energy_lost": ends.struck * units.energy,
         "evaluations": tally.evaluations,
         "energy_error": recorder.monitor.energy_error,
         "jellett_drift": recorder.monitor.jellett_drift,

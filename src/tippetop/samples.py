@@ -51,7 +51,6 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         slip_x, slip_y = (np.where(upright, *both) for both in zip(told.point, told.slip, strict=True))
         leaving = np.hypot(momentum[0], momentum[1]) / top.transverse_inertia
         tilting = np.where(upright, np.copysign(leaving, axis[2]), tilting)
-    force = units.energy / units.length
     return {
         "theta": np.arctan2(sine, axis[2]),
         "theta_dot": tilting / units.time,
@@ -60,15 +59,15 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "omega3": told.spin / units.time,
         "slip_x": slip_x * units.speed,
         "slip_y": slip_y * units.speed,
-        "normal_force": told.force[2] * force,
-        "contact_force": np.stack(scale(force, told.force), -1),
+        "normal_force": told.force[2] * units.force,
+        "contact_force": np.stack(scale(units.force, told.force), -1),
         "contact_torque": np.stack(scale(units.energy, told.torque), -1),
         "energy": told.energy * units.energy,
         "work": samples.work * units.energy,
         "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled) * units.energy,
         "drilling_loss": samples.drilled * units.energy,
         "rolling_loss": samples.rolled * units.energy,
-        "jellett": told.jellett * units.angular_momentum * units.length,
+        "jellett": told.jellett * units.jellett,
         "height": state.height * units.length,
         "gap": told.gap * units.length,
         "x": samples.x * units.length,

@@ -53,6 +53,6 @@ def test_turns_that_are_more_than_half_are_not_lost() -> None:
 def test_the_shortest_rotation_carries_one_direction_to_the_other() -> None:
     rng = np.random.default_rng(2)
     start, end = (v / np.linalg.norm(v, axis=1)[:, None] for v in rng.normal(size=(2, 50, 3)))
-    start[0], end[0] = (0, 0, 1), (0, 0, -1)
+    start[:3], end[:3] = np.eye(3), -np.eye(3)
     rotation = poses.shortest(start, end)
     assert rotation.apply(start) == pytest.approx(end, abs=1e-12)

@@ -1,5 +1,6 @@
 """`tippetop simulate`: one run, its summary, its files."""
 
+import math
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -112,7 +113,7 @@ def simulate(
 
 def _enough_samples(problem: "tt.Problem", duration: float, wanted: Iterable[str]) -> int:
     """As many samples as the files that are wanted need, and no fewer than usual."""
-    if not set(MOVING) & set(wanted):
+    if not (set(MOVING) & set(wanted) and math.isfinite(duration)):
         return DEFAULT_SAMPLES
     from tippetop.export.track import sample_count  # noqa: PLC0415 - slow to import
 
@@ -152,8 +153,7 @@ def _check_files(wanted: dict[str, Path], force: bool) -> None:
 
 
 def _rows(summary: dict[str, Any], jellett_conserved: bool) -> list[tuple[str, str, str]]:
-    lift_off = next((event["time"] for event in summary["events"] if event["kind"] == "lift-off"), None)
-    numbers = {**summary, **summary["final"], "first_lift_off": lift_off}
+    numbers = {**summary, **summary["final"]}
     resisted = summary["energy_lost_drilling"] or summary["energy_lost_rolling"]
     shown = [*ROWS, *(LOSS_ROWS if resisted else ()), *(FLIGHT_ROWS if summary["flights"] else ())]
     rows = []

@@ -154,7 +154,7 @@ class ClosedMode(StatedMode):
         if guard == LIFT_OFF:
             return self.rules.lift_off(time, state)
         if guard in (STOPPING, ROLLING_STOPPING):
-            return self.rules.stopping(time, state, slips=not self.sticks)
+            return self.rules.stopping(state, slips=not self.sticks)
         if guard in (BRANCH, LIMIT_BRANCH):
             return Transition((), replace(self, top=on_other_branch(self.top)), state)
         found = follow_surface(self, guard, time, state)

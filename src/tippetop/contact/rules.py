@@ -71,7 +71,7 @@ class Rules:
             return (Sliding if rolls else SlidingWithoutRolling)(top, self, near)
         return (Sticking if rolls else StickingWithoutRolling)(self._branched(state, slips), self)
 
-    def stopping(self, time: float, state: State, *, slips: bool = True) -> Transition:
+    def stopping(self, state: State, *, slips: bool) -> Transition:
         """Follow what ends first to its end; where a guard was touched by rounding, nothing does."""
         ending, _ = self._next_to_end(state, slips)
         if ending is None:

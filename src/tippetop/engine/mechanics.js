@@ -528,6 +528,10 @@ class Units extends py.NamedTuple {
   get energy() {
     return py.mul(this.mass, py.pow(this.speed, 2));
   }
+  /** Unit of force, N. */
+  get force() {
+    return py.div(py.mul(this.mass, this.length), py.pow(this.time, 2));
+  }
   /** Unit of angular momentum, kg m^2/s. */
   get angular_momentum() {
     return py.mul(py.mul(this.mass, this.length), this.speed);
@@ -2984,7 +2988,7 @@ class ClosedMode extends StatedMode {
       return this.rules.lift_off(time, state);
     }
     if (py.contains([STOPPING, ROLLING_STOPPING], guard)) {
-      return this.rules.stopping(time, state, !py.truth(this.sticks));
+      return this.rules.stopping(state, !py.truth(this.sticks));
     }
     if (py.contains([BRANCH, LIMIT_BRANCH], guard)) {
       return new Transition([], py.replace(this, { top: on_other_branch(this.top) }), state);
@@ -5044,7 +5048,7 @@ class Rules extends py.Record {
     return new (py.truth(rolls) ? Sticking : StickingWithoutRolling)(this._branched(state, slips), this);
   }
   /** Follow what ends first to its end; where a guard was touched by rounding, nothing does. */
-  stopping(time, state, slips = true) {
+  stopping(state, slips) {
     var [ending] = this._next_to_end(state, slips);
     if (ending === null) {
       return new Transition([], this.going_on(state, slips), state);
@@ -10818,7 +10822,6 @@ function tilt(state) {
 /** Every number of `tippetop.catalogue.METRICS` in SI, by name, each of shape (n,). */
 function metrics(ends, start, top, units) {
   var end = ends.state;
-  var force = py.div(py.mul(units.mass, units.length), py.pow(units.time, 2));
   py.heed(false);
   try {
     var moment = py.mul(length(start.momentum), outer_height(top.surface, start.axis[2]));
@@ -10840,7 +10843,7 @@ function metrics(ends, start, top, units) {
     ["final_phi_dot", py.div(precession, units.time)],
     ["turns_over", py.mul(ends.turned, units.time)],
     ["arrives", py.mul(ends.arrived, units.time)],
-    ["least_normal_force", py.mul(ends.least_force, force)],
+    ["least_normal_force", py.mul(ends.least_force, units.force)],
     ["first_lift_off", py.mul(ends.lift_off, units.time)],
     ["flights", ends.flights],
     ["airborne_time", py.mul(ends.airborne, units.time)],
@@ -11040,7 +11043,6 @@ function observe(samples, top, units) {
     var leaving = py.div(py.np.hypot(momentum[0], momentum[1]), top.transverse_inertia);
     tilting = py.np.where(upright, py.np.copysign(leaving, axis[2]), tilting);
   }
-  var force = py.div(units.energy, units.length);
   return new py.Dict([
     ["theta", py.np.arctan2(sine, axis[2])],
     ["theta_dot", py.div(tilting, units.time)],
@@ -11049,8 +11051,8 @@ function observe(samples, top, units) {
     ["omega3", py.div(told.spin, units.time)],
     ["slip_x", py.mul(slip_x, units.speed)],
     ["slip_y", py.mul(slip_y, units.speed)],
-    ["normal_force", py.mul(told.force[2], force)],
-    ["contact_force", py.np.stack(scale(force, told.force), -1)],
+    ["normal_force", py.mul(told.force[2], units.force)],
+    ["contact_force", py.np.stack(scale(units.force, told.force), -1)],
     ["contact_torque", py.np.stack(scale(units.energy, told.torque), -1)],
     ["energy", py.mul(told.energy, units.energy)],
     ["work", py.mul(samples.work, units.energy)],
@@ -11063,7 +11065,7 @@ function observe(samples, top, units) {
     ],
     ["drilling_loss", py.mul(samples.drilled, units.energy)],
     ["rolling_loss", py.mul(samples.rolled, units.energy)],
-    ["jellett", py.mul(py.mul(told.jellett, units.angular_momentum), units.length)],
+    ["jellett", py.mul(told.jellett, units.jellett)],
     ["height", py.mul(state.height, units.length)],
     ["gap", py.mul(told.gap, units.length)],
     ["x", py.mul(samples.x, units.length)],

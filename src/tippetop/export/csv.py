@@ -19,6 +19,8 @@ def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     ------
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
+    InvalidInput
+        If the run is none, or the path no name of a file.
 
     Examples
     --------

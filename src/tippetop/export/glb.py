@@ -19,6 +19,7 @@ from tippetop.export.words import tell
 from tippetop.figures.looks import SCENES, ToyPart, size, toy_parts
 from tippetop.files import written_beside
 from tippetop.problem import Problem
+from tippetop.samples import continuous
 
 TURN_PER_KEY = 0.5
 """Angle by which the body may turn between two keys, rad; a viewer goes the shortest way between them."""
@@ -38,7 +39,7 @@ def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
     InvalidInput
-        If the run would need too many keys.
+        If the run is none or would need too many keys, or the path is no name of a file.
 
     Examples
     --------
@@ -58,8 +59,7 @@ def glb_bytes(run: xr.Dataset) -> bytes:
     problem = Problem.from_json(run.attrs["problem"])
     times = key_times(run, problem.body)
     poses = poses_at(run, times)
-    turns = poses.turns.as_quat()
-    turns[1:] *= np.cumprod(np.where(np.einsum("ij,ij->i", turns[1:], turns[:-1]) < 0, -1.0, 1.0))[:, None]
+    turns = continuous(poses.turns.as_quat())
 
     model = _Gltf()
     unit = size(problem.body)

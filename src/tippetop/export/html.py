@@ -21,6 +21,8 @@ def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pa
     ------
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
+    InvalidInput
+        If the run is none, or the path no name of a file.
     Unavailable
         If the player is not built: see `tippetop.export.bundle`.
 

@@ -119,7 +119,8 @@ def frames(
     poses = poses_at(run, times)
     positions, turns = poses.positions / toy.size, poses.turns.as_matrix()
     path, reached = fine_path(contact_path(run) / toy.size, run["normal_force"].values != 0.0)
-    seen = reached[np.searchsorted(run["time"].values, times, side="right") - 1]
+    # Nothing is known of the path before the first sample.
+    seen = reached[np.maximum(np.searchsorted(run["time"].values, times, side="right") - 1, 0)]
     headline = tell(run).headline
     cell = 10 ** round(math.log10(toy.size / 2)) / toy.size
     for number, (position, frame) in enumerate(zip(positions, turns, strict=True)):

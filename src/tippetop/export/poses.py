@@ -79,5 +79,7 @@ def shortest(start: Array, end: Array) -> Rotation:
     """The shortest rotations from unit vectors to others."""
     cosine = np.einsum("ij,ij->i", start, end)
     quaternion = np.concatenate([np.cross(start, end), 1 + cosine[:, None]], axis=1)
-    quaternion[np.linalg.norm(quaternion, axis=1) < 1e-9] = (1.0, 0.0, 0.0, 0.0)
+    opposite = np.linalg.norm(quaternion, axis=1) < 1e-9
+    # About the coordinate axis that is most nearly across.
+    quaternion[opposite, :3] = np.cross(start, np.eye(3)[np.abs(start).argmin(axis=1)])[opposite]
     return Rotation.from_quat(quaternion)

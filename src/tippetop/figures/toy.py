@@ -178,7 +178,7 @@ def _turned(curve: NDArray[np.float64]) -> Iterator[_Quadric]:
 def _sloping(curve: NDArray[np.float64], falls: bool) -> Iterator[_Quadric]:
     """The surface of a line that rises all the way, or falls, and then is seen from inside."""
     away, along = curve.T
-    some = [0, -1] if len(curve) == 2 else [0, len(curve) // 2, -1]
+    some = [0, len(curve) // 2, -1]
     if len(curve) == 2:
         slope = (away[1] - away[0]) / (along[1] - along[0])
         tip = away[0] - slope * along[0]

@@ -59,7 +59,7 @@ def design_insert(
     sphere = piece.hull.zones[0]
     if sphere.name != "sphere":
         raise InvalidInput("piece", f"a body that stands on a {sphere.name}", "one that stands on a sphere")
-    if density < 0.0:
+    if not density >= 0.0:
         raise InvalidInput("density", density, "a number at least 0")
     if density == piece.density:
         raise InvalidInput("density", density, "another density than the body's")

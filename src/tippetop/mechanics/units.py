@@ -28,6 +28,11 @@ class Units(NamedTuple):
         return self.mass * self.speed**2
 
     @property
+    def force(self) -> Scalar:
+        """Unit of force, N."""
+        return self.mass * self.length / self.time**2
+
+    @property
     def angular_momentum(self) -> Scalar:
         """Unit of angular momentum, kg m^2/s."""
         return self.mass * self.length * self.speed

@@ -3,6 +3,7 @@
 An axis is written as a list of values or as a table ``{ from, to, count, spacing }``.
 """
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
@@ -98,8 +99,11 @@ class Spaced(Axis):
         given = f"{self.first:g} to {self.last:g}"
         if self.count > 1 and self.first == self.last:
             raise InvalidInput("", given, "a first and a last value that differ")
-        if self.spacing == "geometric" and not self.first * self.last > 0:
+        if self.spacing == "geometric" and not (self.first > 0 < self.last or self.first < 0 > self.last):
             raise InvalidInput("", given, "ends of one sign, neither 0, if geometric")
+        apart = self.last / self.first if self.spacing == "geometric" else self.last - self.first
+        if not math.isfinite(apart):
+            raise InvalidInput("", given, "ends that are no farther apart than a number can tell")
         return self
 
     @property

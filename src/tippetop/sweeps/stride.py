@@ -52,9 +52,8 @@ class Layout(NamedTuple):
     """
 
     size: int
-    guards: int
     parameters: int
-    """Numbers of the motion, guards, and parameters."""
+    """Numbers of the motion, and parameters."""
     left: int
     steps: int
     """Rows of the time left, and of the number of steps."""
@@ -89,7 +88,7 @@ class Layout(NamedTuple):
         row = (size, size + 1, kept, kept, pause, least, changed, changed + 1)
         names = [guard.name for guard in motion.guards]
         branch = names.index(BRANCH) if BRANCH in names else None
-        return cls(size, guards, parameters, *row, counts, turns, band, numbers, branch)
+        return cls(size, parameters, *row, counts, turns, band, numbers, branch)
 
 
 class Jet(NamedTuple):

@@ -78,5 +78,5 @@ def _stepping(quick: bool) -> xr.Dataset:
         exact_theta=(run["theta"].values[shown], "rad", "tilt of an exact run", "time"),
         exact_final_theta=(float(run["theta"][-1]), "rad", "tilt at the end of an exact run"),
         **{name: ([one[name] for one in found], *told, "step") for name, told in meanings.items()},
-        **{f"exact_{name}": (value, "s", f"{name}, exactly") for name, value in exact.items()},
+        **{f"exact_{name}": (value, meanings[name][0], f"{name}, exactly") for name, value in exact.items()},
     )
