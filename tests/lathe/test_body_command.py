@@ -1,13 +1,12 @@
 """What `tippetop body` prints, writes and refuses."""
 
 import json
-import subprocess
-import sys
 
 import pytest
 from typer.testing import CliRunner
 
 import tippetop as tt
+from misused import misused
 from tippetop.cli.commands import app
 from tippetop.figures.section import section
 
@@ -116,15 +115,8 @@ def test_misuse_is_refused_in_one_sentence_and_nothing_is_written(files, words, 
 
 def test_misuse_ends_with_exit_code_2(files):
     (files / "taken.png").write_text("mine")
-    done = subprocess.run(
-        [sys.executable, "-m", "tippetop", "body", "top.toml", "--plot", "taken.png"],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
-    sentence = "tippetop: taken.png exists; it is overwritten only with --force\n"
-    assert (done.stdout, done.stderr, done.returncode) == ("", sentence, 2)
+    told = misused(".", "body", "top.toml", "--plot", "taken.png")
+    assert told == "tippetop: taken.png exists; it is overwritten only with --force\n"
 
 
 def test_a_section_shows_every_surface(files):
