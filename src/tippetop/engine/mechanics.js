@@ -5001,10 +5001,8 @@ function past_jamming(state, top) {
   if (!(fall > 0.0)) {
     throw new Unsolved("it would open there too, and whether it does or is struck rigid bodies do not tell");
   }
-  var impulse = py.mul(
-    py.mul(py.div(py.add(touch.delassus, py.max(touch.delassus, py.div(PAST, top.mass))), fall), PROBED),
-    whole
-  );
+  var further = py.add(touch.delassus, py.max(touch.delassus, py.div(PAST, top.mass)));
+  var impulse = py.mul(py.mul(py.div(py.max(further, 0.0), fall), PROBED), whole);
   var beyond = on_table(after(impulse), top);
   return [beyond, py.float(impulse), py.float(py.sub(energy(state, top), energy(beyond, top)))];
 }

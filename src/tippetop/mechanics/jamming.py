@@ -63,6 +63,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     fall = touch.delassus - contact(*after(PROBED * whole), top).delassus
     if not fall > 0.0:
         raise Unsolved("it would open there too, and whether it does or is struck rigid bodies do not tell")
-    impulse = (touch.delassus + max(touch.delassus, PAST / top.mass)) / fall * PROBED * whole
+    further = touch.delassus + max(touch.delassus, PAST / top.mass)
+    impulse = max(further, 0.0) / fall * PROBED * whole
     beyond = on_table(after(impulse), top)
     return beyond, float(impulse), float(energy(state, top) - energy(beyond, top))

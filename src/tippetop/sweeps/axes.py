@@ -101,7 +101,9 @@ class Spaced(Axis):
             raise InvalidInput("", given, "a first and a last value that differ")
         if self.spacing == "geometric" and not (self.first > 0 < self.last or self.first < 0 > self.last):
             raise InvalidInput("", given, "ends of one sign, neither 0, if geometric")
-        apart = self.last / self.first if self.spacing == "geometric" else self.last - self.first
+        apart = self.last - self.first
+        if self.spacing == "geometric":
+            apart = max(self.last / self.first, self.first / self.last)
         if not math.isfinite(apart):
             raise InvalidInput("", given, "ends that are no farther apart than a number can tell")
         return self
