@@ -4999,6 +4999,9 @@ function past_jamming(state, top) {
   var whole = py.div(size(before), py.math.dist(slip_of(...after(1.0), top), before));
   var fall = py.sub(touch.delassus, contact(...after(py.mul(PROBED, whole)), top).delassus);
   if (!(fall > 0.0)) {
+    if (!(py.abs(touch.free_acceleration) < py.mul(JAMMED_of_jamming, top.gravity))) {
+      return null;
+    }
     throw new Unsolved("it would open there too, and whether it does or is struck rigid bodies do not tell");
   }
   var further = py.add(touch.delassus, py.max(touch.delassus, py.div(PAST, top.mass)));

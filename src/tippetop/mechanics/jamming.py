@@ -36,15 +36,14 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     -------
     tuple or None
         The state after, the normal impulse, N s, and the energy that went with it, J. None if that number is
-        not next to zero.
+        not next to zero, or does not fall as the impulse grows and the force does.
 
     Raises
     ------
     Unsolved
-        If it does not fall as the impulse grows. Then the motion alone has led to where it is zero, and the
-        acceleration without a contact force with it, so that the force is finite: the singular point of Genot
-        and Brogliato (1999), past which motions as near as one likes lift off, or are struck (Nordmark,
-        Varkonyi and Champneys 2018).
+        If the motion alone has led to where it is zero, and the acceleration without a contact force with it,
+        so that the force is finite: the singular point of Genot and Brogliato (1999), past which motions as
+        near as one likes lift off, or are struck (Nordmark, Varkonyi and Champneys 2018).
     ArithmeticError
         If a number on the way to it is too large.
     """
@@ -62,6 +61,8 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     whole = size(before) / math.dist(slip_of(*after(1.0), top), before)
     fall = touch.delassus - contact(*after(PROBED * whole), top).delassus
     if not fall > 0.0:
+        if not abs(touch.free_acceleration) < JAMMED * top.gravity:
+            return None
         raise Unsolved("it would open there too, and whether it does or is struck rigid bodies do not tell")
     further = touch.delassus + max(touch.delassus, PAST / top.mass)
     impulse = max(further, 0.0) / fall * PROBED * whole
