@@ -5,6 +5,7 @@ import os
 import pickle
 import subprocess
 import sys
+import zlib
 from hashlib import sha256
 
 import numpy as np
@@ -78,7 +79,7 @@ def test_damage_at_any_place_is_dropped(tmp_path, monkeypatch):
         assert kept_content("code", make) == content
         [folder] = tmp_path.iterdir()
         for file in folder.iterdir():
-            if file.name == ["seal.json", "content"][rng.integers(2)]:
+            if file.name == [SEAL, CONTENT][rng.integers(2)]:
                 file.write_bytes(damage(file.read_bytes(), rng, number))
     assert len(made) > 200 * MANY
 
@@ -102,7 +103,9 @@ def test_a_damaged_cache_is_as_good_as_none(tmp_path):
 
 
 @pytest.mark.skipif(not has_taylor(), reason="heyoka is not installed")
-@pytest.mark.parametrize("content", [b"", b"nothing that can be loaded", pickle.dumps({})])
+@pytest.mark.parametrize(
+    "content", [b"", zlib.compress(b"nothing that can be loaded"), zlib.compress(pickle.dumps({}))]
+)
 def test_what_is_whole_but_cannot_be_loaded_is_made_anew(tmp_path, content):
     swing(tmp_path)
     for folder in tmp_path.iterdir():
@@ -124,13 +127,13 @@ def test_what_was_not_used_for_longest_goes_first(tmp_path, monkeypatch):
     monkeypatch.setattr(sealed_folders, "LARGEST", 2500)
     places = {}
     for when, name in enumerate("ab"):
-        kept_content(name, lambda: bytes(1000))
+        kept_content(name, lambda: os.urandom(1000))
         [places[name]] = set(tmp_path.iterdir()) - set(places.values())
         os.utime(places[name], (when, when))
-    kept_content("a", lambda: bytes(1000))
-    kept_content("c", lambda: bytes(1000))
+    kept_content("a", lambda: os.urandom(1000))
+    kept_content("c", lambda: os.urandom(1000))
     assert all(place.exists() for place in places.values())
-    kept_content("d", lambda: bytes(1000))
+    kept_content("d", lambda: os.urandom(1000))
     assert places["a"].exists()
     assert not places["b"].exists()
 
@@ -149,7 +152,7 @@ def test_what_earlier_versions_kept_goes_as_the_rest_does_and_nothing_else(tmp_p
         os.utime(folder, (when, when))
     (tmp_path / "cache.db").write_bytes(bytes(1000))
     os.utime(tmp_path / "cache.db", (0, 0))
-    kept_content("new", lambda: bytes(1000))
+    kept_content("new", lambda: os.urandom(1000))
     assert [folder.exists() for folder in (*old, others)] == [False, True, True]
     assert (tmp_path / "cache.db").exists() is not users
 

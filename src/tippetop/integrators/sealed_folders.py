@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import tempfile
+import zlib
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,7 +21,7 @@ Found = TypeVar("Found")
 VARIABLE = "TIPPETOP_CACHE"
 """Environment variable that names another folder for the cache than the user's, or "off" for none."""
 
-SEAL, CONTENT = "seal.json", "content"
+SEAL, CONTENT = "seal.json", "content.zlib"
 """The digests of all else in a folder, and what is in it where that is one file."""
 
 PREFIX, MOST, LARGEST = "code-", 256, 2**27
@@ -77,10 +78,11 @@ def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
     def use(folder: Path | None) -> bytes:
         path = folder and folder / CONTENT
         if path and path.exists():
-            return path.read_bytes()
+            with contextlib.suppress(zlib.error):
+                return zlib.decompress(path.read_bytes())
         content = make()
         if path:
-            path.write_bytes(content)
+            path.write_bytes(zlib.compress(content, 1))
         return content
 
     return kept(made, use)
