@@ -41,6 +41,10 @@ GUARDED = 2.0**-5
 guard's zero needs fewer digits than they do, since the state there is theirs: by itself a guard would cost
 steps."""
 
+EFFORT, FEW = 3, 0
+"""How hard the compiler tries, of 3; and where code is to run a few times: a tenth of the time compiles
+it, and it runs for twice as long."""
+
 Numbers: TypeAlias = Callable[[tuple[float, ...]], Sequence[float]]
 """From the parameters of a motion to those of what is compiled."""
 
@@ -84,7 +88,7 @@ class Taylor:
 
     def expansion(self, motion: Motion, parameters: Sequence[float], degree: int, count: int) -> Expansion:
         """The coefficients of the first numbers of a motion's solutions in powers of time, compiled."""
-        compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree))
+        compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree), FEW)
         numbers = np.array(compiled.numbers(tuple(parameters)))
         return lambda start: compiled.expanded(start, numbers, count)
 
@@ -161,7 +165,7 @@ class _Compiled:
 
 
 @lru_cache(maxsize=32)
-def _compiled(motion: Motion, tolerance: float) -> _Compiled:
+def _compiled(motion: Motion, tolerance: float, effort: int = EFFORT) -> _Compiled:
     """Compile the equations and the guards, or fetch them from the cache across processes."""
     state = [hy.make_vars(f"y{i}") for i in range(motion.size)]
     values, numbers = _expressions(motion, state)
@@ -176,11 +180,12 @@ def _compiled(motion: Motion, tolerance: float) -> _Compiled:
             tol=tolerance,
             t_events=[hy.t_event(guard, direction=falling) for guard in guards],
             compact_mode=not motion.lasting,
+            opt_level=effort,
         )
 
     # Of two installations of one version, each compiles for itself.
     made = (
-        pickle.dumps((rates, guards, tolerance, motion.lasting)),
+        pickle.dumps((rates, guards, tolerance, motion.lasting, effort)),
         getsource(make),
         hy.__version__,
         hy.__file__,
