@@ -41,7 +41,11 @@ class StatedMode(IntegratedMode):
     """How many numbers the mode has."""
     further: ClassVar[int] = 0
     """How many parameters, beside the numbers of its tops."""
-    lasting: ClassVar[bool] = False
+
+    @property
+    def lasting(self) -> bool:
+        """No run stays in it for long, where a mode does not say otherwise."""
+        return False
 
     @property
     def motion(self) -> Motion:

@@ -230,8 +230,10 @@ class Mode(ABC):
 class IntegratedMode(Mode):
     """A mode stated by its equations of motion and guards."""
 
-    lasting: ClassVar[bool] = True
-    """Whether runs may spend most of their steps in it."""
+    @property
+    def lasting(self) -> bool:
+        """Whether runs may spend most of their steps in it."""
+        return True
 
     def without_tops(self) -> Self:
         """What remains of it when its tops are taken away, and what follows it: what it is among its like."""

@@ -80,7 +80,11 @@ class Sliding(SlidingMode):
     """Sliding while rolling goes on, or is not resisted."""
 
     name: ClassVar[str] = "sliding"
-    lasting: ClassVar[bool] = True
+
+    @property
+    def lasting(self) -> bool:
+        """A run may slide all along, but is not about to stick for long."""
+        return not self.near
 
     def rates(self, y: Row) -> tuple[Scalar, ...]:
         """Time derivatives of the 8 numbers of a sliding state, in the fewest operations."""

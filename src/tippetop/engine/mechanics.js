@@ -1000,7 +1000,10 @@ class IntegratedMode extends Mode {
   constructor(top, rules) {
     super(top, rules);
   }
-  get lasting() { return true; }
+  /** Whether runs may spend most of their steps in it. */
+  get lasting() {
+    return true;
+  }
   /** What remains of it when its tops are taken away, and what follows it: what it is among its like. */
   without_tops() {
     var nothing = null;
@@ -2877,7 +2880,10 @@ class StatedMode extends IntegratedMode {
   }
   get size() { return 8; }
   get further() { return 0; }
-  get lasting() { return false; }
+  /** No run stays in it for long, where a mode does not say otherwise. */
+  get lasting() {
+    return false;
+  }
   /** Equations of motion and guards. */
   get motion() {
     return motion_of(this.without_tops(), py.tuple([...this.tops].map((top) => top.kind)));
@@ -3346,7 +3352,10 @@ class Sliding extends SlidingMode {
     super(top, rules, near, guarded);
   }
   get name() { return "sliding"; }
-  get lasting() { return true; }
+  /** A run may slide all along, but is not about to stick for long. */
+  get lasting() {
+    return !py.truth(this.near);
+  }
   /** Time derivatives of the 8 numbers of a sliding state, in the fewest operations. */
   rates(y) {
     return sliding_rates(SlidingState.unpack(y), this.top).pack();
