@@ -24,7 +24,7 @@ VARIABLE = "TIPPETOP_CACHE"
 SEAL, CONTENT = "seal.json", "content.zlib"
 """The digests of all else in a folder, and what is in it where that is one file."""
 
-PREFIX, MOST, LARGEST = "code-", 256, 2**27
+PREFIX, MOST, LARGEST = "code-", 1024, 2**27
 """How the folders are called, and how many there are at most, and bytes in them, when one more is made: then
 those go that were not used for longest."""
 
@@ -114,16 +114,18 @@ def _clear(place: Path) -> None:
     """Remove what is too much, and what processes have left that are no more: killed while they compiled."""
     # A folder that the variable names may hold anything: only what is surely of this package goes.
     folders = [folder for folder in place.iterdir() if folder.is_dir() and _is_own(folder)]
-    size, own = (
-        0,
-        [folder for folder in folders if SEALED.fullmatch(folder.name) and _seal(folder) is not None],
-    )
+    size, held = 0, [folder for folder in folders if SEALED.fullmatch(folder.name)]
     for pattern in OLD if place == users_folder() else ():
-        own += place.glob(pattern)
-    for number, old in enumerate(sorted(own, key=os.path.getmtime, reverse=True), 1):
-        size += sum(path.stat().st_size for path in (old, *old.glob("*")) if path.is_file())
-        if number >= MOST or size > LARGEST:
-            shutil.rmtree(old, ignore_errors=True) if old.is_dir() else old.unlink(missing_ok=True)
+        held += place.glob(pattern)
+    for number, old in enumerate(sorted(held, key=os.path.getmtime, reverse=True), 1):
+        with os.scandir(old) if old.is_dir() else contextlib.nullcontext([old]) as files:
+            size += sum(file.stat().st_size for file in files)
+        if number < MOST and size <= LARGEST:
+            continue
+        if not old.is_dir():
+            old.unlink(missing_ok=True)
+        elif not SEALED.fullmatch(old.name) or _seal(old) is not None:
+            shutil.rmtree(old, ignore_errors=True)
     for left in folders:
         process = MAKING.fullmatch(left.name)
         if process and not psutil.pid_exists(int(process[1])):
