@@ -15,7 +15,7 @@ from tippetop.export.csv import write_csv
 from tippetop.export.glb import key_times, write_glb
 from tippetop.export.html import write_html
 from tippetop.export.movie import write_movie
-from tippetop.export.poses import poses_at
+from tippetop.export.poses import Poses, poses_at
 from tippetop.export.raycast import fine_path
 
 pygltflib = pytest.importorskip(
@@ -61,6 +61,29 @@ def test_glb_plays_the_run(flying: xr.Dataset, tmp_path: Path) -> None:
     assert np.abs(overlap) == pytest.approx(1.0, abs=1e-5)
     steps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1])
     assert (steps > np.cos(0.3)).all(), "the shortest way between two keys is the way the top turns"
+
+
+def test_films_and_models_of_a_part_of_a_run_begin_where_it_does(
+    flying: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    part = flying.isel(time=slice(flying.sizes["time"] // 2, None))
+    start, end = part["time"].values[[0, -1]]
+    model = pygltflib.GLTF2().load(str(write_glb(part, tmp_path / "part.glb")))
+    moves, _ = model.animations[0].samplers
+    times = numbers(model, moves.input)[:, 0]
+    assert times[[0, -1]] == pytest.approx([0.0, end - start])
+    exact = poses_at(flying, np.linspace(start, end, len(times)))
+    assert numbers(model, moves.output) == pytest.approx(exact.positions, abs=1e-5)
+    drawn = list[np.ndarray]()
+
+    def seen(run: xr.Dataset, times: np.ndarray) -> Poses:
+        drawn.append(times)
+        return poses_at(run, times)
+
+    monkeypatch.setattr("tippetop.export.movie.poses_at", seen)
+    write_movie(part, tmp_path / "part.gif", fps=10.0, pixels=(96, 72))
+    assert drawn[0] == pytest.approx(start + 0.1 * np.arange(len(drawn[0])))
+    assert end - 0.1 < drawn[0][-1] <= end
 
 
 def test_a_run_that_ended_at_its_launch_is_a_still_model(tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 DEFAULT_SAMPLES = 2001
-MOVING = ("glb", "html", "mp4", "gif")
+FILMS = {"mp4", "gif"}
+MOVING = {"glb", "html", *FILMS}
 ENDINGS = {"plot": DRAWINGS, "html": (".html", ".htm")}
 """How the names of files may end; of the other kinds but `out`, as the kind is called."""
 
@@ -81,7 +82,7 @@ def simulate(
     chosen = choice.problem()
     files = {"out": out, "plot": plot, "csv": csv, "glb": glb, "html": html, "mp4": mp4, "gif": gif}
     wanted = {kind: path for kind, path in files.items() if path is not None}
-    _check_files(wanted, force)
+    _check_files(wanted, force, duration)
     if samples is None:
         samples = _enough_samples(chosen, duration, wanted)
     began = time.perf_counter()
@@ -113,7 +114,7 @@ def simulate(
 
 def _enough_samples(problem: "tt.Problem", duration: float, wanted: Iterable[str]) -> int:
     """As many samples as the files that are wanted need, and no fewer than usual."""
-    if not (set(MOVING) & set(wanted) and math.isfinite(duration)):
+    if not (MOVING & set(wanted) and math.isfinite(duration)):
         return DEFAULT_SAMPLES
     from tippetop.export.track import sample_count  # noqa: PLC0415 - slow to import
 
@@ -138,18 +139,18 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
                 tt.write_movie(run, path, force, progress=progress)
 
 
-def _check_files(wanted: dict[str, Path], force: bool) -> None:
-    """Refuse names that promise another kind of file or are taken, and films without ffmpeg."""
+def _check_files(wanted: dict[str, Path], force: bool, duration: float) -> None:
+    """Refuse names that promise another kind of file or are taken, and films that cannot be made."""
     for kind, path in wanted.items():
         if kind != "out":
             require_ending(f"--{kind}", path, ENDINGS.get(kind, (f".{kind}",)))
         else:
             refuse_ending_of_others("--out", path)
         place_for(path, force)
-    if "mp4" in wanted:
-        from tippetop.export.movie import ffmpeg  # noqa: PLC0415 - slow to import
+    for kind in FILMS & set(wanted):
+        from tippetop.export.movie import require_film  # noqa: PLC0415 - slow to import
 
-        ffmpeg()
+        require_film(f".{kind}", duration)
 
 
 def _rows(summary: dict[str, Any], jellett_conserved: bool) -> list[tuple[str, str, str]]:

@@ -75,7 +75,7 @@ def glb_bytes(run: xr.Dataset) -> bytes:
     ]
     # A run that ended at its launch stands still.
     if len(times) > 1:
-        keys = model.accessor(times)
+        keys = model.accessor(times - times[0])
         outputs = {"translation": poses.positions, "rotation": turns}
         samplers = [
             {"input": keys, "output": model.accessor(values), "interpolation": "LINEAR"}
@@ -92,14 +92,15 @@ def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
 
     Raises `InvalidInput` if the run would need too many keys.
     """
-    duration = float(run["time"].values[-1])
+    start, end = run["time"].values[[0, -1]].tolist()
+    duration = end - start
     fastest = float(np.linalg.norm(run["angular_momentum"].values, axis=1).max()) / min(body.I1, body.I3)
     keys = int(np.ceil(duration * max(LEAST_KEYS, fastest / TURN_PER_KEY))) + 1
     if keys > MOST_KEYS:
         raise InvalidInput(
             "duration", duration, f"at most {duration * MOST_KEYS / keys:.3g} s for so fast a top"
         )
-    return np.linspace(0.0, duration, keys)
+    return np.linspace(start, end, keys)
 
 
 class _Gltf:

@@ -24,7 +24,9 @@ from tippetop.validation import require_callback
 
 Frame = NDArray[np.uint8]
 
-MOST_FRAMES = 20_000
+MOST_FRAMES, RATES = 20_000, {".mp4": 30.0, ".gif": 20.0}
+"""Pictures of a film at most; and in a second of it, if nothing else is asked for."""
+
 _EYE = np.array([2.6, -6.0, 3.0])
 _MP4 = ("-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart")
 
@@ -76,7 +78,7 @@ def write_movie(
     path = path_of(path)
     encoder = ffmpeg() if require_ending("path", path, (".mp4", ".gif")) == ".mp4" else ""
     place_for(path, overwrite)
-    rate = fps if fps is not None else 30.0 if encoder else 20.0
+    rate = fps if fps is not None else RATES[path.suffix.lower()]
     extent = pixels if pixels is not None else (640, 480) if encoder else (360, 270)
     _check(rate, speed, extent)
     if not encoder:
@@ -101,6 +103,18 @@ def ffmpeg() -> str:
     return found
 
 
+def require_film(ending: str, duration: float) -> None:
+    """Refuse a film that cannot be made of a run, before that is followed: one that takes too many pictures.
+
+    Raises `InvalidInput`; or `Unavailable` if there is no ffmpeg for an .mp4.
+    """
+    if ending == ".mp4":
+        ffmpeg()
+    longest = (MOST_FRAMES - 1) / RATES[ending]
+    if is_number(duration) and duration > longest:
+        raise InvalidInput("duration", duration, f"at most {longest:.6g} s for a film")
+
+
 def frames(
     run: xr.Dataset,
     fps: float,
@@ -109,18 +123,17 @@ def frames(
     progress: Callable[[int, int], None] = lambda drawn, count: None,
 ) -> Iterator[Frame]:
     """The pictures of a film, shape (height, width, 3) each; `InvalidInput` if there would be too many."""
-    duration = float(run["time"].values[-1])
-    count = math.floor(duration * fps / speed) + 1
+    start, end = run["time"].values[[0, -1]].tolist()
+    count = math.floor((end - start) * fps / speed) + 1
     if count > MOST_FRAMES:
         least = speed * count / MOST_FRAMES
-        raise InvalidInput("speed", speed, f"at least {least:.2g} for a run of {duration:g} s")
+        raise InvalidInput("speed", speed, f"at least {least:.2g} for a run of {end - start:g} s")
     toy = Toy(Problem.from_json(run.attrs["problem"]).body)
-    times = np.arange(count) * speed / fps
+    times = start + np.arange(count) * speed / fps
     poses = poses_at(run, times)
     positions, turns = poses.positions / toy.size, poses.turns.as_matrix()
     path, reached = fine_path(contact_path(run) / toy.size, run["normal_force"].values != 0.0)
-    # Nothing is known of the path before the first sample.
-    seen = reached[np.maximum(np.searchsorted(run["time"].values, times, side="right") - 1, 0)]
+    seen = reached[np.searchsorted(run["time"].values, times, side="right") - 1]
     headline = tell(run).headline
     cell = 10 ** round(math.log10(toy.size / 2)) / toy.size
     for number, (position, frame) in enumerate(zip(positions, turns, strict=True)):
