@@ -79,9 +79,9 @@ def fig13(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The whole report in its quick version: that which REPORT names, or else a new one."""
-    if "REPORT" in os.environ:
-        return Path(os.environ["REPORT"])
+    """The whole report in its quick version: that which REPORT names, of this code, or a new one."""
+    if made := os.environ.get("REPORT"):
+        return Path(made)
     folder = tmp_path_factory.mktemp("whole") / "out"
     reproduce(folder, quick=True, workers=2)
     return folder

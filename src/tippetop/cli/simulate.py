@@ -147,10 +147,11 @@ def _check_files(wanted: dict[str, Path], force: bool, duration: float) -> None:
         else:
             refuse_ending_of_others("--out", path)
         place_for(path, force)
-    for kind in FILMS & set(wanted):
-        from tippetop.export.movie import require_film  # noqa: PLC0415 - slow to import
+    for kind in wanted:
+        if kind in FILMS:
+            from tippetop.export.movie import require_film  # noqa: PLC0415 - slow to import
 
-        require_film(f".{kind}", duration)
+            require_film(f".{kind}", duration)
 
 
 def _rows(summary: dict[str, Any], jellett_conserved: bool) -> list[tuple[str, str, str]]:

@@ -85,7 +85,8 @@ def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
             path.write_bytes(zlib.compress(content, 1))
         return content
 
-    return kept(made, use)
+    # What was kept under another name, by an earlier version, is another thing.
+    return kept((CONTENT, made), use)
 
 
 def _processor() -> tuple[str, ...]:
@@ -118,8 +119,7 @@ def _clear(place: Path) -> None:
     for pattern in OLD if place == users_folder() else ():
         held += place.glob(pattern)
     for number, old in enumerate(sorted(held, key=os.path.getmtime, reverse=True), 1):
-        with os.scandir(old) if old.is_dir() else contextlib.nullcontext([old]) as files:
-            size += sum(file.stat().st_size for file in files)
+        size += sum(path.stat().st_size for path in (old, *old.glob("*")) if path.is_file())
         if number < MOST and size <= LARGEST:
             continue
         if not old.is_dir():
