@@ -181,6 +181,14 @@ def test_what_others_keep_in_the_same_folder_stays(tmp_path, monkeypatch):
     } == NOT_OURS
 
 
+def test_a_link_to_nothing_in_a_folder_does_not_keep_code_from_being_kept(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    (tmp_path / f"code-{32 * '0'}").mkdir()
+    (tmp_path / f"code-{32 * '0'}/link").symlink_to(tmp_path / "nothing")
+    assert kept_content("code", lambda: b"made") == b"made"
+    assert kept_content("code", lambda: b"again") == b"made"
+
+
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owner here")
 def test_what_another_user_made_is_not_removed(tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, str(tmp_path))

@@ -76,9 +76,10 @@ def write_movie(
     require_run(run)
     require_callback("progress", progress)
     path = path_of(path)
-    encoder = ffmpeg() if require_ending("path", path, (".mp4", ".gif")) == ".mp4" else ""
+    ending = require_ending("path", path, tuple(RATES))
+    encoder = ffmpeg() if ending == ".mp4" else ""
     place_for(path, overwrite)
-    rate = fps if fps is not None else RATES[path.suffix.lower()]
+    rate = fps if fps is not None else RATES[ending]
     extent = pixels if pixels is not None else (640, 480) if encoder else (360, 270)
     _check(rate, speed, extent)
     if not encoder:

@@ -119,7 +119,7 @@ def _clear(place: Path) -> None:
     for pattern in OLD if place == users_folder() else ():
         held += place.glob(pattern)
     for number, old in enumerate(sorted(held, key=os.path.getmtime, reverse=True), 1):
-        size += sum(path.stat().st_size for path in (old, *old.glob("*")) if path.is_file())
+        size += _size(old)
         if number < MOST and size <= LARGEST:
             continue
         if not old.is_dir():
@@ -130,6 +130,14 @@ def _clear(place: Path) -> None:
         process = MAKING.fullmatch(left.name)
         if process and not psutil.pid_exists(int(process[1])):
             shutil.rmtree(left, ignore_errors=True)
+
+
+def _size(place: Path) -> int:
+    """Bytes in the files of a folder, or in a file."""
+    if not place.is_dir():
+        return place.stat().st_size
+    with os.scandir(place) as entries:
+        return sum(entry.stat().st_size for entry in entries if entry.is_file())
 
 
 def _is_own(folder: Path) -> bool:
