@@ -1,7 +1,7 @@
 """The top flies, in closed form."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -9,11 +9,11 @@ from tippetop.contact.mode import Mode, Outcome, Segment, Transition, failed
 from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import ELEMENTARY, DenseSolution
-from tippetop.mechanics.flight import fly, gap, gap_rate
+from tippetop.mechanics.flight import flight_rates, fly, gap, gap_rate, precession, swing
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
-from tippetop.mechanics.vectors import Row, Scalar, length
+from tippetop.mechanics.vectors import Row, Scalar
 
 DEGREE = 10
 """Degree of the polynomials that stand for a flight in a solution."""
@@ -55,8 +55,7 @@ class Flight(Mode):
             yield Segment(self, nothing, state, failed("The end of the flight", error, state))
             return
         duration = end - time if landing is None else landing
-        rate = length(state.momentum) / self.top.transverse_inertia
-        count = 1 + int(duration * rate / TURN)
+        count = 1 + int(duration * precession(state, self.top) / TURN)
         for first in range(0, count, MOST_STEPS):
             last = min(first + MOST_STEPS, count)
             elapsed = [duration / count * step for step in range(first, last + 1)]
@@ -67,9 +66,22 @@ class Flight(Mode):
                 reach = end if landing is None else reach
                 low = None if landing is None else lowest
                 transition = self._transition(reach, here, low, integrator)
-            solution = DenseSolution.fitted(flown, elapsed, DEGREE, self, state.pack()).moved(time, reach)
+            solution = self._solution(state, elapsed).moved(time, reach)
             highest = highest_gap(state, self.top, elapsed[-1])
             yield Segment(self, solution, here, transition, highest_gap=highest)
+
+    def _solution(self, state: State, elapsed: Sequence[float]) -> DenseSolution:
+        """The flight from a state on, in steps of equal length."""
+        frequency = precession(state, self.top)
+
+        def moving(time: Scalar) -> tuple[Row, Row, Row]:
+            here = fly(state, time, self.top, ELEMENTARY)
+            rate, second = flight_rates(here, self.top)
+            return here.pack(), rate.pack(), second.pack()
+
+        return DenseSolution.swinging(
+            moving, lambda time: swing(frequency, time, ELEMENTARY), elapsed, DEGREE, len(state.axis)
+        )
 
     def _landing(self, state: State, horizon: float) -> tuple[float | None, Top]:
         """When the first surface touches the table, and the top with that surface active."""
@@ -93,11 +105,6 @@ class Flight(Mode):
         if lowest == self.top:
             return self.rules.touchdown(time, here, integrator)
         return self.rules.touch(number_of(lowest), time, here, integrator)
-
-
-def flown(flight: Flight, y: Row, elapsed: Scalar) -> Row:
-    """The numbers of a flight, a time after it had others."""
-    return fly(flight.state(y), elapsed, flight.top, ELEMENTARY).pack()
 
 
 def start_of(state: State, top: Top) -> Start:

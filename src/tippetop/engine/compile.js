@@ -73,10 +73,19 @@ export function iterated(function_, size, parameters, abreast) {
   };
 }
 
-const codes = cached(() => new Map());
+const codes = cached(() => new Map()), readers = new WeakMap();
 
 /** What makes readings, of so many numbers, of those of a mode and another one. */
 export function reader(mode, size) {
+  if (mode.tops.length > 1) return newReader(mode, size);
+  const [top] = mode.tops, name = `${mode.form} ${size}`;
+  if (!readers.has(top)) readers.set(top, new Map());
+  const known = readers.get(top);
+  if (!known.has(name)) known.set(name, newReader(mode, size));
+  return known.get(name);
+}
+
+function newReader(mode, size) {
   const kinds = mode.tops.map((top) => top.kind), numbers = mode.tops.flatMap((top) => top.numbers);
   const known = codes(mode.form, kinds, size), parameters = Float64Array.of(...numbers, 0);
   const values = (of) => (y, p) => {

@@ -1,9 +1,8 @@
 // Solutions as polynomials in time, one a step, as in tippetop.integrators.dense.
-import { reader } from "./compile.js";
 import { crossing } from "./mechanics.js";
 import { CHEBYSHEV, SHORTEST } from "./tables.js";
 
-export const ELEMENTARY = { sin: (x) => x.graph.node("sin", [x]), cos: (x) => x.graph.node("cos", [x]) };
+export const ELEMENTARY = Math;
 export const as_array = (numbers) => Float64Array.from(numbers);
 
 /** The first of some places, from 0 on, from which on something holds; the last if it does nowhere. */
@@ -136,16 +135,34 @@ export class DenseSolution {
   }
 
   /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
-  static fitted(function_, knots, degree, mode, y) {
-    const code = mode && reader(mode, y.length)(function_, y.length), look = code ? (time) => code(y, time).slice() : function_;
-    const { places, transform, powers } = CHEBYSHEV[degree], size = look(knots[0]).length, wide = degree + 1;
-    const terms = new Float64Array((knots.length - 1) * size * wide), [values, weights] = [new Float64Array(wide), new Float64Array(wide)];
+  static fitted(function_, knots, degree) {
+    const { places, transform, powers } = CHEBYSHEV[degree], wide = degree + 1, terms = [];
+    const [values, weights] = [new Float64Array(wide), new Float64Array(wide)];
+    let size = 0;
     for (let step = 1, at = 0; step < knots.length; step += 1) {
-      const rows = places.map((place) => look(knots[step - 1] + place * (knots[step] - knots[step - 1])));
+      const rows = places.map((place) => function_(knots[step - 1] + place * (knots[step] - knots[step - 1])));
+      size = rows[0].length;
       for (let number = 0; number < size; number += 1, at += wide) {
         for (let place = 0; place < wide; place += 1) values[place] = rows[place][number];
         multiply(transform, values, weights, 0);
         multiply(powers, weights, terms, at);
+      }
+    }
+    return new DenseSolution(knots, Float64Array.from(terms), size);
+  }
+
+  /** Steps of equal length of numbers the first of which obey y''' = -w^2 y', and the others y''' = 0. */
+  static swinging(moving, swing, knots, degree, count) {
+    const span = knots[1] - knots[0], wide = degree + 1, { terms: gains } = DenseSolution.fitted(swing, [0, span], degree);
+    const begins = knots.slice(0, -1).map(moving), size = begins[0][0].length, terms = new Float64Array(begins.length * size * wide);
+    let at = 0;
+    for (const [numbers, rates, seconds] of begins) {
+      for (let number = 0; number < size; number += 1, at += wide) {
+        const rate = rates[number], second = seconds[number];
+        terms[at] = numbers[number];
+        terms[at + 1] = span * rate;
+        terms[at + 2] = 0.5 * span * span * second;
+        if (number < count) for (let k = 1; k < wide; k += 1) terms[at + k] = rate * gains[k] + second * gains[wide + k];
       }
     }
     return new DenseSolution(knots, terms, size);

@@ -1302,23 +1302,35 @@ const SMALL = 1e-100;
 
 /** The state after a time of free flight. */
 function fly(state, elapsed, top, functions) {
-  var precession = scale(py.div(1.0, top.transverse_inertia), state.momentum);
-  var still = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(0.0, elapsed)];
-  var falling = [py.mul(0.0, elapsed), py.mul(0.0, elapsed), py.mul(py.neg(top.gravity), elapsed)];
+  var [rate, second] = flight_rates(state, top);
+  var [sine, versine] = swing(precession(state, top), elapsed, functions);
   return new State(
-    turned(state.axis, precession, elapsed, functions),
-    add(state.momentum, still),
-    add(state.velocity, falling),
-    py.add(state.height, py.mul(elapsed, py.add(state.velocity[2], py.mul(0.5, falling[2]))))
+    add(state.axis, add(scale(sine, rate.axis), scale(versine, second.axis))),
+    add(state.momentum, scale(elapsed, rate.momentum)),
+    add(state.velocity, scale(elapsed, rate.velocity)),
+    py.add(state.height, py.mul(elapsed, py.add(rate.height, py.mul(py.mul(0.5, elapsed), second.height))))
   );
 }
 
-/** A vector after turning for a time with a constant angular velocity (rad/s), which may be zero. */
-function turned(vector, rate, elapsed, functions) {
-  var half = py.add(py.mul(py.mul(0.5, elapsed), length(rate)), SMALL);
-  var pivot = scale(py.div(py.mul(py.mul(0.5, elapsed), functions.sin(half)), half), rate);
-  var swung = cross(pivot, vector);
-  return add(vector, scale(2.0, add(scale(functions.cos(half), swung), cross(pivot, swung))));
+/** Rate at which the axis turns about the angular momentum in flight, rad/s. */
+function precession(state, top) {
+  return py.div(length(state.momentum), top.transverse_inertia);
+}
+
+/** Rates of change of the state in free flight, and of those. */
+function flight_rates(state, top) {
+  var turning = axis_rate(state.axis, state.momentum, top);
+  var still = [0.0, 0.0, 0.0];
+  var falling = [0.0, 0.0, py.neg(top.gravity)];
+  var rate = new State(turning, still, falling, state.velocity[2]);
+  return [rate, new State(axis_rate(turning, state.momentum, top), still, still, py.neg(top.gravity))];
+}
+
+/** sin(w t) / w and (1 - cos(w t)) / w^2, for a frequency w that may be zero. */
+function swing(frequency, elapsed, functions) {
+  var half = py.add(py.mul(py.mul(0.5, elapsed), frequency), SMALL);
+  var chord = py.div(py.mul(elapsed, functions.sin(half)), half);
+  return [py.mul(chord, functions.cos(half)), py.mul(py.mul(0.5, chord), chord)];
 }
 
 /** Height of the lowest point of the body above the table, z - h(n_z), m. */
@@ -1753,33 +1765,24 @@ class Tip extends py.NamedTuple {
   }
   /** The tip in a free flight from a state on; of numbers, or arrays of them. */
   static of(state, top) {
-    var turning = axis_rate(state.axis, state.momentum, top);
-    return new this(
-      state.axis[2],
-      turning[2],
-      axis_rate(turning, state.momentum, top)[2],
-      py.add(length(scale(py.div(1.0, top.transverse_inertia), state.momentum)), SMALL)
-    );
+    var [rate, second] = flight_rates(state, top);
+    return new this(state.axis[2], rate.axis[2], second.axis[2], py.add(precession(state, top), SMALL));
   }
   /** Height, rate and acceleration at a time: c'' turns into -w^2 c' and back. */
   at(time) {
-    var w = this.frequency;
-    var cosine = py.math.cos(py.mul(w, time));
-    var sine = py.div(py.math.sin(py.mul(w, time)), w);
-    var half = py.div(py.math.sin(py.mul(py.mul(0.5, w), time)), w);
+    var square = py.mul(this.frequency, this.frequency);
+    var [sine, versine] = swing(this.frequency, time, py.math);
+    var cosine = py.sub(1.0, py.mul(square, versine));
     return [
       py.min(
         py.max(
-          py.add(
-            py.add(this.height, py.mul(this.rate, sine)),
-            py.mul(py.mul(py.mul(2.0, this.acceleration), half), half)
-          ),
+          py.add(py.add(this.height, py.mul(this.rate, sine)), py.mul(this.acceleration, versine)),
           -1.0
         ),
         1.0
       ),
       py.add(py.mul(this.rate, cosine), py.mul(this.acceleration, sine)),
-      py.sub(py.mul(this.acceleration, cosine), py.mul(py.mul(py.mul(this.rate, w), w), sine))
+      py.sub(py.mul(this.acceleration, cosine), py.mul(py.mul(this.rate, square), sine))
     ];
   }
   /** Time of a turn about the angular momentum. */
@@ -2101,8 +2104,7 @@ class Flight extends Mode {
       return null;
     }
     var duration = landing === null ? py.sub(end, time) : landing;
-    var rate = py.div(length(state.momentum), this.top.transverse_inertia);
-    var count = py.add(1, py.int(py.div(py.mul(duration, rate), TURN)));
+    var count = py.add(1, py.int(py.div(py.mul(duration, precession(state, this.top)), TURN)));
     for (var first = 0; first < count; first += MOST_STEPS) {
       var last = py.min(py.add(first, MOST_STEPS), count);
       var elapsed = py.range(first, py.add(last, 1)).map((step) => py.mul(py.div(duration, count), step));
@@ -2115,16 +2117,26 @@ class Flight extends Mode {
         var low = landing === null ? null : lowest;
         transition = this._transition(reach, here, low, integrator);
       }
-      var solution = DenseSolution.fitted(
-        flown,
-        elapsed,
-        DEGREE_of_flight,
-        this,
-        state.pack()
-      ).moved(time, reach);
+      var solution = this._solution(state, elapsed).moved(time, reach);
       var highest = highest_gap(state, this.top, py.item(elapsed, -1));
       yield new Segment(this, solution, here, transition, undefined, undefined, highest);
     }
+  }
+  /** The flight from a state on, in steps of equal length. */
+  _solution(state, elapsed) {
+    var frequency = precession(state, this.top);
+    var moving = (time) => {
+      var here = fly(state, time, this.top, ELEMENTARY);
+      var [rate, second] = flight_rates(here, this.top);
+      return [here.pack(), rate.pack(), second.pack()];
+    };
+    return DenseSolution.swinging(
+      moving,
+      (time) => swing(frequency, time, ELEMENTARY),
+      elapsed,
+      DEGREE_of_flight,
+      py.len(state.axis)
+    );
   }
   /** When the first surface touches the table, and the top with that surface active. */
   _landing(state, horizon) {
@@ -2153,11 +2165,6 @@ class Flight extends Mode {
     }
     return this.rules.touch(number_of(lowest), time, here, integrator);
   }
-}
-
-/** The numbers of a flight, a time after it had others. */
-function flown(flight, y, elapsed) {
-  return fly(flight.state(y), elapsed, flight.top, ELEMENTARY).pack();
 }
 
 /** How a flight starts for a surface that did not decide it: far, or just opened. */
@@ -9667,7 +9674,7 @@ const [REACHED, FULL, SUSPECT, STUCK_of_dormand_prince, SINGULAR] = py.range(5);
 const [SAFETY_of_dormand_prince, LEAST_FACTOR, MOST_FACTOR] = [0.9, 0.2, 10.0];
 const NOTHING = 2e-15;
 const [EARLIEST, RISEN] = [py.pow(0.5, 40), 1e-15];
-const ROWS = 23;
+const ROWS = 26;
 const POWERS = 8;
 const LOOKS_of_dormand_prince = 8;
 
@@ -9871,17 +9878,18 @@ function take_step(rates, p, y, lost, k, span, tolerance, terms, first, size, mo
 /** Take steps from a state, which is brought up to date. */
 function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps, size) {
   [y, lost, k] = [fixed(y), fixed(lost), fixed(k)];
-  var moved = py.np.empty(y.length);
-  var new_ = py.np.empty(y.length);
-  var place = py.np.empty(y.length);
+  var moved = k[23];
+  var new_ = k[24];
+  var place = k[25];
   var values = py.np.empty([LOOKS_of_dormand_prince + 2, count]);
   var room = py.np.empty(LOOKS_of_dormand_prince * (y.length + count));
   var calls = 0;
-  if (span[2] === 0.0) {
-    span[2] = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size);
-    if (span[2] < 0.0) {
+  if (span[2] <= 0.0) {
+    var found = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size);
+    if (found < 0.0) {
       return [steps, 1, SINGULAR];
     }
+    span[2] = py.max(found, -span[2]);
     calls = calls + 2;
   }
   if (count > 0) {
@@ -10384,6 +10392,10 @@ function _value_of(guard, state, parameters) {
 /** The intervals over which the guard falls from positive to not positive, in turn; in which solution. */
 function* brackets(probes, values, value, exact) {
   var last = py.sub(py.len(probes), 1);
+  var least = py.min(values);
+  if (least > 0.0 && py.mul(2.0, least) >= py.max(values)) {
+    return null;
+  }
   if (py.max(values.slice(0, 2)) <= 0.0) {
     var early = _early_bracket(probes[0], py.item(probes, last), value);
     if (early !== null) {
@@ -10401,11 +10413,11 @@ function* brackets(probes, values, value, exact) {
     ) {
       var drop = py.sub(py.max(values.slice(py.max(py.sub(i, 2), 0), py.add(i, 3))), py.item(values, i));
       if (py.item(values, i) < drop) {
-        var [place, least] = dip(value, py.item(probes, before), py.item(probes, after));
-        if (least <= 0.0) {
+        var [place, lowest] = dip(value, py.item(probes, before), py.item(probes, after));
+        if (lowest <= 0.0) {
           yield [py.item(probes, before), place, value];
         } else if (
-          least < py.mul(INEXACT, drop) && exact(place) <= 0.0 && exact(py.item(probes, before)) > 0.0
+          lowest < py.mul(INEXACT, drop) && exact(place) <= 0.0 && exact(py.item(probes, before)) > 0.0
         ) {
           yield [py.item(probes, before), place, exact];
         }
@@ -10636,10 +10648,10 @@ class Stepping extends py.Thing {
     }
     return this.other;
   }
-  /** The state after steps from another that end at exactly this time. */
+  /** The state after a step from another, or some, that end at exactly this time. */
   landed(time, state, end) {
     [this.row, this.lost] = [longer(state, py.len(this.row)), py.np.zeros(py.len(this.row))];
-    this.span = py.np.array([time, end, 0.0]);
+    this.span = py.np.array([time, end, py.sub(time, end)]);
     var ended = FULL;
     while (py.eq(ended, FULL) && end > time) {
       this.steps = 0;
@@ -12023,7 +12035,7 @@ export {
   first_step,
   fixed,
   flat,
-  flown,
+  flight_rates,
   fly,
   fold,
   follow_surface,
@@ -12132,6 +12144,7 @@ export {
   point_velocity,
   polynomials,
   power,
+  precession,
   precession_at,
   precession_boundaries,
   precession_rate,
@@ -12222,6 +12235,7 @@ export {
   surface_guards,
   suspect,
   sweep,
+  swing,
   take_step,
   tangents,
   thinned,
@@ -12232,7 +12246,6 @@ export {
   touchdown,
   touching_tilts,
   turn_rate,
-  turned,
   turned_slopes,
   turning_about,
   turning_along,

@@ -189,7 +189,12 @@ class Least {
   found() {
     for (const [bound, values] of this.places.sort(([a], [b]) => a - b)) {
       if (bound >= this.value) break;
-      const looks = PLACES.map(values), low = Math.min(...looks), high = Math.max(...looks), at = looks.indexOf(low);
+      let low = Infinity, high = -Infinity, at = 0;
+      for (let look = 0; look <= LOOKS; look += 1) {
+        const value = values(PLACES[look]);
+        if (value < low) [low, at] = [value, look];
+        if (value > high) high = value;
+      }
       if (low - 0.1 * (high - low) > this.value) continue;
       const [start, end] = [Math.max(at - 1, 0), Math.min(at + 1, LOOKS)].map((look) => PLACES[look]);
       this.value = Math.min(this.value, low, values(m.dip((part) => values(part) - low + (high - low), start, end)[0]));

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,7 @@ from tippetop.mechanics.vectors import Functions, Row
 Array: TypeAlias = NDArray[np.float64]
 
 ELEMENTARY: Functions = np
-"""Elementary functions of what a function that is fitted takes."""
+"""Elementary functions of what is asked for here: of times."""
 
 NEWTON = 6
 """Improvements of a time at which a component has some value."""
@@ -158,29 +158,66 @@ class DenseSolution:
 
     @classmethod
     def fitted(
-        cls, function: Callable[..., Row], knots: Sequence[float] | Array, degree: int, *given: Any
+        cls, function: Callable[[Array], Row], knots: Sequence[float] | Array, degree: int
     ) -> "DenseSolution":
         """Polynomials that agree with a function at Chebyshev's points of every step.
 
         Parameters
         ----------
         function
-            Takes what is given and times, shape (m,), and returns numbers, each of shape (m,), or one for
-            all.
+            Takes times, shape (m,), and returns numbers, each of shape (m,), or one for all.
         knots
             Ends of the steps, shape (k + 1,).
         degree
             Of the polynomials.
-        given
-            A mode and numbers of its motion, if the function takes those.
         """
         places, transform, to_powers = chebyshev(degree)
         knots = np.asarray(knots, dtype=float)
-        rows = function(*given, (knots[:-1, None] + places * np.diff(knots)[:, None]).ravel())
-        values = np.stack(np.broadcast_arrays(*rows), axis=-1)
-        values = values.reshape(len(knots) - 1, degree + 1, values.shape[-1])
+        rows = function((knots[:-1, None] + places * np.diff(knots)[:, None]).ravel())
+        values = table(rows, places.size * (len(knots) - 1)).reshape(len(knots) - 1, degree + 1, len(rows))
         # Through Chebyshev's polynomials, whose coefficients fall off, so that no digits are lost.
         return cls(knots, np.swapaxes(to_powers @ (transform @ values), 1, 2))
+
+    @classmethod
+    def swinging(
+        cls,
+        moving: Callable[[Array], Sequence[Row]],
+        swing: Callable[[Array], Row],
+        knots: Sequence[float],
+        degree: int,
+        count: int,
+    ) -> "DenseSolution":
+        """Steps of equal length of numbers that obey y''' = -w^2 y', with the same w, or y''' = 0.
+
+        Parameters
+        ----------
+        moving
+            Takes times, and returns the numbers, their rates, and rates of those.
+        swing
+            Takes times t, and returns sin(w t) / w and (1 - cos(w t)) / w^2.
+        knots
+            Ends of the steps.
+        degree
+            Of the polynomials.
+        count
+            How many of the numbers have that w: the first ones.
+        """
+        ends = np.array(knots)
+        begin, rate, second = (table(rows, len(ends) - 1) for rows in moving(ends[:-1]))
+        span = ends[1] - ends[0]
+        sine, versine = cls.fitted(swing, [0.0, span], degree).terms[0, :, 1:]
+        terms = np.zeros((len(begin), begin.shape[1], degree + 1))
+        terms[:, :, 0], terms[:, :, 1], terms[:, :, 2] = begin, span * rate, 0.5 * span * span * second
+        terms[:, :count, 1:] = rate[:, :count, None] * sine + second[:, :count, None] * versine
+        return cls(ends, terms)
+
+
+def table(rows: Row, count: int) -> Array:
+    """Numbers, of so many values each, or of one for all, beside one another: shape (count, n)."""
+    found = np.empty((len(rows), count))
+    for place, row in enumerate(rows):
+        found[place] = row
+    return found.T
 
 
 def as_array(numbers: Sequence[float]) -> Array:

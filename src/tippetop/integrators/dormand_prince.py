@@ -35,8 +35,8 @@ EARLIEST, RISEN = 0.5**40, 1e-15
 """Where else a guard is looked at that starts at zero: one place is within any rebound; and what it must
 reach there to have risen: less is rounding."""
 
-ROWS = 23
-"""Stages of a step, 16, and what its polynomials are made of."""
+ROWS = 26
+"""Stages of a step, 16, what its polynomials are made of, and room for three states."""
 
 POWERS = 8
 """Coefficients of each of a step's polynomials."""
@@ -240,22 +240,23 @@ def advance(
     A motion is rates and guards, so many as `count`, of its state y and parameters p. What rounding has taken
     from the state so far is in `lost`. The rows of `k`, shape (`ROWS`, n), are room for the rates of the
     stages, of which the first have been found unless all begins here, and for what is made of them. `span` is
-    the time, the end, and the next step's size, 0 to begin with: time and size are brought up to date.
-    `tolerance` is the relative and the absolute error per step. `knots`, shape (n + 1,), and `terms` are room
-    for the ends of steps and the coefficients of their polynomials, those of each number in a row; `steps` of
-    them are there. The state has `size` numbers; its rows, and those of what is made of it, may be longer,
-    with zeros at the end.
+    the time, the end, and the next step's size, to begin with 0 or the negative of one to be tried: time and
+    size are brought up to date. `tolerance` is the relative and the absolute error per step. `knots`, shape
+    (n + 1,), and `terms` are room for the ends of steps and the coefficients of their polynomials, those of
+    each number in a row; `steps` of them are there. The state has `size` numbers; its rows, and those of what
+    is made of it, may be longer, with zeros at the end.
 
     It returns how many steps are there then, how often the rates were asked for, and how it ended.
     """
     y, lost, k = fixed(y), fixed(lost), fixed(k)
-    moved, new, place = np.empty(len(y)), np.empty(len(y)), np.empty(len(y))
+    moved, new, place = k[23], k[24], k[25]
     values, room = np.empty((LOOKS + 2, count)), np.empty(LOOKS * (len(y) + count))
     calls = 0
-    if span[2] == 0.0:
-        span[2] = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size)
-        if span[2] < 0.0:
+    if span[2] <= 0.0:
+        found = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size)
+        if found < 0.0:
             return steps, 1, SINGULAR
+        span[2] = max(found, -span[2])
         calls += 2
     if count > 0:
         evaluate(guards, y, p, values[0])

@@ -110,7 +110,9 @@ def brackets(
     probes: Sequence[float], values: Sequence[float], value: Value, exact: Value
 ) -> Iterator[tuple[float, float, Value]]:
     """The intervals over which the guard falls from positive to not positive, in turn; in which solution."""
-    last = len(probes) - 1
+    last, least = len(probes) - 1, min(values)
+    if least > 0.0 and 2.0 * least >= max(values):
+        return  # what is told of dips below is true of none
     if max(values[:2]) <= 0.0:
         early = _early_bracket(probes[0], probes[last], value)
         if early is not None:
@@ -121,10 +123,10 @@ def brackets(
             # Between the probes it may be lower, though by little: by less than it falls within two of them.
             drop = max(values[max(i - 2, 0) : i + 3]) - values[i]
             if values[i] < drop:
-                place, least = dip(value, probes[before], probes[after])
-                if least <= 0.0:
+                place, lowest = dip(value, probes[before], probes[after])
+                if lowest <= 0.0:
                     yield probes[before], place, value
-                elif least < INEXACT * drop and exact(place) <= 0.0 and exact(probes[before]) > 0.0:
+                elif lowest < INEXACT * drop and exact(place) <= 0.0 and exact(probes[before]) > 0.0:
                     yield probes[before], place, exact
         if values[i] > 0.0 and values[after] <= 0.0:
             yield probes[i], probes[after], value

@@ -180,9 +180,9 @@ class Stepping:
         return self.other
 
     def landed(self, time: float, state: Array, end: float) -> Array:
-        """The state after steps from another that end at exactly this time."""
+        """The state after a step from another, or some, that end at exactly this time."""
         self.row, self.lost = longer(state, len(self.row)), np.zeros(len(self.row))
-        self.span = np.array([time, end, 0.0])
+        self.span = np.array([time, end, time - end])
         ended = FULL
         while ended == FULL and end > time:
             self.steps = 0

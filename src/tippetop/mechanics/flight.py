@@ -1,13 +1,14 @@
 """Free flight of a body of revolution in closed form.
 
-In flight the angular momentum L is constant, the axis n turns about it at the constant rate L / I1, and the
-centre of mass falls (Landau and Lifshitz, Mechanics, sections 33 and 35).
+In flight the angular momentum L is constant, the axis n turns about it at the constant rate w = L / I1, and
+the centre of mass falls (Landau and Lifshitz, Mechanics, sections 33 and 35). A number y of the axis so obeys
+y''' = -w^2 y', and every other one of the state y''' = 0.
 """
 
-from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Functions, Scalar, Vector, add, cross, length, scale
+from tippetop.mechanics.vectors import Functions, Scalar, add, length, scale
 
 SMALL = 1e-100
 """Added to a rate or an angle that is about to divide: changes nothing but 0 / 0."""
@@ -27,23 +28,37 @@ def fly(state: State, elapsed: Scalar, top: Top, functions: Functions) -> State:
     functions
         Where sin and cos come from: `math`, `numpy`, ...
     """
-    precession = scale(1.0 / top.transverse_inertia, state.momentum)
-    still = (0.0 * elapsed, 0.0 * elapsed, 0.0 * elapsed)
-    falling = (0.0 * elapsed, 0.0 * elapsed, -top.gravity * elapsed)
+    rate, second = flight_rates(state, top)
+    sine, versine = swing(precession(state, top), elapsed, functions)
     return State(
-        axis=turned(state.axis, precession, elapsed, functions),
-        momentum=add(state.momentum, still),
-        velocity=add(state.velocity, falling),
-        height=state.height + elapsed * (state.velocity[2] + 0.5 * falling[2]),
+        axis=add(state.axis, add(scale(sine, rate.axis), scale(versine, second.axis))),
+        momentum=add(state.momentum, scale(elapsed, rate.momentum)),
+        velocity=add(state.velocity, scale(elapsed, rate.velocity)),
+        height=state.height + elapsed * (rate.height + 0.5 * elapsed * second.height),
     )
 
 
-def turned(vector: Vector, rate: Vector, elapsed: Scalar, functions: Functions) -> Vector:
-    """A vector after turning for a time with a constant angular velocity (rad/s), which may be zero."""
-    half = 0.5 * elapsed * length(rate) + SMALL
-    pivot = scale(0.5 * elapsed * functions.sin(half) / half, rate)
-    swung = cross(pivot, vector)
-    return add(vector, scale(2.0, add(scale(functions.cos(half), swung), cross(pivot, swung))))
+def precession(state: State, top: Top) -> Scalar:
+    """Rate at which the axis turns about the angular momentum in flight, rad/s."""
+    return length(state.momentum) / top.transverse_inertia
+
+
+def flight_rates(state: State, top: Top) -> tuple[State, State]:
+    """Rates of change of the state in free flight, and of those."""
+    turning = axis_rate(state.axis, state.momentum, top)
+    still, falling = (0.0, 0.0, 0.0), (0.0, 0.0, -top.gravity)
+    rate = State(turning, still, falling, state.velocity[2])
+    return rate, State(axis_rate(turning, state.momentum, top), still, still, -top.gravity)
+
+
+def swing(frequency: Scalar, elapsed: Scalar, functions: Functions) -> tuple[Scalar, Scalar]:
+    """sin(w t) / w and (1 - cos(w t)) / w^2, for a frequency w that may be zero.
+
+    A number that obeys y''' = -w^2 y' gains the first of them times y', and the second times y'', in a time.
+    """
+    half = 0.5 * elapsed * frequency + SMALL
+    chord = elapsed * functions.sin(half) / half
+    return chord * functions.cos(half), 0.5 * chord * chord
 
 
 def gap(state: State, top: Top) -> Scalar:

@@ -5,14 +5,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tippetop.mechanics.disc import Disc
-from tippetop.mechanics.flight import SMALL
-from tippetop.mechanics.motion import axis_rate
+from tippetop.mechanics.flight import SMALL, flight_rates, precession, swing
 from tippetop.mechanics.roots import Triple, crossing
 from tippetop.mechanics.series import Series, Sums
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar, length, scale
+from tippetop.mechanics.vectors import Scalar
 
 DEGREE = 16
 """Degree of the Taylor polynomial of the gap at the start of a flight."""
@@ -46,22 +45,18 @@ class Tip(NamedTuple):
     @classmethod
     def of(cls, state: State, top: Top) -> "Tip":
         """The tip in a free flight from a state on; of numbers, or arrays of them."""
-        turning = axis_rate(state.axis, state.momentum, top)
-        return cls(
-            state.axis[2],
-            turning[2],
-            axis_rate(turning, state.momentum, top)[2],
-            length(scale(1.0 / top.transverse_inertia, state.momentum)) + SMALL,
-        )
+        rate, second = flight_rates(state, top)
+        return cls(state.axis[2], rate.axis[2], second.axis[2], precession(state, top) + SMALL)
 
     def at(self, time: float) -> Triple:
         """Height, rate and acceleration at a time: c'' turns into -w^2 c' and back."""
-        w = self.frequency
-        cosine, sine, half = math.cos(w * time), math.sin(w * time) / w, math.sin(0.5 * w * time) / w
+        square = self.frequency * self.frequency
+        sine, versine = swing(self.frequency, time, math)
+        cosine = 1.0 - square * versine
         return (
-            min(max(self.height + self.rate * sine + 2.0 * self.acceleration * half * half, -1.0), 1.0),
+            min(max(self.height + self.rate * sine + self.acceleration * versine, -1.0), 1.0),
             self.rate * cosine + self.acceleration * sine,
-            self.acceleration * cosine - self.rate * w * w * sine,
+            self.acceleration * cosine - self.rate * square * sine,
         )
 
     @property
