@@ -210,6 +210,40 @@ def test_translated_functions_return_the_same(both, name):
     assert both[1][name] == both[0][name]
 
 
+PLAIN = """
+def numbers(x=3.0):
+    row = [x - 1.0, -x] + [abs(x - 5.0)]
+    row += [0.0] * 2
+    try:
+        row.append(x / (x - 3.0))
+    except ZeroDivisionError:
+        row.append(x * 2.0 / 4.0 - (x - (1.0 - x)))
+    return row
+"""
+
+
+def run(lines, tmp_path):
+    """What JavaScript with these lines prints, and what goes wrong in it."""
+    script = Path(tmp_path) / "plain.mjs"
+    script.write_text(
+        "\n".join([f'import * as py from "{(HERE / "runtime.js").as_uri()}";', *lines]), "utf-8"
+    )
+    ran = subprocess.run([NODE, str(script)], capture_output=True, text=True, check=False)
+    return ran.stdout, ran.stderr
+
+
+def test_arithmetic_of_numbers_alone_is_that_of_javascript_and_means_the_same(tmp_path):
+    program, space = Program({"sample": PLAIN}, {}, (), plain={"sample"}), {}
+    exec(PLAIN, space)
+    lines = list(Definitions(program, "sample").module_lines())
+    assert "2.0 / 4.0 - (x - (1.0 - x))" in "".join(lines)
+    found, wrong = run([*lines, "console.log(JSON.stringify(numbers()))"], tmp_path)
+    assert not wrong
+    assert json.loads(found) == space["numbers"]()
+    _, wrong = run([*lines, "numbers(new py.Thing());"], tmp_path)
+    assert "ArithmeticError: what is compared, or added to something, is no number" in wrong
+
+
 @pytest.mark.parametrize("statement", ["return f(**k)", "with open(x) as f: pass", 'return f"{x:.0e}"'])
 def test_what_is_not_known_is_refused(statement):
     text = f"def some(x, k, f):\n    {statement}\n"

@@ -8,7 +8,7 @@ from tippetop.integrators.falls import first_fall
 
 ERROR = 1e-11
 STEP = (3.0, 4.0)
-LOW, SURE = (Guard(name, lambda y, p, number=n: y[number]) for n, name in enumerate(("low", "sure")))
+LOW, SURE = (lambda y, number=n: float(y[number]) for n in range(2))
 
 
 def fall(exact, *, end=None, late=False):
@@ -26,7 +26,7 @@ def fall(exact, *, end=None, late=False):
         part = time - STEP[0]
         return advance(time) - np.array([4.0 * ERROR * part ** (1 + late) * (1.0 - part), 0.0])
 
-    return first_fall((LOW, SURE), (), dense, advance, STEP)
+    return first_fall([LOW, SURE], dense, advance, STEP)
 
 
 def test_what_only_the_interpolation_shows_is_no_fall():
@@ -80,10 +80,10 @@ def test_a_pole_beyond_which_a_guard_is_negative_hides_no_fall_before_it(pole):
     def along(time):
         return np.array([time - STEP[0]])
 
-    beyond = Guard("beyond", lambda y, p: 1.0 / (pole + STEP[0] - (y[0] + STEP[0])))
-    before = Guard("before", lambda y, p: pole - 1e-3 - y[0])
+    beyond = Guard("beyond", lambda y, p: 1.0 / (pole + STEP[0] - (y[0] + STEP[0]))).with_parameters(())
+    before = Guard("before", lambda y, p: pole - 1e-3 - y[0]).with_parameters(())
     with pytest.raises(ZeroDivisionError):
-        beyond.value(along(STEP[0] + pole).tolist(), ())
-    number, time, _ = first_fall((beyond, before), (), along, along, STEP)
+        beyond(along(STEP[0] + pole))
+    number, time, _ = first_fall([beyond, before], along, along, STEP)
     assert number == 1
     assert time == pytest.approx(STEP[0] + pole - 1e-3, abs=1e-14)

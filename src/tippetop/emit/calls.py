@@ -38,7 +38,7 @@ class Calls(Expressions):
                 return f"{self.text(value, ATOM)}.{RENAMED.get(attr, attr)}({self._given(node)})"
             case ast.Subscript(value=ast.Name(id="list" | "dict" | "set" as word)):
                 return f"py.{word}({self.arguments(node.args)})"
-            case ast.Name(id="abs") if self.numeric:
+            case ast.Name(id="abs") if self.plain:
                 return f"Math.abs({self.arguments(node.args)})"
             case ast.Name(id="len") if self.numeric:
                 return f"{self.text(node.args[0])}.length"

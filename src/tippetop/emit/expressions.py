@@ -41,8 +41,8 @@ class Expressions(ABC):
 
     def __init__(self, program: Program, module: str) -> None:
         self.program, self.module = program, module
-        self.scopes, self.numeric = [set[str]()], module in program.numeric
-        self.declared, self.rows = set[str](), dict[str, str]()
+        self.plain, self.numeric = module in program.plain, module in program.numeric
+        self.scopes, self.declared, self.rows = [set[str]()], set[str](), dict[str, str]()
 
     @abstractmethod
     def call(self, node: ast.Call) -> str:
@@ -113,7 +113,7 @@ class Expressions(ABC):
                 return self._arithmetic(node)
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 return f"!{self.truth(operand, UNARY)}", UNARY
-            case ast.UnaryOp(operand=operand) if self.numeric or isinstance(operand, ast.Constant):
+            case ast.UnaryOp(operand=operand) if self.plain or isinstance(operand, ast.Constant):
                 return f"-{self.text(operand, ATOM)}", UNARY
             case ast.UnaryOp(operand=operand):
                 return f"py.neg({self.text(operand)})", ATOM
@@ -160,7 +160,7 @@ class Expressions(ABC):
 
     def _arithmetic(self, node: ast.BinOp) -> tuple[str, int]:
         word, sign, binds = ARITHMETIC[type(node.op)]
-        if sign and (self.numeric or binds == BITS):
+        if sign and (binds == BITS or self.numeric or (self.plain and is_of_numbers(node))):
             return f"{self.text(node.left, binds)} {sign} {self.text(node.right, binds + 1)}", binds
         return f"py.{word}({self.text(node.left)}, {self.text(node.right)})", ATOM
 
@@ -228,6 +228,20 @@ class Expressions(ABC):
             whole = f"{whole}.map(({target}) => {inner})"
         self.scopes.pop()
         return whole
+
+
+def is_of_numbers(node: ast.BinOp) -> bool:
+    """Whether an operator means the same in both, where all but lists are numbers and zero may divide."""
+    if isinstance(node.op, ast.Div):
+        return isinstance(node.right, ast.Constant)
+    return not (is_list(node.left) or is_list(node.right))
+
+
+def is_list(node: ast.expr) -> bool:
+    """Whether an expression is a list that is written there, or made of one."""
+    if isinstance(node, ast.BinOp):
+        return is_list(node.left) or is_list(node.right)
+    return isinstance(node, ast.List | ast.ListComp | ast.Tuple)
 
 
 ROWS = ("py.zip(", "py.range(", "py.enumerate(", "py.list(", "[")

@@ -58,6 +58,8 @@ class Program:
         What is left out: functions, and methods with their class.
     indexed
         Modules in which what is indexed may be an object of its own kind.
+    plain
+        Modules that do arithmetic with numbers alone, beside lists that are written there.
     numeric
         Modules of numbers and arrays of them alone, in which nothing is an error.
 
@@ -73,11 +75,13 @@ class Program:
         given: Mapping[str, str],
         left: Iterable[str],
         indexed: Iterable[str] = (),
+        plain: Iterable[str] = (),
         numeric: Iterable[str] = (),
     ) -> None:
         self.trees = {name: ast.parse(text) for name, text in sources.items()}
         self.given, self.left, self.indexed = dict(given), frozenset(left), frozenset(indexed)
         self.numeric = frozenset(numeric)
+        self.plain = self.numeric.union(plain)
         # What a module's names are called in all of the program.
         self.names: dict[tuple[str, str], str] = {}
         self.made: list[str] = []

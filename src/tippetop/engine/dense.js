@@ -5,6 +5,13 @@ import { CHEBYSHEV, SHORTEST } from "./tables.js";
 export const ELEMENTARY = Math;
 export const as_array = (numbers) => Float64Array.from(numbers);
 
+/** So many numbers: these, and zeros. */
+export function longer(numbers, count) {
+  const found = new Float64Array(count);
+  found.set(numbers);
+  return found;
+}
+
 /** The first of some places, from 0 on, from which on something holds; the last if it does nowhere. */
 export function earliest(count, holds) {
   let low = 0, high = count - 1;

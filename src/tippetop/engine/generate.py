@@ -56,7 +56,7 @@ LEFT = {
     "require_problem",
     *("TippetopError", "FileTrouble", "Unavailable", "InvalidInput.__reduce__", "require", "one_of"),
     *("is_number", "is_whole", "short", "_typed"),
-    *("read", "recordable", "_compiled", "_of_kind", "continuous"),
+    *("read", "recordable", "_compiled", "_of_kind", "continuous", "Guard.with_parameters"),
     *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
     *("Monitor.energy_error", "Graph.rarely"),
     *("precession_branch", "state_of", "is_held", "steady_launch"),
@@ -66,6 +66,15 @@ LEFT = {
 
 INDEXED = {"tippetop.mechanics.series", "tippetop.mechanics.slip_onset"}
 """Where what is indexed may be a series."""
+
+PLAIN = {
+    *(f"tippetop.integrators.{name}" for name in ("falls", "stepping")),
+    *(f"tippetop.mechanics.{name}" for name in ("flight", "roots", "separation", "touchdown")),
+    *(f"tippetop.mechanics.{name}" for name in ("dry_impact", "impact", "impact_on_two", "impact_process")),
+    *(f"tippetop.mechanics.{name}" for name in ("impulse", "runge_kutta", "viscous_impact")),
+    "tippetop.contact.flight",
+}
+"""Where arithmetic is with numbers alone: no series, and nothing that is recorded."""
 
 METHOD = "tippetop.integrators.dormand_prince"
 """Its coefficients are written out beside it."""
@@ -81,7 +90,7 @@ def generated() -> dict[str, str]:
 
 def translated() -> str:
     """The module of mechanics and contact modes."""
-    program = Program(sources(), GIVEN, LEFT, INDEXED, NUMERIC)
+    program = Program(sources(), GIVEN, LEFT, INDEXED, PLAIN, NUMERIC)
     lines = list[str]()
     for module in program.trees:
         lines += ["", f"// {module}"]

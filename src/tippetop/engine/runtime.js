@@ -133,19 +133,19 @@ export const np = {
 
 // ---- tuples with names, records and enumerations
 
-export class Thing {}
+export class Thing {
+  valueOf() {
+    throw new ArithmeticError("what is compared, or added to something, is no number");
+  }
+}
 
-export class NamedTuple {
+export class NamedTuple extends Thing {
   *[Symbol.iterator]() {
     for (const name of this.constructor.fields) yield this[name];
   }
 }
 
-export class Record {
-  valueOf() {
-    throw new ArithmeticError("what is compared is no number");
-  }
-}
+export class Record extends Thing {}
 
 export const replace = (one, changes) =>
   new one.constructor(...one.constructor.fields.map((name) => (name in changes ? changes[name] : one[name])));

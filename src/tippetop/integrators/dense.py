@@ -225,6 +225,11 @@ def as_array(numbers: Sequence[float]) -> Array:
     return np.array(numbers, dtype=float)
 
 
+def longer(numbers: Array, count: int) -> Array:
+    """So many numbers: these, and zeros."""
+    return np.concatenate([numbers, np.zeros(count - len(numbers))])
+
+
 def parts_of(times: Array, starts: Array, ends: Array) -> Array:
     """Which part of their steps has passed at some times; 0 in steps of no length."""
     spans = ends - starts

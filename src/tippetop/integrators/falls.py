@@ -3,13 +3,15 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 
-from tippetop.integrators.base import Array, Guard
+from tippetop.integrators.base import Array
 from tippetop.integrators.dormand_prince import EARLIEST, LOOKS, RISEN
 from tippetop.mechanics.roots import crossing, dip
-from tippetop.mechanics.vectors import Scalar
 
 Dense = Callable[[float], Array]
 """The solution within a step as a function of time."""
+
+GuardValue = Callable[[Array], float]
+"""A guard as a function of the state."""
 
 Value = Callable[[float], float]
 """A guard as a function of time."""
@@ -23,8 +25,7 @@ INEXACT = 0.05
 
 
 def first_fall(
-    guards: Sequence[Guard],
-    parameters: Sequence[Scalar],
+    guards: Sequence[GuardValue],
     dense: Dense,
     advance: Dense,
     step: tuple[float, float],
@@ -37,8 +38,8 @@ def first_fall(
 
     Parameters
     ----------
-    guards, parameters
-        The guards, and the numbers in them.
+    guards
+        The guards.
     dense
         The solution within the step, as interpolated.
     advance
@@ -46,11 +47,11 @@ def first_fall(
     step
         Where it begins and ends.
     """
-    found = _fall_along(guards, parameters, dense, advance, step, 0.0)
+    found = _fall_along(guards, dense, advance, step, 0.0)
     if found is None:
         return None
     number, guess = found
-    polished = _polished(guards[number], parameters, advance, step, guess)
+    polished = _polished(guards[number], advance, step, guess)
     if polished is not None:
         return number, *polished
 
@@ -58,13 +59,12 @@ def first_fall(
         return advance(time) if step[0] < time < step[1] else dense(time)
 
     # The interpolation is wrong by more than the guard is: only ends of steps tell.
-    found = _fall_along(guards, parameters, landed, landed, step, AT_ONCE)
+    found = _fall_along(guards, landed, landed, step, AT_ONCE)
     return None if found is None else (*found, landed(found[1]))
 
 
 def _fall_along(
-    guards: Sequence[Guard],
-    parameters: Sequence[Scalar],
+    guards: Sequence[GuardValue],
     dense: Dense,
     advance: Dense,
     step: tuple[float, float],
@@ -79,10 +79,10 @@ def _fall_along(
     first: tuple[int, float] | None = None
     start, end = step
     probes = [start + look / LOOKS * (end - start) for look in range(LOOKS)] + [end]
-    states = [dense(time).tolist() for time in probes]
+    states = [dense(time) for time in probes]
     for index, guard in enumerate(guards):
-        values = [_value_of(guard, state, parameters) for state in states]
-        value, exact = _along(guard, parameters, dense), _along(guard, parameters, advance)
+        values = [_value_of(guard, state) for state in states]
+        value, exact = _along(guard, dense), _along(guard, advance)
         for low, high, function in brackets(probes, values, value, exact):
             time = crossing(function, low, high)
             if values[LOOKS] > 0.0 and time - start < least * (end - start):
@@ -93,15 +93,15 @@ def _fall_along(
     return first
 
 
-def _along(guard: Guard, parameters: Sequence[Scalar], solution: Dense) -> Value:
+def _along(guard: GuardValue, solution: Dense) -> Value:
     """A guard along a solution."""
-    return lambda time: _value_of(guard, solution(time).tolist(), parameters)
+    return lambda time: _value_of(guard, solution(time))
 
 
-def _value_of(guard: Guard, state: Sequence[float], parameters: Sequence[Scalar]) -> float:
+def _value_of(guard: GuardValue, state: Array) -> float:
     """The value of a guard; infinite at a pole, before which another guard may fall."""
     try:
-        return float(guard.value(state, parameters))
+        return guard(state)
     except ArithmeticError:
         return math.inf
 
@@ -144,7 +144,7 @@ def _early_bracket(start: float, end: float, value: Value) -> tuple[float, float
 
 
 def _polished(
-    guard: Guard, parameters: Sequence[Scalar], advance: Dense, step: tuple[float, float], guess: float
+    guard: GuardValue, advance: Dense, step: tuple[float, float], guess: float
 ) -> tuple[float, Array] | None:
     """Improve the time of a guard's zero with solutions that really end there.
 
@@ -157,7 +157,7 @@ def _polished(
     shift = min(1e-4 * (end - start), 0.1 * (guess - start))
     time, other = guess, guess - shift if guess - shift > start else guess + shift
     state, beside = advance(time), advance(other)
-    value, theirs = (_value_of(guard, one.tolist(), parameters) for one in (state, beside))
+    value, theirs = (_value_of(guard, one) for one in (state, beside))
     moved, finest = shift, 1e-3 * shift
     for _ in range(8):
         if not 0.0 < abs(value - theirs) < math.inf:
@@ -169,7 +169,7 @@ def _polished(
             break
         time, other, beside, theirs = new, time, state, value
         state = advance(new)
-        value = _value_of(guard, state.tolist(), parameters)
+        value = _value_of(guard, state)
     if moved > max(finest, 4e-16 * max(1.0, abs(time))) or abs(time - guess) > 0.5 * (guess - start):
         return None
     return (time, state) if abs(value) <= abs(theirs) else (other, beside)

@@ -45,6 +45,7 @@ class StepByStep(ABC):
         rates, places = RightHandSide(motion, parameters), chebyshev(self.degree)[0].tolist()
         (begin, state), counted = start, 0
         knots, values = [begin], list[Array]()
+        guards = [guard.with_parameters(parameters) for guard in motion.guards]
 
         def keep(until: float, dense: Dense) -> None:
             values.append(np.array([dense(knots[-1] + place * (until - knots[-1])) for place in places]))
@@ -63,7 +64,7 @@ class StepByStep(ABC):
             if isinstance(step, str):
                 yield arc(state, failure=step)
                 return
-            fall = first_fall(motion.guards, parameters, step.dense, step.advance, (knots[-1], step.end))
+            fall = first_fall(guards, step.dense, step.advance, (knots[-1], step.end))
             if fall is not None:
                 number, at, last = fall
                 keep(at, step.dense)

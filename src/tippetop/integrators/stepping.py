@@ -5,11 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tippetop.integrators.base import NO_START, NO_STEP, Arc, Array, Guard, Motion
-from tippetop.integrators.dense import DenseSolution
+from tippetop.integrators.base import NO_START, NO_STEP, Arc, Array, Motion
+from tippetop.integrators.dense import DenseSolution, longer
 from tippetop.integrators.dormand_prince import FULL, POWERS, ROWS, SINGULAR, STUCK, SUSPECT
 from tippetop.integrators.falls import first_fall
-from tippetop.mechanics.vectors import Scalar
 
 FEW, WIDER, MANY = 16, 4, 4096
 """Steps for which there is room at first, how many times as many there is room for then, and in an arc."""
@@ -36,16 +35,6 @@ class Machinery(NamedTuple):
     kept: Any = None
     """What has to last as long as these."""
 
-    def guard(self, guard: Guard, number: int) -> Guard:
-        """A guard that is evaluated by the compiled function."""
-        found = np.empty(self.number)
-
-        def value(y: Sequence[Scalar], p: Any) -> Scalar:
-            self.values(np.array(y), p, found)
-            return found[number]
-
-        return Guard(guard.name, value)
-
 
 def stepped(
     motion: Motion,
@@ -59,11 +48,11 @@ def stepped(
     going = Stepping(functions, np.array(parameters), start, end, tolerance)
     while going.time < end:
         ended = going.advance()
-        fall = going.fall(motion.guards) if ended == SUSPECT else None
+        fall = going.fall() if ended == SUSPECT else None
         if fall is not None:
-            guard, time, state = fall
+            number, time, state = fall
             going.end_at(time, state)
-            yield going.arc(guard.name)
+            yield going.arc(motion.guards[number].name)
             return
         if ended in FAILURES:
             yield going.arc(None, FAILURES[ended])
@@ -141,24 +130,30 @@ class Stepping:
         self.steps, self.calls = 0, 0
         return arc
 
-    def fall(self, guards: Sequence[Guard]) -> tuple[Guard, float, Array] | None:
-        """The guard that first falls through zero in the last step, when, and the state there."""
+    def fall(self) -> tuple[int, float, Array] | None:
+        """Which guard first falls through zero in the last step, when, and the state there."""
         begin, reach = float(self.knots[self.steps - 1]), self.time
         first, row = (self.steps - 1) * len(self.row) * POWERS, np.empty(len(self.row))
+        functions, found = self.functions, np.empty(self.functions.number)
 
         def dense(at: float) -> Array:
-            self.functions.within(self.terms, first, (at - begin) / (reach - begin), row)
+            functions.within(self.terms, first, (at - begin) / (reach - begin), row)
             return np.array(row[: self.size])
 
         def advance(at: float) -> Array:
             return self.beside().landed(begin, state, at)
 
-        state = dense(begin)
+        def guard(number: int) -> Callable[[Array], float]:
+            def value(state: Array) -> float:
+                functions.values(state, self.parameters, found)
+                return float(found[number])
 
-        parameters: Any = self.parameters
-        known = [self.functions.guard(guard, number) for number, guard in enumerate(guards)]
-        found = first_fall(known, parameters, dense, advance, (begin, reach))
-        return None if found is None else (known[found[0]], *found[1:])
+            return value
+
+        state = dense(begin)
+        return first_fall(
+            [guard(number) for number in range(functions.number)], dense, advance, (begin, reach)
+        )
 
     def end_at(self, time: float, state: Array) -> None:
         """End within the last step."""
@@ -188,8 +183,3 @@ class Stepping:
             self.steps = 0
             ended = self.advance(guarded=False)
         return self.state
-
-
-def longer(numbers: Array, count: int) -> Array:
-    """So many numbers: these, and zeros."""
-    return np.concatenate([numbers, np.zeros(count - len(numbers))])

@@ -148,9 +148,10 @@ class Separation(NamedTuple):
 def support_terms(shape: Surface, tip: Sequence[Scalar], plain: Sums) -> list[Scalar]:
     """Coefficients of the support function in powers of time, by those of the tip's height."""
     found = shape.height(Series(lambda k: tip[k], plain))
-    # It may be the same number at any tilt.
-    height: Series = found if isinstance(found, Series) else Series(lambda k: 0.0 * tip[k], plain) + found
-    return height.up_to(len(tip) - 1)
+    if isinstance(found, Series):
+        return found.up_to(len(tip) - 1)
+    # It is the same number at any tilt.
+    return [0.0 * tip[0] + found, *[0.0 * term for term in tip[1:]]]
 
 
 class Opening(NamedTuple):
@@ -187,7 +188,8 @@ def analytic_disc(
         centre = time + ahead * radius
         try:
             c = Disc(tip.at(centre)[0], tip.spread(centre, angle))
-            return radius, float((shape.height(c) + 0.0 * c).radius)
+            height = shape.height(c)
+            return radius, float(height.radius) if isinstance(height, Disc) else 0.0
         except ArithmeticError:
             angle *= 0.5
     return None
