@@ -2015,9 +2015,10 @@ function first_interval(tip, surface, ballistic, start) {
 function highest_gap(state, top, duration) {
   var everywhere = [...top.each].map((one) => Separation.of(state, one));
   var tip = everywhere[0].tip;
-  var gap = (time) => {
+  var lowest = (time) => {
     return py.min([...everywhere].map((one) => one.at(time)));
   };
+  var gap = py.len(everywhere) === 1 ? py.bound(everywhere[0], "at") : lowest;
   var summit = py.min(py.max(py.div(state.velocity[2], top.gravity), 0.0), duration);
   var first = py.max(summit - tip.period, 0.0);
   var last = py.min(summit + tip.period, duration);

@@ -79,9 +79,9 @@ class Run {
     piece.poles.push(pole);
     this.along(piece, step, 1, pole, this.sums);
     // Between Gauss's points, and beyond them, it is lower by a part of what it varies by there.
-    const { least, most } = this;
-    const at = (part) => piece.look(step, Math.min(Math.max(part, WITHIN), 1 - WITHIN))[FORCE];
-    if (presses) this.force.put(least, least - 0.5 * (most - least), at);
+    const { least, most } = this, bound = least - 0.5 * (most - least);
+    if (!presses || !this.force.falls(least, bound)) return;
+    this.force.look(bound, (part) => piece.look(step, Math.min(Math.max(part, WITHIN), 1 - WITHIN))[FORCE]);
   }
 
   /** Add to sums what is gained up to a part of a step; the normal forces on the way. */
@@ -99,8 +99,8 @@ class Run {
   /** Take in how far a number of a solution goes down and up in a step. */
   see(solution, step, number, down, up) {
     const start = solution.value(step, number, 0), far = solution.reach(step, number), at = (part) => solution.value(step, number, part);
-    down?.put(start, start - far, at);
-    up.put(-start, -start - far, (part) => -at(part));
+    if (down?.falls(start, start - far)) down.look(start - far, at);
+    if (up.falls(-start, -start - far)) up.look(-start - far, (part) => -at(part));
     if (down && this.turned !== this.turned && Math.abs(start) <= far) this.turned = solution.time(step, firstFall(at, true));
   }
 
@@ -125,7 +125,7 @@ class Run {
     this.early = ended !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
     this.endTime = outcome === m.Outcome.COMPLETED ? this.duration : trajectory.time * units.time;
     this.events = plain(events.map((event) => m.event_in_si(event, units)));
-    for (const [way, last] of [[this.down, state.axis[2]], [this.up, -state.axis[2]]]) way.put(this.pieces.length ? last : NaN);
+    for (const [way, last] of [[this.down, state.axis[2]], [this.up, -state.axis[2]]]) way.falls(this.pieces.length ? last : NaN);
     const least = [this.force, this.down, this.up, this.depth].map((one) => one.found());
     const [resisted, when] = [[-sums[DRILLED], -sums[ROLLED]], [this.turned, this.arrival(m.final_band(state))]];
     const ends = m.Ends.of_one(state, trajectory.time, null, events, this.flights, this.steps, resisted, least, when);
@@ -180,14 +180,19 @@ class Least {
   value = Infinity;
   places = [];
 
-  /** Take in a value of a step, a bound for all of them there, and the values at its parts. */
-  put(value, bound = value, values = null) {
+  /** Take in a value; whether there may be less of it, given a bound. */
+  falls(value, bound = value) {
     this.value = Math.min(this.value, value);
-    if (bound < this.value) this.places.push([bound, values]);
+    return bound < this.value;
+  }
+
+  /** Where to look for less, given the values at the parts of a step. */
+  look(bound, values) {
+    this.places.push([bound, values]);
   }
 
   found() {
-    for (const [bound, values] of this.places.sort(([a], [b]) => a - b)) {
+    for (const [bound, values] of this.places.filter(([bound]) => bound < this.value).sort(([a], [b]) => a - b)) {
       if (bound >= this.value) break;
       let low = Infinity, high = -Infinity, at = 0;
       for (let look = 0; look <= LOOKS; look += 1) {

@@ -174,9 +174,7 @@ const isRow = (a) => Array.isArray(a) || a instanceof NamedTuple;
 export function eq(a, b) {
   if (a === b) return true;
   if (isRow(a) && isRow(b)) return len(a) === len(b) && [...a].every((one, place) => eq(one, b[place]));
-  if (a instanceof Record && b instanceof Record && a.constructor === b.constructor) {
-    return a.constructor.fields.every((name) => eq(a[name], b[name]));
-  }
+  if (a instanceof Record && a.constructor === b?.constructor) return a.constructor.fields.every((name) => eq(a[name], b[name]));
   return typeof a === "boolean" && typeof b === "number" ? Number(a) === b : false;
 }
 
@@ -238,25 +236,27 @@ export function slice(all, from, to, step) {
 }
 
 export const len = (all) => (all instanceof NamedTuple ? all.constructor.fields.length : all.length);
-export const tuple = (all = []) => (Array.isArray(all) ? all : list(all));
-export function list(all = []) {
-  if (!ArrayBuffer.isView(all)) return [...all];
+/** So many values: `Array.from`, and spreading of what is no list, take ten times as long. */
+function made(count, value) {
   const found = [];
-  for (let i = 0; i < all.length; i += 1) found.push(all[i]);  // a tenth of what spreading takes
+  for (let place = 0; place < count; place += 1) found.push(value(place));
   return found;
 }
+export const list = (all = []) => (ArrayBuffer.isView(all) ? made(all.length, (place) => all[place]) : [...all]);
+export const tuple = (all = []) => (Array.isArray(all) ? all : list(all));
 export const dict = (pairs = []) => new Dict(pairs);
-export const range = (start, stop, step = 1) => {
-  const [from, to] = stop === undefined ? [0, start] : [start, stop];
-  return Array.from({ length: Math.max(0, Math.ceil((to - from) / step)) }, (_, i) => from + i * step);
-};
+export const range = (start, stop = null, step = 1) =>
+  stop === null ? made(start, (place) => place) : made(Math.ceil((stop - start) / step), (place) => start + place * step);
 export const enumerate = (all) => Array.from(all, (one, place) => [place, one]);
 export const reversed = (all) => [...all].reverse();
 export function zip(...rows) {
   const whole = rows.map(tuple), shortest = whole.reduce((a, b) => (b.length < a.length ? b : a));
   return shortest.map((_, place) => whole.map((row) => row[place]));
 }
-export const map = (function_, ...rows) => zip(...rows).map((row) => function_(...row));
+export function map(function_, row, other = null) {
+  const a = tuple(row), b = other === null ? a : tuple(other), second = other === null ? [] : b;
+  return made(Math.min(a.length, b.length), (place) => function_(a[place], second[place]));
+}
 export const pairwise = (all) => zip(all, all.slice(1));
 export const any = (all) => [...all].some(truth);
 export const all = (each) => [...each].every(truth);

@@ -150,9 +150,10 @@ def highest_gap(state: State, top: Top, duration: float) -> float:
     everywhere = [Separation.of(state, one) for one in top.each]
     tip = everywhere[0].tip
 
-    def gap(time: float) -> Triple:
+    def lowest(time: float) -> Triple:
         return min(one.at(time) for one in everywhere)
 
+    gap = everywhere[0].at if len(everywhere) == 1 else lowest
     summit = min(max(state.velocity[2] / top.gravity, 0.0), duration)
     first, last = max(summit - tip.period, 0.0), min(summit + tip.period, duration)
     count = 2 + int(LOOKS * (last - first) * tip.frequency)
