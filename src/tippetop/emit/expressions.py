@@ -231,16 +231,18 @@ class Expressions(ABC):
 
 
 def is_of_numbers(node: ast.BinOp) -> bool:
-    """Whether an operator means the same in both, where all but lists are numbers and zero may divide."""
+    """Whether an operator means the same in both, of numbers; not of lists, nor where zero may divide."""
     if isinstance(node.op, ast.Div):
         return isinstance(node.right, ast.Constant)
     return not (is_list(node.left) or is_list(node.right))
 
 
 def is_list(node: ast.expr) -> bool:
-    """Whether an expression is a list that is written there, or made of one."""
+    """Whether an expression is a list that is written there, a part of one, or made of such."""
     if isinstance(node, ast.BinOp):
         return is_list(node.left) or is_list(node.right)
+    if isinstance(node, ast.Subscript):
+        return isinstance(node.slice, ast.Slice)
     return isinstance(node, ast.List | ast.ListComp | ast.Tuple)
 
 

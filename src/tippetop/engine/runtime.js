@@ -144,7 +144,6 @@ export class NamedTuple extends Thing {
     for (const name of this.constructor.fields) yield this[name];
   }
 }
-
 export class Record extends Thing {}
 
 export const replace = (one, changes) =>
@@ -253,9 +252,10 @@ export function zip(...rows) {
   const whole = rows.map(tuple), shortest = whole.reduce((a, b) => (b.length < a.length ? b : a));
   return shortest.map((_, place) => whole.map((row) => row[place]));
 }
-export function map(function_, row, other = null) {
-  const a = tuple(row), b = other === null ? a : tuple(other), second = other === null ? [] : b;
-  return made(Math.min(a.length, b.length), (place) => function_(a[place], second[place]));
+export function map(function_, ...rows) {
+  const [a, b] = rows.map(tuple);
+  if (rows.length !== 2) return zip(...rows).map((row) => function_(...row));
+  return made(Math.min(a.length, b.length), (place) => function_(a[place], b[place]));
 }
 export const pairwise = (all) => zip(all, all.slice(1));
 export const any = (all) => [...all].some(truth);

@@ -240,8 +240,8 @@ def advance(
     A motion is rates and guards, so many as `count`, of its state y and parameters p. What rounding has taken
     from the state so far is in `lost`. The rows of `k`, shape (`ROWS`, n), are room for the rates of the
     stages, of which the first have been found unless all begins here, and for what is made of them. `span` is
-    the time, the end, and the next step's size, to begin with 0 or the negative of one to be tried: time and
-    size are brought up to date. `tolerance` is the relative and the absolute error per step. `knots`, shape
+    the time, the end, and the next step's size, to begin with 0 or minus the least to be tried: time and size
+    are brought up to date. `tolerance` is the relative and the absolute error per step. `knots`, shape
     (n + 1,), and `terms` are room for the ends of steps and the coefficients of their polynomials, those of
     each number in a row; `steps` of them are there. The state has `size` numbers; its rows, and those of what
     is made of it, may be longer, with zeros at the end.
