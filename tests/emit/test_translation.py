@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-from pathlib import Path
 
 import pytest
 
@@ -187,22 +186,26 @@ def plain(value):
     return json.loads(json.dumps(value))
 
 
+def run(lines, folder):
+    """What JavaScript with these lines prints, and what goes wrong in it."""
+    script = folder / "sample.mjs"
+    runtime = f'import * as py from "{(HERE / "runtime.js").as_uri()}";'
+    script.write_text("\n".join([runtime, *lines]), encoding="utf-8")
+    ran = subprocess.run([NODE, str(script)], capture_output=True, text=True, check=False)
+    return ran.stdout, ran.stderr
+
+
 @pytest.fixture(scope="module")
 def both(tmp_path_factory):
     """What the functions return in Python, and in JavaScript."""
     space = {"__name__": "sample"}
     exec(compile(MODULE, "sample", "exec"), space)
     program = Program({"sample": MODULE}, {}, ())
-    lines = [f'import * as py from "{(HERE / "runtime.js").as_uri()}";']
-    lines += Definitions(program, "sample").module_lines()
+    lines = list(Definitions(program, "sample").module_lines())
     lines.append(f"console.log(JSON.stringify([{', '.join(f'{name}()' for name in TESTS)}]));")
-    script = tmp_path_factory.mktemp("translated") / "sample.mjs"
-    Path(script).write_text("\n".join(lines), encoding="utf-8")
-    ran = subprocess.run([NODE, str(script)], capture_output=True, text=True, check=False)
-    assert not ran.stderr, ran.stderr
-    return {name: plain(space[name]()) for name in TESTS}, dict(
-        zip(TESTS, json.loads(ran.stdout), strict=True)
-    )
+    found, wrong = run(lines, tmp_path_factory.mktemp("translated"))
+    assert not wrong, wrong
+    return {name: plain(space[name]()) for name in TESTS}, dict(zip(TESTS, json.loads(found), strict=True))
 
 
 @pytest.mark.parametrize("name", TESTS)
@@ -220,16 +223,6 @@ def numbers(x=3.0):
         row.append(x * 2.0 / 4.0 - (x - (1.0 - x)))
     return row
 """
-
-
-def run(lines, tmp_path):
-    """What JavaScript with these lines prints, and what goes wrong in it."""
-    script = Path(tmp_path) / "plain.mjs"
-    script.write_text(
-        "\n".join([f'import * as py from "{(HERE / "runtime.js").as_uri()}";', *lines]), "utf-8"
-    )
-    ran = subprocess.run([NODE, str(script)], capture_output=True, text=True, check=False)
-    return ran.stdout, ran.stderr
 
 
 def test_arithmetic_of_numbers_alone_is_that_of_javascript_and_means_the_same(tmp_path):
