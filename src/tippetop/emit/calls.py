@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Sequence
+from functools import reduce
 
 from tippetop.emit.expressions import ATOM, Expressions
 from tippetop.emit.program import safe
@@ -19,6 +20,9 @@ NAMED = ("_replace", "replace")
 
 CHOICES = ("py.max", "py.min", "py.sorted")
 """What is told by name how it chooses."""
+
+OF_TWO = {"max": "larger", "min": "smaller"}
+"""What chooses of two things, where they are given one by one."""
 
 
 class Calls(Expressions):
@@ -40,6 +44,8 @@ class Calls(Expressions):
                 return f"py.{word}({self.arguments(node.args)})"
             case ast.Name(id="abs") if self.plain:
                 return f"Math.abs({self.arguments(node.args)})"
+            case ast.Name(id="max" | "min" as word) if are_given_singly(node):
+                return reduce(lambda a, b: f"py.{OF_TWO[word]}({a}, {b})", map(self.text, node.args))
             case ast.Name(id="len") if self.numeric:
                 return f"{self.text(node.args[0])}.length"
             case ast.Name(id=name):
@@ -102,6 +108,11 @@ class Calls(Expressions):
         if len({tuple(order.index(word) for word in sorted(words)) for order in fitting}) != 1:
             raise self.refused(node)
         return fitting[0]
+
+
+def are_given_singly(node: ast.Call) -> bool:
+    """Whether a call gives several things one by one, and nothing by name."""
+    return len(node.args) > 1 and not node.keywords and not any(isinstance(a, ast.Starred) for a in node.args)
 
 
 def is_class(name: str) -> bool:

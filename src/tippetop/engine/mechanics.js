@@ -1084,8 +1084,8 @@ function passes_flat(top, looks) {
     var x = py.sub(b[0], a[0]);
     var y = py.sub(b[1], a[1]);
     var square = py.add(py.mul(x, x), py.mul(y, y));
-    var part = square > 0.0 ? py.min(
-      py.max(py.div(py.neg(py.add(py.mul(a[0], x), py.mul(a[1], y))), square), 0.0),
+    var part = square > 0.0 ? py.smaller(
+      py.larger(py.div(py.neg(py.add(py.mul(a[0], x), py.mul(a[1], y))), square), 0.0),
       1.0
     ) : 0.0;
     if (
@@ -1354,7 +1354,7 @@ function first_root(function_, low, high, jerk) {
   var finest = FINEST * (high - low);
   var [value, rate, acceleration] = function_(time);
   while (value > 0.0) {
-    step = py.min(step, high - time);
+    step = py.smaller(step, high - time);
     var end = py.eq(step, high - time) ? high : time + step;
     if (py.eq(end, time)) {
       throw new Unsolved("steps of time are lost in its rounding");
@@ -1464,7 +1464,7 @@ function crossing(function_, low, high) {
       part = py.div(py.div(y1, y2 - y1) * y3, y2 - y3);
       part = part + py.div(py.div(py.div(x3 - x1, x2 - x1) * y1, y3 - y1) * y2, y3 - y2);
     }
-    part = py.min(py.max(part, fuzz), 1.0 - fuzz);
+    part = py.smaller(py.larger(part, fuzz), 1.0 - fuzz);
   }
   return best;
 }
@@ -1503,7 +1503,7 @@ class Disc extends py.Thing {
     if (near <= 0.0) {
       throw new py.ArithmeticError("a power of a disc that touches zero");
     }
-    var steepest = py.max(py.pow(near, py.sub(exponent, 1.0)), py.pow(far, py.sub(exponent, 1.0)));
+    var steepest = py.larger(py.pow(near, py.sub(exponent, 1.0)), py.pow(far, py.sub(exponent, 1.0)));
     return new Disc(py.pow(this.centre, exponent), py.mul(py.mul(this.radius, py.abs(exponent)), steepest));
   }
   __neg__() {
@@ -1762,7 +1762,7 @@ class Tip extends py.NamedTuple {
     var [sine, versine] = swing(this.frequency, time, py.math);
     var cosine = 1.0 - square * versine;
     return [
-      py.min(py.max(this.height + this.rate * sine + this.acceleration * versine, -1.0), 1.0),
+      py.smaller(py.larger(this.height + this.rate * sine + this.acceleration * versine, -1.0), 1.0),
       this.rate * cosine + this.acceleration * sine,
       this.acceleration * cosine - this.rate * square * sine
     ];
@@ -1776,7 +1776,9 @@ class Tip extends py.NamedTuple {
     var sway = py.div(this.acceleration, py.pow(this.frequency, 2));
     var mean = this.height + sway;
     var amplitude = py.math.hypot(sway, py.div(this.rate, this.frequency));
-    var [low, high] = [mean - amplitude, mean + amplitude].map((c) => py.min(py.max(c, -INSIDE), INSIDE));
+    var [low, high] = [mean - amplitude, mean + amplitude].map(
+      (c) => py.smaller(py.larger(c, -INSIDE), INSIDE)
+    );
     return [low, high];
   }
   /** Coefficients of the height in powers of time. */
@@ -1840,9 +1842,9 @@ class Separation extends py.NamedTuple {
   /** Height of the centre of mass above which the body touches nowhere on its way. */
   get level() {
     var [low, high] = this.tip.range;
-    var highest = py.max(this.shape.height(low), this.shape.height(high));
+    var highest = py.larger(this.shape.height(low), this.shape.height(high));
     if (this.shape.slope(low) > 0.0 && 0.0 > this.shape.slope(high)) {
-      highest = py.max(highest, this.shape.height(crossing(py.bound(this.shape, "slope"), low, high)));
+      highest = py.larger(highest, this.shape.height(crossing(py.bound(this.shape, "slope"), low, high)));
     }
     return py.float(highest + CLEAR * this.shape.size);
   }
@@ -1855,7 +1857,7 @@ class Separation extends py.NamedTuple {
   across_flat(time, horizon) {
     var angle = ACROSS;
     while (this.at(time)[0] > 0.0) {
-      var end = py.min(horizon, time + py.div(angle, this.tip.frequency));
+      var end = py.smaller(horizon, time + py.div(angle, this.tip.frequency));
       if (this.at(end)[0] <= 0.0) {
         return [end, crossing((t) => this.at(t)[0], time, end)];
       }
@@ -1926,7 +1928,7 @@ function analytic_disc(tip, shape, time, ahead, angle) {
 
 /** Time after which height + rate t + half t^2 stays negative; infinite where it never does. */
 function falling_time(height, rate, half) {
-  var root = py.math.sqrt(py.max(rate * rate - 4.0 * half * height, 0.0));
+  var root = py.math.sqrt(py.larger(rate * rate - 4.0 * half * height, 0.0));
   if (rate > 0.0) {
     return half < 0.0 ? py.div(-(rate + root), 2.0 * half) : py.math.inf;
   }
@@ -1950,11 +1952,11 @@ class Start extends py.Thing {
 function touchdown(state, top, horizon, start = Start.AIRBORNE) {
   var [tip, , ballistic] = Separation.of(state, top);
   var deepest = py.min(0.0, ...[-1.0, 1.0].map((c) => py.float(top.surface.height(c))));
-  horizon = py.min(horizon, 2.0 * falling_time(ballistic[0] - deepest, ...ballistic.slice(1)));
+  horizon = py.smaller(horizon, 2.0 * falling_time(ballistic[0] - deepest, ...ballistic.slice(1)));
   var time = 0.0;
   if (!py.eq(start, Start.AIRBORNE)) {
     var [opening, ballistic, length] = first_interval(tip, top.surface, ballistic, start);
-    time = py.min(horizon, length);
+    time = py.smaller(horizon, length);
     var root = first_root(py.bound(opening, "at"), 0.0, time, opening.jerk_bound(time));
     if (root !== null) {
       return root;
@@ -1973,8 +1975,8 @@ function touchdown(state, top, horizon, start = Start.AIRBORNE) {
       var [end, root] = separation.across_flat(time, horizon);
     } else {
       var [radius, spread] = disc;
-      angle = py.min(WIDEST, 2.0 * radius * tip.frequency);
-      end = py.min(horizon, time + 0.5 * radius);
+      angle = py.smaller(WIDEST, 2.0 * radius * tip.frequency);
+      end = py.smaller(horizon, time + 0.5 * radius);
       root = first_root(
         py.bound(separation, "at"),
         time,
@@ -2019,17 +2021,17 @@ function highest_gap(state, top, duration) {
     return py.min([...everywhere].map((one) => one.at(time)));
   };
   var gap = py.len(everywhere) === 1 ? py.bound(everywhere[0], "at") : lowest;
-  var summit = py.min(py.max(py.div(state.velocity[2], top.gravity), 0.0), duration);
-  var first = py.max(summit - tip.period, 0.0);
-  var last = py.min(summit + tip.period, duration);
+  var summit = py.smaller(py.larger(py.div(state.velocity[2], top.gravity), 0.0), duration);
+  var first = py.larger(summit - tip.period, 0.0);
+  var last = py.smaller(summit + tip.period, duration);
   var count = 2 + py.int(LOOKS * (last - first) * tip.frequency);
   var step = py.div(last - first, count);
-  var times = py.range(count + 1).map((j) => first + step * py.max(j, 0.001));
+  var times = py.range(count + 1).map((j) => first + step * py.larger(j, 0.001));
   var looks = [...times].map((time) => gap(time));
   var found = py.max([gap(first)[0], ...[...looks].map(([here]) => here)]);
   for (var j = 0; j < count; j += 1) {
     if (py.item(looks, j)[1] > 0.0 && 0.0 > py.item(looks, j + 1)[1]) {
-      found = py.max(
+      found = py.larger(
         found,
         gap(crossing((time) => gap(time)[1], py.item(times, j), py.item(times, j + 1)))[0]
       );
@@ -2070,7 +2072,7 @@ class Flight extends Mode {
     var duration = landing === null ? end - time : landing;
     var count = 1 + py.int(py.div(duration * precession(state, this.top), TURN));
     for (var first = 0; first < count; first += MOST_STEPS) {
-      var last = py.min(first + MOST_STEPS, count);
+      var last = py.smaller(first + MOST_STEPS, count);
       var elapsed = py.range(first, last + 1).map((step) => py.div(duration, count) * step);
       py.put(elapsed, -1, py.eq(last, count) ? duration : py.item(elapsed, -1));
       var here = fly(state, py.item(elapsed, -1), this.top, py.math);
@@ -2122,7 +2124,7 @@ class Flight extends Mode {
     if (lowest === null) {
       return new Transition([], Outcome.COMPLETED, state);
     }
-    var c = py.min(py.max(state.axis[2], -1.0), 1.0);
+    var c = py.smaller(py.larger(state.axis[2], -1.0), 1.0);
     var here = py.replace(state, { height: lowest.surface.height(c) });
     if (py.eq(lowest, this.top)) {
       return this.rules.touchdown(time, here, integrator);
@@ -2830,7 +2832,7 @@ function landed(state, ending, top) {
     0.0,
     py.add(state.time, left)
   );
-  return [rest, py.mul(py.mul(left, size(across)), py.max(1.0, py.div(-1.0, along)))];
+  return [rest, py.mul(py.mul(left, size(across)), py.larger(1.0, py.div(-1.0, along)))];
 }
 
 // tippetop.contact.closed
@@ -3032,7 +3034,7 @@ class Onset extends py.NamedTuple {
       }
     }
     var shortest = py.min(times);
-    var losses = [...this.speed].map((term) => py.min(term, 0.0));
+    var losses = [...this.speed].map((term) => py.smaller(term, 0.0));
     while (shortest > 1e-300 && py.neg(horner(losses, shortest)) > py.mul(LOST, py.item(this.speed, 0))) {
       shortest = py.mul(shortest, SHORTER);
     }
@@ -3473,7 +3475,7 @@ class Resting extends Mode {
   /** Stay as it is. */
   *segments(time, state, end, integrator) {
     var numbers = this.told.numbers(state);
-    var still = straight(numbers, numbers, time, py.add(time, py.mul(SHORT, py.max(1.0, time))));
+    var still = straight(numbers, numbers, time, py.add(time, py.mul(SHORT, py.larger(1.0, time))));
     yield new Segment(this.told, still, state, new Transition([], Outcome.AT_REST, state));
   }
 }
@@ -3904,7 +3906,7 @@ class SlipStep extends py.Thing {
       begin = py.sum(py.item(polynomials, number));
     }
     var speed = (place) => {
-      var number = py.min(py.int(place), py.sub(PARTS, 1));
+      var number = py.smaller(py.int(place), py.sub(PARTS, 1));
       return py.float(horner(py.item(polynomials, number), py.sub(place, number)));
     };
     var high = point < STAGES ? py.item(GAUSS.places, point) : 1.0;
@@ -3967,7 +3969,7 @@ function slip_phase(y, way, top, ending, longest, pulls) {
     var begin = py.item(knots, -1);
     var known = py.len(knots);
     var before = now;
-    length = py.min(length, py.sub(longest, begin));
+    length = py.smaller(length, py.sub(longest, begin));
     var solved = step.solve(now, way, length);
     var factor = py.truth(solved) ? py.mul(
       SAFETY,
@@ -3988,7 +3990,7 @@ function slip_phase(y, way, top, ending, longest, pulls) {
       speeds
     );
     if (factor < SAFETY || part === null || py.truth(dips(speeds))) {
-      length = py.mul(length, py.max(py.min(factor, SHORTER_of_slipping), SHORTEST));
+      length = py.mul(length, py.larger(py.smaller(factor, SHORTER_of_slipping), SHORTEST));
       if (length < LEAST) {
         break;
       }
@@ -4000,7 +4002,7 @@ function slip_phase(y, way, top, ending, longest, pulls) {
     ended = !py.truth(lasts);
     var pieces = step.pieces(part);
     var ends = py.range(PARTS).filter((number) => part > number).map(
-      (number) => py.div(py.min(part, py.add(number, 1.0)), PARTS)
+      (number) => py.div(py.smaller(part, py.add(number, 1.0)), PARTS)
     );
     knots = py.add(knots, [...ends].map((end) => py.add(begin, py.mul(length, end))));
     if (py.truth(ended)) {
@@ -4016,8 +4018,8 @@ function slip_phase(y, way, top, ending, longest, pulls) {
       way = scaled(py.div(1.0, size(py.tuple(after.slice(free)))), py.tuple(after.slice(free)));
       var speed = step.speed(py.sub(PARTS, 1), 0.0, last);
       py.put(speed, 0, py.sub(inner(py.tuple(after.slice(free)), last), py.sum(speed)));
-      length = py.min(
-        py.mul(length, py.min(factor, LONGER)),
+      length = py.smaller(
+        py.mul(length, py.smaller(factor, LONGER)),
         py.mul(py.div(py.mul(BEYOND, length), PARTS), parts_left(speed))
       );
     }
@@ -4056,7 +4058,7 @@ function parts_left(terms) {
 function dips(speeds) {
   var least = py.min(speeds.slice(1, py.sub(STAGES, 1)));
   return py.and(
-    py.min(speeds[0], py.item(speeds, py.sub(STAGES, 1))) > least,
+    py.smaller(speeds[0], py.item(speeds, py.sub(STAGES, 1))) > least,
     () => 0.0 < least && least < py.mul(DIP, py.max(speeds))
   );
 }
@@ -4257,7 +4259,7 @@ function beginning(point, slip, rolling, begins, held = null, moved = contact_mo
   return new Beginning(
     found[0],
     found[1],
-    py.tuple([...along].map((rate) => py.max(rate, 0.0))),
+    py.tuple([...along].map((rate) => py.larger(rate, 0.0))),
     found[2],
     found[3]
   );
@@ -4348,7 +4350,10 @@ class Loosening extends Passing {
       yield nothing(this.told, time, unknown);
       return null;
     }
-    var duration = py.min(begin.valid_until(ACCURACY_of_loosening), longest, py.sub(end, time));
+    var duration = py.smaller(
+      py.smaller(begin.valid_until(ACCURACY_of_loosening), longest),
+      py.sub(end, time)
+    );
     if (duration <= 1e-299) {
       yield nothing(this.told, time, new Transition([], Outcome.FAILED, state, UNSEEN));
       return null;
@@ -4436,7 +4441,7 @@ class BothLoosening extends Loosening {
     var growing = [0.0, 0.0, 0.0, ...point.moment(found.wrench)];
     var rows = py.zip(still, growing);
     rows = py.add(rows, [...pace].map((rate) => [0.0, rate]));
-    yield piece(passing, rows, found.slip, [time, py.min(INSTANT, py.sub(end, time)), end]);
+    yield piece(passing, rows, found.slip, [time, py.smaller(INSTANT, py.sub(end, time)), end]);
   }
 }
 
@@ -4461,7 +4466,7 @@ function piece(mode, rows, direction, times) {
   var apart = py.zip(direction, rows.slice(first, past)).map(
     ([e, row]) => [py.mul(TINY_of_loosening, e), ...row.slice(1)]
   );
-  var reach = py.min(py.add(time, duration), end);
+  var reach = py.smaller(py.add(time, duration), end);
   var solution = DenseSolution.in_time(
     [0.0, duration],
     [[...rows.slice(0, first), ...apart, ...rows.slice(past)]]
@@ -4543,7 +4548,7 @@ function arriving(here, ending, top, integrator) {
   var now = [...here.axis, ...here.momentum];
   var end = plus(now, scaled(left, [...rates.axis, ...rates.momentum]));
   var way = here.direction;
-  var at_rest = py.max(AT_REST, py.getattr(integrator, "tolerance", 0.0));
+  var at_rest = py.larger(AT_REST, py.getattr(integrator, "tolerance", 0.0));
   try {
     for (var turn = 0; turn < MOST_of_arriving; turn += 1) {
       var axis = [end[0], end[1], end[2]];
@@ -4552,7 +4557,7 @@ function arriving(here, ending, top, integrator) {
         return null;
       }
       var known = resting_way(axis, momentum, way, ending, top, integrator);
-      var degree = py.min(py.add(FIRST_of_arriving, py.mul(MORE, turn)), DEGREE_of_arriving);
+      var degree = py.smaller(py.add(FIRST_of_arriving, py.mul(MORE, turn)), DEGREE_of_arriving);
       var begin = onset(known, 1, degree);
       way = known.first;
       var found = new Arrival(time_to(here.speed, begin.rows, left), begin.rows);
@@ -4566,7 +4571,7 @@ function arriving(here, ending, top, integrator) {
         return null;
       }
       if (
-        py.eq(degree, DEGREE_of_arriving) && py.max(
+        py.eq(degree, DEGREE_of_arriving) && py.larger(
           size(off),
           py.abs(py.sub(speed, here.speed))
         ) < SETTLED_of_arriving
@@ -4984,8 +4989,8 @@ function past_jamming(state, top) {
     }
     throw new Unsolved("it would open there too, and whether it does or is struck rigid bodies do not tell");
   }
-  var further = py.add(touch.delassus, py.max(touch.delassus, py.div(PAST, top.mass)));
-  var impulse = py.mul(py.mul(py.div(py.max(further, 0.0), fall), PROBED), whole);
+  var further = py.add(touch.delassus, py.larger(touch.delassus, py.div(PAST, top.mass)));
+  var impulse = py.mul(py.mul(py.div(py.larger(further, 0.0), fall), PROBED), whole);
   var beyond = on_table(after(impulse), top);
   return [beyond, py.float(impulse), py.float(py.sub(energy(state, top), energy(beyond, top)))];
 }
@@ -5650,7 +5655,7 @@ class SteppedProcess extends ImpactProcess {
       if (
         doubt > 1.0 && step > SHORTEST_of_impact_process * longest || py.truth(reached) && py.truth(waiting)
       ) {
-        step = step * py.min(0.5, py.max(0.1, 0.9 * py.pow(doubt, POWER)));
+        step = step * py.smaller(0.5, py.larger(0.1, 0.9 * py.pow(doubt, POWER)));
         continue;
       }
       here = py.truth(reached) ? landing(now, taking, ends) : taking.there;
@@ -5660,7 +5665,10 @@ class SteppedProcess extends ImpactProcess {
       var then = now.settled(here);
       waiting = false;
       slope = py.truth(reached) || then !== now ? then.slope(here) : taking.new_slope;
-      [now, step] = [then, py.min(longest, step * py.min(5.0, 0.9 * py.pow(py.max(doubt, 1e-10), POWER)))];
+      [now, step] = [
+        then,
+        py.smaller(longest, step * py.smaller(5.0, 0.9 * py.pow(py.larger(doubt, 1e-10), POWER)))
+      ];
     }
     throw new Unsolved("an impact does not come to its end");
   }
@@ -5669,7 +5677,9 @@ class SteppedProcess extends ImpactProcess {
 /** An error in velocities, known at a step's ends: of slip beside it, and of the normal one by a speed. */
 function slip_error(ends, off, speed) {
   var slip = py.max(1e-09 * speed, ...[...ends].map((end) => py.math.hypot(...end.slice(0, 2))));
-  return py.float(py.max(py.div(py.math.hypot(...off.slice(0, 2)), slip), py.div(Math.abs(off[2]), speed)));
+  return py.float(
+    py.larger(py.div(py.math.hypot(...off.slice(0, 2)), slip), py.div(Math.abs(off[2]), speed))
+  );
 }
 
 /** The error of a step over the one allowed. */
@@ -5799,7 +5809,7 @@ class DryProcess extends SteppedProcess {
     var parts = py.zip(this.parts(here), this.parts(there), this.parts(off));
     var least = 1e-06 * this.body.speed;
     var ratios = [...parts].map(
-      ([before, after, wrong]) => py.div(size(wrong), py.max(size(before), size(after), least))
+      ([before, after, wrong]) => py.div(size(wrong), py.larger(py.larger(size(before), size(after)), least))
     );
     return py.float(py.max(...ratios, py.div(Math.abs(off[2]), this.speed)));
   }
@@ -5987,7 +5997,7 @@ class ProcessOnTwo extends SteppedProcess {
   /** What an error counts as: that of the contact where it is the larger. */
   wrong(taken, off) {
     var velocities = [taken.here, taken.there].map((end) => this.there(end));
-    return py.max(super.wrong(taken, off), slip_error(velocities, this.beside(off), this.speed));
+    return py.larger(super.wrong(taken, off), slip_error(velocities, this.beside(off), this.speed));
   }
   /** The rest if friction has come to hold both slips constant. */
   straight(here, goal, guess, taken) {
@@ -6129,7 +6139,7 @@ function impact(state, restitution, top, beside = null) {
     var [impulse, more] = process.until(impulse, goal, restitution * compression);
     steps = steps + more;
   }
-  var lost = py.max(0.0, -body.work(impulse));
+  var lost = py.larger(0.0, -body.work(impulse));
   return new Impact(process.after(impulse), py.item(impulse, NORMAL), lost, compression, steps);
 }
 
@@ -6153,7 +6163,7 @@ function restitution_goal(process, compressed, restitution) {
   var goal = (impulse) => {
     var spent = py.div(process.normal(impulse) - full, compression);
     var returned = py.div(-py.item(impulse, WORK), py.item(compressed, WORK));
-    return py.float(py.min(py.max(spent, returned), py.div(body.approach(impulse), body.striking)));
+    return py.float(py.smaller(py.larger(spent, returned), py.div(body.approach(impulse), body.striking)));
   };
   return goal;
 }
@@ -6213,7 +6223,7 @@ function impact_between(before, then, normal, body) {
   var [x, y] = scale(body.contact.top.mass, add(then.velocity, scale(-1.0, before.velocity)));
   var moment = add(then.momentum, scale(-1.0, before.momentum));
   var torque = add(moment, cross([x, y, normal], body.contact.arm));
-  return new Impact(then, normal, py.max(0.0, py.neg(body.work([x, y, normal, ...torque, 0.0]))), normal);
+  return new Impact(then, normal, py.larger(0.0, py.neg(body.work([x, y, normal, ...torque, 0.0]))), normal);
 }
 
 /** How angular momentum and velocity of a struck top change with the normal impulse. */
@@ -6584,7 +6594,7 @@ class PairMotion extends py.NamedTuple {
   }
   /** Whether the table can hold both contacts, without moments of drilling; of floats. */
   get is_held() {
-    return py.bool(py.min(this.left(0), this.left(1), this.both_reserve) >= 0.0);
+    return py.bool(py.smaller(py.smaller(this.left(0), this.left(1)), this.both_reserve) >= 0.0);
   }
   /** Power that friction takes at most where xi = `way`, less what holding takes of it, W. */
   spare(way) {
@@ -6756,7 +6766,7 @@ function against(held) {
   var ratios = [];
   for (var number of [0, 1]) {
     var across_force = held.needed(number);
-    var spare = py.max(held.left(number), py.pow(py.mul(0.001, py.item(held.normal, number)), 2));
+    var spare = py.larger(held.left(number), py.pow(py.mul(0.001, py.item(held.normal, number)), 2));
     ratios.push(py.div(across_force, py.pow(spare, 0.5)));
   }
   var v = plus(scaled(sign, along.slice(0, 2)), scaled(py.neg(ratios[0]), across.slice(0, 2)));
@@ -7217,7 +7227,7 @@ class SlipBeginningOnTwo extends SlidingOnTwo {
         ORDER
       );
       var rows = [...begun.axis, ...begun.momentum, ...begun.velocity];
-      var duration = py.min(begun.valid_until(ACCURACY_of_loosening), py.sub(end, time));
+      var duration = py.smaller(begun.valid_until(ACCURACY_of_loosening), py.sub(end, time));
       yield piece(this, rows, this.direction, [time, duration, end]);
     } catch (error) {
       if (!(error instanceof py.ArithmeticError)) throw error;
@@ -7400,7 +7410,7 @@ function ended_slips(state, tops) {
     return [false, false];
   }
   var [one, other] = [...tops].map((top) => size(slip_of(...along_table(state), top)));
-  var least = py.min(one, other);
+  var least = py.smaller(one, other);
   var limit = py.mul(ABOUT, SLOWEST_SLIP);
   if (slip_length(tops[0].friction) !== null) {
     return py.add(
@@ -7627,15 +7637,15 @@ class OnSeveral extends FreeToFly {
   /** Whether another surface that touches too stays, or comes back at once. */
   _stays(other, state) {
     var back = 1.0;
-    var depth = py.max(0.0, py.float(py.sub(gap(state, this.top), gap(state, other))));
+    var depth = py.larger(0.0, py.float(py.sub(gap(state, this.top), gap(state, other))));
     if (py.truth(this._slips(other, state))) {
       var pair = ContactPair.of(state.axis, state.momentum, [this.top, other]);
       var slip = slip_of(...along_table(state), this.top);
       var wrench = contact_motion(pair.first, slip, pair.first.turning.slice(0, 2))[0];
       back = py.float(py.abs(pair.under([[0, wrench]])[1][2]));
     }
-    var slowest = py.max(
-      py.mul(SLOWEST_ROCKING, py.pow(py.max(1.0, back), 0.5)),
+    var slowest = py.larger(
+      py.mul(SLOWEST_ROCKING, py.pow(py.larger(1.0, back), 0.5)),
       py.pow(py.mul(py.mul(2.0, back), depth), 0.5)
     );
     return py.bool(gap_rate(state, other) <= slowest);
@@ -7728,7 +7738,7 @@ class Trajectory extends py.Thing {
       modes = py.add(modes, 1);
       for (var segment of transition.then.segments(this.time, this.state, this.end, this.integrator)) {
         [this.time, this.state] = [segment.end_time, segment.end_state];
-        steps = py.add(steps, py.max(segment.steps, py.sub(py.len(segment.solution.knots), 1)));
+        steps = py.add(steps, py.larger(segment.steps, py.sub(py.len(segment.solution.knots), 1)));
         if (segment.transition !== null) {
           transition = this._enter(segment.transition);
           steps = py.add(steps, py.sum([...transition.events].map((event) => event.steps)));
@@ -7758,7 +7768,7 @@ class Trajectory extends py.Thing {
 
 /** Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of time. */
 function require_limits(duration, unit, phase_limit = PHASE_LIMIT, step_limit = STEP_LIMIT) {
-  var longest = py.mul(LONGEST_of_trajectory, py.min(1.0, unit));
+  var longest = py.mul(LONGEST_of_trajectory, py.smaller(1.0, unit));
   if (!(py.truth(py.is_number(duration)) && (0.0 < duration && duration <= longest))) {
     throw new InvalidInput(
       "duration",
@@ -7899,8 +7909,8 @@ function _reaches_out(number, shapes) {
       return true;
     }
     var best = ahead.indexOf(py.max(ahead));
-    low = py.item(looks, py.max(py.sub(best, 1), 0));
-    high = py.item(looks, py.min(py.add(best, 1), LOOKS_of_bodies));
+    low = py.item(looks, py.larger(py.sub(best, 1), 0));
+    high = py.item(looks, py.smaller(py.add(best, 1), LOOKS_of_bodies));
   }
   return false;
 }
@@ -8546,7 +8556,7 @@ function _largest_square(problem) {
     var largest = py.float(py.max(py.map(py.abs, [...start.momentum, ...start.velocity, start.height])));
     return py.mul(
       py.pow(largest, 2),
-      py.max(1.0, py.float(units.energy), py.float(py.mul(problem.body.mass, problem.gravity)))
+      py.larger(py.larger(1.0, py.float(units.energy)), py.float(py.mul(problem.body.mass, problem.gravity)))
     );
   } catch (error) {
     if (!(error instanceof py.ArithmeticError)) throw error;
@@ -8661,13 +8671,13 @@ const ROUNDING_of_series_roots = 1e-13;
 
 /** Roots of a function between two bounds, at which it is not asked, in order; values to `noise` are 0. */
 function roots_between(function_, low, high, noise) {
-  var least = py.max(noise, py.mul(ROUNDING_of_series_roots, largest(series_of(function_, low, high))));
+  var least = py.larger(noise, py.mul(ROUNDING_of_series_roots, largest(series_of(function_, low, high))));
   var found = [];
   var waiting = [[low, high, 0]];
   while (py.truth(waiting)) {
     var [start, end, depth] = waiting.pop();
     var series = series_of(function_, start, end);
-    if (py.max(py.abs(py.item(series, -1)), py.abs(py.item(series, -2))) > least && depth < HALVINGS) {
+    if (py.larger(py.abs(py.item(series, -1)), py.abs(py.item(series, -2))) > least && depth < HALVINGS) {
       var middle = py.mul(0.5, py.add(start, end));
       waiting = py.add(waiting, [[middle, end, py.add(depth, 1)], [start, middle, py.add(depth, 1)]]);
       continue;
@@ -9301,7 +9311,7 @@ function fold(top) {
   var gamma = inertia_ratio(top);
   var alpha = eccentricity(top);
   var cosine = py.div(py.sub(alpha, _fold_measure(gamma, alpha)), py.sub(1.0, gamma));
-  var tilt = py.math.acos(py.max(-1.0, py.min(1.0, cosine)));
+  var tilt = py.math.acos(py.larger(-1.0, py.smaller(1.0, cosine)));
   return new Fold(tilt, branch_jellett(tilt, top));
 }
 
@@ -9319,7 +9329,9 @@ function coexistence(top) {
 
 /** D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 where there is none and every D is larger. */
 function _fold_measure(gamma, alpha) {
-  return py.math.sqrt(py.max(py.div(py.mul(gamma, py.sub(py.sub(1.0, gamma), py.pow(alpha, 2))), 3.0), 0.0));
+  return py.math.sqrt(
+    py.larger(py.div(py.mul(gamma, py.sub(py.sub(1.0, gamma), py.pow(alpha, 2))), 3.0), 0.0)
+  );
 }
 
 // tippetop.theory.prospects
@@ -9394,7 +9406,7 @@ function _touch(problem, surfaces, group) {
   if (!py.truth(beyond)) {
     return null;
   }
-  var needed = py.max(
+  var needed = py.larger(
     critical_jellett(SteadyKind.UPRIGHT, problem.top),
     branch_jellett(beyond[0], problem.top)
   );
@@ -9410,7 +9422,7 @@ function _stem(problem, surfaces, touch) {
   var launch = py.math.nan;
   if (touch !== null && py.eq(touch.surface, py.sub(py.len(surfaces), 1))) {
     var share = _handed_over(touch.tilt, problem.top, py.item(surfaces, -1));
-    launch = py.max(
+    launch = py.larger(
       touch.spin,
       share > 0.0 ? jellett_line(problem).spin_at(py.div(least, share)) : py.math.inf
     );
@@ -9505,7 +9517,7 @@ function extent(lines) {
   var points = [...lines].flatMap((line) => [...line]);
   var across = py.max([...points].map(([r]) => r));
   var heights = [...points].map(([, z]) => z);
-  return py.max(across, py.div(py.sub(py.max(heights), py.min(heights)), 2.0));
+  return py.larger(across, py.div(py.sub(py.max(heights), py.min(heights)), 2.0));
 }
 
 /** Whether a body with these surfaces has this outline: it reaches as far down, whatever the tilt. */
@@ -9560,8 +9572,8 @@ function outline(surface) {
   var last = surface;
   var corner = py.mul(py.mul(10.0, POLE), surface.size);
   for (var look = 0; look < OUTLINE; look += 1) {
-    var tilt = py.min(
-      py.max(py.div(py.mul(py.math.pi, look), py.sub(OUTLINE, 1)), POLE),
+    var tilt = py.smaller(
+      py.larger(py.div(py.mul(py.math.pi, look), py.sub(OUTLINE, 1)), POLE),
       py.sub(py.math.pi, POLE)
     );
     var c = py.math.cos(tilt);
@@ -9599,9 +9611,10 @@ const [REACHED, FULL, SUSPECT, STUCK_of_dormand_prince, SINGULAR] = py.range(5);
 const [SAFETY_of_dormand_prince, LEAST_FACTOR, MOST_FACTOR] = [0.9, 0.2, 10.0];
 const NOTHING = 2e-15;
 const [EARLIEST, RISEN] = [py.pow(0.5, 40), 1e-15];
-const ROWS = 26;
+const ROWS = 21;
 const POWERS = 8;
 const LOOKS_of_dormand_prince = 8;
+const STEADY = 1.25;
 
 /** Call a motion's function. */
 function evaluate(function_, y, p, out) {
@@ -9629,7 +9642,7 @@ function error_of(h, y, new_, k, tolerance, size) {
   var k16 = k[16];
   var k17 = k[17];
   for (var i = 0; i < y.length; i += 1) {
-    var scale = tolerance[1] + tolerance[0] * py.max(Math.abs(y[i]), Math.abs(new_[i]));
+    var scale = tolerance[1] + tolerance[0] * py.larger(Math.abs(y[i]), Math.abs(new_[i]));
     var first = k16[i] / scale;
     var second = k17[i] / scale;
     fifth = fifth + first * first;
@@ -9652,8 +9665,11 @@ function factor_for(error, tries) {
     var factor = SAFETY_of_dormand_prince / eighth_root(error);
     return factor > LEAST_FACTOR ? factor : LEAST_FACTOR;
   }
-  factor = error === 0.0 ? MOST_FACTOR : py.min(MOST_FACTOR, SAFETY_of_dormand_prince / eighth_root(error));
-  return tries === 1 ? factor : py.min(1.0, factor);
+  factor = error === 0.0 ? MOST_FACTOR : py.smaller(
+    MOST_FACTOR,
+    SAFETY_of_dormand_prince / eighth_root(error)
+  );
+  return tries === 1 ? factor : py.smaller(1.0, factor);
 }
 
 /** How large the difference of two is beside the errors that are allowed: a mean. */
@@ -9680,15 +9696,15 @@ function first_step(rates, p, y, k, place, span, tolerance, size) {
   }
   var extent = measure(y, place, y, tolerance, size);
   var slope = measure(k[0], place, y, tolerance, size);
-  var trial = py.min(span, extent < 1e-05 || slope < 1e-05 ? 1e-06 : 0.01 * extent / slope);
+  var trial = py.smaller(span, extent < 1e-05 || slope < 1e-05 ? 1e-06 : 0.01 * extent / slope);
   var k0 = k[0];
   for (var i = 0; i < y.length; i += 1) {
     place[i] = y[i] + trial * k0[i];
   }
   evaluate(rates, place, p, k[1]);
-  var steepest = py.max(slope, measure(k[1], k[0], y, tolerance, size) / trial);
-  var found = steepest <= 1e-15 ? py.max(1e-06, trial * 0.001) : eighth_root(0.01 / steepest);
-  return py.min(100.0 * trial, found, span);
+  var steepest = py.larger(slope, measure(k[1], k[0], y, tolerance, size) / trial);
+  var found = steepest <= 1e-15 ? py.larger(1e-06, trial * 0.001) : eighth_root(0.01 / steepest);
+  return py.smaller(py.smaller(100.0 * trial, found), span);
 }
 
 /** Put the state at a part of a step, whose coefficients are from `first` on, in y. */
@@ -9707,22 +9723,22 @@ function may_fall(values, guard) {
   var least = values[0][guard];
   var most = values[0][guard];
   for (var i = 1; i < LOOKS_of_dormand_prince + 1; i += 1) {
-    least = py.min(least, values[i][guard]);
-    most = py.max(most, values[i][guard]);
+    least = py.smaller(least, values[i][guard]);
+    most = py.larger(most, values[i][guard]);
   }
   if (least > 0.0 && 2.0 * least >= most) {
     return false;
   }
   for (var i = 0; i < LOOKS_of_dormand_prince + 1; i += 1) {
-    var before = py.max(i - 1, 0);
+    var before = py.larger(i - 1, 0);
     var here = values[i][guard];
-    var after = py.min(i + 1, LOOKS_of_dormand_prince);
+    var after = py.smaller(i + 1, LOOKS_of_dormand_prince);
     if (here > 0.0) {
       if (values[after][guard] <= 0.0) {
         return true;
       }
       if (here <= values[before][guard] && here <= values[after][guard]) {
-        for (var j = py.max(i - 2, 0); j < py.min(i + 2, LOOKS_of_dormand_prince) + 1; j += 1) {
+        for (var j = py.larger(i - 2, 0); j < py.smaller(i + 2, LOOKS_of_dormand_prince) + 1; j += 1) {
           if (2.0 * here < values[j][guard]) {
             return true;
           }
@@ -9747,21 +9763,39 @@ function rises(guards, p, terms, first, y, values, guard) {
   return false;
 }
 
+/** Whether all guards vary so little over a step that none may fall; values has those at its start. */
+function are_steady(guards, p, terms, first, y, values) {
+  within(terms, first, 0.5, y);
+  evaluate(guards, y, p, values[LOOKS_of_dormand_prince + 1]);
+  within(terms, first, 1.0, y);
+  evaluate(guards, y, p, values[LOOKS_of_dormand_prince]);
+  var values0 = values[0];
+  for (var guard = 0; guard < values[0].length; guard += 1) {
+    var begin = values0[guard];
+    var middle = values[LOOKS_of_dormand_prince + 1][guard];
+    var end = values[LOOKS_of_dormand_prince][guard];
+    if (!(STEADY * py.smaller(py.smaller(begin, middle), end) > py.larger(py.larger(begin, middle), end))) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /** Whether a guard may fall in a step; values has those at its start, and room for the other looks. */
 function suspect(guards, p, terms, first, y, values, room) {
-  look(guards, p, terms, first, y, values, room);
-  var values0 = values[0];
-  var values1 = values[1];
-  for (var guard = 0; guard < values[0].length; guard += 1) {
-    if (py.truth(may_fall(values, guard))) {
-      return true;
-    }
-    if (
-      values0[guard] <= 0.0 && values1[guard] <= 0.0 && py.truth(
-        rises(guards, p, terms, first, y, values, guard)
-      )
-    ) {
-      return true;
+  if (!py.truth(are_steady(guards, p, terms, first, y, values))) {
+    look(guards, p, terms, first, y, values, room);
+    var values0 = values[0];
+    var values1 = values[1];
+    for (var guard = 0; guard < values[0].length; guard += 1) {
+      var low = py.larger(values0[guard], values1[guard]) <= 0.0;
+      if (
+        py.truth(may_fall(values, guard)) || py.truth(low) && py.truth(
+          rises(guards, p, terms, first, y, values, guard)
+        )
+      ) {
+        return true;
+      }
     }
   }
   var values0 = values[0];
@@ -9781,7 +9815,7 @@ function take_step(rates, p, y, lost, k, span, tolerance, terms, first, size, mo
     if (!(span[2] > NOTHING * Math.abs(time))) {
       return 0;
     }
-    reach = py.min(time + span[2], span[1]);
+    reach = py.smaller(time + span[2], span[1]);
     stages_of_dormand_prince(rates, reach - time, p, y, lost, k, moved, new_);
     error = error_of(reach - time, y, new_, k, tolerance, size);
     tries = tries + 1;
@@ -9803,9 +9837,9 @@ function take_step(rates, p, y, lost, k, span, tolerance, terms, first, size, mo
 /** Take steps from a state, which is brought up to date. */
 function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, terms, steps, size) {
   [y, lost, k] = [fixed(y), fixed(lost), fixed(k)];
-  var moved = k[23];
-  var new_ = k[24];
-  var place = k[25];
+  var moved = k[ROWS - 3];
+  var new_ = k[ROWS - 2];
+  var place = k[ROWS - 1];
   var values = py.np.empty([LOOKS_of_dormand_prince + 2, count]);
   var room = py.np.empty(LOOKS_of_dormand_prince * (y.length + count));
   var calls = 0;
@@ -9814,7 +9848,7 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     if (found < 0.0) {
       return [steps, 1, SINGULAR];
     }
-    span[2] = py.max(found, -span[2]);
+    span[2] = py.larger(found, -span[2]);
     calls = calls + 2;
   }
   if (count > 0) {
@@ -10139,6 +10173,7 @@ function combined_of_dormand_prince(y, k) {
 }
 
 function polynomials(h, y, new_, k, terms, first) {
+  var at = first;
   var k0 = k[0];
   var k10 = k[10];
   var k11 = k[11];
@@ -10146,23 +10181,16 @@ function polynomials(h, y, new_, k, terms, first) {
   var k13 = k[13];
   var k14 = k[14];
   var k15 = k[15];
-  var k16 = k[16];
-  var k17 = k[17];
-  var k18 = k[18];
-  var k19 = k[19];
-  var k20 = k[20];
-  var k21 = k[21];
-  var k22 = k[22];
   var k5 = k[5];
   var k6 = k[6];
   var k7 = k[7];
   var k8 = k[8];
   var k9 = k[9];
   for (var i = 0; i < y.length; i += 1) {
-    k16[i] = new_[i] - y[i];
-    k17[i] = h * k0[i] - k16[i];
-    k18[i] = 2.0 * k16[i] - h * (k0[i] + k12[i]);
-    k19[i] = h * (
+    var c0 = new_[i] - y[i];
+    var c1 = h * k0[i] - c0;
+    var c2 = 2.0 * c0 - h * (k0[i] + k12[i]);
+    var c3 = h * (
       -8.428938276109013 * k0[i]
       + 0.5667149535193777 * k5[i]
       + -3.0689499459498917 * k6[i]
@@ -10176,7 +10204,7 @@ function polynomials(h, y, new_, k, terms, first) {
       + -9.194632392478356 * k14[i]
       + -4.436036387594894 * k15[i]
     );
-    k20[i] = h * (
+    var c4 = h * (
       10.427508642579134 * k0[i]
       + 242.28349177525817 * k5[i]
       + 165.20045171727028 * k6[i]
@@ -10190,7 +10218,7 @@ function polynomials(h, y, new_, k, terms, first) {
       + -9.35292435884448 * k14[i]
       + 35.81684148639408 * k15[i]
     );
-    k21[i] = h * (
+    var c5 = h * (
       19.985053242002433 * k0[i]
       + -387.0373087493518 * k5[i]
       + -189.17813819516758 * k6[i]
@@ -10204,7 +10232,7 @@ function polynomials(h, y, new_, k, terms, first) {
       + 84.32040550667716 * k14[i]
       + 11.99229113618279 * k15[i]
     );
-    k22[i] = h * (
+    var c6 = h * (
       -25.69393346270375 * k0[i]
       + -154.18974869023643 * k5[i]
       + -231.5293791760455 * k6[i]
@@ -10218,24 +10246,14 @@ function polynomials(h, y, new_, k, terms, first) {
       + -39.17726167561544 * k14[i]
       + -149.72683625798564 * k15[i]
     );
-  }
-  var at = first;
-  var k16 = k[16];
-  var k17 = k[17];
-  var k18 = k[18];
-  var k19 = k[19];
-  var k20 = k[20];
-  var k21 = k[21];
-  var k22 = k[22];
-  for (var i = 0; i < y.length; i += 1) {
     terms[at] = y[i];
-    terms[at + 1] = k16[i] + k17[i];
-    terms[at + 2] = -1.0 * k17[i] + k18[i] + k19[i];
-    terms[at + 3] = -1.0 * k18[i] + -2.0 * k19[i] + k20[i] + k21[i];
-    terms[at + 4] = k19[i] + -2.0 * k20[i] + -3.0 * k21[i] + k22[i];
-    terms[at + 5] = k20[i] + 3.0 * k21[i] + -3.0 * k22[i];
-    terms[at + 6] = -1.0 * k21[i] + 3.0 * k22[i];
-    terms[at + 7] = -1.0 * k22[i];
+    terms[at + 1] = c0 + c1;
+    terms[at + 2] = -1.0 * c1 + c2 + c3;
+    terms[at + 3] = -1.0 * c2 + -2.0 * c3 + c4 + c5;
+    terms[at + 4] = c3 + -2.0 * c4 + -3.0 * c5 + c6;
+    terms[at + 5] = c4 + 3.0 * c5 + -3.0 * c6;
+    terms[at + 6] = -1.0 * c5 + 3.0 * c6;
+    terms[at + 7] = -1.0 * c6;
     at = at + POWERS;
   }
 }
@@ -10324,15 +10342,15 @@ function* brackets(probes, values, value, exact) {
     }
   }
   for (var i = 0; i < last + 1; i += 1) {
-    var before = py.max(i - 1, 0);
-    var after = py.min(i + 1, last);
+    var before = py.larger(i - 1, 0);
+    var after = py.smaller(i + 1, last);
     if (
-      py.item(values, i) > 0.0 && py.item(values, i) <= py.min(
+      py.item(values, i) > 0.0 && py.item(values, i) <= py.smaller(
         py.item(values, before),
         py.item(values, after)
       )
     ) {
-      var drop = py.max(values.slice(py.max(i - 2, 0), i + 3)) - py.item(values, i);
+      var drop = py.max(values.slice(py.larger(i - 2, 0), i + 3)) - py.item(values, i);
       if (py.item(values, i) < drop) {
         var [place, lowest] = dip(value, py.item(probes, before), py.item(probes, after));
         if (lowest <= 0.0) {
@@ -10365,7 +10383,7 @@ function _early_bracket(start, end, value) {
 /** Improve the time of a guard's zero with solutions that really end there. */
 function _polished(guard, advance, step, guess) {
   var [start, end] = step;
-  var shift = py.min(0.0001 * (end - start), 0.1 * (guess - start));
+  var shift = py.smaller(0.0001 * (end - start), 0.1 * (guess - start));
   var time = guess;
   var other = guess - shift > start ? guess - shift : guess + shift;
   var state = advance(time);
@@ -10379,8 +10397,8 @@ function _polished(guard, advance, step, guess) {
     }
     var new_ = time - py.div(value * (time - other), value - theirs);
     moved = Math.abs(new_ - time);
-    new_ = py.min(py.max(new_, start + finest), end + shift);
-    if (Math.abs(new_ - time) <= 4e-16 * py.max(1.0, Math.abs(new_))) {
+    new_ = py.smaller(py.larger(new_, start + finest), end + shift);
+    if (Math.abs(new_ - time) <= 4e-16 * py.larger(1.0, Math.abs(new_))) {
       break;
     }
     [time, other, beside, theirs] = [new_, time, state, value];
@@ -10388,9 +10406,9 @@ function _polished(guard, advance, step, guess) {
     value = _value_of(guard, state);
   }
   if (
-    moved > py.max(
+    moved > py.larger(
       finest,
-      4e-16 * py.max(1.0, Math.abs(time))
+      4e-16 * py.larger(1.0, Math.abs(time))
     ) || Math.abs(time - guess) > 0.5 * (guess - start)
   ) {
     return null;
@@ -10477,7 +10495,7 @@ class Stepping extends py.Thing {
   }
   /** Make room for more steps. */
   widen() {
-    var steps = py.min(WIDER * this.steps, MANY);
+    var steps = py.smaller(WIDER * this.steps, MANY);
     this.knots = longer(this.knots, steps + 1);
     this.terms = longer(this.terms, steps * POWERS * py.len(this.row));
   }
@@ -10725,7 +10743,7 @@ class Ends extends py.Record {
       py.truth(lift_offs) || py.truth(count) ? 0.0 : force,
       py.min(lift_offs, { default: py.np.nan })
     ];
-    var aloft = [flights.duration, flights.highest_gap, py.max(py.neg(depth), 0.0)];
+    var aloft = [flights.duration, flights.highest_gap, py.larger(py.neg(depth), 0.0)];
     return new this(
       state,
       time,
@@ -11066,7 +11084,7 @@ class Monitor extends py.Thing {
   }
   /** Whether that is little, for steps of a relative error: a truth value, or an array of them. */
   is_trusted(tolerance) {
-    return this.inaccuracy <= py.max(WORST, py.mul(ACCUMULATED, tolerance));
+    return this.inaccuracy <= py.larger(WORST, py.mul(ACCUMULATED, tolerance));
   }
   /** How one launch ended: as its motion came to end only if it can be trusted. */
   judged(outcome, tolerance) {
@@ -11733,6 +11751,7 @@ export {
   STALLED,
   START,
   STATE,
+  STEADY,
   STEP_LIMIT,
   STILL,
   STOPPING,
@@ -11885,6 +11904,7 @@ export {
   analytic_disc,
   angular_velocity,
   apart,
+  are_steady,
   arm_rate,
   arriving,
   as_begun,

@@ -274,14 +274,11 @@ function most(given, better) {
   if (!choices.length && "default" in told) return told.default;
   return choices.reduce((best, choice) => (better(worth(choice), worth(best)) ? choice : best));
 }
-export function max(a, b) {
-  if (arguments.length === 2 && typeof a === "number" && typeof b === "number") return b > a ? b : a;
-  return most([...arguments], (one, other) => below(other, one));
-}
-export function min(a, b) {
-  if (arguments.length === 2 && typeof a === "number" && typeof b === "number") return b < a ? b : a;
-  return most([...arguments], below);
-}
+export const max = (...given) => most(given, (one, other) => below(other, one));
+export const min = (...given) => most(given, below);
+// Of two, and without a list of what is given: this is asked for in every step.
+export const larger = (a, b) => (typeof a === "number" && typeof b === "number" ? (b > a ? b : a) : max(a, b));
+export const smaller = (a, b) => (typeof a === "number" && typeof b === "number" ? (b < a ? b : a) : min(a, b));
 export const sorted = (all, { key: worth = (one) => one } = {}) =>
   [...all].sort((a, b) => below(worth(b), worth(a)) - below(worth(a), worth(b)));
 

@@ -35,14 +35,18 @@ EARLIEST, RISEN = 0.5**40, 1e-15
 """Where else a guard is looked at that starts at zero: one place is within any rebound; and what it must
 reach there to have risen: less is rounding."""
 
-ROWS = 26
-"""Stages of a step, 16, what its polynomials are made of, and room for three states."""
+ROWS = 21
+"""Stages of a step, 16, two estimates of its error, and room for three states."""
 
 POWERS = 8
 """Coefficients of each of a step's polynomials."""
 
 LOOKS = 8
 """Parts of a step at whose ends guards are looked at."""
+
+STEADY = 1.25
+"""The greatest over the least of a guard's values at the ends and the middle of a step, up to which it is
+looked at nowhere else: in so long a step as its error allows no more than a part of a swing takes place."""
 
 
 def evaluate(function: Compiled, y: Array, p: Array, out: Array) -> None:
@@ -162,20 +166,32 @@ def rises(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values
     return False
 
 
+def are_steady(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array) -> bool:
+    """Whether all guards vary so little over a step that none may fall; values has those at its start.
+
+    Those at its middle and its end are put into the last row and the one before.
+    """
+    within(terms, first, 0.5, y)
+    evaluate(guards, y, p, values[LOOKS + 1])
+    within(terms, first, 1.0, y)
+    evaluate(guards, y, p, values[LOOKS])
+    for guard in range(len(values[0])):
+        begin, middle, end = values[0, guard], values[LOOKS + 1, guard], values[LOOKS, guard]
+        if not STEADY * min(begin, middle, end) > max(begin, middle, end):
+            return False
+    return True
+
+
 def suspect(
     guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array
 ) -> bool:
     """Whether a guard may fall in a step; values has those at its start, and room for the other looks."""
-    look(guards, p, terms, first, y, values, room)
-    for guard in range(len(values[0])):
-        if may_fall(values, guard):
-            return True
-        if (
-            values[0, guard] <= 0.0
-            and values[1, guard] <= 0.0
-            and rises(guards, p, terms, first, y, values, guard)
-        ):
-            return True
+    if not are_steady(guards, p, terms, first, y, values):
+        look(guards, p, terms, first, y, values, room)
+        for guard in range(len(values[0])):
+            low = max(values[0, guard], values[1, guard]) <= 0.0
+            if may_fall(values, guard) or (low and rises(guards, p, terms, first, y, values, guard)):
+                return True
     for guard in range(len(values[0])):
         values[0, guard] = values[LOOKS, guard]
     return False
@@ -249,7 +265,7 @@ def advance(
     It returns how many steps are there then, how often the rates were asked for, and how it ended.
     """
     y, lost, k = fixed(y), fixed(lost), fixed(k)
-    moved, new, place = k[23], k[24], k[25]
+    moved, new, place = k[ROWS - 3], k[ROWS - 2], k[ROWS - 1]
     values, room = np.empty((LOOKS + 2, count)), np.empty(LOOKS * (len(y) + count))
     calls = 0
     if span[2] <= 0.0:

@@ -24,16 +24,16 @@ def written_out() -> str:
     )
     # Of the polynomials x, x (1 - x), x^2 (1 - x), ... the ends of the step give the first three.
     lines.append("def polynomials(h: float, y: Array, new: Array, k: Array, terms: Array, first: int):")
-    lines += _for_each(
-        "k[16, i] = new[i] - y[i]",
-        "k[17, i] = h * k[0, i] - k[16, i]",
-        "k[18, i] = 2.0 * k[16, i] - h * (k[0, i] + k[12, i])",
-        *(f"k[{n}, i] = h * ({_sum(row)})" for n, row in enumerate(DOP853.D, start=19)),
-    )
     lines.append("    at = first")
     rows = enumerate(_powers()[1:], start=1)
     lines += _for_each(
-        "terms[at] = y[i]", *(f"terms[at + {n}] = {_sum(row, 16)}" for n, row in rows), "at += POWERS"
+        "c0 = new[i] - y[i]",
+        "c1 = h * k[0, i] - c0",
+        "c2 = 2.0 * c0 - h * (k[0, i] + k[12, i])",
+        *(f"c{n} = h * ({_sum(row)})" for n, row in enumerate(DOP853.D, start=3)),
+        "terms[at] = y[i]",
+        *(f"terms[at + {n}] = {_sum(row, 'c{}')}" for n, row in rows),
+        "at += POWERS",
     )
     return "\n".join(lines)
 
@@ -42,8 +42,8 @@ def _for_each(*assignments: str) -> list[str]:
     return ["    for i in range(len(y)):", *(f"        {line}" for line in assignments)]
 
 
-def _sum(weights: Array, first: int = 0) -> str:
-    terms = [(weight, f"k[{first + j}, i]") for j, weight in enumerate(weights.tolist()) if weight]
+def _sum(weights: Array, name: str = "k[{}, i]") -> str:
+    terms = [(weight, name.format(j)) for j, weight in enumerate(weights.tolist()) if weight]
     return " + ".join(term if weight == 1.0 else f"{weight!r} * {term}" for weight, term in terms)
 
 
