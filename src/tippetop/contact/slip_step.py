@@ -180,4 +180,4 @@ def pieces_of(rows: Any, size: int, parts: float) -> Array:
         return first_of(rows, whole * count)
     before, shares = (whole - 1) * count, [(parts - whole + 1) ** (k + 1) for k in range(STAGES)]
     last = [term * share for term, share in zip(rows[before : before + count], shares * size, strict=True)]
-    return np.concatenate([first_of(rows, before), np.array(last)])
+    return np.array([*first_of(rows, before), *last])

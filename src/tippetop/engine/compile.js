@@ -1,6 +1,6 @@
 // What modes state in plain operators, recorded once a kind and compiled by the browser.
 import { Machinery, NodeValues, advance, javascript_source, record, stepped, unrolled, within } from "./mechanics.js";
-import { cached, replace } from "./runtime.js";
+import { add, cached, mul, neg, replace, sub } from "./runtime.js";
 
 /** A function (y, p) => numbers in plain operators as code (y, p, out). */
 export const compiled = (function_, size, parameters) => made(record(function_, size, parameters));
@@ -16,11 +16,8 @@ function made(recorded) {
 
 const OPERATIONS = {
   __proto__: Math,
-  "+": (a, b) => a + b,
-  "-": (a, b) => a - b,
-  "*": (a, b) => a * b,
+  "+": add, "-": sub, "*": mul, negative: neg,
   "/": (a, b) => a / b,
-  negative: (a) => -a,
   less: (a, b) => (a < b ? 1 : 0),
   select: (condition, a, b) => (condition !== 0 ? a : b),
 };
@@ -55,9 +52,8 @@ export const first_of = (numbers, count) => numbers.slice(0, count);
 export const put_from = (numbers, first, values) => numbers.set(values, first);
 
 /** Put values into room for numbers, from one of them on, each for as many as there are abreast. */
-export function put_rows(numbers, first, values, abreast) {
+export const put_rows = (numbers, first, values, abreast) =>
   values.forEach((value, i) => numbers.fill(value, (first + i) * abreast, (first + i + 1) * abreast));
-}
 
 /** A function that makes numbers, of some values each, better again and again: see tippetop.integrators.iteration. */
 export function iterated(function_, size, parameters, abreast) {
@@ -73,19 +69,10 @@ export function iterated(function_, size, parameters, abreast) {
   };
 }
 
-const codes = cached(() => new Map()), readers = new WeakMap();
+const codes = cached(() => new Map());
 
 /** What makes readings, of so many numbers, of those of a mode and another one. */
 export function reader(mode, size) {
-  if (mode.tops.length > 1) return newReader(mode, size);
-  const [top] = mode.tops, name = `${mode.form} ${size}`;
-  if (!readers.has(top)) readers.set(top, new Map());
-  const known = readers.get(top);
-  if (!known.has(name)) known.set(name, newReader(mode, size));
-  return known.get(name);
-}
-
-function newReader(mode, size) {
   const kinds = mode.tops.map((top) => top.kind), numbers = mode.tops.flatMap((top) => top.numbers);
   const known = codes(mode.form, kinds, size), parameters = Float64Array.of(...numbers, 0);
   const values = (of) => (y, p) => {

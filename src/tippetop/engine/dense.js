@@ -23,15 +23,7 @@ export function earliest(count, holds) {
   return low;
 }
 
-/** Put a matrix times a column in `out` from `at` on. */
-function multiply(matrix, column, out, at) {
-  for (const row of matrix) {
-    let sum = 0;
-    for (let k = 0; k < row.length; k += 1) sum += row[k] * column[k];
-    out[at] = sum;
-    at += 1;
-  }
-}
+const times = (matrix, column) => matrix.map((row) => row.reduce((sum, one, k) => sum + one * column[k], 0));
 
 export class DenseSolution {
   /** Knots, and coefficients [step][number][power], in a row, in powers of the part of a step that has passed. */
@@ -143,35 +135,27 @@ export class DenseSolution {
 
   /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
   static fitted(function_, knots, degree) {
-    const { places, transform, powers } = CHEBYSHEV[degree], wide = degree + 1, terms = [];
-    const [values, weights] = [new Float64Array(wide), new Float64Array(wide)];
-    let size = 0;
-    for (let step = 1, at = 0; step < knots.length; step += 1) {
-      const rows = places.map((place) => function_(knots[step - 1] + place * (knots[step] - knots[step - 1])));
-      size = rows[0].length;
-      for (let number = 0; number < size; number += 1, at += wide) {
-        for (let place = 0; place < wide; place += 1) values[place] = rows[place][number];
-        multiply(transform, values, weights, 0);
-        multiply(powers, weights, terms, at);
-      }
+    const { places, transform, powers } = CHEBYSHEV[degree], rows = [];
+    for (let step = 1; step < knots.length; step += 1) {
+      const values = places.map((place) => function_(knots[step - 1] + place * (knots[step] - knots[step - 1])));
+      values[0].forEach((_, number) => rows.push(times(powers, times(transform, values.map((row) => row[number])))));
     }
-    return new DenseSolution(knots, Float64Array.from(terms), size);
+    return new DenseSolution(knots, Float64Array.from(rows.flat()), rows.length / (knots.length - 1));
   }
 
   /** Steps of equal length of numbers the first of which obey y''' = -w^2 y', and the others y''' = 0. */
   static swinging(moving, swing, knots, degree, count) {
-    const span = knots[1] - knots[0], wide = degree + 1, { terms: gains } = DenseSolution.fitted(swing, [0, span], degree);
-    const begins = knots.slice(0, -1).map(moving), size = begins[0][0].length, terms = new Float64Array(begins.length * size * wide);
-    let at = 0;
-    for (const [numbers, rates, seconds] of begins) {
-      for (let number = 0; number < size; number += 1, at += wide) {
-        const rate = rates[number], second = seconds[number];
+    const span = knots[1] - knots[0], wide = degree + 1, begins = knots.slice(0, -1).map(moving), size = begins[0][0].length;
+    const { terms: swings } = DenseSolution.fitted(swing, [0, span], degree), straight = new Float64Array(2 * wide);
+    [straight[1], straight[wide + 2]] = [span, 0.5 * span * span];
+    const terms = new Float64Array(begins.length * size * wide);
+    begins.forEach(([numbers, rates, seconds], step) => {
+      for (let number = 0, at = step * size * wide; number < size; number += 1, at += wide) {
+        const gains = number < count ? swings : straight;
         terms[at] = numbers[number];
-        terms[at + 1] = span * rate;
-        terms[at + 2] = 0.5 * span * span * second;
-        if (number < count) for (let k = 1; k < wide; k += 1) terms[at + k] = rate * gains[k] + second * gains[wide + k];
+        for (let k = 1; k < wide; k += 1) terms[at + k] = rates[number] * gains[k] + seconds[number] * gains[wide + k];
       }
-    }
+    });
     return new DenseSolution(knots, terms, size);
   }
 }

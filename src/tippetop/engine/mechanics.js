@@ -3927,7 +3927,7 @@ function pieces_of(rows, size, parts) {
     rows.slice(before, py.add(before, count)),
     py.mul(shares, size)
   ).map(([term, share]) => py.mul(term, share));
-  return py.np.concatenate([first_of(rows, before), py.np.array(last)]);
+  return py.np.array([...first_of(rows, before), ...last]);
 }
 
 // tippetop.contact.slipping

@@ -80,8 +80,7 @@ class Run {
     this.along(piece, step, 1, pole, this.sums);
     // Between Gauss's points, and beyond them, it is lower by a part of what it varies by there.
     const { least, most } = this, bound = least - 0.5 * (most - least);
-    if (!presses || !this.force.falls(least, bound)) return;
-    this.force.look(bound, (part) => piece.look(step, Math.min(Math.max(part, WITHIN), 1 - WITHIN))[FORCE]);
+    if (presses) this.force.see(least, bound, (part) => piece.look(step, Math.min(Math.max(part, WITHIN), 1 - WITHIN))[FORCE]);
   }
 
   /** Add to sums what is gained up to a part of a step; the normal forces on the way. */
@@ -99,8 +98,8 @@ class Run {
   /** Take in how far a number of a solution goes down and up in a step. */
   see(solution, step, number, down, up) {
     const start = solution.value(step, number, 0), far = solution.reach(step, number), at = (part) => solution.value(step, number, part);
-    if (down?.falls(start, start - far)) down.look(start - far, at);
-    if (up.falls(-start, -start - far)) up.look(-start - far, (part) => -at(part));
+    down?.see(start, start - far, at);
+    up.see(-start, -start - far, (part) => -at(part));
     if (down && this.turned !== this.turned && Math.abs(start) <= far) this.turned = solution.time(step, firstFall(at, true));
   }
 
@@ -125,13 +124,13 @@ class Run {
     this.early = ended !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
     this.endTime = outcome === m.Outcome.COMPLETED ? this.duration : trajectory.time * units.time;
     this.events = plain(events.map((event) => m.event_in_si(event, units)));
-    for (const [way, last] of [[this.down, state.axis[2]], [this.up, -state.axis[2]]]) way.falls(this.pieces.length ? last : NaN);
+    for (const [way, last] of [[this.down, state.axis[2]], [this.up, -state.axis[2]]]) way.see(this.pieces.length ? last : NaN);
     const least = [this.force, this.down, this.up, this.depth].map((one) => one.found());
     const [resisted, when] = [[-sums[DRILLED], -sums[ROLLED]], [this.turned, this.arrival(m.final_band(state))]];
     const ends = m.Ends.of_one(state, trajectory.time, null, events, this.flights, this.steps, resisted, least, when);
     this.metrics = Object.fromEntries(m.metrics(ends, this.start, this.top, units).entries());
-    this.flights = flights.map(([start, end, gap]) => (
-      { start: start * units.time, end: end * units.time, highest_gap: gap * units.length }));
+    const told = ([start, end, gap]) => ({ start: start * units.time, end: end * units.time, highest_gap: gap * units.length });
+    this.flights = flights.map(told);
     if (!this.pieces.length) {
       const [mode, numbers] = m.as_begun(this.start, this.top);
       const still = this.piece(mode, DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]), "sliding");
@@ -180,15 +179,10 @@ class Least {
   value = Infinity;
   places = [];
 
-  /** Take in a value; whether there may be less of it, given a bound. */
-  falls(value, bound = value) {
+  /** Take in a value, and how low those between it and the next one, at the parts of a step, may be. */
+  see(value, bound = value, values = null) {
     this.value = Math.min(this.value, value);
-    return bound < this.value;
-  }
-
-  /** Where to look for less, given the values at the parts of a step. */
-  look(bound, values) {
-    this.places.push([bound, values]);
+    if (bound < this.value) this.places.push([bound, values]);
   }
 
   found() {

@@ -77,10 +77,7 @@ export const abs = (a) => (typeof a === "number" ? Math.abs(a) : a.__abs__());
 export const float = (a) => (a === "inf" ? Infinity : Number(a));
 export const int = (a) => Math.trunc(Number(a));
 export const str = (a) => (a instanceof Error ? a.message : a instanceof Enum ? a.name : typeof a === "string" ? a : repr(a));
-export function sum(values, start = 0) {
-  for (const value of values) start = add(start, value);
-  return start;
-}
+export const sum = (values, start = 0) => tuple(values).reduce((total, value) => add(total, value), start);
 
 export function truth(a) {
   if (typeof a === "number") return a !== 0;
@@ -105,6 +102,7 @@ export const math = {
   dist: (a, b) => Math.hypot(...Array.from(a, (x, i) => x - b[i])),
 };
 
+const itself = (one) => one;
 /** What is asked of NumPy: arrays to be filled, those of two dimensions as lists of arrays; and numbers for arrays. */
 export const np = {
   __proto__: math,
@@ -115,18 +113,10 @@ export const np = {
   copysign: (a, b) => (b < 0 || Object.is(b, -0) ? -Math.abs(a) : Math.abs(a)),
   less: (a, b) => (takes(a, "__lt__") ? a.__lt__(b) : a < b),
   where: (condition, a, b) => (takes(condition, "graph") ? condition.graph.select(condition, a, b) : condition ? a : b),
-  any: (condition) => condition,
-  max: (number) => number,
-  min: (number) => number,
+  any: itself, max: itself, min: itself,
   stack: (parts) => Float64Array.from(parts),
   empty: (shape) => (typeof shape === "number" ? new Float64Array(shape)
     : Array.from({ length: shape[0] }, () => new Float64Array(shape[1]))),
-  concatenate([a, b]) {
-    const found = new Float64Array(a.length + b.length);
-    found.set(a);
-    found.set(b, a.length);
-    return found;
-  },
   zeros: (shape) => np.empty(shape),
   array: (numbers) => new Float64Array(numbers),
 };
@@ -269,7 +259,7 @@ function below(a, b) {
 }
 
 function most(given, better) {
-  const told = given.at(-1)?.constructor === Object ? given.pop() : {}, { key: worth = (one) => one } = told;
+  const told = given.at(-1)?.constructor === Object ? given.pop() : {}, { key: worth = itself } = told;
   const choices = given.length === 1 ? [...given[0]] : given;
   if (!choices.length && "default" in told) return told.default;
   return choices.reduce((best, choice) => (better(worth(choice), worth(best)) ? choice : best));
@@ -279,7 +269,7 @@ export const min = (...given) => most(given, below);
 // Of two, and without a list of what is given: this is asked for in every step.
 export const larger = (a, b) => (typeof a === "number" && typeof b === "number" ? (b > a ? b : a) : max(a, b));
 export const smaller = (a, b) => (typeof a === "number" && typeof b === "number" ? (b < a ? b : a) : min(a, b));
-export const sorted = (all, { key: worth = (one) => one } = {}) =>
+export const sorted = (all, { key: worth = itself } = {}) =>
   [...all].sort((a, b) => below(worth(b), worth(a)) - below(worth(a), worth(b)));
 
 // ---- objects
