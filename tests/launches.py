@@ -95,12 +95,14 @@ def launch_of(seed: int) -> dict[str, Any]:
     return fields
 
 
-def in_javascript(launches: list[dict[str, Any]], *options: str) -> Iterator[dict[str, Any]]:
+def in_javascript(
+    launches: list[dict[str, Any]], *options: str, engine: Path = HERE
+) -> Iterator[dict[str, Any]]:
     """What the engine makes of launches, in Node with some options."""
     lines = "".join(json.dumps(launch) + "\n" for launch in launches)
     follow = Path(__file__).with_name("follow.mjs")
     ran = subprocess.run(
-        [NODE, *options, str(follow), str(HERE / "index.js")],
+        [NODE, *options, str(follow), str(engine / "index.js")],
         input=lines,
         capture_output=True,
         text=True,

@@ -139,7 +139,10 @@ def arithmetic():
     rings = [(Ring(5) + Knot()).number, gold.number, isinstance(gold, Gold)]
     return [*found, *rings, (2 + three).number, (three * three).number, 7 // 2, -7 // 2, -7 % 3, 2.0**0.5,
             True + 1, -inf < 0.0, distance(3.0, 4.0), sum([1, 2], 10), max(3, 1, 2), min([4.0, 2.0]),
-            max([], default=-1.0), 1 if not () else 0]
+            max([], default=-1.0), 1 if not () else 0, max(2.0, 5.0, 3.0), min(2.0, 2), max(*[1.0, 4.0]),
+            list(range(2, 9, 3)), list(range(5, 0, -2)), list(range(3, 3)),
+            list(map(lambda a: a + 1, (1, 2))), list(map(lambda a, b: a * b, (1, 2, 3), [4, 5])),
+            list(map(lambda a, b, c: a + b - c, (1, 2), range(2), (5, 6, 7)))]
 
 def choices():
     found = []
@@ -234,7 +237,7 @@ def test_arithmetic_of_numbers_alone_is_that_of_javascript_and_means_the_same(tm
     assert not wrong
     assert json.loads(found) == space["numbers"]()
     _, wrong = run([*lines, "numbers(new py.Thing());"], tmp_path)
-    assert "ArithmeticError: what is compared, or added to something, is no number" in wrong
+    assert "TypeError: what is compared, or added to something, is no number" in wrong
 
 
 @pytest.mark.parametrize("statement", ["return f(**k)", "with open(x) as f: pass", 'return f"{x:.0e}"'])

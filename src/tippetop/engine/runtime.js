@@ -125,7 +125,7 @@ export const np = {
 
 export class Thing {
   valueOf() {
-    throw new ArithmeticError("what is compared, or added to something, is no number");
+    throw new TypeError("what is compared, or added to something, is no number");
   }
 }
 
