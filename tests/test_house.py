@@ -75,7 +75,10 @@ def test_no_two_classes_share_a_name() -> None:
 
 
 FILE, CLASS, FUNCTION, ENGINE = 300, 200, 60, 900
-"""Lines that one of them, and what is written by hand of the page's engine, has at most; the docstring of a function that users call does not count."""
+"""Lines that one of them, and what is written by hand of the page's engine, has at most.
+
+The docstring of a function that users call does not count.
+"""
 
 
 def lines_of(node: ast.AST) -> int:
