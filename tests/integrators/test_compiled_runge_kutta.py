@@ -119,6 +119,23 @@ def test_a_hop_far_shorter_than_a_step_ends_where_it_lands(rise):
     assert own.solution.end == pytest.approx(2.0 * rise, rel=1e-9)
 
 
+def test_a_trial_is_a_single_step(monkeypatch):
+    """It is no longer than one that was taken, so that it needs no search for how long the first may be."""
+    landed, trials = stepping.Stepping.landed, []
+
+    def seen(other, time, state, end):
+        found = landed(other, time, state, end)
+        trials.append(other.steps)
+        return found
+
+    monkeypatch.setattr(stepping.Stepping, "landed", seen)
+    problem = report_problem(175.0).replace({"contact.liftoff": "fly"})
+    run = tt.simulate(problem, 8.0, samples=2, integrator="compiled", tolerance=1e-10)
+    assert run.sizes["event"] > 10
+    assert len(trials) > 20
+    assert set(trials) == {1}
+
+
 def test_what_cannot_be_recorded_is_left_to_scipy():
     def rates(y, p):
         return (y[1], -math.sin(float(y[0])))

@@ -1317,7 +1317,7 @@ function precession(state, top) {
   return py.div(length(state.momentum), top.transverse_inertia);
 }
 
-/** Rates of change of the state in free flight, and of those. */
+/** Rates of change of the state in free flight, its numbers' units per s, and theirs, per s^2. */
 function flight_rates(state, top) {
   var turning = axis_rate(state.axis, state.momentum, top);
   var still = [0.0, 0.0, 0.0];
@@ -1326,7 +1326,7 @@ function flight_rates(state, top) {
   return [rate, new State(axis_rate(turning, state.momentum, top), still, still, -top.gravity)];
 }
 
-/** sin(w t) / w and (1 - cos(w t)) / w^2, for a frequency w that may be zero. */
+/** sin(w t) / w, s, and (1 - cos(w t)) / w^2, s^2, for a frequency w, rad/s, that may be zero. */
 function swing(frequency, elapsed, functions) {
   var half = 0.5 * elapsed * frequency + SMALL;
   var chord = py.div(elapsed * functions.sin(half), half);

@@ -192,9 +192,10 @@ class DenseSolution:
         Parameters
         ----------
         moving
-            Takes times, and returns the numbers, their rates, and rates of those.
+            Takes k times, and returns the numbers, their rates, and rates of those: n rows each, of k
+            values or of one for all.
         swing
-            Takes times t, and returns sin(w t) / w and (1 - cos(w t)) / w^2.
+            Takes times t, and returns sin(w t) / w and (1 - cos(w t)) / w^2, a value a time each.
         knots
             Ends of the steps.
         degree

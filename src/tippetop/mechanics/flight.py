@@ -44,7 +44,7 @@ def precession(state: State, top: Top) -> Scalar:
 
 
 def flight_rates(state: State, top: Top) -> tuple[State, State]:
-    """Rates of change of the state in free flight, and of those."""
+    """Rates of change of the state in free flight, its numbers' units per s, and theirs, per s^2."""
     turning = axis_rate(state.axis, state.momentum, top)
     still, falling = (0.0, 0.0, 0.0), (0.0, 0.0, -top.gravity)
     rate = State(turning, still, falling, state.velocity[2])
@@ -52,7 +52,7 @@ def flight_rates(state: State, top: Top) -> tuple[State, State]:
 
 
 def swing(frequency: Scalar, elapsed: Scalar, functions: Functions) -> tuple[Scalar, Scalar]:
-    """sin(w t) / w and (1 - cos(w t)) / w^2, for a frequency w that may be zero.
+    """sin(w t) / w, s, and (1 - cos(w t)) / w^2, s^2, for a frequency w, rad/s, that may be zero.
 
     A number that obeys y''' = -w^2 y' gains the first of them times y', and the second times y'', in a time.
     """
