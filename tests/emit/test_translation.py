@@ -134,13 +134,14 @@ def arithmetic():
             raise Wrong(word)
         except ValueError as error:
             found += [str(error), error.field, repr(word[:3])]
-    three = Ring(5) + 4
+    three, none = Ring(5) + 4, inf - inf
     gold = Ring(1) + Gold(2)
     rings = [(Ring(5) + Knot()).number, gold.number, isinstance(gold, Gold)]
     return [*found, *rings, (2 + three).number, (three * three).number, 7 // 2, -7 // 2, -7 % 3, 2.0**0.5,
             True + 1, -inf < 0.0, distance(3.0, 4.0), sum([1, 2], 10), max(3, 1, 2), min([4.0, 2.0]),
             max([], default=-1.0), 1 if not () else 0, max(2.0, 5.0, 3.0), min(2.0, 2), max(*[1.0, 4.0]),
-            list(range(2, 9, 3)), list(range(5, 0, -2)), list(range(3, 3)),
+            max(none, 1.0) != max(none, 1.0), max(1.0, none), min(1.0, none), max(False, 0), max(0, False),
+            min(True, 3), list(range(2, 9, 3)), list(range(5, 0, -2)), list(range(3, 3)),
             list(map(lambda a: a + 1, (1, 2))), list(map(lambda a, b: a * b, (1, 2, 3), [4, 5])),
             list(map(lambda a, b, c: a + b - c, (1, 2), range(2), (5, 6, 7)))]
 

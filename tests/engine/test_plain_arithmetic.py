@@ -1,4 +1,4 @@
-"""Where what is generated has operators of JavaScript, all that they are asked for are numbers.
+"""Where what is generated has operators of JavaScript between two operands, both are numbers.
 
 Of lists and what has arithmetic of its own they would make something else, without a word.
 """

@@ -11,7 +11,7 @@ import pytest
 from exact_motions import KEPLER, whole
 
 from every_motion import CASES, states
-from tippetop.integrators import Guard, Motion, has_numba, make_integrator, stepping
+from tippetop.integrators import Guard, Motion, dormand_prince, has_numba, make_integrator, stepping
 from tippetop.presets import report_problem
 
 if not has_numba():
@@ -117,6 +117,43 @@ def test_a_hop_far_shorter_than_a_step_ends_where_it_lands(rise):
     _, own = both(motion, (1.0,), np.array([0.0, rise, 1.0]), 50.0)
     assert own.guard == "landing"
     assert own.solution.end == pytest.approx(2.0 * rise, rel=1e-9)
+
+
+def dipping(part):
+    return 1.0 + 0.3 * part - 3.0 * math.exp(-(((part - 0.375) / 0.05) ** 2))
+
+
+LOOKED_AT = {
+    "hardly varies": (lambda part: 1.0 + 0.24 * part, 1e-8, 2, False),
+    "varies by a quarter": (lambda part: 1.0 + 0.25 * part, 1e-8, 8, False),
+    "dips": (dipping, 1e-8, 8, True),
+    "dips where steps are long": (lambda part: math.cos(4.0 * math.pi * part), 1e-3, 8, True),
+    "is no number in the middle": (lambda part: math.nan if part == 0.5 else 1.0, 1e-8, 8, False),
+    "is no number at the end": (lambda part: math.nan if part == 1.0 else 1.0, 1e-8, 8, False),
+    "is negative": (lambda part: -1.0, 1e-8, 8 + 37, False),
+    "is infinite": (lambda part: math.inf, 1e-8, 8, False),
+    "falls to zero": (lambda part: 1.0 - part, 1e-8, 8, True),
+}
+"""Guards along a step, a tolerance, in how many places they are looked at, and whether they may fall."""
+
+
+@pytest.mark.parametrize("name", LOOKED_AT)
+def test_a_guard_is_looked_at_closely_unless_it_hardly_varies(name):
+    along, tolerance, most, may_fall = LOOKED_AT[name]
+    looks = []
+
+    def guards(y, p, out):
+        looks.append(y[0])
+        out[0] = along(y[0])
+
+    terms, values = np.zeros(dormand_prince.POWERS), np.zeros((dormand_prince.LOOKS + 2, 1))
+    terms[1], values[0] = 1.0, along(0.0)
+    given, tolerances = (guards, (), terms, 0, np.zeros(1), values), np.array([tolerance, tolerance])
+    steady = dormand_prince.are_steady(*given, tolerances)
+    assert steady == (most == 2)
+    assert (not steady and dormand_prince.suspect(*given, np.zeros(0))) == may_fall
+    assert len(looks) == most
+    assert len(set(looks)) == most
 
 
 def test_a_trial_is_a_single_step(monkeypatch):

@@ -23,7 +23,8 @@ export function earliest(count, holds) {
   return low;
 }
 
-const times = (matrix, column) => matrix.map((row) => row.reduce((sum, one, k) => sum + one * column[k], 0));
+/** A matrix times a column. */
+const product = (matrix, column) => matrix.map((row) => row.reduce((sum, one, k) => sum + one * column[k], 0));
 
 export class DenseSolution {
   /** Knots, and coefficients [step][number][power], in a row, in powers of the part of a step that has passed. */
@@ -138,9 +139,9 @@ export class DenseSolution {
     const { places, transform, powers } = CHEBYSHEV[degree], rows = [];
     for (let step = 1; step < knots.length; step += 1) {
       const values = places.map((place) => function_(knots[step - 1] + place * (knots[step] - knots[step - 1])));
-      values[0].forEach((_, number) => rows.push(times(powers, times(transform, values.map((row) => row[number])))));
+      values[0].forEach((_, number) => rows.push(product(powers, product(transform, values.map((row) => row[number])))));
     }
-    return new DenseSolution(knots, Float64Array.from(rows.flat()), rows.length / (knots.length - 1));
+    return new DenseSolution(knots, Float64Array.from(rows.flat()), rows.length / Math.max(knots.length - 1, 1));
   }
 
   /** Steps of equal length of numbers the first of which obey y''' = -w^2 y', and the others y''' = 0. */

@@ -9614,7 +9614,7 @@ const [EARLIEST, RISEN] = [py.pow(0.5, 40), 1e-15];
 const ROWS = 21;
 const POWERS = 8;
 const LOOKS_of_dormand_prince = 8;
-const STEADY = 1.25;
+const [STEADY, TIGHT] = [1.25, 1e-06];
 
 /** Call a motion's function. */
 function evaluate(function_, y, p, out) {
@@ -9628,9 +9628,11 @@ function fixed(array) {
 
 /** Put the guards' values at the looks of a step into the rows of values after the first. */
 function look(guards, p, terms, first, y, values, room) {
-  for (var number = 1; number < LOOKS_of_dormand_prince + 1; number += 1) {
-    within(terms, first, number / LOOKS_of_dormand_prince, y);
-    evaluate(guards, y, p, values[number]);
+  for (var number = 1; number < LOOKS_of_dormand_prince; number += 1) {
+    if (2 * number !== LOOKS_of_dormand_prince) {
+      within(terms, first, number / LOOKS_of_dormand_prince, y);
+      evaluate(guards, y, p, values[number]);
+    }
   }
 }
 
@@ -9648,10 +9650,7 @@ function error_of(h, y, new_, k, tolerance, size) {
     fifth = fifth + first * first;
     third = third + second * second;
   }
-  if (fifth === 0.0 && third === 0.0) {
-    return 0.0;
-  }
-  return h * fifth / py.math.sqrt((fifth + 0.01 * third) * size);
+  return fifth === 0.0 && third === 0.0 ? 0.0 : h * fifth / py.math.sqrt((fifth + 0.01 * third) * size);
 }
 
 /** What a power takes longer for. */
@@ -9763,18 +9762,19 @@ function rises(guards, p, terms, first, y, values, guard) {
   return false;
 }
 
-/** Whether all guards vary so little over a step that none may fall; values has those at its start. */
-function are_steady(guards, p, terms, first, y, values) {
+/** Whether all guards vary so little over a step that they are looked at no closer. */
+function are_steady(guards, p, terms, first, y, values, tolerance) {
   within(terms, first, 0.5, y);
-  evaluate(guards, y, p, values[LOOKS_of_dormand_prince + 1]);
+  evaluate(guards, y, p, values[py.floordiv(LOOKS_of_dormand_prince, 2)]);
   within(terms, first, 1.0, y);
   evaluate(guards, y, p, values[LOOKS_of_dormand_prince]);
   var values0 = values[0];
   for (var guard = 0; guard < values[0].length; guard += 1) {
     var begin = values0[guard];
-    var middle = values[LOOKS_of_dormand_prince + 1][guard];
+    var middle = values[py.floordiv(LOOKS_of_dormand_prince, 2)][guard];
     var end = values[LOOKS_of_dormand_prince][guard];
-    if (!(STEADY * py.smaller(py.smaller(begin, middle), end) > py.larger(py.larger(begin, middle), end))) {
+    var bound = STEADY * py.smaller(py.smaller(begin, middle), end);
+    if (!(tolerance[0] <= TIGHT && begin < bound && middle < bound && end < bound)) {
       return false;
     }
   }
@@ -9783,24 +9783,17 @@ function are_steady(guards, p, terms, first, y, values) {
 
 /** Whether a guard may fall in a step; values has those at its start, and room for the other looks. */
 function suspect(guards, p, terms, first, y, values, room) {
-  if (!py.truth(are_steady(guards, p, terms, first, y, values))) {
-    look(guards, p, terms, first, y, values, room);
-    var values0 = values[0];
-    var values1 = values[1];
-    for (var guard = 0; guard < values[0].length; guard += 1) {
-      var low = py.larger(values0[guard], values1[guard]) <= 0.0;
-      if (
-        py.truth(may_fall(values, guard)) || py.truth(low) && py.truth(
-          rises(guards, p, terms, first, y, values, guard)
-        )
-      ) {
-        return true;
-      }
-    }
-  }
+  look(guards, p, terms, first, y, values, room);
   var values0 = values[0];
+  var values1 = values[1];
   for (var guard = 0; guard < values[0].length; guard += 1) {
-    values0[guard] = values[LOOKS_of_dormand_prince][guard];
+    if (py.truth(may_fall(values, guard))) {
+      return true;
+    }
+    var low = py.and(values0[guard] <= 0.0, () => values1[guard] <= 0.0);
+    if (py.truth(low) && py.truth(rises(guards, p, terms, first, y, values, guard))) {
+      return true;
+    }
   }
   return false;
 }
@@ -9866,8 +9859,15 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     calls = calls + (12 * tries + 3);
     steps = steps + 1;
     knots[steps] = span[0];
-    if (count > 0 && py.truth(suspect(guards, p, terms, first, place, values, room))) {
-      return [steps, calls, SUSPECT];
+    if (count > 0) {
+      var steady = are_steady(guards, p, terms, first, place, values, tolerance);
+      if (!py.truth(steady) && py.truth(suspect(guards, p, terms, first, place, values, room))) {
+        return [steps, calls, SUSPECT];
+      }
+      var values0 = values[0];
+      for (var guard = 0; guard < count; guard += 1) {
+        values0[guard] = values[LOOKS_of_dormand_prince][guard];
+      }
     }
   }
   return [steps, calls, REACHED];
@@ -11799,6 +11799,7 @@ export {
   Striking,
   TERMS,
   THIRD,
+  TIGHT,
   TILTS,
   TIME,
   TINY,

@@ -179,7 +179,7 @@ class Least {
   value = Infinity;
   places = [];
 
-  /** Take in a value, and how low those between it and the next one, at the parts of a step, may be. */
+  /** Take in a value; where there may be less, down to a bound, keep what tells it at the parts of a step. */
   see(value, bound = value, values = null) {
     this.value = Math.min(this.value, value);
     if (bound < this.value) this.places.push([bound, values]);

@@ -44,9 +44,10 @@ POWERS = 8
 LOOKS = 8
 """Parts of a step at whose ends guards are looked at."""
 
-STEADY = 1.25
-"""The greatest over the least of a guard's values at the ends and the middle of a step, up to which it is
-looked at nowhere else: in so long a step as its error allows no more than a part of a swing takes place."""
+STEADY, TIGHT = 1.25, 1e-6
+"""What the greatest of a guard's values at the ends and the middle of a step is below, in units of the least,
+if it is looked at nowhere else; and the tolerance up to which that will do: such steps are a small part of
+what swings, those of a loose one are not."""
 
 
 def evaluate(function: Compiled, y: Array, p: Array, out: Array) -> None:
@@ -60,10 +61,14 @@ def fixed(array: Array) -> Array:
 
 
 def look(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array) -> None:
-    """Put the guards' values at the looks of a step into the rows of values after the first."""
-    for number in range(1, LOOKS + 1):
-        within(terms, first, number / LOOKS, y)
-        evaluate(guards, y, p, values[number])
+    """Put the guards' values at the looks of a step into the rows of values after the first.
+
+    Those at its middle and its end are there; see `are_steady`.
+    """
+    for number in range(1, LOOKS):
+        if 2 * number != LOOKS:
+            within(terms, first, number / LOOKS, y)
+            evaluate(guards, y, p, values[number])
 
 
 def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array, size: int) -> float:
@@ -75,9 +80,7 @@ def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array, size: i
         first, second = k[16, i] / scale, k[17, i] / scale
         fifth += first * first
         third += second * second
-    if fifth == 0.0 and third == 0.0:
-        return 0.0
-    return h * fifth / math.sqrt((fifth + 0.01 * third) * size)
+    return 0.0 if fifth == 0.0 and third == 0.0 else h * fifth / math.sqrt((fifth + 0.01 * third) * size)
 
 
 def eighth_root(number: float) -> float:
@@ -166,18 +169,21 @@ def rises(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values
     return False
 
 
-def are_steady(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array) -> bool:
-    """Whether all guards vary so little over a step that none may fall; values has those at its start.
+def are_steady(
+    guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, tolerance: Array
+) -> bool:
+    """Whether all guards vary so little over a step that they are looked at no closer.
 
-    Those at its middle and its end are put into the last row and the one before.
+    The values at its middle and its end are put into their rows; those at its start are there.
     """
     within(terms, first, 0.5, y)
-    evaluate(guards, y, p, values[LOOKS + 1])
+    evaluate(guards, y, p, values[LOOKS // 2])
     within(terms, first, 1.0, y)
     evaluate(guards, y, p, values[LOOKS])
     for guard in range(len(values[0])):
-        begin, middle, end = values[0, guard], values[LOOKS + 1, guard], values[LOOKS, guard]
-        if not STEADY * min(begin, middle, end) > max(begin, middle, end):
+        begin, middle, end = values[0, guard], values[LOOKS // 2, guard], values[LOOKS, guard]
+        bound = STEADY * min(begin, middle, end)
+        if not (tolerance[0] <= TIGHT and begin < bound and middle < bound and end < bound):
             return False
     return True
 
@@ -186,14 +192,13 @@ def suspect(
     guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array
 ) -> bool:
     """Whether a guard may fall in a step; values has those at its start, and room for the other looks."""
-    if not are_steady(guards, p, terms, first, y, values):
-        look(guards, p, terms, first, y, values, room)
-        for guard in range(len(values[0])):
-            low = max(values[0, guard], values[1, guard]) <= 0.0
-            if may_fall(values, guard) or (low and rises(guards, p, terms, first, y, values, guard)):
-                return True
+    look(guards, p, terms, first, y, values, room)
     for guard in range(len(values[0])):
-        values[0, guard] = values[LOOKS, guard]
+        if may_fall(values, guard):
+            return True
+        low = values[0, guard] <= 0.0 and values[1, guard] <= 0.0
+        if low and rises(guards, p, terms, first, y, values, guard):
+            return True
     return False
 
 
@@ -286,6 +291,10 @@ def advance(
         calls += 12 * tries + 3
         steps += 1
         knots[steps] = span[0]
-        if count > 0 and suspect(guards, p, terms, first, place, values, room):
-            return steps, calls, SUSPECT
+        if count > 0:
+            steady = are_steady(guards, p, terms, first, place, values, tolerance)
+            if not steady and suspect(guards, p, terms, first, place, values, room):
+                return steps, calls, SUSPECT
+            for guard in range(count):
+                values[0, guard] = values[LOOKS, guard]
     return steps, calls, REACHED
