@@ -1,11 +1,10 @@
 """What the engine has of its own where Python has NumPy: functions of values abreast, compiled."""
 
 import json
-import subprocess
 
 import numpy as np
 
-from node import NODE
+from node import printed
 from tippetop.engine import HERE
 
 
@@ -18,10 +17,7 @@ def told(expression, **given):
             f"console.log(JSON.stringify({expression}));",
         ]
     )
-    options = [NODE, "--input-type=module", "-"]
-    ran = subprocess.run(options, input=script, capture_output=True, text=True, timeout=60, check=False)
-    assert ran.stderr == ""
-    return json.loads(ran.stdout)
+    return json.loads(printed(script))
 
 
 def test_numbers_of_several_values_are_made_better_until_they_are_good():

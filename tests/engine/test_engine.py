@@ -27,7 +27,7 @@ from launches import (
     surfaces_of,
 )
 from lying import lying, resisted
-from node import NODE
+from node import printed
 from tippetop.engine import COMMAND, HERE
 
 SLIPS_IN_THE_END = 21
@@ -66,9 +66,7 @@ def test_all_that_is_generated_asks_for_is_there() -> None:
       const there = (name) => name.split(".").slice(1).reduce((one, part) => one?.[part], py) !== undefined;
       console.log(JSON.stringify([[...asked].filter((name) => !there(name)), [...asked]]));
     """
-    options = [NODE, "--input-type=module", "-"]
-    ran = subprocess.run(options, input=script, check=True, capture_output=True, text=True, timeout=60)
-    missing, asked = json.loads(ran.stdout)
+    missing, asked = json.loads(printed(script))
     assert {"py.add", "py.math.pi", "py.np.nan"} <= set(asked)
     assert not missing
 
@@ -243,9 +241,7 @@ def test_the_last_of_so_many_samples_is_at_the_end() -> None:
       const run = simulate({problem}, {{ duration: {duration} }});
       console.log(JSON.stringify(Array.from(run.track({count}).time)));
     """
-    options = [NODE, "--input-type=module", "-"]
-    ran = subprocess.run(options, input=script, check=True, capture_output=True, text=True, timeout=60)
-    times = json.loads(ran.stdout)
+    times = json.loads(printed(script))
     assert times == pytest.approx(np.linspace(0.0, duration, count), rel=1e-15)
     assert times[-1] == duration
 
@@ -259,6 +255,4 @@ def test_no_more_is_kept_than_so_much() -> None:
       for (let number = 0; number < 5000; number += 1) square(number);
       console.log(JSON.stringify([square(4999), made, square(0), made]));
     """
-    options = [NODE, "--input-type=module", "-"]
-    ran = subprocess.run(options, input=script, check=True, capture_output=True, text=True, timeout=60)
-    assert json.loads(ran.stdout) == [4999**2, 5000, 0, 5001]
+    assert json.loads(printed(script)) == [4999**2, 5000, 0, 5001]
