@@ -9,19 +9,19 @@ from tippetop.contact.mode import Mode, Outcome, Segment, Transition, failed
 from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import ELEMENTARY, DenseSolution
-from tippetop.mechanics.flight import flight_rates, fly, gap, gap_rate, precession, swing
+from tippetop.mechanics.flight import flight_rates, fly, gap, gap_rate, precession
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.vectors import Row, Scalar
 
-DEGREE = 10
+DEGREE = 14
 """Degree of the polynomials that stand for a flight in a solution."""
 
 TURN = 0.5
 """Angle through which the axis turns in each of them, rad: what they leave out is below rounding.
 
-It is (TURN / 2)^(DEGREE + 1) / (2^DEGREE (DEGREE + 1)!), 6e-18. The marker's angle is a quadrature over each,
+It is TURN^(DEGREE + 1) / (DEGREE + 1)!, 2e-17. The marker's angle is a quadrature over each,
 whose rate is singular at the farther pole: longer ones would come near that.
 """
 
@@ -72,16 +72,14 @@ class Flight(Mode):
 
     def _solution(self, state: State, elapsed: Sequence[float]) -> DenseSolution:
         """The flight from a state on, in steps of equal length."""
-        frequency = precession(state, self.top)
 
         def moving(time: Scalar) -> tuple[Row, Row, Row]:
             here = fly(state, time, self.top, ELEMENTARY)
             rate, second = flight_rates(here, self.top)
             return here.pack(), rate.pack(), second.pack()
 
-        return DenseSolution.swinging(
-            moving, lambda time: swing(frequency, time, ELEMENTARY), elapsed, DEGREE, len(state.axis)
-        )
+        swinging = precession(state, self.top), elapsed, DEGREE, len(state.axis)
+        return DenseSolution.swinging(moving, *swinging)
 
     def _landing(self, state: State, horizon: float) -> tuple[float | None, Top]:
         """When the first surface touches the table, and the top with that surface active."""

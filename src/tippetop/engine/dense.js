@@ -1,5 +1,5 @@
 // Solutions as polynomials in time, one a step, as in tippetop.integrators.dense.
-import { crossing } from "./mechanics.js";
+import { POWERS, crossing, within } from "./mechanics.js";
 import { CHEBYSHEV, SHORTEST } from "./tables.js";
 
 export const ELEMENTARY = Math;
@@ -60,7 +60,8 @@ export class DenseSolution {
 
   /** All numbers at a part of a step. */
   numbers(step, part, out = new Array(this.size)) {
-    for (let number = 0; number < this.size; number += 1) out[number] = this.value(step, number, part);
+    if (this.degree === POWERS - 1) within(this.terms, step * this.size * POWERS, part, out);
+    else for (let number = 0; number < this.size; number += 1) out[number] = this.value(step, number, part);
     return out;
   }
 
@@ -144,17 +145,16 @@ export class DenseSolution {
     return new DenseSolution(knots, Float64Array.from(rows.flat()), rows.length / Math.max(knots.length - 1, 1));
   }
 
-  /** Steps of equal length of numbers the first of which obey y''' = -w^2 y', and the others y''' = 0. */
-  static swinging(moving, swing, knots, degree, count) {
+  /** Power series, in steps of equal length, of numbers the first of which obey y''' = -w^2 y', and the others y''' = 0. */
+  static swinging(moving, frequency, knots, degree, count) {
     const span = knots[1] - knots[0], wide = degree + 1, begins = knots.slice(0, -1).map(moving), size = begins[0][0].length;
-    const { terms: swings } = DenseSolution.fitted(swing, [0, span], degree), straight = new Float64Array(2 * wide);
-    [straight[1], straight[wide + 2]] = [span, 0.5 * span * span];
-    const terms = new Float64Array(begins.length * size * wide);
+    const terms = new Float64Array(begins.length * size * wide), square = (frequency * span) ** 2;
     begins.forEach(([numbers, rates, seconds], step) => {
       for (let number = 0, at = step * size * wide; number < size; number += 1, at += wide) {
-        const gains = number < count ? swings : straight;
         terms[at] = numbers[number];
-        for (let k = 1; k < wide; k += 1) terms[at + k] = rates[number] * gains[k] + seconds[number] * gains[wide + k];
+        terms[at + 1] = span * rates[number];
+        terms[at + 2] = 0.5 * span * span * seconds[number];
+        if (number < count) for (let k = 3; k < wide; k += 1) terms[at + k] = (-square / (k * (k - 1))) * terms[at + k - 2];
       }
     });
     return new DenseSolution(knots, terms, size);

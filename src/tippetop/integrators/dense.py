@@ -182,34 +182,34 @@ class DenseSolution:
     def swinging(
         cls,
         moving: Callable[[Array], Sequence[Row]],
-        swing: Callable[[Array], Row],
+        frequency: float,
         knots: Sequence[float],
         degree: int,
         count: int,
     ) -> "DenseSolution":
-        """Steps of equal length of numbers that obey y''' = -w^2 y', with the same w, or y''' = 0.
+        """Power series, in steps of equal length, of numbers that obey y''' = -w^2 y', or y''' = 0.
 
         Parameters
         ----------
         moving
             Takes k times, and returns the numbers, their rates, and rates of those: n rows each, of k
             values or of one for all.
-        swing
-            Takes times t, and returns sin(w t) / w and (1 - cos(w t)) / w^2, a value a time each.
+        frequency
+            That is w.
         knots
             Ends of the steps.
         degree
             Of the polynomials.
         count
-            How many of the numbers have that w: the first ones.
+            How many of the numbers have that w, and not none: the first ones.
         """
         ends = np.array(knots)
         begin, rate, second = (table(rows, len(ends) - 1) for rows in moving(ends[:-1]))
         span = ends[1] - ends[0]
-        sine, versine = cls.fitted(swing, [0.0, span], degree).terms[0, :, 1:]
         terms = np.zeros((len(begin), begin.shape[1], degree + 1))
         terms[:, :, 0], terms[:, :, 1], terms[:, :, 2] = begin, span * rate, 0.5 * span * span * second
-        terms[:, :count, 1:] = rate[:, :count, None] * sine + second[:, :count, None] * versine
+        for k in range(3, degree + 1):
+            terms[:, :count, k] = -((frequency * span) ** 2) / (k * (k - 1)) * terms[:, :count, k - 2]
         return cls(ends, terms)
 
 

@@ -231,7 +231,7 @@ def take_step(
         error = error_of(reach - time, y, new, k, tolerance, size)
         tries += 1
         span[2] = (reach - time) * factor_for(error, tries)
-    more_stages(rates, reach - time, p, y, lost, k, place)
+    more_stages(rates, reach - time, p, y, lost, k, moved, place)
     polynomials(reach - time, y, new, k, terms, first)
     for i in range(len(y)):
         lost[i] = moved[i] - (new[i] - y[i])

@@ -1,23 +1,28 @@
 """The coefficients of Dormand and Prince's method of order 8(5,3), which are SciPy's, written out as code."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.integrate import DOP853
 
 from tippetop.integrators.dormand_prince import Array
 
+TAKEN = "rates, h, p, y, lost, k, moved, place"
+"""What the functions of stages take."""
 
-def written_out() -> str:
-    """The functions in which the method's coefficients are, as code."""
-    moved, place = "moved[i] = h * ({}) + lost[i]", "place[i] = y[i] + {}"
-    given = "p, y: Array, lost: Array, k: Array"
-    lines = [f"def stages(rates, h: float, {given}, moved: Array, place: Array):"]
-    for number, weights in enumerate([*DOP853.A[1:], DOP853.B], start=1):
-        lines += _for_each(moved.format(_sum(weights)), place.format("moved[i]"))
-        lines.append(f"    evaluate(rates, place, p, k[{number}])")
-    lines.append(f"def more_stages(rates, h: float, {given}, place: Array):")
-    for number, weights in enumerate(DOP853.A_EXTRA, start=13):
-        lines += _for_each(place.format(f"(h * ({_sum(weights)}) + lost[i])"))
-        lines.append(f"    evaluate(rates, place, p, k[{number}])")
+
+def written_out(size: int | None = None) -> str:
+    """The functions in which the method's coefficients are, as code; stages of a size without loops."""
+    lines = list[str]()
+    for name, first, rows in (("stages", 1, [*DOP853.A[1:], DOP853.B]), ("more_stages", 13, DOP853.A_EXTRA)):
+        stages = list(enumerate(rows, start=first))
+        lines.append(f"def {name}({TAKEN}):")
+        if size is not None:
+            lines += [f"    if len(y) == {size}:", f"        return {name}_of_{size}({TAKEN})"]
+        for number, weights in stages:
+            lines += [*_for_each(*_stage(number, weights)), _evaluated(number)]
+        if size is not None:
+            lines += [f"def {name}_of_{size}({TAKEN}):", *_straight(stages, size)]
     lines.append("def combined(y: Array, k: Array):")
     lines += _for_each(
         *(f"k[{n}, i] = {_sum(row)}" for n, row in enumerate((DOP853.E5, DOP853.E3), start=16))
@@ -25,17 +30,43 @@ def written_out() -> str:
     # Of the polynomials x, x (1 - x), x^2 (1 - x), ... the ends of the step give the first three.
     lines.append("def polynomials(h: float, y: Array, new: Array, k: Array, terms: Array, first: int):")
     lines.append("    at = first")
-    rows = enumerate(_powers()[1:], start=1)
+    powers = enumerate(_powers()[1:], start=1)
     lines += _for_each(
         "c0 = new[i] - y[i]",
         "c1 = h * k[0, i] - c0",
         "c2 = 2.0 * c0 - h * (k[0, i] + k[12, i])",
         *(f"c{n} = h * ({_sum(row)})" for n, row in enumerate(DOP853.D, start=3)),
         "terms[at] = y[i]",
-        *(f"terms[at + {n}] = {_sum(row, 'c{}')}" for n, row in rows),
+        *(f"terms[at + {n}] = {_sum(row, 'c{}')}" for n, row in powers),
         "at += POWERS",
     )
     return "\n".join(lines)
+
+
+def _stage(
+    number: int, weights: Array, i: str = "i", y: str = "y[i]", lost: str = "lost[i]", slope: str = "k[{}, i]"
+) -> list[str]:
+    """Where the rates of a stage are found: those of stage 12 at the end of the step."""
+    lines = [f"step = h * ({_sum(weights, slope)}) + {lost}", f"place[{i}] = {y} + step"]
+    return [*lines, f"moved[{i}] = step"] if number == 12 else lines
+
+
+def _evaluated(number: int) -> str:
+    return f"    evaluate(rates, place, p, k[{number}])"
+
+
+def _straight(stages: Sequence[tuple[int, Array]], size: int) -> list[str]:
+    """Stages of so many numbers, each of which is read once."""
+    each, used = range(size), {int(j) for _, weights in stages for j in np.flatnonzero(weights)}
+    reads = {j: [f"    k{j}_{i} = k[{j}, {i}]" for i in each] for j in sorted(used)}
+    lines = [f"    {name}{i} = {name}[{i}]" for name in ("y", "lost") for i in each]
+    lines += [line for j, some in reads.items() if j < stages[0][0] for line in some]
+    for number, weights in stages:
+        for i in each:
+            names = f"y{i}", f"lost{i}", f"k{{}}_{i}"
+            lines += [f"    {line}" for line in _stage(number, weights, str(i), *names)]
+        lines += [_evaluated(number), *reads.get(number, ())]
+    return lines
 
 
 def _for_each(*assignments: str) -> list[str]:
