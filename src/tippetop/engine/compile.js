@@ -69,10 +69,16 @@ export function iterated(function_, size, parameters, abreast) {
   };
 }
 
-const codes = cached(() => new Map());
+const codes = cached(() => new Map()), readers = new WeakMap();
 
-/** What makes readings, of so many numbers, of those of a mode and another one. */
+/** What makes readings, of so many numbers, of those of a mode and another one: kept for tops of one surface. */
 export function reader(mode, size) {
+  const [top, other] = mode.tops, known = (!other && readers.get(top)) || {};
+  if (!other) readers.set(top, known);
+  return (known[`${mode.form} ${size}`] ??= readerOf(mode, size));
+}
+
+function readerOf(mode, size) {
   const kinds = mode.tops.map((top) => top.kind), numbers = mode.tops.flatMap((top) => top.numbers);
   const known = codes(mode.form, kinds, size), parameters = Float64Array.of(...numbers, 0);
   const values = (of) => (y, p) => {

@@ -23,18 +23,11 @@ export function earliest(count, holds) {
   return low;
 }
 
-/** A matrix times a column. */
-const product = (matrix, column) => matrix.map((row) => row.reduce((sum, one, k) => sum + one * column[k], 0));
-
 export class DenseSolution {
   /** Knots, and coefficients [step][number][power], in a row, in powers of the part of a step that has passed. */
   constructor(knots, terms, size) {
     const count = knots.length - 1;
-    Object.assign(this, { knots, terms, size, count, degree: terms.length / size / count - 1 });
-  }
-
-  get end() {
-    return this.knots[this.count];
+    Object.assign(this, { knots, terms, size, count, end: knots[count], degree: terms.length / size / count - 1 });
   }
 
   /** The step in which a time lies, the earlier one where two meet. */
@@ -106,7 +99,7 @@ export class DenseSolution {
 
   /** The first of some steps, with all coefficients in a row. */
   static of_steps(knots, terms, size, count) {
-    return new DenseSolution(knots.slice(0, count + 1), terms.slice(0, (count * terms.length) / (knots.length - 1)), size);
+    return new DenseSolution(knots.slice(0, count + 1), terms.subarray(0, (count * terms.length) / (knots.length - 1)), size);
   }
 
   /** Steps whose coefficients from the first on lie in rows, from the numbers with which they begin. */
@@ -138,6 +131,7 @@ export class DenseSolution {
   /** Polynomials that agree with a function, from a time to numbers, at Chebyshev's points of every step. */
   static fitted(function_, knots, degree) {
     const { places, transform, powers } = CHEBYSHEV[degree], rows = [];
+    const product = (matrix, column) => matrix.map((row) => row.reduce((sum, one, k) => sum + one * column[k], 0));
     for (let step = 1; step < knots.length; step += 1) {
       const values = places.map((place) => function_(knots[step - 1] + place * (knots[step] - knots[step - 1])));
       values[0].forEach((_, number) => rows.push(product(powers, product(transform, values.map((row) => row[number])))));

@@ -11545,7 +11545,7 @@ function _polished(guard, advance, step, guess) {
 }
 
 // tippetop.integrators.stepping
-const [FEW_of_stepping, WIDER, MANY] = [16, 4, 4096];
+const [FEW_of_stepping, WIDER, MANY] = [128, 4, 4096];
 const FAILURES = new py.Dict([[SINGULAR, NO_START], [STUCK_of_dormand_prince, NO_STEP]]);
 
 /** What a motion is followed with. */
@@ -11574,7 +11574,7 @@ class Machinery extends py.NamedTuple {
 
 /** Follow a motion; see `tippetop.integrators.base.Integrator`. */
 function* stepped(motion, functions, parameters, start, end, tolerance) {
-  var going = new Stepping(functions, py.np.array(parameters), start, end, tolerance);
+  var going = new Stepping(functions, py.np.array(parameters), start, end, tolerance, FEW_of_stepping);
   while (going.time < end) {
     var ended = going.advance();
     var fall = py.eq(ended, SUSPECT) ? going.fall() : null;
@@ -11590,6 +11590,7 @@ function* stepped(motion, functions, parameters, start, end, tolerance) {
     }
     if (py.eq(going.steps, MANY) || going.time >= end) {
       yield going.arc();
+      going.make_room(FEW_of_stepping);
     } else if (py.eq(ended, FULL)) {
       going.widen();
     }
@@ -11598,7 +11599,7 @@ function* stepped(motion, functions, parameters, start, end, tolerance) {
 
 /** A motion under way: the state, and the steps of the arc that is being made. */
 class Stepping extends py.Thing {
-  constructor(functions, parameters, start, end, tolerance) {
+  constructor(functions, parameters, start, end, tolerance, room) {
     super();
     [this.functions, this.parameters] = [functions, parameters];
     [this.tolerance, this.size] = [py.np.array([tolerance, tolerance]), py.len(start[1])];
@@ -11607,11 +11608,7 @@ class Stepping extends py.Thing {
     [this.stages, this.span] = [py.np.zeros([ROWS, width]), py.np.array([start[0], end, 0.0])];
     [this.steps, this.calls] = [0, 0];
     this.other = null;
-    [this.knots, this.terms] = [
-      py.np.empty(FEW_of_stepping + 1),
-      py.np.empty(FEW_of_stepping * POWERS * width)
-    ];
-    py.put(this.knots, 0, start[0]);
+    this.make_room(room);
   }
   /** Where it is. */
   get time() {
@@ -11620,6 +11617,11 @@ class Stepping extends py.Thing {
   /** The state there. */
   get state() {
     return py.np.array(this.row.slice(0, this.size));
+  }
+  /** Begin an arc, with room for so many steps. */
+  make_room(steps) {
+    [this.knots, this.terms] = [py.np.empty(steps + 1), py.np.empty(steps * POWERS * py.len(this.row))];
+    py.put(this.knots, 0, this.time);
   }
   /** Make room for more steps. */
   widen() {
@@ -11648,12 +11650,11 @@ class Stepping extends py.Thing {
     [this.steps, this.calls] = [steps, this.calls + calls];
     return ended;
   }
-  /** The arc that has been made; the next one begins. */
+  /** The arc that has been made, whose solution may keep the room there was for it. */
   arc(guard = null, failure = null) {
     var width = py.len(this.row);
     var solution = DenseSolution.of_steps(this.knots, this.terms, this.size, this.steps, width);
     var arc = new Arc(solution, this.state, guard, failure, this.steps, this.calls);
-    py.put(this.knots, 0, this.time);
     [this.steps, this.calls] = [0, 0];
     return arc;
   }
@@ -11703,15 +11704,10 @@ class Stepping extends py.Thing {
   /** Another motion of the same kind, for trial. */
   beside() {
     if (this.other === null) {
-      var begin = py.float(this.span[0]);
+      var start = [this.time, this.state];
       var end = py.float(this.span[1]);
-      this.other = new Stepping(
-        this.functions,
-        this.parameters,
-        [begin, this.state],
-        end,
-        py.float(this.tolerance[0])
-      );
+      var tolerance = py.float(this.tolerance[0]);
+      this.other = new Stepping(this.functions, this.parameters, start, end, tolerance, 1);
     }
     return this.other;
   }

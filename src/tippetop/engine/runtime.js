@@ -116,7 +116,7 @@ export const np = {
   any: itself, max: itself, min: itself,
   stack: (parts) => Float64Array.from(parts),
   empty: (shape) => (typeof shape === "number" ? new Float64Array(shape)
-    : Array.from({ length: shape[0] }, () => new Float64Array(shape[1]))),
+    : made(shape[0], () => new Float64Array(shape[1]))),
   zeros: (shape) => np.empty(shape),
   array: (numbers) => new Float64Array(numbers),
 };

@@ -10,7 +10,7 @@ from tippetop.integrators.dense import DenseSolution, longer
 from tippetop.integrators.dormand_prince import FULL, POWERS, ROWS, SINGULAR, STUCK, SUSPECT
 from tippetop.integrators.falls import first_fall
 
-FEW, WIDER, MANY = 16, 4, 4096
+FEW, WIDER, MANY = 128, 4, 4096
 """Steps for which there is room at first, how many times as many there is room for then, and in an arc."""
 
 FAILURES = {SINGULAR: NO_START, STUCK: NO_STEP}
@@ -45,7 +45,7 @@ def stepped(
     tolerance: float,
 ) -> Iterator[Arc]:
     """Follow a motion; see `tippetop.integrators.base.Integrator`."""
-    going = Stepping(functions, np.array(parameters), start, end, tolerance)
+    going = Stepping(functions, np.array(parameters), start, end, tolerance, FEW)
     while going.time < end:
         ended = going.advance()
         fall = going.fall() if ended == SUSPECT else None
@@ -59,6 +59,7 @@ def stepped(
             return
         if going.steps == MANY or going.time >= end:
             yield going.arc()
+            going.make_room(FEW)
         elif ended == FULL:
             going.widen()
 
@@ -73,6 +74,7 @@ class Stepping:
         start: tuple[float, Array],
         end: float,
         tolerance: float,
+        room: int,
     ) -> None:
         self.functions, self.parameters = functions, parameters
         self.tolerance, self.size = np.array([tolerance, tolerance]), len(start[1])
@@ -81,8 +83,7 @@ class Stepping:
         self.stages, self.span = np.zeros((ROWS, width)), np.array([start[0], end, 0.0])
         self.steps, self.calls = 0, 0
         self.other: Stepping | None = None
-        self.knots, self.terms = np.empty(FEW + 1), np.empty(FEW * POWERS * width)
-        self.knots[0] = start[0]
+        self.make_room(room)
 
     @property
     def time(self) -> float:
@@ -93,6 +94,11 @@ class Stepping:
     def state(self) -> Array:
         """The state there."""
         return np.array(self.row[: self.size])
+
+    def make_room(self, steps: int) -> None:
+        """Begin an arc, with room for so many steps."""
+        self.knots, self.terms = np.empty(steps + 1), np.empty(steps * POWERS * len(self.row))
+        self.knots[0] = self.time
 
     def widen(self) -> None:
         """Make room for more steps."""
@@ -122,11 +128,10 @@ class Stepping:
         return ended
 
     def arc(self, guard: str | None = None, failure: str | None = None) -> Arc:
-        """The arc that has been made; the next one begins."""
+        """The arc that has been made, whose solution may keep the room there was for it."""
         width = len(self.row)
         solution = DenseSolution.of_steps(self.knots, self.terms, self.size, self.steps, width)
         arc = Arc(solution, self.state, guard, failure, self.steps, self.calls)
-        self.knots[0] = self.time
         self.steps, self.calls = 0, 0
         return arc
 
@@ -168,10 +173,8 @@ class Stepping:
     def beside(self) -> "Stepping":
         """Another motion of the same kind, for trial."""
         if self.other is None:
-            begin, end = float(self.span[0]), float(self.span[1])
-            self.other = Stepping(
-                self.functions, self.parameters, (begin, self.state), end, float(self.tolerance[0])
-            )
+            start, end, tolerance = (self.time, self.state), float(self.span[1]), float(self.tolerance[0])
+            self.other = Stepping(self.functions, self.parameters, start, end, tolerance, 1)
         return self.other
 
     def landed(self, time: float, state: Array, end: float) -> Array:
