@@ -43,7 +43,8 @@ class Run {
   piece(mode, solution, label = mode.label) {
     const read = reader(mode, solution.size), of = read(rates, RATES), numbers = new Float64Array(solution.size);
     const at = (step, part) => solution.numbers(step, part, numbers), look = (step, part, pole = 1) => of(at(step, part), pole);
-    const piece = { solution, label, read, at, look, sums: [], poles: [], rule: mode.touching && solution.degree > 7 ? GAUSS[8] : GAUSS[4] };
+    const sums = new Float64Array(SUMS * solution.count), rule = GAUSS[mode.touching && solution.degree > 7 ? 8 : 4];
+    const piece = { solution, label, read, at, look, sums, poles: [], rule };
     this.pieces.push(piece);
     return piece;
   }
@@ -75,7 +76,7 @@ class Run {
       this.sums[TURN] += (pole - this.pole) * Math.atan2(solution.value(step, 1, 0), solution.value(step, 0, 0));
       this.pole = pole;
     }
-    for (let i = 0; i < SUMS; i += 1) piece.sums.push(this.sums[i]);
+    piece.sums.set(this.sums, SUMS * step);
     piece.poles.push(pole);
     this.along(piece, step, 1, pole, this.sums);
     // Between Gauss's points, and beyond them, it is lower by a part of what it varies by there.
@@ -134,8 +135,7 @@ class Run {
     if (!this.pieces.length) {
       const [mode, numbers] = m.as_begun(this.start, this.top);
       const still = this.piece(mode, DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]), "sliding");
-      still.sums.push(...sums);
-      still.poles.push(this.pole);
+      Object.assign(still, { sums, poles: [this.pole] });
     }
     return this;
   }
