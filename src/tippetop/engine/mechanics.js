@@ -9621,13 +9621,36 @@ function fixed(array) {
 }
 
 /** Put the guards' values at the looks of a step into the rows of values after the first. */
-function look(guards, p, terms, first, y, values, room) {
+function look(guards, p, terms, first, y, values, room, tight) {
+  for (var number of [py.floordiv(LOOKS_of_dormand_prince, 2), LOOKS_of_dormand_prince]) {
+    within(terms, first, number / LOOKS_of_dormand_prince, y);
+    evaluate(guards, y, p, values[number]);
+  }
+  if (py.truth(tight) && py.truth(are_steady(values))) {
+    return false;
+  }
   for (var number = 1; number < LOOKS_of_dormand_prince; number += 1) {
     if (2 * number !== LOOKS_of_dormand_prince) {
       within(terms, first, number / LOOKS_of_dormand_prince, y);
       evaluate(guards, y, p, values[number]);
     }
   }
+  return true;
+}
+
+/** Whether all guards vary so little from the start of a step to its middle and its end. */
+function are_steady(values) {
+  var values0 = values[0];
+  for (var guard = 0; guard < values[0].length; guard += 1) {
+    var begin = values0[guard];
+    var middle = values[py.floordiv(LOOKS_of_dormand_prince, 2)][guard];
+    var end = values[LOOKS_of_dormand_prince][guard];
+    var bound = STEADY * py.smaller(py.smaller(begin, middle), end);
+    if (!(begin < bound && middle < bound && end < bound)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /** Error of a step: less than 1 is good enough. */
@@ -9756,28 +9779,11 @@ function rises(guards, p, terms, first, y, values, guard) {
   return false;
 }
 
-/** Whether all guards vary so little over a step that they are looked at no closer. */
-function are_steady(guards, p, terms, first, y, values, tolerance) {
-  within(terms, first, 0.5, y);
-  evaluate(guards, y, p, values[py.floordiv(LOOKS_of_dormand_prince, 2)]);
-  within(terms, first, 1.0, y);
-  evaluate(guards, y, p, values[LOOKS_of_dormand_prince]);
-  var values0 = values[0];
-  for (var guard = 0; guard < values[0].length; guard += 1) {
-    var begin = values0[guard];
-    var middle = values[py.floordiv(LOOKS_of_dormand_prince, 2)][guard];
-    var end = values[LOOKS_of_dormand_prince][guard];
-    var bound = STEADY * py.smaller(py.smaller(begin, middle), end);
-    if (!(tolerance[0] <= TIGHT && begin < bound && middle < bound && end < bound)) {
-      return false;
-    }
-  }
-  return true;
-}
-
 /** Whether a guard may fall in a step; values has those at its start, and room for the other looks. */
-function suspect(guards, p, terms, first, y, values, room) {
-  look(guards, p, terms, first, y, values, room);
+function suspect(guards, p, terms, first, y, values, room, tight) {
+  if (!py.truth(look(guards, p, terms, first, y, values, room, tight))) {
+    return false;
+  }
   var values0 = values[0];
   var values1 = values[1];
   for (var guard = 0; guard < values[0].length; guard += 1) {
@@ -9854,8 +9860,7 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
     steps = steps + 1;
     knots[steps] = span[0];
     if (count > 0) {
-      var steady = are_steady(guards, p, terms, first, place, values, tolerance);
-      if (!py.truth(steady) && py.truth(suspect(guards, p, terms, first, place, values, room))) {
+      if (py.truth(suspect(guards, p, terms, first, place, values, room, tolerance[0] <= TIGHT))) {
         return [steps, calls, SUSPECT];
       }
       var values0 = values[0];

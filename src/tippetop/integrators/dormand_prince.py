@@ -60,15 +60,34 @@ def fixed(array: Array) -> Array:
     return array
 
 
-def look(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array) -> None:
+def look(
+    guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array, tight: bool
+) -> bool:
     """Put the guards' values at the looks of a step into the rows of values after the first.
 
-    Those at its middle and its end are there; see `are_steady`.
+    False where they vary so little at a tight tolerance that none falls: only those at its middle and its end
+    are there then.
     """
+    for number in (LOOKS // 2, LOOKS):
+        within(terms, first, number / LOOKS, y)
+        evaluate(guards, y, p, values[number])
+    if tight and are_steady(values):
+        return False
     for number in range(1, LOOKS):
         if 2 * number != LOOKS:
             within(terms, first, number / LOOKS, y)
             evaluate(guards, y, p, values[number])
+    return True
+
+
+def are_steady(values: Array) -> bool:
+    """Whether all guards vary so little from the start of a step to its middle and its end."""
+    for guard in range(len(values[0])):
+        begin, middle, end = values[0, guard], values[LOOKS // 2, guard], values[LOOKS, guard]
+        bound = STEADY * min(begin, middle, end)
+        if not (begin < bound and middle < bound and end < bound):
+            return False
+    return True
 
 
 def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array, size: int) -> float:
@@ -169,30 +188,12 @@ def rises(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values
     return False
 
 
-def are_steady(
-    guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, tolerance: Array
-) -> bool:
-    """Whether all guards vary so little over a step that they are looked at no closer.
-
-    The values at its middle and its end are put into their rows; those at its start are there.
-    """
-    within(terms, first, 0.5, y)
-    evaluate(guards, y, p, values[LOOKS // 2])
-    within(terms, first, 1.0, y)
-    evaluate(guards, y, p, values[LOOKS])
-    for guard in range(len(values[0])):
-        begin, middle, end = values[0, guard], values[LOOKS // 2, guard], values[LOOKS, guard]
-        bound = STEADY * min(begin, middle, end)
-        if not (tolerance[0] <= TIGHT and begin < bound and middle < bound and end < bound):
-            return False
-    return True
-
-
 def suspect(
-    guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array
+    guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array, tight: bool
 ) -> bool:
     """Whether a guard may fall in a step; values has those at its start, and room for the other looks."""
-    look(guards, p, terms, first, y, values, room)
+    if not look(guards, p, terms, first, y, values, room, tight):
+        return False
     for guard in range(len(values[0])):
         if may_fall(values, guard):
             return True
@@ -292,8 +293,7 @@ def advance(
         steps += 1
         knots[steps] = span[0]
         if count > 0:
-            steady = are_steady(guards, p, terms, first, place, values, tolerance)
-            if not steady and suspect(guards, p, terms, first, place, values, room):
+            if suspect(guards, p, terms, first, place, values, room, tolerance[0] <= TIGHT):
                 return steps, calls, SUSPECT
             for guard in range(count):
                 values[0, guard] = values[LOOKS, guard]

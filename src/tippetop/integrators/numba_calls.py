@@ -57,17 +57,20 @@ def evaluate(function: Sequence[int], y: Array, p: Array, out: Array) -> None:
     called(function[0], y, p, out, 1)
 
 
-def are_steady(
-    guards: Sequence[int], p: Array, terms: Array, first: int, y: Array, values: Array, tolerance: Array
-) -> bool:
-    """Always no: to look everywhere, all at once, takes no longer than to find out."""
-    return False
-
-
 def look(
-    guards: Sequence[int], p: Array, terms: Array, first: int, y: Array, values: Array, room: Array
-) -> None:
-    """Put the guards' values at the looks of a step into the rows of values after the first, all at once."""
+    guards: Sequence[int],
+    p: Array,
+    terms: Array,
+    first: int,
+    y: Array,
+    values: Array,
+    room: Array,
+    tight: bool,
+) -> bool:
+    """Put the guards' values at the looks of a step into the rows of values after the first, all at once.
+
+    It never says that none falls: to find out whether they vary takes as long.
+    """
     for i in range(WIDTH):
         at = first + i * POWERS
         a, b, c, d = terms[at], terms[at + 1], terms[at + 2], terms[at + 3]
@@ -80,3 +83,4 @@ def look(
     for guard in range(values.shape[1]):
         for number in range(LOOKS):
             values[number + 1, guard] = room[(WIDTH + guard) * LOOKS + number]
+    return True
