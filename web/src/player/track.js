@@ -7,6 +7,7 @@ export class Track {
     if (run instanceof ArrayBuffer) this.unpack(run);
     else Object.assign(this, { header: run.header, time: run.time, columns: run.columns });
     this.count = this.time.length;
+    this.start = this.time[0] ?? 0;
     this.duration = this.header.duration;
     this.pose = { position: [0, 0, 0], orientation: [1, 0, 0, 0], axis: [0, 0, 1], momentum: [0, 0, 0] };
   }
