@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.collections import QuadMesh
 from sweeps import lively
 
+from tippetop.errors import InvalidInput
 from tippetop.figures.maps import FLAGS, MAPPED, phase_map
 from tippetop.figures.style import save
 from tippetop.presets import report_problem
@@ -131,3 +132,11 @@ def test_axes_have_the_units_of_the_problem():
     axes = phase_map(compute(Sweep(problem, grid, 0.01))).axes[0]
     assert axes.get_xlabel() == "Friction coefficient μ"
     assert axes.get_ylabel() == "Height of the lowest point at launch (m)"
+
+
+def test_an_axis_that_is_too_long_to_be_drawn_is_refused(plane):
+    far = plane.copy(deep=True)
+    name = str(far["final_theta"].dims[0])
+    far = far.assign_coords({name: np.linspace(1.0, 1e308, far.sizes[name])})
+    with pytest.raises(InvalidInput, match=f"{name} = .* an axis at most 1e.300 long"):
+        phase_map(far)

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
 from tippetop.catalogue import SWEPT, Ending, written_unit
+from tippetop.errors import InvalidInput
 from tippetop.figures.style import CONVERGED, CYCLE, FAINT, INK, MUTED, SEQUENTIAL, house_style, pi_ticks
 
 MAPPED = ("final_theta", "turns_over", "flights")
@@ -38,6 +39,9 @@ FLAGS = (*CYCLE, INK)
 MOST_PANELS = 9
 """Maps that are drawn side by side."""
 
+WIDEST = 1e300
+"""How far the ends of an axis may be apart, in its unit: farther ones overflow where ticks are looked for."""
+
 MOST_STEP = 1.05
 """Ratio of neighbouring steps of an axis from which on it counts as geometric."""
 
@@ -48,8 +52,14 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
 
     Of three axes the third goes from panel to panel, over at most `MOST_PANELS` of its values; of more than
     three, those after the third stay at the middle one of their values.
+
+    Raises
+    ------
+    InvalidInput
+        If values of an axis are too far apart to be drawn.
     """
     values = sweep[variable]
+    _require_narrow(sweep, [str(name) for name in sweep.coords if name != "draw"])
     if values.ndim > 2:
         return _panels(sweep, variable)
     figure, axes = mark.panels(4.6)
@@ -63,6 +73,14 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
         image = _colours(axes, sweep, variable, shade)
         _bar(figure, [axes], image, sweep, variable)
     return figure
+
+
+def _require_narrow(sweep: xr.Dataset, names: list[str]) -> None:
+    """Refuse to draw over what reaches too far."""
+    for name in names:
+        least, most = float(sweep[name].min()), float(sweep[name].max())
+        if not most - least < WIDEST:
+            raise InvalidInput(name, (least, most), f"an axis at most {WIDEST:g} long, to be drawn")
 
 
 def _panels(sweep: xr.Dataset, variable: str) -> Figure:

@@ -70,8 +70,9 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     the energy that is gone: the axis is what goes off first, by steps that keep their balance to rounding.
     """
     top, end = launches.top, ends.state
-    monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
-    monitor.see(*(number[None] for number in (*kept(end, top), gone)))
+    with np.errstate(all="ignore"):  # what is too large is no number, and not trusted
+        monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
+        monitor.see(*(number[None] for number in (*kept(end, top), gone)))
     told = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in WAYS_TO_END])
     ends.outcome[told & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
 
