@@ -48,6 +48,7 @@ def flown(kind, numbers, state, vanishing, horizon=50.0):
     ), tip
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # a sweep ignores what is no number
 @settings(max_examples=60)
 @given(slides(tops()), st.floats(0.01, 5.0), st.floats(-3.0, 3.0))
 def test_a_throw_lands_when_a_single_one_does(slide, gap, rise):
@@ -65,6 +66,7 @@ def test_a_throw_lands_when_a_single_one_does(slide, gap, rise):
     assert found.duration[0] == pytest.approx(landing, rel=1e-10)
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # a sweep ignores what is no number
 @settings(max_examples=60)
 @given(slides(VISCOUS), st.floats(1e-4, 2.0))
 def test_a_rebound_lands_when_a_single_one_does(slide, rise):

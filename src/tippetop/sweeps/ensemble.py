@@ -51,11 +51,12 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         if method is None:
             ends = follow_each(some, sweep.tolerance, sweep.settled)
         else:
-            lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
-            ends = lanes.run()
-            judge(ends, some, sweep.tolerance)
-            again = arrivals(lanes, final_band(ends.state))
-            ends.arrived = np.where(np.isnan(again), ends.arrived, again)
+            with np.errstate(all="ignore"):  # what is no number is told by outcomes
+                lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
+                ends = lanes.run()
+                judge(ends, some, sweep.tolerance)
+                again = arrivals(lanes, final_band(ends.state))
+                ends.arrived = np.where(np.isnan(again), ends.arrived, again)
         units = Units(*(spread(unit, count)[which] for unit in cells.units))
         values = metrics(ends, some.state, some.top, units) | {"outcome": ending(ends)}
         for name, numbers_found in values.items():
@@ -70,9 +71,8 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     the energy that is gone: the axis is what goes off first, by steps that keep their balance to rounding.
     """
     top, end = launches.top, ends.state
-    with np.errstate(all="ignore"):  # what is too large is no number, and not trusted
-        monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
-        monitor.see(*(number[None] for number in (*kept(end, top), gone)))
+    monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
+    monitor.see(*(number[None] for number in (*kept(end, top), gone)))
     told = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in WAYS_TO_END])
     ends.outcome[told & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
 

@@ -158,8 +158,7 @@ def look(kind: Kind, given: Array, numbers: Array, seen: tuple[TipMotion, Indice
     tip, launches, begun = seen
     top = kind.top(tuple(numbers))
     here = fly(State.unpack(list(given[STATE])), given[TIME], top, np)
-    with np.errstate(all="ignore"):
-        height, gap, reach = flight_terms(here, given[LEFT], top, PLAIN)
+    height, gap, reach = flight_terms(here, given[LEFT], top, PLAIN)
     rise, ahead = (np.array(np.broadcast_arrays(*terms)) for terms in (height, gap))
     zero = Polynomials(np.array(divided(list(ahead), given[VANISHING], PLAIN)), reach).first_fall()
     touches = ~np.isnan(zero)
@@ -179,8 +178,7 @@ def look(kind: Kind, given: Array, numbers: Array, seen: tuple[TipMotion, Indice
 def slides(state: State, top: Top) -> Flags:
     """Whether tops in contact, whose contact point is at rest vertically, go on sliding."""
     sliding = along_table(state)
-    with np.errstate(all="ignore"):
-        touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
+    touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
     found: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
     return found
 
@@ -191,8 +189,7 @@ def rolls(state: State, top: Top) -> Flags:
     if not top.resists_rolling:
         return count
     y = along_table(state)
-    with np.errstate(all="ignore"):
-        lasting = rolling_stopping_guard(y, sliding_rates(y, top), top) > 0.0
+    lasting = rolling_stopping_guard(y, sliding_rates(y, top), top) > 0.0
     found: Flags = count & is_rolling(y.axis, y.momentum, top) & lasting
     return found
 
@@ -207,7 +204,6 @@ def slips(state: State, top: Top, *, far: bool = False) -> Flags:
         return count
     y = along_table(state)
     nothing: Any = None
-    with np.errstate(all="ignore"):
-        lasting = Sliding(top, nothing).slip_left(y.pack()) > 0.0
+    lasting = Sliding(top, nothing).slip_left(y.pack()) > 0.0
     found: Flags = count & is_slipping(*y, top) & lasting
     return found & ~is_near(y, top) if far else found

@@ -43,10 +43,9 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
     for _ in range(MOST_PIECES):
         if not len(work):
             break
-        with np.errstate(all="ignore"):
-            jet = polynomials(motion, TOLERANCE)(after[:, work], numbers[:, work])
-            found = arcs(jet, np.zeros(len(work)), longest[work], pauses[:, work])
-            found.look_closer(jet, pauses[:, work])
+        jet = polynomials(motion, TOLERANCE)(after[:, work], numbers[:, work])
+        found = arcs(jet, np.zeros(len(work)), longest[work], pauses[:, work])
+        found.look_closer(jet, pauses[:, work])
         after[:, work], ended, branched = found.after, found.fallen == 0.0, found.fallen == 1.0
         if branched.any():
             numbers[: kind.numbers, work[branched]] = others(kind, numbers[: kind.numbers, work[branched]])
