@@ -82,7 +82,7 @@ export class Player extends EventTarget {
       " ": () => this.toggle(),
       ArrowLeft: () => this.step(-1),
       ArrowRight: () => this.step(1),
-      Home: () => this.seek(this.start),
+      Home: () => this.seek(0),
       End: () => this.seek(this.duration),
       "+": () => this.scene?.eye.zoom(0.9),
       "-": () => this.scene?.eye.zoom(1 / 0.9),
@@ -93,11 +93,6 @@ export class Player extends EventTarget {
     else return;
     this.dirty = true;
     event.preventDefault();
-  }
-
-  // A run that is a part of one begins later than at zero.
-  get start() {
-    return this.track?.start ?? 0;
   }
 
   get duration() {
@@ -111,8 +106,8 @@ export class Player extends EventTarget {
   // Show another run, given as a track or a block of bytes; the time and whether it plays stay as they are.
   load(run) {
     this.track = run instanceof Track ? run : new Track(run);
-    this.time = this.within(this.time);
-    [this.range.min, this.range.max] = [this.start, this.duration];
+    this.time = this.track.within(this.time);
+    [this.range.min, this.range.max] = [this.track.start, this.duration];
     this.scene?.load(this.track);
     this.find(".tt-scale").textContent = this.scene?.scaleText(this.labels.squares) ?? "";
     this.find("[data-do=flip]").disabled = !Number.isFinite(this.turnsOver);
@@ -140,7 +135,7 @@ export class Player extends EventTarget {
   }
 
   toggle(playing = !this.playing) {
-    if (playing && this.time >= this.duration) this.time = this.start;
+    if (playing && this.time >= this.duration) this.time = this.track?.start ?? 0;
     const changed = this.playing !== playing;
     this.playing = playing;
     this.last = undefined;
@@ -159,12 +154,8 @@ export class Player extends EventTarget {
     this.seek(this.time + (direction * this.speed) / 60);
   }
 
-  within(time) {
-    return Math.min(Math.max(time, this.start), this.duration);
-  }
-
   seek(time) {
-    this.time = this.within(time);
+    this.time = this.track?.within(time) ?? 0;
     this.dirty = true;
     this.dispatchEvent(new Event("view"));
   }
@@ -230,7 +221,7 @@ export class Player extends EventTarget {
     this.time += passed * this.speed * (this.climax ? pace(this.time, this.turnsOver) : 1);
     this.sharpness?.pace(passed);
     if (this.time >= this.duration) {
-      this.time = this.loop ? this.start : this.duration;
+      this.time = this.loop ? this.track.start : this.duration;
       if (!this.loop) this.toggle(false);
     }
     this.dirty = true;
@@ -262,9 +253,9 @@ export class Player extends EventTarget {
 
   // The time in words and on the strip; while it runs, only as often as digits can be read and the mark moves.
   tellTime() {
-    const { time, strip, start, duration } = this;
+    const { time, strip, track } = this;
     const now = performance.now();
-    const pixel = (duration - start) / Math.max(strip.width, 1);
+    const pixel = (track.duration - track.start) / Math.max(strip.width, 1);
     if (!this.playing || Math.abs(time - this.marked) >= pixel) {
       this.marked = time;
       this.range.value = time;

@@ -39,6 +39,11 @@ export class Track {
     return kind.replace("_without_rolling", "");
   }
 
+  // A time, or the end that is nearer: a run that is a part of one begins later than at zero.
+  within(time) {
+    return Math.min(Math.max(time, this.start), this.duration);
+  }
+
   // The number of the last sample at or before a time.
   before(time) {
     let low = 0;
