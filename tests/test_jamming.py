@@ -23,7 +23,7 @@ M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
 pytestmark = pytest.mark.skipif(not has_taylor(), reason="the other integrators take long to come so near")
 
 
-SLOW, FAST = 0.05, 1.0
+SLOW, BRISK, FAST = 0.05, 0.5, 1.0
 """Slip that is followed in a clock of its own as it jams, and slip that is not, m/s."""
 
 
@@ -96,8 +96,17 @@ def test_a_contact_that_jams_ends_a_run_without_impacts(liftoff: str, slip: floa
     run = tt.simulate(jamming(liftoff, slip), 1e-3 * slip / SLOW, samples=11)
     assert run.attrs["outcome"] == "failed"
     assert "no contact force is consistent" in run.attrs["outcome_advice"]
-    assert float(run["energy_error"]) < 1e-9
+    assert float(run["energy_error"]) < 1e-11
     assert float(np.hypot(run["slip_x"], run["slip_y"])[-1]) > 1e-4
+
+
+@pytest.mark.parametrize("integrator", ["taylor", "dop853", "compiled"])
+@pytest.mark.parametrize("slip", [SLOW, BRISK, FAST])
+def test_the_power_of_a_force_without_bound_adds_up(slip: float, integrator: str) -> None:
+    """It grows as 1 / sqrt(time left), which no polynomial over all that time does."""
+    run = tt.simulate(jamming(slip=slip), 2e-3 * slip / SLOW, samples=11, integrator=integrator)
+    assert float(run["event_energy_lost"][0]) > 0.0
+    assert float(run["energy_error"]) < 1e-11
 
 
 @pytest.mark.parametrize("left", [1e-13, 1e-9, 1e-5, -1e-9, -1e-5])

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from tippetop.contact.arriving import Arrival, arriving
-from tippetop.contact.closing import FEW, LANDED, OWN, closing_motion, closing_of, followed
+from tippetop.contact.closing import FEW, JAMMED, LANDED, OWN, closing_motion, closing_of, followed
 from tippetop.contact.mode import EventKind, Outcome, Segment, Transition
 from tippetop.contact.passing import DEGREE, LOOKS, SETTLED, Passing, in_one_step, shown, straight
 from tippetop.contact.surfaces import follow_surface, passes_flat
@@ -30,6 +30,9 @@ ALMOST = 1e-6
 
 SHARE = 0.01
 """Part of the time to the end that a polynomial of `DEGREE` leaves: friction after it ends smoothly."""
+
+NEARER, NEAREST = 0.6, 1e-13
+"""Part of the time to a jam that a polynomial leaves to the next one, and part of all that is the last's."""
 
 RESOLVED = 1e-15
 """Last term of such polynomials, in natural units, that is small: else they are made for shorter times."""
@@ -126,7 +129,7 @@ class Stopping(Passing):
             return found
         if arc.guard == "time":
             return Transition((), Outcome.COMPLETED, state)
-        if arc.guard == "jammed":
+        if arc.guard == JAMMED:
             return self.rules.jammed(time, state) or self.rules.inconsistent(time, state, ())
         if arc.guard == "lift-off":
             return self.rules.lift_off(time, state)
@@ -157,8 +160,9 @@ class Stopping(Passing):
             return shown(closing_of(clock.rows(clock.when(elapsed, times)), self.ending))
 
         knots = clock.knots_of(elapsed, until)
-        solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE)
-        if solution.unresolved > RESOLVED:
+        jams = arcs[-1].guard == JAMMED
+        solution = DenseSolution.fitted(numbers, graded(knots) if jams else thinned(knots), DEGREE)
+        if solution.unresolved > RESOLVED and not jams:
             solution = DenseSolution.fitted(numbers, knots, DEGREE)
         return DenseSolution.joined([solution, rest]) if rest.end > until else solution
 
@@ -170,3 +174,13 @@ def thinned(knots: Sequence[float]) -> list[float]:
         if end - knot <= SHARE * (end - found[-1]):
             found.append(knot)
     return [*found, end]
+
+
+def graded(knots: Sequence[float]) -> list[float]:
+    """Ends of steps that grow as short as what is left to the last, where the normal force has no bound."""
+    end, found = knots[-1], [knots[0]]
+    for knot in knots[1:]:
+        while NEARER * (end - found[-1]) > max(end - knot, NEAREST * (end - knots[0])):
+            found.append(end - NEARER * (end - found[-1]))
+        found.append(knot)
+    return found

@@ -2632,7 +2632,7 @@ function tangents(e) {
 // tippetop.mechanics.ending
 const [DIGITS, SLOW] = [1e-11, 1e-09];
 const QUICK = 100000.0;
-const JAMMING = 1e-12;
+const JAMMING = 1e-06;
 
 /** A velocity that ends or begins, and what the other does meanwhile. */
 class Vanishing extends py.NamedTuple {
@@ -4743,6 +4743,7 @@ const LANDING = [3e-08, 1e-16];
 const SLOWEST = 1e-12;
 const ALMOST = 1e-06;
 const SHARE = 0.01;
+const [NEARER, NEAREST] = [0.6, 1e-13];
 const RESOLVED = 1e-15;
 
 /** The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`). */
@@ -4878,7 +4879,7 @@ class Stopping extends Passing {
     if (arc.guard === "time") {
       return new Transition([], Outcome.COMPLETED, state);
     }
-    if (arc.guard === "jammed") {
+    if (py.eq(arc.guard, JAMMED)) {
       return py.or(this.rules.jammed(time, state), () => this.rules.inconsistent(time, state, []));
     }
     if (arc.guard === "lift-off") {
@@ -4920,8 +4921,13 @@ class Stopping extends Passing {
       return shown(closing_of(clock.rows(clock.when(elapsed, times)), this.ending));
     };
     var knots = clock.knots_of(elapsed, until);
-    var solution = DenseSolution.fitted(numbers, thinned(knots), DEGREE_of_passing);
-    if (solution.unresolved > RESOLVED) {
+    var jams = py.eq(py.item(arcs, -1).guard, JAMMED);
+    var solution = DenseSolution.fitted(
+      numbers,
+      py.truth(jams) ? graded(knots) : thinned(knots),
+      DEGREE_of_passing
+    );
+    if (solution.unresolved > RESOLVED && !py.truth(jams)) {
       solution = DenseSolution.fitted(numbers, knots, DEGREE_of_passing);
     }
     return rest.end > until ? DenseSolution.joined([solution, rest]) : solution;
@@ -4938,6 +4944,24 @@ function thinned(knots) {
     }
   }
   return [...found, end];
+}
+
+/** Ends of steps that grow as short as what is left to the last, where the normal force has no bound. */
+function graded(knots) {
+  var end = py.item(knots, -1);
+  var found = [knots[0]];
+  for (var knot of knots.slice(1)) {
+    while (
+      py.mul(NEARER, py.sub(end, py.item(found, -1))) > py.larger(
+        py.sub(end, knot),
+        py.mul(NEAREST, py.sub(end, knots[0]))
+      )
+    ) {
+      found.push(py.sub(end, py.mul(NEARER, py.sub(end, py.item(found, -1)))));
+    }
+    found.push(knot);
+  }
+  return found;
 }
 
 // tippetop.mechanics.invariants
@@ -12740,6 +12764,8 @@ export {
   NARROWED,
   NARROWEST,
   NEAR,
+  NEARER,
+  NEAREST,
   NEARING,
   NEAR_BRANCH,
   NEGATIVE,
@@ -13111,6 +13137,7 @@ export {
   gap_rate,
   gauss_points,
   going_on,
+  graded,
   growth,
   gyroscopic_reaction,
   has_level_spin,

@@ -34,8 +34,9 @@ DIGITS, SLOW = 1e-11, 1e-9
 QUICK = 1e5
 """How many times its own velocities change in a natural unit of time where they change fast."""
 
-JAMMING = 1e-12
-"""Delassus number of the slipping contact, over that without friction, that is next to nothing."""
+JAMMING = 1e-6
+"""Delassus number of the slipping contact, over that without friction, that is next to nothing: an impulse of
+its order takes over from there (see `jamming`), and leaves the state off by its square."""
 
 
 class Vanishing(NamedTuple):
