@@ -1,6 +1,6 @@
 """The coefficients of Dormand and Prince's method of order 8(5,3), which are SciPy's, written out as code."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from scipy.integrate import DOP853
@@ -9,6 +9,9 @@ from tippetop.integrators.dormand_prince import Array
 
 TAKEN = "rates, h, p, y, lost, k, moved, place"
 """What the functions of stages take."""
+
+SLOPE = "k{}_i"
+"""A number's rate at a stage, once it is read."""
 
 
 def written_out(size: int | None = None) -> str:
@@ -24,18 +27,20 @@ def written_out(size: int | None = None) -> str:
         if size is not None:
             lines += [f"def {name}_of_{size}({TAKEN}):", *_straight(stages, size)]
     lines.append("def combined(y: Array, k: Array):")
+    errors = DOP853.E5, DOP853.E3
     lines += _for_each(
-        *(f"k[{n}, i] = {_sum(row)}" for n, row in enumerate((DOP853.E5, DOP853.E3), start=16))
+        *_reads(*errors), *(f"k[{n}, i] = {_sum(row, SLOPE)}" for n, row in enumerate(errors, start=16))
     )
     # Of the polynomials x, x (1 - x), x^2 (1 - x), ... the ends of the step give the first three.
     lines.append("def polynomials(h: float, y: Array, new: Array, k: Array, terms: Array, first: int):")
     lines.append("    at = first")
     powers = enumerate(_powers()[1:], start=1)
     lines += _for_each(
+        *_reads(*DOP853.D),
         "c0 = new[i] - y[i]",
-        "c1 = h * k[0, i] - c0",
-        "c2 = 2.0 * c0 - h * (k[0, i] + k[12, i])",
-        *(f"c{n} = h * ({_sum(row)})" for n, row in enumerate(DOP853.D, start=3)),
+        "c1 = h * k0_i - c0",
+        "c2 = 2.0 * c0 - h * (k0_i + k12_i)",
+        *(f"c{n} = h * ({_sum(row, SLOPE)})" for n, row in enumerate(DOP853.D, start=3)),
         "terms[at] = y[i]",
         *(f"terms[at + {n}] = {_sum(row, 'c{}')}" for n, row in powers),
         "at += POWERS",
@@ -57,8 +62,8 @@ def _evaluated(number: int) -> str:
 
 def _straight(stages: Sequence[tuple[int, Array]], size: int) -> list[str]:
     """Stages of so many numbers, each of which is read once."""
-    each, used = range(size), {int(j) for _, weights in stages for j in np.flatnonzero(weights)}
-    reads = {j: [f"    k{j}_{i} = k[{j}, {i}]" for i in each] for j in sorted(used)}
+    each, used = range(size), _used(weights for _, weights in stages)
+    reads = {j: [f"    k{j}_{i} = k[{j}, {i}]" for i in each] for j in used}
     lines = [f"    {name}{i} = {name}[{i}]" for name in ("y", "lost") for i in each]
     lines += [line for j, some in reads.items() if j < stages[0][0] for line in some]
     for number, weights in stages:
@@ -67,6 +72,16 @@ def _straight(stages: Sequence[tuple[int, Array]], size: int) -> list[str]:
             lines += [f"    {line}" for line in _stage(number, weights, str(i), *names)]
         lines += [_evaluated(number), *reads.get(number, ())]
     return lines
+
+
+def _used(rows: Iterable[Array]) -> list[int]:
+    """The stages of which there is some in rows of weights."""
+    return sorted({int(j) for weights in rows for j in np.flatnonzero(weights)})
+
+
+def _reads(*rows: Array) -> list[str]:
+    """What is used by rows of weights, each read once: compilers for pages do not see that."""
+    return [f"{SLOPE.format(j)} = k[{j}, i]" for j in _used(rows)]
 
 
 def _for_each(*assignments: str) -> list[str]:
