@@ -43,12 +43,12 @@ export class DenseSolution {
     return total;
   }
 
-  /** How far a number goes in a step, at most, from where it starts. */
-  reach(step, number) {
-    const first = (step * this.size + number) * (this.degree + 1);
-    let total = 0;
-    for (let k = first + this.degree; k > first; k -= 1) total += Math.abs(this.terms[k]);
-    return total;
+  /** Least and most that a number may be in a step: x - x^k is at most (k - 1) / (k + 2) between its ends. */
+  bounds(step, number) {
+    const first = (step * this.size + number) * (this.degree + 1), start = this.terms[first], end = this.value(step, number, 1);
+    let beyond = 0;
+    for (let k = 2; k <= this.degree; k += 1) beyond += ((k - 1) / (k + 2)) * Math.abs(this.terms[first + k]);
+    return [Math.min(start, end) - beyond, Math.max(start, end) + beyond];
   }
 
   /** All numbers at a part of a step. */

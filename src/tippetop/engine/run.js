@@ -98,18 +98,18 @@ class Run {
 
   /** Take in how far a number of a solution goes down and up in a step. */
   see(solution, step, number, down, up) {
-    const start = solution.value(step, number, 0), far = solution.reach(step, number), at = (part) => solution.value(step, number, part);
-    down?.see(start, start - far, at);
-    up.see(-start, -start - far, (part) => -at(part));
-    if (down && this.turned !== this.turned && Math.abs(start) <= far) this.turned = solution.time(step, firstFall(at, true));
+    const at = (part) => solution.value(step, number, part), start = at(0), [low, high] = solution.bounds(step, number);
+    down?.see(start, low, at);
+    up.see(-start, -high, (part) => -at(part));
+    if (down && this.turned !== this.turned && low <= 0 && high >= 0) this.turned = solution.time(step, firstFall(at, true));
   }
 
   /** First time at which n_z is in a band. */
   arrival([low, high]) {
     for (const { solution } of this.pieces) {
       for (let step = 0; step < solution.count; step += 1) {
-        const start = solution.value(step, 2, 0), far = solution.reach(step, 2);
-        if (start - far > high || start + far < low) continue;
+        const start = solution.value(step, 2, 0), [least, most] = solution.bounds(step, 2);
+        if (least > high || most < low) continue;
         const sign = start > high ? 1 : -1, edge = start > high ? high : low;
         const part = start <= high && start >= low ? 0 : firstFall((x) => sign * (solution.value(step, 2, x) - edge));
         if (!Number.isNaN(part)) return solution.time(step, part);
