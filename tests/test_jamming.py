@@ -13,9 +13,11 @@ from scipy.optimize import brentq
 
 import tippetop as tt
 from tippetop.integrators import has_taylor
-from tippetop.mechanics.jamming import past_jamming
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.jamming import past_jamming, stuck
 from tippetop.mechanics.motion import along_table, contact, contact_swing, on_table
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.stick_slip import slip_of
 
 M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
 """Mass, radius, distance of the centres, moments of inertia, friction and gravity, SI."""
@@ -200,3 +202,78 @@ def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
     assert abs(touch.delassus) * problem.body.mass < 1e-9
     assert abs(touch.free_acceleration) < 1e-9 * problem.gravity
     assert 0.01 * weight < float(last["normal_force"]) < 100.0 * weight
+
+
+def heavy_core(
+    radius: float, off: float, inertia: tuple[float, float], mu: float, launch: tt.Launch
+) -> tt.Problem:
+    """A sphere of little inertia that rubs hard."""
+    return tt.Problem(
+        body=tt.Body(
+            mass=M, shape=tt.EccentricSphere(radius=radius, eccentricity=off), I1=inertia[0], I3=inertia[1]
+        ),
+        friction=tt.CoulombFriction(mu=mu),
+        launch=launch,
+        contact=tt.Contact(liftoff="fly", restitution=0.0),
+    )
+
+
+def test_power_adds_up_to_where_the_time_that_is_left_is_rounding() -> None:
+    launch = tt.Launch(tilt=0.344, spin=19.1, tilt_rate=1.74, slip=(0.362, 0.394))
+    run = tt.simulate(heavy_core(0.0257, 0.487, (1.27e-6, 7.96e-7), 1.75, launch), 0.05, samples=5)
+    assert "impact" in run["event_kind"].values
+    assert float(run["energy_error"]) < 1e-10
+
+
+HARDLY_SLIPPING = (
+    heavy_core(
+        0.012825668208193558,
+        0.17387865364221777,
+        (3.656265133049883e-08, 3.619950265465189e-08),
+        1.9308496240415416,
+        tt.Launch(
+            tilt=2.2439256554626468,
+            spin=-33.1929138450625,
+            tilt_rate=0.9270315701869958,
+            slip=(-0.4940630559968975, 0.34667097584517437),
+        ),
+    ),
+    heavy_core(
+        0.024522520999270797,
+        0.13309776428816816,
+        (7.94480974634293e-08, 9.104498160745062e-08),
+        1.9654419219846964,
+        tt.Launch(
+            tilt=1.134105914090758,
+            spin=10.68002851652686,
+            tilt_rate=-2.3897441807935573,
+            slip=(-0.46940436818002873, 0.09348584975117358),
+        ),
+    ).replace({"rolling_resistance": 0.00018500667863262965}),
+)
+"""Launches whose slip is less than 1e-8 m/s where it jams."""
+
+
+@pytest.mark.parametrize("problem", HARDLY_SLIPPING)
+def test_slip_that_has_all_but_ended_where_it_jams_sticks(problem: tt.Problem) -> None:
+    """By rounding nothing strikes then, and slip that goes on would jam again, and again."""
+    run = tt.simulate(problem, 0.05, samples=5, phase_limit=300)
+    assert run["event_kind"].values.tolist() == ["stick"]
+    assert float(run["energy_error"]) < 1e-13
+    assert float(np.hypot(run["slip_x"], run["slip_y"])[-1]) < 1e-14
+
+
+@pytest.mark.parametrize("law", [{}, {"friction.kind": "contensou", "friction.patch_radius": 1e-3}])
+def test_what_sticks_at_once_takes_the_energy_of_its_slip_and_does_not_open(law: dict[str, object]) -> None:
+    lost = []
+    for part in (1e-3, 1e-2):
+        problem = jamming(slip=part * SLOW).replace({**law, "launch.spin": 40.0 * part})
+        before = problem.start()
+        after = stuck(before, problem.top)
+        assert np.abs(slip_of(*along_table(after), problem.top)).max() < 1e-16
+        assert after.velocity[2] == pytest.approx(
+            on_table(along_table(after), problem.top).velocity[2], abs=1e-17
+        )
+        lost.append(energy(before, problem.top) - energy(after, problem.top))
+    assert lost[0] > 0.0
+    assert lost[1] == pytest.approx(100.0 * lost[0], rel=1e-6)

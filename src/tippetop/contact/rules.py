@@ -14,7 +14,7 @@ from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.jamming import past_jamming
+from tippetop.mechanics.jamming import past_jamming, stuck
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
 from tippetop.mechanics.rolling import ContactPoint, contact_motion, is_set_valued
 from tippetop.mechanics.state import State
@@ -208,7 +208,11 @@ class Rules:
         if past is None:
             return None
         beyond, *taken = past
-        return begun_with(self.inconsistent(time, beyond, ()), state, *taken)
+        found = self.inconsistent(time, beyond, ())
+        if not found.events and isinstance(found.then, Mode):
+            # Slip is so little that by rounding nothing strikes, and slipping on it would jam at once.
+            found = self.settled(time, stuck(beyond, self.top), (True, False))
+        return begun_with(found, state, *taken)
 
     def _leaving(self, time: float, state: State) -> Transition:
         """What follows when the normal force falls to zero."""

@@ -729,7 +729,10 @@ class Top extends py.NamedTuple {
   }
   /** The top with every one of its surfaces active in turn. */
   get each() {
-    return py.tuple([...each_surface(this.surface)].map((surface) => py.replace(this, { surface: surface })));
+    var every = each_surface(this.surface);
+    return py.len(every) > 1 ? py.tuple(
+      [...every].map((surface) => py.replace(this, { surface: surface }))
+    ) : [this];
   }
   /** The numbers that remain in natural units: inertias, proportions of the surface, friction law. */
   get numbers() {
@@ -2632,7 +2635,7 @@ function tangents(e) {
 // tippetop.mechanics.ending
 const [DIGITS, SLOW] = [1e-11, 1e-09];
 const QUICK = 100000.0;
-const JAMMING = 1e-06;
+const JAMMING = 1e-08;
 
 /** A velocity that ends or begins, and what the other does meanwhile. */
 class Vanishing extends py.NamedTuple {
@@ -4964,6 +4967,111 @@ function graded(knots) {
   return found;
 }
 
+// tippetop.mechanics.impulse
+const FUZZ = 1e-14;
+const [NORMAL, WORK] = [2, 6];
+const NO_IMPULSE = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+
+/** A body at the start of an impact, and what an impulse does to it there. */
+class Striking extends py.NamedTuple {
+  static fields = ["state", "contact", "lever", "speed", "striking", "before", "response"];
+  get 0() { return this.state; }
+  get 1() { return this.contact; }
+  get 2() { return this.lever; }
+  get 3() { return this.speed; }
+  get 4() { return this.striking; }
+  get 5() { return this.before; }
+  get 6() { return this.response; }
+  constructor(state, contact, lever, speed, striking, before, response) {
+    super();
+    this.state = state;
+    this.contact = contact;
+    this.lever = lever;
+    this.speed = speed;
+    this.striking = striking;
+    this.before = before;
+    this.response = response;
+  }
+  /** The body in this state. */
+  static of(state, top) {
+    var contact = ContactPoint.of(state.axis, state.momentum, top);
+    var lever = length(contact.arm);
+    var speed = length(state.velocity) + length(contact.turning) * lever;
+    var [x, y, z] = point_velocity(state.velocity, contact.turning, contact.arm);
+    var columns = [...FORCES, ...COUPLES, DRILLING].map((wrench) => flat(contact.response(wrench)));
+    var point = [x, y, Math.abs(z) <= FUZZ * speed ? 0.0 : z];
+    var before = [...point, ...contact.turning];
+    var response = py.tuple(py.zip(...columns));
+    return new this(state, contact, lever, speed, length(point), before, response);
+  }
+  /** The state after an impulse. */
+  after(impulse) {
+    var [x, y, z, ...torque] = impulse.slice(0, 6);
+    var moment = this.contact.moment(new Wrench([x, y, z], [torque[0], torque[1], torque[2]]));
+    var gained = scale(py.div(1.0, this.contact.top.mass), [x, y, z]);
+    return py.replace(
+      this.state,
+      { momentum: add(this.state.momentum, moment), velocity: add(this.state.velocity, gained) }
+    );
+  }
+  /** What an impulse adds to the six velocities. */
+  change(impulse) {
+    return py.tuple([...this.response].map((row) => py.sum(py.map(py.mul, row, impulse))));
+  }
+  /** The six velocities after an impulse. */
+  velocities(impulse) {
+    return plus(this.before, this.change(impulse));
+  }
+  /** Normal velocity of the contact point after an impulse, m/s. */
+  approach(impulse) {
+    return py.float(this.before[2] + py.sum(py.map(py.mul, this.response[2], impulse)));
+  }
+  /** Force and torque per unit normal impulse under a law that says them at any slip, six numbers. */
+  friction(velocity) {
+    var [x, y, , ...omega] = velocity;
+    var [force, torque] = this.contact.top.traction([x, y], [omega[0], omega[1], omega[2]]);
+    return [...force, 1.0, ...torque];
+  }
+  /** Work of an impulse, J: times the mean velocity, as that is linear in it (Thomson and Tait). */
+  work(impulse) {
+    return py.float(0.5 * inner(impulse.slice(0, 6), plus(this.before, this.velocities(impulse))));
+  }
+  /** The impulse that grows from a given one by so much per unit normal impulse of what strikes. */
+  straight(impulse, unit) {
+    var approach = this.approach(impulse);
+    var rise = py.sum(py.map(py.mul, this.response[2], unit));
+    var along = (q) => {
+      var moved = py.zip(impulse, unit).map(([a, b]) => a + q * b);
+      var work = py.item(impulse, WORK) + q * (approach + 0.5 * q * rise);
+      return [...moved.slice(0, WORK), work, ...moved.slice(WORK + 1)];
+    };
+    return along;
+  }
+}
+
+/** Velocity of the body's contact point, m/s. */
+function contact_velocity(state, arm, top) {
+  return point_velocity(state.velocity, angular_velocity(state.axis, state.momentum, top), arm);
+}
+
+/** The impulse at which the goal stops being negative, on a way where it does so once. */
+function first_reach(along, goal, guess) {
+  var high = guess;
+  var there = goal(along(high));
+  while (there < 0.0) {
+    high = high * 2.0;
+    there = goal(along(high));
+  }
+  if (there === 0.0) {
+    return along(high);
+  }
+  var low = goal(along(0.0)) < 0.0 ? 0.0 : 0.5 * high;
+  while (goal(along(low)) >= 0.0) {
+    [low, high] = [0.5 * low, low];
+  }
+  return along(crossing((q) => goal(along(q)), low, high));
+}
+
 // tippetop.mechanics.invariants
 
 /** Kinetic and potential energy, (m |r'|^2 + omega.L)/2 + m g z, J; zero at rest with z = 0. */
@@ -5011,6 +5119,18 @@ function past_jamming(state, top) {
   var impulse = py.mul(py.mul(py.div(py.larger(further, 0.0), fall), PROBED), whole);
   var beyond = on_table(after(impulse), top);
   return [beyond, py.float(impulse), py.float(py.sub(energy(state, top), energy(beyond, top)))];
+}
+
+/** The state after the impulse that ends slip, and drilling if the law resists it, without opening. */
+function stuck(state, top) {
+  var [point, [x, y, ..._]] = [
+    ContactPoint.of(state.axis, state.momentum, top),
+    slip_of(...along_table(state), top)
+  ];
+  var resisting = slip_wrenches(top.friction);
+  var moving = py.replace(point, { free: new Acceleration([x, y, 0.0], point.turning) });
+  var [impulse] = moving.holding([...resisting, FORCES[2]], [...[0, 1, 5].slice(0, py.len(resisting)), 2]);
+  return Striking.of(state, top).after([...impulse.force, ...impulse.torque]);
 }
 
 // tippetop.contact.rules
@@ -5191,7 +5311,11 @@ class Rules extends py.Record {
       return null;
     }
     var [beyond, ...taken] = past;
-    return begun_with(this.inconsistent(time, beyond, []), state, ...taken);
+    var found = this.inconsistent(time, beyond, []);
+    if (!py.truth(found.events) && py.isinstance(found.then, Mode)) {
+      found = this.settled(time, stuck(beyond, this.top), [true, false]);
+    }
+    return begun_with(found, state, ...taken);
   }
   /** What follows when the normal force falls to zero. */
   _leaving(time, state) {
@@ -5253,111 +5377,6 @@ function begun_with(found, before, impulse, lost) {
 /** Whether a body in contact neither moves nor begins to, by the rates of its velocities. */
 function rests(state, ...rates) {
   return py.bool(py.max(py.map(py.abs, [...rates, ...state.momentum, ...state.velocity])) <= REST);
-}
-
-// tippetop.mechanics.impulse
-const FUZZ = 1e-14;
-const [NORMAL, WORK] = [2, 6];
-const NO_IMPULSE = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-
-/** A body at the start of an impact, and what an impulse does to it there. */
-class Striking extends py.NamedTuple {
-  static fields = ["state", "contact", "lever", "speed", "striking", "before", "response"];
-  get 0() { return this.state; }
-  get 1() { return this.contact; }
-  get 2() { return this.lever; }
-  get 3() { return this.speed; }
-  get 4() { return this.striking; }
-  get 5() { return this.before; }
-  get 6() { return this.response; }
-  constructor(state, contact, lever, speed, striking, before, response) {
-    super();
-    this.state = state;
-    this.contact = contact;
-    this.lever = lever;
-    this.speed = speed;
-    this.striking = striking;
-    this.before = before;
-    this.response = response;
-  }
-  /** The body in this state. */
-  static of(state, top) {
-    var contact = ContactPoint.of(state.axis, state.momentum, top);
-    var lever = length(contact.arm);
-    var speed = length(state.velocity) + length(contact.turning) * lever;
-    var [x, y, z] = point_velocity(state.velocity, contact.turning, contact.arm);
-    var columns = [...FORCES, ...COUPLES, DRILLING].map((wrench) => flat(contact.response(wrench)));
-    var point = [x, y, Math.abs(z) <= FUZZ * speed ? 0.0 : z];
-    var before = [...point, ...contact.turning];
-    var response = py.tuple(py.zip(...columns));
-    return new this(state, contact, lever, speed, length(point), before, response);
-  }
-  /** The state after an impulse. */
-  after(impulse) {
-    var [x, y, z, ...torque] = impulse.slice(0, 6);
-    var moment = this.contact.moment(new Wrench([x, y, z], [torque[0], torque[1], torque[2]]));
-    var gained = scale(py.div(1.0, this.contact.top.mass), [x, y, z]);
-    return py.replace(
-      this.state,
-      { momentum: add(this.state.momentum, moment), velocity: add(this.state.velocity, gained) }
-    );
-  }
-  /** What an impulse adds to the six velocities. */
-  change(impulse) {
-    return py.tuple([...this.response].map((row) => py.sum(py.map(py.mul, row, impulse))));
-  }
-  /** The six velocities after an impulse. */
-  velocities(impulse) {
-    return plus(this.before, this.change(impulse));
-  }
-  /** Normal velocity of the contact point after an impulse, m/s. */
-  approach(impulse) {
-    return py.float(this.before[2] + py.sum(py.map(py.mul, this.response[2], impulse)));
-  }
-  /** Force and torque per unit normal impulse under a law that says them at any slip, six numbers. */
-  friction(velocity) {
-    var [x, y, , ...omega] = velocity;
-    var [force, torque] = this.contact.top.traction([x, y], [omega[0], omega[1], omega[2]]);
-    return [...force, 1.0, ...torque];
-  }
-  /** Work of an impulse, J: times the mean velocity, as that is linear in it (Thomson and Tait). */
-  work(impulse) {
-    return py.float(0.5 * inner(impulse.slice(0, 6), plus(this.before, this.velocities(impulse))));
-  }
-  /** The impulse that grows from a given one by so much per unit normal impulse of what strikes. */
-  straight(impulse, unit) {
-    var approach = this.approach(impulse);
-    var rise = py.sum(py.map(py.mul, this.response[2], unit));
-    var along = (q) => {
-      var moved = py.zip(impulse, unit).map(([a, b]) => a + q * b);
-      var work = py.item(impulse, WORK) + q * (approach + 0.5 * q * rise);
-      return [...moved.slice(0, WORK), work, ...moved.slice(WORK + 1)];
-    };
-    return along;
-  }
-}
-
-/** Velocity of the body's contact point, m/s. */
-function contact_velocity(state, arm, top) {
-  return point_velocity(state.velocity, angular_velocity(state.axis, state.momentum, top), arm);
-}
-
-/** The impulse at which the goal stops being negative, on a way where it does so once. */
-function first_reach(along, goal, guess) {
-  var high = guess;
-  var there = goal(along(high));
-  while (there < 0.0) {
-    high = high * 2.0;
-    there = goal(along(high));
-  }
-  if (there === 0.0) {
-    return along(high);
-  }
-  var low = goal(along(0.0)) < 0.0 ? 0.0 : 0.5 * high;
-  while (goal(along(low)) >= 0.0) {
-    [low, high] = [0.5 * low, low];
-  }
-  return along(crossing((q) => goal(along(q)), low, high));
 }
 
 // tippetop.mechanics.runge_kutta
@@ -13325,6 +13344,7 @@ export {
   straight,
   struck_motion,
   struck_wrench,
+  stuck,
   support_terms,
   surface_guards,
   suspect,

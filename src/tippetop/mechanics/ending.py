@@ -34,9 +34,11 @@ DIGITS, SLOW = 1e-11, 1e-9
 QUICK = 1e5
 """How many times its own velocities change in a natural unit of time where they change fast."""
 
-JAMMING = 1e-6
-"""Delassus number of the slipping contact, over that without friction, that is next to nothing: an impulse of
-its order takes over from there (see `jamming`), and leaves the state off by its square."""
+JAMMING = 1e-8
+"""Delassus number of the slipping contact, over that without friction, that is next to nothing: the time that
+is left falls as its square, and is rounding then. Of what the impact after it takes, friction takes as small a
+part before.
+"""
 
 
 class Vanishing(NamedTuple):

@@ -2,13 +2,16 @@
 
 import math
 
+from tippetop.mechanics.impulse import Striking
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, contact, moment_per_normal_force, on_table
+from tippetop.mechanics.rolling import Acceleration, ContactPoint, slip_wrenches
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import plus, scaled, size, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import add, scale
+from tippetop.mechanics.wrench import FORCES
 
 PROBED = 1e-6
 """Part of the slip that an impulse takes or turns that tells how the Delassus number changes with it."""
@@ -68,3 +71,12 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     impulse = max(further, 0.0) / fall * PROBED * whole
     beyond = on_table(after(impulse), top)
     return beyond, float(impulse), float(energy(state, top) - energy(beyond, top))
+
+
+def stuck(state: State, top: Top) -> State:
+    """The state after the impulse that ends slip, and drilling if the law resists it, without opening."""
+    point, (x, y, *_) = ContactPoint.of(state.axis, state.momentum, top), slip_of(*along_table(state), top)
+    resisting = slip_wrenches(top.friction)
+    moving = point._replace(free=Acceleration((x, y, 0.0), point.turning))
+    impulse, _ = moving.holding((*resisting, FORCES[2]), (*(0, 1, 5)[: len(resisting)], 2))
+    return Striking.of(state, top).after((*impulse.force, *impulse.torque))

@@ -60,7 +60,8 @@ class Top(NamedTuple):
     @property
     def each(self) -> tuple["Top", ...]:
         """The top with every one of its surfaces active in turn."""
-        return tuple(self._replace(surface=surface) for surface in each_surface(self.surface))
+        every = each_surface(self.surface)
+        return tuple(self._replace(surface=surface) for surface in every) if len(every) > 1 else (self,)
 
     @property
     def numbers(self) -> tuple[Scalar, ...]:
