@@ -256,3 +256,41 @@ def test_no_more_is_kept_than_so_much() -> None:
       console.log(JSON.stringify([square(4999), made, square(0), made]));
     """
     assert json.loads(printed(script)) == [4999**2, 5000, 0, 5001]
+
+
+def test_a_run_keeps_not_much_more_than_its_numbers() -> None:
+    """However short its arcs are: a top that sticks and slips has hundreds of a few steps."""
+    problem = tt.presets.report_problem(tilt=1.0, spin=50.0).replace({"friction": tt.CoulombFriction(mu=0.2)})
+    script = f"""
+      import {{ simulate }} from {json.dumps((HERE / "index.js").as_uri())};
+      const {{ pieces }} = simulate({problem.to_json()}, {{ duration: 3, tolerance: 1e-8 }});
+      const sum = (of) => pieces.reduce((total, {{ solution }}) => total + of(solution.terms), 0);
+      const kept = sum((terms) => terms.buffer.byteLength), used = sum((terms) => terms.byteLength);
+      console.log(JSON.stringify([pieces.length, kept, used]));
+    """
+    arcs, kept, used = json.loads(printed(script))
+    assert arcs > 50
+    assert kept <= 2 * used
+
+
+def test_slip_that_has_all_but_ended_where_it_jams_sticks_in_the_page() -> None:
+    problem = tt.Problem(
+        body=tt.Body(
+            mass=0.02,
+            shape=tt.EccentricSphere(radius=0.013461353875469938, eccentricity=0.11510802842372737),
+            I1=1.0932492640476375e-07,
+            I3=1.266445725988121e-07,
+        ),
+        friction=tt.CoulombFriction(mu=0.5355226843422539),
+        launch=tt.Launch(
+            tilt=2.2788167293165924,
+            spin=-9.692539375774324,
+            tilt_rate=4.101303263481906,
+            slip=(-0.3166715094802961, 0.04264067899626711),
+        ),
+        contact=tt.Contact(liftoff="fly", restitution=0.0),
+        rolling_resistance=9.09935279481451e-05,
+    )
+    asked = {"problem": problem.model_dump(mode="json"), "duration": 0.05, "tolerance": 1e-8, "times": [0.05]}
+    (found,) = in_javascript([asked | {"phase_limit": 300}])
+    assert found["outcome"]["name"] == "completed"

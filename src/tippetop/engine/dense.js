@@ -97,9 +97,10 @@ export class DenseSolution {
     return last.reduce((most, term) => Math.max(most, Math.abs(term)), 0) * 2 ** (1 - 2 * this.degree);
   }
 
-  /** The first of some steps, with all coefficients in a row. */
+  /** The first of some steps, with all coefficients in a row: these in the room they are in if they fill most of it. */
   static of_steps(knots, terms, size, count) {
-    return new DenseSolution(knots.slice(0, count + 1), terms.subarray(0, (count * terms.length) / (knots.length - 1)), size);
+    const used = (count * terms.length) / (knots.length - 1), kept = 2 * used < terms.length ? "slice" : "subarray";
+    return new DenseSolution(knots.slice(0, count + 1), terms[kept](0, used), size);
   }
 
   /** Steps whose coefficients from the first on lie in rows, from the numbers with which they begin. */

@@ -5,10 +5,11 @@ import { DenseSolution, earliest } from "./dense.js";
 import { plain } from "./runtime.js";
 import { CATALOGUE, GAUSS } from "./tables.js";
 
-const LOOKS = 16;
-const PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
+const LOOKS = 16, PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole), RATES = 8, FORCE = 7;
 const kept = (mode, y) => m.kept(mode.state(y), mode.top), KEPT = 5;
+// A number in a step of a solution, as it is or with the other sign, as a function of the part that has passed.
+const reading = (solution, step, number, sign = 1) => (part) => sign * solution.value(step, number, part);
 // Parts of a step from its ends on in which friction has a direction, which it has not where slip is zero.
 const WITHIN = 1e-8;
 // What is added up: the first of them as they are told, as rates, in `Rates`.
@@ -44,9 +45,9 @@ class Run {
     const read = reader(mode, solution.size), of = read(rates, RATES), numbers = new Float64Array(solution.size);
     const at = (step, part) => solution.numbers(step, part, numbers), look = (step, part, pole = 1) => of(at(step, part), pole);
     const sums = new Float64Array(SUMS * solution.count), rule = GAUSS[mode.touching && solution.degree > 7 ? 8 : 4];
-    const piece = { solution, label, read, at, look, sums, poles: [], rule };
-    this.pieces.push(piece);
-    return piece;
+    const value = (step, number, part) => look(step, Math.min(Math.max(part, WITHIN), 1 - WITHIN))[number];
+    this.pieces.push({ solution, label, read, at, look, value, sums, poles: [], rule });
+    return this.pieces.at(-1);
   }
 
   /** Take in a segment: what is integrated along it, and the extremes of the motion. */
@@ -81,7 +82,7 @@ class Run {
     this.along(piece, step, 1, pole, this.sums);
     // Between Gauss's points, and beyond them, it is lower by a part of what it varies by there.
     const { least, most } = this, bound = least - 0.5 * (most - least);
-    if (presses) this.force.see(least, bound, (part) => piece.look(step, Math.min(Math.max(part, WITHIN), 1 - WITHIN))[FORCE]);
+    if (presses) this.force.see(least, bound, piece, step, FORCE);
   }
 
   /** Add to sums what is gained up to a part of a step; the normal forces on the way. */
@@ -98,10 +99,11 @@ class Run {
 
   /** Take in how far a number of a solution goes down and up in a step. */
   see(solution, step, number, down, up) {
-    const at = (part) => solution.value(step, number, part), start = at(0), [low, high] = solution.bounds(step, number);
-    down?.see(start, low, at);
-    up.see(-start, -high, (part) => -at(part));
-    if (down && this.turned !== this.turned && low <= 0 && high >= 0) this.turned = solution.time(step, firstFall(at, true));
+    const start = solution.value(step, number, 0), [low, high] = solution.bounds(step, number);
+    down?.see(start, low, solution, step, number);
+    up.see(-start, -high, solution, step, number, -1);
+    const turns = down && low <= 0 && high >= 0 && this.turned !== this.turned;
+    if (turns) this.turned = solution.time(step, firstFall(reading(solution, step, number), true));
   }
 
   /** First time at which n_z is in a band. */
@@ -130,12 +132,11 @@ class Run {
     const [resisted, when] = [[-sums[DRILLED], -sums[ROLLED]], [this.turned, this.arrival(m.final_band(state))]];
     const ends = m.Ends.of_one(state, trajectory.time, null, events, this.flights, this.steps, resisted, least, when);
     this.metrics = Object.fromEntries(m.metrics(ends, this.start, this.top, units).entries());
-    const told = ([start, end, gap]) => ({ start: start * units.time, end: end * units.time, highest_gap: gap * units.length });
-    this.flights = flights.map(told);
+    this.flights = flights.map(([start, end, gap]) => ({ start: start * units.time, end: end * units.time, highest_gap: gap * units.length }));
     if (!this.pieces.length) {
       const [mode, numbers] = m.as_begun(this.start, this.top);
-      const still = this.piece(mode, DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]), "sliding");
-      Object.assign(still, { sums, poles: [this.pole] });
+      const still = DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]);
+      Object.assign(this.piece(mode, still, "sliding"), { sums, poles: [this.pole] });
     }
     return this;
   }
@@ -151,8 +152,7 @@ class Run {
   }
 
   grid(count) {
-    const all = Array.from({ length: count }, (_, i) => this.duration * (i / (count - 1)));
-    const times = all.filter((time) => time <= this.endTime);
+    const times = Array.from({ length: count }, (_, i) => this.duration * (i / (count - 1))).filter((time) => time <= this.endTime);
     if (this.early && times.at(-1) < this.endTime) times.push(this.endTime);
     return Float64Array.from(times);
   }
@@ -163,8 +163,7 @@ class Run {
     const { solution } = piece, step = solution.step(time), part = solution.part(step, time);
     const sums = piece.sums.slice(step * SUMS, (step + 1) * SUMS), pole = piece.poles[step];
     this.along(piece, step, part, pole, sums);
-    piece.told ??= piece.read(m.instants, m.TOLD);
-    const told = m.Instants.unpack(piece.told(solution.numbers(step, part)));
+    const told = m.Instants.unpack((piece.told ??= piece.read(m.instants, m.TOLD))(solution.numbers(step, part)));
     const here = new m.Samples(time, told, sums[X], sums[Y], sums[TURN], sums[WORK], sums[STRUCK], -sums[DRILLED], -sums[ROLLED], pole, null);
     for (const [name, value] of m.observe(here, this.top, this.units).entries()) {
       if (typeof value === "number") track[name][i] = value;
@@ -179,10 +178,10 @@ class Least {
   value = Infinity;
   places = [];
 
-  /** Take in a value; where there may be less, down to a bound, keep what tells it at the parts of a step. */
-  see(value, bound = value, values = null) {
+  /** Take in a value; where there may be less in a step, down to a bound, keep what tells it there. */
+  see(value, bound, solution, step, number, sign) {
     this.value = Math.min(this.value, value);
-    if (bound < this.value) this.places.push([bound, values]);
+    if (bound < this.value) this.places.push([bound, reading(solution, step, number, sign)]);
   }
 
   found() {
