@@ -134,9 +134,16 @@ def test_axes_have_the_units_of_the_problem():
     assert axes.get_ylabel() == "Height of the lowest point at launch (m)"
 
 
-def test_an_axis_that_is_too_long_to_be_drawn_is_refused(plane):
+@pytest.mark.parametrize("values", [np.linspace, np.geomspace])
+def test_an_axis_that_is_too_long_to_be_drawn_is_refused(plane, values):
     far = plane.copy(deep=True)
     name = str(far["final_theta"].dims[0])
-    far = far.assign_coords({name: np.linspace(1.0, 1e308, far.sizes[name])})
-    with pytest.raises(InvalidInput, match=f"{name} = .* an axis at most 1e.300 long"):
+    far = far.assign_coords({name: values(1e-3, 1e299 if values is np.geomspace else 1e308, far.sizes[name])})
+    with pytest.raises(InvalidInput, match=f"{name} = .* an axis with cells over at most 1e.300"):
         phase_map(far)
+
+
+def test_words_along_an_axis_are_no_lengths(plane):
+    name = str(plane["final_theta"].dims[0])
+    words = [f"{value:g}" for value in plane[name].values]
+    assert phase_map(plane.assign_coords(label=(name, words))).axes

@@ -90,7 +90,7 @@ def sweep(
         if not resume:
             require_ending("--out", out, [".zarr"])
             refuse_existing(out, force)
-        pictures = _map_files(out) if maps else {}
+        pictures = _map_files(out, chosen) if maps else {}
         for path in pictures.values():
             place_for(path, force or resume)
         store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
@@ -195,10 +195,11 @@ def _holds_sweep(file: Path) -> bool:
         return False
 
 
-def _map_files(out: Path) -> dict[str, Path]:
-    """The maps that are drawn beside a store: variables and files."""
-    from tippetop.figures.maps import MAPPED  # noqa: PLC0415 - slow to import
+def _map_files(out: Path, chosen: "Sweep") -> dict[str, Path]:
+    """The maps that are drawn beside a store, if they can be: variables and files."""
+    from tippetop.figures.maps import MAPPED, require_drawable  # noqa: PLC0415 - slow to import
 
+    require_drawable({name: values for name, (_, values) in chosen.grid.coordinates().items()})
     return {name: out.with_name(f"{out.name.removesuffix('.zarr')}.{name}.png") for name in MAPPED}
 
 

@@ -1,5 +1,6 @@
 """Maps of a sweep: what became of every launch, over one or two of its numbers."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -59,7 +60,7 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
         If values of an axis are too far apart to be drawn.
     """
     values = sweep[variable]
-    _require_narrow(sweep, [str(name) for name in sweep.coords if name != "draw"])
+    require_drawable({str(name): along.values for name, along in sweep.coords.items()})
     if values.ndim > 2:
         return _panels(sweep, variable)
     figure, axes = mark.panels(4.6)
@@ -75,12 +76,22 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
     return figure
 
 
-def _require_narrow(sweep: xr.Dataset, names: list[str]) -> None:
-    """Refuse to draw over what reaches too far."""
-    for name in names:
-        least, most = float(sweep[name].min()), float(sweep[name].max())
+def require_drawable(coordinates: Mapping[str, np.ndarray[Any, Any]]) -> None:
+    """Refuse to draw over what reaches too far.
+
+    Raises
+    ------
+    InvalidInput
+        If cells at these values, along an axis or drawn, reach farther than `WIDEST`.
+    """
+    for name, values in coordinates.items():
+        if not np.issubdtype(values.dtype, np.number):
+            continue
+        with np.errstate(over="ignore"):
+            least, most = _ends(np.unique(values))
         if not most - least < WIDEST:
-            raise InvalidInput(name, (least, most), f"an axis at most {WIDEST:g} long, to be drawn")
+            ends = float(values.min()), float(values.max())
+            raise InvalidInput(name, ends, f"an axis with cells over at most {WIDEST:g}, to be drawn")
 
 
 def _panels(sweep: xr.Dataset, variable: str) -> Figure:
