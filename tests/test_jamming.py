@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 import tippetop as tt
 from tippetop.integrators import has_taylor
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.jamming import past_jamming, stuck
+from tippetop.mechanics.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.motion import along_table, contact, contact_swing, on_table
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import slip_of
@@ -269,7 +269,7 @@ def test_what_sticks_at_once_takes_the_energy_of_its_slip_and_does_not_open(law:
     for part in (1e-3, 1e-2):
         problem = jamming(slip=part * SLOW).replace({**law, "launch.spin": 40.0 * part})
         before = problem.start()
-        after = stuck(before, problem.top)
+        after = stuck_at_once(before, problem.top)
         assert np.abs(slip_of(*along_table(after), problem.top)).max() < 1e-16
         assert after.velocity[2] == pytest.approx(
             on_table(along_table(after), problem.top).velocity[2], abs=1e-17

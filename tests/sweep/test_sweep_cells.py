@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from strategies import problems
-from tippetop.catalogue import Fault
+from tippetop.catalogue import Ending, Fault
 from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.presets import REPORT_THIN_STEM, WOODEN, report_problem
+from tippetop.sweeps import Product, Sweep, compute
 from tippetop.sweeps.cells import cells_of, numeric_fields
 
 EDGES = {
@@ -127,3 +128,22 @@ def test_points_of_a_picture_are_no_numbers_to_sweep():
 def test_a_field_that_is_none_is_refused_with_the_likeliest_meant():
     with pytest.raises(InvalidInput, match=r"did you mean launch\.spin"):
         cells_of(report_problem(), {"launch.spim": np.array([1.0])})
+
+
+@pytest.mark.parametrize(
+    "axes",
+    [
+        {"launch.spin": [50.0, 1e150, 1e300], "friction.mu": [1e-300, 0.3, 1e200]},
+        {"body.mass": [1e-300, 1.0, 1e300], "body.I1": [1e-300, 1e-6, 1e300]},
+    ],
+)
+def test_numbers_that_are_too_large_are_outcomes_and_no_warnings(axes):
+    assert compute(Sweep(report_problem(tilt=1.0), Product.of(axes), 0.1))["outcome"].shape == (3, 3)
+
+
+def test_rolling_that_overflows_is_an_outcome():
+    problem = report_problem(spin=100.0, tilt=1.0).replace({"contact.liftoff": "fly"})
+    axes = {"launch.spin": [50.0, 1e200], "rolling_resistance": [1e-4, 1e10]}
+    outcomes = compute(Sweep(problem, Product.of(axes), 0.1))["outcome"].values
+    assert outcomes[0, 0] != Ending.FAILED
+    assert set(outcomes[1]) <= {Ending.FAILED, Ending.BAD}

@@ -14,7 +14,7 @@ from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.jamming import past_jamming, stuck
+from tippetop.mechanics.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
 from tippetop.mechanics.rolling import ContactPoint, contact_motion, is_set_valued
 from tippetop.mechanics.state import State
@@ -25,7 +25,6 @@ from tippetop.mechanics.stick_slip import (
     is_near,
     is_rolling,
     is_slipping,
-    size,
     slip_of,
 )
 from tippetop.mechanics.top import Top
@@ -165,7 +164,7 @@ class Rules:
         for ending in possible:
             xi = ending.of(*sliding, top)
             change = inner(xi, ending.rate(acceleration, top))
-            left = size(xi) ** 2 / -change if change < 0.0 else float("inf")
+            left = inner(xi, xi) / -change if change < 0.0 else float("inf")
             if left < least:
                 found, least = ending, left
         return found, least
@@ -211,7 +210,7 @@ class Rules:
         found = self.inconsistent(time, beyond, ())
         if not found.events and isinstance(found.then, Mode):
             # Slip is so little that by rounding nothing strikes, and slipping on it would jam at once.
-            found = self.settled(time, stuck(beyond, self.top), (True, False))
+            found = self.settled(time, stuck_at_once(beyond, self.top), (True, False))
         return begun_with(found, state, *taken)
 
     def _leaving(self, time: float, state: State) -> Transition:

@@ -5122,7 +5122,7 @@ function past_jamming(state, top) {
 }
 
 /** The state after the impulse that ends slip, and drilling if the law resists it, without opening. */
-function stuck(state, top) {
+function stuck_at_once(state, top) {
   var [point, [x, y, ..._]] = [
     ContactPoint.of(state.axis, state.momentum, top),
     slip_of(...along_table(state), top)
@@ -5266,7 +5266,7 @@ class Rules extends py.Record {
     for (var ending of possible) {
       var xi = ending.of(...sliding, top);
       var change = inner(xi, ending.rate(acceleration, top));
-      var left = change < 0.0 ? py.div(py.pow(size(xi), 2), py.neg(change)) : py.float("inf");
+      var left = change < 0.0 ? py.div(inner(xi, xi), py.neg(change)) : py.float("inf");
       if (left < least) {
         found = ending;
         least = left;
@@ -5313,7 +5313,7 @@ class Rules extends py.Record {
     var [beyond, ...taken] = past;
     var found = this.inconsistent(time, beyond, []);
     if (!py.truth(found.events) && py.isinstance(found.then, Mode)) {
-      found = this.settled(time, stuck(beyond, this.top), [true, false]);
+      found = this.settled(time, stuck_at_once(beyond, this.top), [true, false]);
     }
     return begun_with(found, state, ...taken);
   }
@@ -9852,12 +9852,12 @@ function take_step(rates, p, y, lost, k, span, tolerance, terms, first, size, mo
       return 0;
     }
     reach = py.smaller(time + span[2], span[1]);
-    stages_of_dormand_prince(rates, reach - time, p, y, lost, k, moved, new_);
+    stages_of_dormand_prince(rates, reach - time, p, y, lost, k, new_, moved);
     error = error_of(reach - time, y, new_, k, tolerance, size);
     tries = tries + 1;
     span[2] = (reach - time) * factor_for(error, tries);
   }
-  more_stages(rates, reach - time, p, y, lost, k, moved, place);
+  more_stages(rates, reach - time, p, y, lost, k, place);
   polynomials(reach - time, y, new_, k, terms, first);
   var k0 = k[0];
   var k12 = k[12];
@@ -9915,9 +9915,9 @@ function advance(rates, guards, count, p, y, lost, k, span, tolerance, knots, te
   return [steps, calls, REACHED];
 }
 
-function stages_of_dormand_prince(rates, h, p, y, lost, k, moved, place) {
+function stages_of_dormand_prince(rates, h, p, y, lost, k, place, moved) {
   if (y.length === 8) {
-    return stages_of_8(rates, h, p, y, lost, k, moved, place);
+    return stages_of_8(rates, h, p, y, lost, k, place, moved);
   }
   var k0 = k[0];
   for (var i = 0; i < y.length; i += 1) {
@@ -10102,7 +10102,7 @@ function stages_of_dormand_prince(rates, h, p, y, lost, k, moved, place) {
   evaluate(rates, place, p, k[12]);
 }
 
-function stages_of_8(rates, h, p, y, lost, k, moved, place) {
+function stages_of_8(rates, h, p, y, lost, k, place, moved) {
   var y0 = y[0];
   var y1 = y[1];
   var y2 = y[2];
@@ -10861,9 +10861,9 @@ function stages_of_8(rates, h, p, y, lost, k, moved, place) {
   evaluate(rates, place, p, k[12]);
 }
 
-function more_stages(rates, h, p, y, lost, k, moved, place) {
+function more_stages(rates, h, p, y, lost, k, place) {
   if (y.length === 8) {
-    return more_stages_of_8(rates, h, p, y, lost, k, moved, place);
+    return more_stages_of_8(rates, h, p, y, lost, k, place);
   }
   var k0 = k[0];
   var k10 = k[10];
@@ -10933,7 +10933,7 @@ function more_stages(rates, h, p, y, lost, k, moved, place) {
   evaluate(rates, place, p, k[15]);
 }
 
-function more_stages_of_8(rates, h, p, y, lost, k, moved, place) {
+function more_stages_of_8(rates, h, p, y, lost, k, place) {
   var y0 = y[0];
   var y1 = y[1];
   var y2 = y[2];
@@ -13344,7 +13344,7 @@ export {
   straight,
   struck_motion,
   struck_wrench,
-  stuck,
+  stuck_at_once,
   support_terms,
   surface_guards,
   suspect,

@@ -228,11 +228,11 @@ def take_step(
         if not span[2] > NOTHING * abs(time):
             return 0
         reach = min(time + span[2], span[1])
-        stages(rates, reach - time, p, y, lost, k, moved, new)
+        stages(rates, reach - time, p, y, lost, k, new, moved)
         error = error_of(reach - time, y, new, k, tolerance, size)
         tries += 1
         span[2] = (reach - time) * factor_for(error, tries)
-    more_stages(rates, reach - time, p, y, lost, k, moved, place)
+    more_stages(rates, reach - time, p, y, lost, k, place)
     polynomials(reach - time, y, new, k, terms, first)
     for i in range(len(y)):
         lost[i] = moved[i] - (new[i] - y[i])

@@ -7,8 +7,8 @@ from scipy.integrate import DOP853
 
 from tippetop.integrators.dormand_prince import Array
 
-TAKEN = "rates, h, p, y, lost, k, moved, place"
-"""What the functions of stages take."""
+TAKEN = "rates, h, p, y, lost, k, place"
+"""What the functions of stages take; those of a step tell what it adds to the state in `moved` too."""
 
 SLOPE = "k{}_i"
 """A number's rate at a stage, once it is read."""
@@ -17,15 +17,18 @@ SLOPE = "k{}_i"
 def written_out(size: int | None = None) -> str:
     """The functions in which the method's coefficients are, as code; stages of a size without loops."""
     lines = list[str]()
-    for name, first, rows in (("stages", 1, [*DOP853.A[1:], DOP853.B]), ("more_stages", 13, DOP853.A_EXTRA)):
+    for name, first, rows, taken in (
+        ("stages", 1, [*DOP853.A[1:], DOP853.B], f"{TAKEN}, moved"),
+        ("more_stages", 13, DOP853.A_EXTRA, TAKEN),
+    ):
         stages = list(enumerate(rows, start=first))
-        lines.append(f"def {name}({TAKEN}):")
+        lines.append(f"def {name}({taken}):")
         if size is not None:
-            lines += [f"    if len(y) == {size}:", f"        return {name}_of_{size}({TAKEN})"]
+            lines += [f"    if len(y) == {size}:", f"        return {name}_of_{size}({taken})"]
         for number, weights in stages:
             lines += [*_for_each(*_stage(number, weights)), _evaluated(number)]
         if size is not None:
-            lines += [f"def {name}_of_{size}({TAKEN}):", *_straight(stages, size)]
+            lines += [f"def {name}_of_{size}({taken}):", *_straight(stages, size)]
     lines.append("def combined(y: Array, k: Array):")
     errors = DOP853.E5, DOP853.E3
     lines += _for_each(

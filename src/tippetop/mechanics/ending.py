@@ -36,8 +36,8 @@ QUICK = 1e5
 
 JAMMING = 1e-8
 """Delassus number of the slipping contact, over that without friction, that is next to nothing: the time that
-is left falls as its square, and is rounding then. Of what the impact after it takes, friction takes as small a
-part before.
+is left falls as its square, and is rounding then. Of what the impact after it takes, a part as small is the
+friction's before.
 """
 
 

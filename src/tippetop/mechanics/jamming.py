@@ -73,7 +73,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     return beyond, float(impulse), float(energy(state, top) - energy(beyond, top))
 
 
-def stuck(state: State, top: Top) -> State:
+def stuck_at_once(state: State, top: Top) -> State:
     """The state after the impulse that ends slip, and drilling if the law resists it, without opening."""
     point, (x, y, *_) = ContactPoint.of(state.axis, state.momentum, top), slip_of(*along_table(state), top)
     resisting = slip_wrenches(top.friction)

@@ -32,6 +32,7 @@ LANES_AT_ONCE = 2048
 """Launches that are followed together: enough to make little of Python's part, few enough for the cache."""
 
 
+@np.errstate(all="ignore")  # what is no number is told by outcomes
 def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     """Every variable of `tippetop.catalogue.SWEPT` for cells counted row by row, each of shape (n,)."""
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
@@ -51,12 +52,11 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         if method is None:
             ends = follow_each(some, sweep.tolerance, sweep.settled)
         else:
-            with np.errstate(all="ignore"):  # what is no number is told by outcomes
-                lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
-                ends = lanes.run()
-                judge(ends, some, sweep.tolerance)
-                again = arrivals(lanes, final_band(ends.state))
-                ends.arrived = np.where(np.isnan(again), ends.arrived, again)
+            lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
+            ends = lanes.run()
+            judge(ends, some, sweep.tolerance)
+            again = arrivals(lanes, final_band(ends.state))
+            ends.arrived = np.where(np.isnan(again), ends.arrived, again)
         units = Units(*(spread(unit, count)[which] for unit in cells.units))
         values = metrics(ends, some.state, some.top, units) | {"outcome": ending(ends)}
         for name, numbers_found in values.items():
