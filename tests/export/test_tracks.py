@@ -36,6 +36,21 @@ def test_every_flight_is_shaded_and_neighbours_are_joined_when_there_are_too_man
         assert any(low <= begin and end <= high for low, high in few)
 
 
+def test_of_a_part_of_a_run_only_what_it_shows_is_told(flying: xr.Dataset) -> None:
+    starts, ends = flying["flight_start"].values, flying["flight_end"].values
+    begin, end = 0.5 * (starts[2] + ends[2]), 0.5 * (starts[6] + ends[6])
+    part = flying.sel(time=slice(begin, end))
+    first, last = part["time"].values[[0, -1]]
+    shaded = track.flights(part)
+    assert (shaded[0][0], shaded[-1][1]) == (first, last)
+    assert shaded[1:-1] == np.stack([starts[3:6], ends[3:6]], axis=1).tolist()
+    turns_over = float(flying["turns_over"])
+    assert not first < turns_over < last
+    assert track.unpack_header(track.pack_run(part))["turns_over"] is None
+    about = flying.sel(time=slice(turns_over - 0.1, turns_over + 0.1))
+    assert track.unpack_header(track.pack_run(about))["turns_over"] == turns_over
+
+
 def test_friction_takes_the_energy_that_slides_away() -> None:
     problem = tt.presets.report_problem(spin=155.0)
     run = tt.simulate(problem, 5.0, samples=20001)

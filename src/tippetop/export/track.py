@@ -6,7 +6,6 @@ samples before the next. `web/src/player/track.js` reads it.
 """
 
 import json
-import math
 import struct
 from typing import Any
 
@@ -41,15 +40,15 @@ def sample_count(problem: Problem, duration: float) -> int:
 
 
 def pack_run(run: xr.Dataset) -> bytes:
-    """The block of bytes of a run."""
-    problem = Problem.from_json(run.attrs["problem"])
+    """The block of bytes of a run, or of a part of one."""
+    problem, (begin, end) = Problem.from_json(run.attrs["problem"]), _ends(run)
     columns, turns_over = _columns(run), float(run["turns_over"])
     header = {
         "samples": run.sizes["time"],
-        "duration": float(run["time"].values[-1]),
+        "duration": end,
         "columns": [[name, values.shape[1] if values.ndim > 1 else 1] for name, values in columns.items()],
         "flights": flights(run),
-        "turns_over": turns_over if math.isfinite(turns_over) else None,
+        "turns_over": turns_over if begin <= turns_over <= end else None,
         "modes": [str(word) for word in run["mode"].attrs["flag_meanings"].split()],
         "body": {
             "I1": problem.body.I1,
@@ -76,12 +75,19 @@ def unpack_header(block: bytes) -> dict[str, Any]:
 
 
 def flights(run: xr.Dataset) -> Any:
-    """Begin and end of every flight, s, those too near each other to be told apart as one."""
-    starts, ends = run["flight_start"].values, run["flight_end"].values
+    """Begin and end of every flight there is to see, s, those too near each other to be told apart as one."""
+    (begin, end), starts, ends = _ends(run), run["flight_start"].values, run["flight_end"].values
+    seen = (starts < end) & (ends > begin)
+    starts, ends = starts[seen].clip(begin), ends[seen].clip(max=end)
     if len(starts) > SHADINGS:
-        apart = starts[1:] - ends[:-1] >= float(run["time"].values[-1]) / SHADINGS
+        apart = starts[1:] - ends[:-1] >= (end - begin) / SHADINGS
         starts, ends = starts[np.append(True, apart)], ends[np.append(apart, True)]
     return np.stack([starts, ends], axis=1).tolist()
+
+
+def _ends(run: xr.Dataset) -> tuple[float, float]:
+    """When it begins and ends, s."""
+    return float(run["time"].values[0]), float(run["time"].values[-1])
 
 
 def _columns(run: xr.Dataset) -> dict[str, Array]:
