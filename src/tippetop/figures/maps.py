@@ -87,7 +87,7 @@ def require_drawable(coordinates: Mapping[str, np.ndarray[Any, Any]]) -> None:
     for name, values in coordinates.items():
         if not np.issubdtype(values.dtype, np.number):
             continue
-        with np.errstate(over="ignore"):
+        with np.errstate(all="ignore"):
             least, most = _ends(np.unique(values))
         if not most - least < WIDEST:
             ends = float(values.min()), float(values.max())
