@@ -66,7 +66,7 @@ def _evaluated(number: int) -> str:
 def _straight(stages: Sequence[tuple[int, Array]], size: int) -> list[str]:
     """Stages of so many numbers, each of which is read once."""
     each, used = range(size), _used(weights for _, weights in stages)
-    reads = {j: [f"    k{j}_{i} = k[{j}, {i}]" for i in each] for j in used}
+    reads = {j: [f"    {_read(j, str(i))}" for i in each] for j in used}
     lines = [f"    {name}{i} = {name}[{i}]" for name in ("y", "lost") for i in each]
     lines += [line for j, some in reads.items() if j < stages[0][0] for line in some]
     for number, weights in stages:
@@ -84,7 +84,12 @@ def _used(rows: Iterable[Array]) -> list[int]:
 
 def _reads(*rows: Array) -> list[str]:
     """What is used by rows of weights, each read once: compilers for pages do not see that."""
-    return [f"{SLOPE.format(j)} = k[{j}, i]" for j in _used(rows)]
+    return [_read(j, "i") for j in _used(rows)]
+
+
+def _read(stage: int, i: str) -> str:
+    """A number's rate at a stage gets a name: `SLOPE` for the i of a loop."""
+    return f"k{stage}_{i} = k[{stage}, {i}]"
 
 
 def _for_each(*assignments: str) -> list[str]:
