@@ -143,7 +143,7 @@ class Pinned(IntegratedMode):
 def pin(y: Row, top: Top) -> tuple[Wrench, ContactPoint]:
     """The force that holds the contact point."""
     point = ContactPoint.of((y[0], y[1], y[2]), (y[3], y[4], y[5]), top)
-    return point.holding(FORCES, (0, 1, 2))[0], point
+    return point.holding(list(enumerate(FORCES)))[0], point
 
 
 @lru_cache

@@ -2281,18 +2281,18 @@ class ContactPoint extends py.NamedTuple {
     return add(cross(this.arm, wrench.force), wrench.torque);
   }
   /** The combination of wrenches that keeps as many velocities constant, and the acceleration then. */
-  holding(unit, held) {
-    var responses = [...unit].map((wrench) => this.response(wrench));
+  holding(held) {
+    var responses = [...held].map(([, wrench]) => this.response(wrench));
     var columns = [...responses].map((response) => flat(response));
     var free = flat(this.free);
     var sizes = solve(
-      [...held].map((i) => [...columns].map((column) => py.item(column, i))),
-      [...held].map((i) => py.neg(py.item(free, i)))
+      [...held].map(([i]) => [...columns].map((column) => py.item(column, i))),
+      [...held].map(([i]) => py.neg(py.item(free, i)))
     );
     var force = NO_TORQUE;
     var torque = NO_TORQUE;
     var [point, turning] = this.free;
-    for (var [size, wrench, response] of py.zip(sizes, unit, responses)) {
+    for (var [size, [, wrench], response] of py.zip(sizes, held, responses)) {
       [force, torque] = [add(force, scale(size, wrench.force)), add(torque, scale(size, wrench.torque))];
       [point, turning] = [
         add(point, scale(size, response.point)),
@@ -2366,8 +2366,7 @@ function contact_motion(point, slip, rolling = null) {
     return point.pivoting(slip_length(point.top.friction) === null);
   }
   var [normal, slipping, turning] = going_on(point, slip, rolling);
-  var held = [...slipping, [2, normal], ...turning];
-  return point.holding([...held].map(([, wrench]) => wrench), [...held].map(([component]) => component));
+  return point.holding([...slipping, [2, normal], ...turning]);
 }
 
 /** What goes with a unit normal impulse, and that; of floats, as for `contact_motion`. */
@@ -2381,17 +2380,14 @@ function struck_wrench(point, slip, rolling) {
     return normal;
   }
   var driven = py.replace(point, { free: point.response(normal) });
-  var [more] = driven.holding(
-    [...held].map(([, wrench]) => wrench),
-    [...held].map(([component]) => component)
-  );
+  var [more] = driven.holding(held);
   return new Wrench(add(normal.force, more.force), add(normal.torque, more.torque));
 }
 
 /** A unit normal force with what goes with it, and what holds slip, and rolling, where these are None. */
 function going_on(point, slip, rolling) {
   var top = point.top;
-  var slipping = slip !== null ? [] : py.list(py.zip([0, 1, 5], slip_wrenches(top.friction)));
+  var slipping = slip !== null ? [] : holding_slip(top.friction);
   if (top.rolling_resistance === null) {
     return [normal_wrench(point, slip), slipping, []];
   }
@@ -2410,6 +2406,11 @@ function normal_wrench(point, slip, couple = null) {
     [force, torque] = point.top.friction.traction([slip[0], slip[1]], turning_with(point, slip));
   }
   return new Wrench([...force, 1.0], couple === null ? torque : add(torque, couple));
+}
+
+/** The velocities that slip is, and drilling if the law resists it, each with the wrench that holds it. */
+function holding_slip(law) {
+  return py.list(py.zip([0, 1, 5], slip_wrenches(law)));
 }
 
 /** The wrenches that resist slip: two forces, and the drilling torque if the law resists that. */
@@ -5123,14 +5124,10 @@ function past_jamming(state, top) {
 
 /** The state after the impulse that ends slip, and drilling if the law resists it, without opening. */
 function stuck_at_once(state, top) {
-  var [point, [x, y, ..._]] = [
-    ContactPoint.of(state.axis, state.momentum, top),
-    slip_of(...along_table(state), top)
-  ];
-  var resisting = slip_wrenches(top.friction);
-  var moving = py.replace(point, { free: new Acceleration([x, y, 0.0], point.turning) });
-  var [impulse] = moving.holding([...resisting, FORCES[2]], [...[0, 1, 5].slice(0, py.len(resisting)), 2]);
-  return Striking.of(state, top).after([...impulse.force, ...impulse.torque]);
+  var [body, [x, y, ..._]] = [Striking.of(state, top), slip_of(...along_table(state), top)];
+  var moving = py.replace(body.contact, { free: new Acceleration([x, y, 0.0], body.contact.turning) });
+  var [impulse] = moving.holding([...holding_slip(top.friction), [2, FORCES[2]]]);
+  return body.after([...impulse.force, ...impulse.torque]);
 }
 
 // tippetop.contact.rules
@@ -13164,6 +13161,7 @@ export {
   heaviness,
   highest_between,
   highest_gap,
+  holding_slip,
   horner,
   hull_of,
   impact,

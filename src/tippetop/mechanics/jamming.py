@@ -5,7 +5,7 @@ import math
 from tippetop.mechanics.impulse import Striking
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, contact, moment_per_normal_force, on_table
-from tippetop.mechanics.rolling import Acceleration, ContactPoint, slip_wrenches
+from tippetop.mechanics.rolling import Acceleration, holding_slip
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import plus, scaled, size, slip_of
 from tippetop.mechanics.top import Top
@@ -75,8 +75,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
 
 def stuck_at_once(state: State, top: Top) -> State:
     """The state after the impulse that ends slip, and drilling if the law resists it, without opening."""
-    point, (x, y, *_) = ContactPoint.of(state.axis, state.momentum, top), slip_of(*along_table(state), top)
-    resisting = slip_wrenches(top.friction)
-    moving = point._replace(free=Acceleration((x, y, 0.0), point.turning))
-    impulse, _ = moving.holding((*resisting, FORCES[2]), (*(0, 1, 5)[: len(resisting)], 2))
-    return Striking.of(state, top).after((*impulse.force, *impulse.torque))
+    body, (x, y, *_) = Striking.of(state, top), slip_of(*along_table(state), top)
+    moving = body.contact._replace(free=Acceleration((x, y, 0.0), body.contact.turning))
+    impulse, _ = moving.holding([*holding_slip(top.friction), (2, FORCES[2])])
+    return body.after((*impulse.force, *impulse.torque))

@@ -96,22 +96,21 @@ class ContactPoint(NamedTuple):
         """Moment of a wrench about the centre of mass, N m."""
         return add(cross(self.arm, wrench.force), wrench.torque)
 
-    def holding(self, unit: Sequence[Wrench], held: Sequence[int]) -> tuple[Wrench, Acceleration]:
+    def holding(self, held: Sequence[Held]) -> tuple[Wrench, Acceleration]:
         """The combination of wrenches that keeps as many velocities constant, and the acceleration then.
 
         Parameters
         ----------
-        unit
-            Wrenches, one to each component; that to component 2 may be a normal force with what goes with it.
         held
-            Components: 0 to 2 of the contact point's velocity, 3 to 5 of the angular velocity.
+            Components, 0 to 2 of the contact point's velocity, 3 to 5 of the angular velocity, with a wrench
+            each; that to component 2 may be a normal force with what goes with it.
         """
-        responses = [self.response(wrench) for wrench in unit]
+        responses = [self.response(wrench) for _, wrench in held]
         columns, free = [flat(response) for response in responses], flat(self.free)
-        sizes = solve([[column[i] for column in columns] for i in held], [-free[i] for i in held])
+        sizes = solve([[column[i] for column in columns] for i, _ in held], [-free[i] for i, _ in held])
         force = torque = NO_TORQUE
         point, turning = self.free
-        for size, wrench, response in zip(sizes, unit, responses, strict=True):
+        for size, (_, wrench), response in zip(sizes, held, responses, strict=True):
             force, torque = add(force, scale(size, wrench.force)), add(torque, scale(size, wrench.torque))
             point, turning = (
                 add(point, scale(size, response.point)),
@@ -180,8 +179,7 @@ def contact_motion(
     if slip is None and not point.top.resists_rolling:
         return point.pivoting(drills=slip_length(point.top.friction) is None)
     normal, slipping, turning = going_on(point, slip, rolling)
-    held = [*slipping, (2, normal), *turning]
-    return point.holding([wrench for _, wrench in held], [component for component, _ in held])
+    return point.holding([*slipping, (2, normal), *turning])
 
 
 def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None) -> Wrench:
@@ -196,7 +194,7 @@ def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | 
     if not held:
         return normal
     driven = point._replace(free=point.response(normal))
-    more, _ = driven.holding([wrench for _, wrench in held], [component for component, _ in held])
+    more, _ = driven.holding(held)
     return Wrench(add(normal.force, more.force), add(normal.torque, more.torque))
 
 
@@ -205,7 +203,7 @@ def going_on(
 ) -> tuple[Wrench, list[Held], list[Held]]:
     """A unit normal force with what goes with it, and what holds slip, and rolling, where these are None."""
     top = point.top
-    slipping = [] if slip is not None else list(zip((0, 1, 5), slip_wrenches(top.friction), strict=False))
+    slipping = [] if slip is not None else holding_slip(top.friction)
     if top.rolling_resistance is None:
         return normal_wrench(point, slip), slipping, []
     if rolling is None:
@@ -220,6 +218,11 @@ def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None 
     if slip is not None:
         force, torque = point.top.friction.traction((slip[0], slip[1]), turning_with(point, slip))
     return Wrench((*force, 1.0), torque if couple is None else add(torque, couple))
+
+
+def holding_slip(law: FrictionLaw) -> list[Held]:
+    """The velocities that slip is, and drilling if the law resists it, each with the wrench that holds it."""
+    return list(zip((0, 1, 5), slip_wrenches(law), strict=False))
 
 
 def slip_wrenches(law: FrictionLaw) -> tuple[Wrench, ...]:
