@@ -1,9 +1,10 @@
 """Measure what is promised of speed and memory; print tables, and keep the figures as JSON.
 
-A measurement is `simulate` (a run against the bare integration inside it), `compilers` (the same run by
-heyoka, by numba and by SciPy at the same error), `page` (the page's engine in Node against Python's),
-`sweep` (the sweep's engine against other programs at the same error), `scale` (what sweeps cost by size,
-workers and flights) or `friction` (what friction of a patch costs beside viscous friction).
+A measurement is `simulate` (a run against the bare integration inside it), `compilers` (the same
+run by heyoka, by numba and by SciPy at the same error), `page` (the page's engine in Node against
+Python's), `sweep` (the sweep's engine against other programs at the same error), `scale` (what
+sweeps cost by size, workers and flights) or `friction` (what friction of a patch costs beside
+viscous friction).
 """
 
 import argparse
@@ -30,10 +31,16 @@ MEASUREMENTS = ("simulate", "compilers", "page", "sweep", "scale", "friction")
 def main() -> None:
     """Measure; exit with 1 if a run takes too many times the bare integration."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("what", nargs="*", metavar="WHAT", help=f"{', '.join(MEASUREMENTS)}; all if left out")
+    parser.add_argument(
+        "what", nargs="*", metavar="WHAT", help=f"{', '.join(MEASUREMENTS)}; all if left out"
+    )
     parser.add_argument("--quick", action="store_true", help="fewer and smaller")
-    parser.add_argument("--whole", action="store_true", help="scale: also a million launches, twice")
-    parser.add_argument("--profile", action="store_true", help="simulate: also show where the time goes")
+    parser.add_argument(
+        "--whole", action="store_true", help="scale: also a million launches, twice"
+    )
+    parser.add_argument(
+        "--profile", action="store_true", help="simulate: also show where the time goes"
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures here")
     options = parser.parse_args()
     unknown = [name for name in options.what if name not in MEASUREMENTS]

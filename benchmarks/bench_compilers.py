@@ -1,9 +1,9 @@
 """The report's run by heyoka, by numba and by SciPy at the same error, in turns.
 
-heyoka is timed at the loosest tolerance at which its error is no larger than that of numba by default: the
-largest of the axis at 2001 samples over 20 s, against heyoka at its least tolerance. SciPy's method takes
-numba's steps at the same tolerance; a run of 4 s shows how much longer it takes over them. Times
-are of the processor: those of other programs are not in them.
+heyoka is timed at the loosest tolerance at which its error is no larger than that of numba by
+default: the largest of the axis at 2001 samples over 20 s, against heyoka at its least tolerance.
+SciPy's method takes numba's steps at the same tolerance; a run of 4 s shows how much longer it
+takes over them. Times are of the processor: those of other programs are not in them.
 """
 
 import statistics
@@ -23,7 +23,9 @@ TOLERANCES = (1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14)
 
 def run(name: str, tolerance: float | None, duration: float = DURATION) -> Any:
     """The report's run."""
-    return tt.simulate(report_problem(), duration, samples=SAMPLES, integrator=name, tolerance=tolerance)
+    return tt.simulate(
+        report_problem(), duration, samples=SAMPLES, integrator=name, tolerance=tolerance
+    )
 
 
 def processor_ms(name: str, tolerance: float | None, duration: float = DURATION) -> float:
@@ -56,7 +58,8 @@ def measure(quick: bool) -> dict[str, Any]:
         for name, way in ways.items():
             times[name].append(processor_ms(*way))
     found: dict[str, Any] = {
-        name: {"tolerance": way[1], "ms": statistics.median(times[name])} for name, way in ways.items()
+        name: {"tolerance": way[1], "ms": statistics.median(times[name])}
+        for name, way in ways.items()
     }
     errors = {"heyoka": heyokas, "numba": own}
     return {name: figure | {"error": errors.get(name)} for name, figure in found.items()}
@@ -65,10 +68,18 @@ def measure(quick: bool) -> dict[str, Any]:
 def tables(found: dict[str, Any]) -> str:
     """The figures as a table."""
     rows = [
-        [name, f"{one['tolerance']:.0e}", f"{one['error']:.1e}" if one["error"] else "", rounded(one["ms"])]
+        [
+            name,
+            f"{one['tolerance']:.0e}",
+            f"{one['error']:.1e}" if one["error"] else "",
+            rounded(one["ms"]),
+        ]
         for name, one in found.items()
     ]
     first = found["numba"]["ms"] / found["heyoka"]["ms"]
     second = found["SciPy, 4 s"]["ms"] / found["numba, 4 s"]["ms"]
-    rows += [["numba over heyoka", "", "", rounded(first)], ["SciPy over numba", "", "", rounded(second)]]
+    rows += [
+        ["numba over heyoka", "", "", rounded(first)],
+        ["SciPy over numba", "", "", rounded(second)],
+    ]
     return markdown(["the report's run", "tolerance", "error", "processor, ms"], rows)

@@ -1,18 +1,20 @@
-"""What dry friction of a patch costs beside viscous friction, in single runs and in sweeps, as ratios.
+"""What dry friction of a patch costs beside viscous friction, in single runs and in sweeps, as
+ratios.
 
-The same launches of the report's top are followed under viscous friction and under Contensou's, with the
-coefficient for which the two are one law at slow slip, 3 pi mu / (8 omega R) in s/m: so tops turn over and
-fly much alike, and none sticks. They are not alike in all. At 0.3 to 0.5 m/s of slip, several times the
-drilling, a patch grips less than viscous friction: turning over takes 8 s instead of 3, and nutates as fast
-all the while, so that the motion alone takes some 1.6 times the steps (what series of viscous friction would
-take along it) and 2.4 times the flights. The law takes the rest: 1.4 times those steps, each of 1.2 to 1.7
-times the operations. Near every slowest slip it is singular at complex times, where v^2 + (rho w)^2 = 0 or
-kappa is 0 or 1, and polynomials of whatever method go no farther; where Hertz's branches meet at a real time,
-a passage beyond it takes some 20 steps more than its length would. So beside the ratios of what whole
-launches cost stand those of a step and of a flight, and that of a launch to as many steps and flights under
-viscous friction; and for patches of several radii the ratio to viscous friction that turns the top over as
-late. Small patches do not turn it over in the time of the run, and nutate on; large ones stop it, and what
-costs most is the end of slip.
+The same launches of the report's top are followed under viscous friction and under Contensou's,
+with the coefficient for which the two are one law at slow slip, 3 pi mu / (8 omega R) in s/m: so
+tops turn over and fly much alike, and none sticks. They are not alike in all. At 0.3 to 0.5 m/s of
+slip, several times the drilling, a patch grips less than viscous friction: turning over takes 8 s
+instead of 3, and nutates as fast all the while, so that the motion alone takes some 1.6 times the
+steps (what series of viscous friction would take along it) and 2.4 times the flights. The law takes
+the rest: 1.4 times those steps, each of 1.2 to 1.7 times the operations. Near every slowest slip it
+is singular at complex times, where v^2 + (rho w)^2 = 0 or kappa is 0 or 1, and polynomials of
+whatever method go no farther; where Hertz's branches meet at a real time, a passage beyond it takes
+some 20 steps more than its length would. So beside the ratios of what whole launches cost stand
+those of a step and of a flight, and that of a launch to as many steps and flights under viscous
+friction; and for patches of several radii the ratio to viscous friction that turns the top over as
+late. Small patches do not turn it over in the time of the run, and nutate on; large ones stop it,
+and what costs most is the end of slip.
 """
 
 import math
@@ -86,7 +88,9 @@ def laws(radius: float = PATCH) -> dict[str, tt.Friction]:
 
 def one_by_one(problem: tt.Problem, spins: list[float]) -> tuple[float, float]:
     """Mean steps and flights of single runs."""
-    runs = [tt.simulate(problem.replace({"launch.spin": spin}), DURATION, samples=2) for spin in spins]
+    runs = [
+        tt.simulate(problem.replace({"launch.spin": spin}), DURATION, samples=2) for spin in spins
+    ]
     counted = [(float(run["steps"]), float(run["flights"])) for run in runs]
     steps, flights = np.mean(counted, axis=0)
     return float(steps), float(flights)
@@ -126,7 +130,9 @@ def costs(method: Callable[..., tuple[float, float]], count: int, rounds: int) -
 
 
 def alone(laws: list[tt.Friction], rounds: int) -> list[tuple[float, float, float]]:
-    """Processor time, s, steps and time of turning over, s, of a launch without flights: laws take turns."""
+    """Processor time, s, steps and time of turning over, s, of a launch without flights: laws take
+    turns.
+    """
     problem = report_problem().replace({"contact.liftoff": "ignore", "launch.spin": SPIN})
     least, told = [math.inf] * len(laws), [(math.nan, math.nan)] * len(laws)
     for turn in range(rounds + 1):
@@ -140,7 +146,9 @@ def alone(laws: list[tt.Friction], rounds: int) -> list[tuple[float, float, floa
 
 
 def as_late(turning: float) -> tt.Friction | None:
-    """Viscous friction under which the top turns over as late, s; None where it does not, or none is."""
+    """Viscous friction under which the top turns over as late, s; None where it does not, or none
+    is.
+    """
     if not math.isfinite(turning):
         return None
 
@@ -164,7 +172,9 @@ def over_radii(rounds: int) -> list[dict[str, Any]]:
         viscous, *patches = laws(radius).values()
         beside = [as_late(turning) for _, _, turning in alone(patches, 0)]
         for patch, late in zip(patches, beside, strict=True):
-            (used, steps, turning), (usual, fewer, _), slow = alone([patch, viscous, late or viscous], rounds)
+            (used, steps, turning), (usual, fewer, _), slow = alone(
+                [patch, viscous, late or viscous], rounds
+            )
             row: dict[str, Any] = {"radius": radius, "pressure": getattr(patch, "pressure", "")}
             row |= {"a launch": used / usual, "steps": steps / fewer}
             row |= {
@@ -195,7 +205,10 @@ def ratios(cost: Cost, viscous: Cost) -> dict[str, float]:
 def measure(quick: bool) -> dict[str, Any]:
     """All ratios, of launches one by one and in a sweep."""
     found: dict[str, Any] = {}
-    plans = {"one by one": (one_by_one, 6 if quick else 12), "a sweep": (swept, 512 if quick else 2048)}
+    plans = {
+        "one by one": (one_by_one, 6 if quick else 12),
+        "a sweep": (swept, 512 if quick else 2048),
+    }
     for way, (method, count) in plans.items():
         known = costs(method, count, 2 if quick else 5)
         found[way] = {
@@ -225,6 +238,6 @@ def tables(found: dict[str, Any]) -> str:
         for row in found["over radii"]
     ]
     return (
-        f"{markdown(['over viscous friction', *names], rows)}\n\nWanted of a launch at most: {targets}.\n\n"
-        f"{markdown(['one by one without flights, by patch', *told], radii)}"
+        f"{markdown(['over viscous friction', *names], rows)}\n\nWanted of a launch at most:"
+        f" {targets}.\n\n{markdown(['one by one without flights, by patch', *told], radii)}"
     )

@@ -1,12 +1,13 @@
 """The page's engine in Node beside Python's, by the same method: single runs, and a map.
 
-Single runs are the report's at 155 rad/s, and one at 175 rad/s with its flights, each at the loosest
-tolerance at which the axis ends within 1e-8 of where Taylor's method puts it. Python's are compiled by numba,
-at the same tolerance, without samples. Of runs repeated in one process the least time counts: the first ones
-are the compilers'; how long the very first takes is told, too. The map is of 64 spins by 32 coefficients of
-friction, for 20 s each, shared by two workers, at the loosest tolerance at which n_z, which tells how a top
-stands, ends within 1e-5 in a launch of every cell of a coarser map. What is wanted of both is wanted of a
-machine as fast as usual, and is told as that is here (`surroundings.slowness`).
+Single runs are the report's at 155 rad/s, and one at 175 rad/s with its flights, each at the
+loosest tolerance at which the axis ends within 1e-8 of where Taylor's method puts it. Python's are
+compiled by numba, at the same tolerance, without samples. Of runs repeated in one process the least
+time counts: the first ones are the compilers'; how long the very first takes is told, too. The map
+is of 64 spins by 32 coefficients of friction, for 20 s each, shared by two workers, at the loosest
+tolerance at which n_z, which tells how a top stands, ends within 1e-5 in a launch of every cell of
+a coarser map. What is wanted of both is wanted of a machine as fast as usual, and is told as that
+is here (`surroundings.slowness`).
 """
 
 import json
@@ -23,7 +24,23 @@ from tippetop.engine import HERE
 from tippetop.presets import report_problem
 
 DURATION = 20.0
-TOLERANCES = (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10, 3e-11, 1e-11, 3e-12, 1e-12)
+TOLERANCES = (
+    1e-5,
+    3e-6,
+    1e-6,
+    3e-7,
+    1e-7,
+    3e-8,
+    1e-8,
+    3e-9,
+    1e-9,
+    3e-10,
+    1e-10,
+    3e-11,
+    1e-11,
+    3e-12,
+    1e-12,
+)
 SINGLE = {"155 rad/s": (155.0, "ignore"), "175 rad/s, with flights": (175.0, "fly")}
 SINGLE_ERROR, MAP_ERROR = 1e-8, 1e-5
 """How far from exact the axis of a run, and n_z in a map, may end."""
@@ -60,15 +77,20 @@ def in_node(problems: list[tt.Problem], tolerance: float, rounds: int = 1) -> li
         "rounds": rounds,
     }
     command = [node, "--input-type=module", "--eval", FOLLOW, (HERE / "index.js").as_uri()]
-    ran = subprocess.run(command, input=json.dumps(asked), capture_output=True, text=True, check=True)
+    ran = subprocess.run(
+        command, input=json.dumps(asked), capture_output=True, text=True, check=True
+    )
     found: list[dict[str, Any]] = json.loads(ran.stdout)
     return found
 
 
 def resolving(problems: list[tt.Problem], error: float, first: int = 0) -> tuple[float, float]:
-    """The loosest tolerance at which all axes, from a component on, end near enough, and how near."""
+    """The loosest tolerance at which all axes, from a component on, end near enough, and how
+    near.
+    """
     exact = [
-        tt.simulate(problem, DURATION, samples=2, integrator="taylor").axis.values[-1] for problem in problems
+        tt.simulate(problem, DURATION, samples=2, integrator="taylor").axis.values[-1]
+        for problem in problems
     ]
     for tolerance in TOLERANCES:
         found = [one["axis"] for one in in_node(problems, tolerance)]

@@ -1,8 +1,9 @@
 """Times of a run, of the bare integration inside it, of an import and of the command line.
 
-The run is the report's top at 155 rad/s over 20 s with every variable of the result at 2001 samples. Beside
-it stands the bare integration of the eight numbers that drive the motion, by the same method at the same
-tolerance. The two are timed in turns, so that whatever else the machine does touches both.
+The run is the report's top at 155 rad/s over 20 s with every variable of the result at 2001
+samples. Beside it stands the bare integration of the eight numbers that drive the motion, by the
+same method at the same tolerance. The two are timed in turns, so that whatever else the machine
+does touches both.
 """
 
 import cProfile
@@ -25,7 +26,8 @@ TARGET_RATIO = 2.2
 """A run may take this many times the bare integration."""
 
 TARGET_IMPORTS = 1.8
-"""How many times as long as `IMPORTS` `tippetop simulate` may take, which cannot do without them."""
+"""How many times as long as `IMPORTS` `tippetop simulate` may take, which cannot do without them.
+"""
 
 
 def cross(a: Sequence[Any], b: Sequence[Any]) -> tuple[Any, Any, Any]:
@@ -34,10 +36,12 @@ def cross(a: Sequence[Any], b: Sequence[Any]) -> tuple[Any, Any, Any]:
 
 
 def equations() -> list[tuple[Any, Any]]:
-    """Equations of motion of the sphere on viscous friction, in units of its mass, its radius and gravity.
+    """Equations of motion of the sphere on viscous friction, in units of its mass, its radius and
+    gravity.
 
-    They are stated from the laws of mechanics, not by the package: what makes its own equations cheaper is
-    its merit, and does not move what it is measured by. The parameters are I1, I3, eccentricity and friction.
+    They are stated from the laws of mechanics, not by the package: what makes its own equations
+    cheaper is its merit, and does not move what it is measured by. The parameters are I1, I3,
+    eccentricity and friction.
     """
     n, momentum, (ux, uy) = (
         hy.make_vars("nx", "ny", "nz"),
@@ -95,7 +99,9 @@ def in_turns(actions: dict[str, Callable[[], Any]], rounds: int) -> dict[str, li
     return times
 
 
-def hot_spots(action: Callable[[], Any], repeats: int = 20, count: int = 15) -> list[dict[str, Any]]:
+def hot_spots(
+    action: Callable[[], Any], repeats: int = 20, count: int = 15
+) -> list[dict[str, Any]]:
     """Where the time of an action goes: the functions with most time of their own."""
     profile = cProfile.Profile()
     profile.enable()
@@ -166,19 +172,28 @@ def tables(found: dict[str, Any]) -> str:
     """The figures for people, in Markdown."""
     verdict = "within" if found["ratio"] <= TARGET_RATIO else "over"
     rows = [
-        [name, f"{value:.2f}", f"{found['best_ms'][name]:.2f}"] for name, value in found["warm_ms"].items()
+        [name, f"{value:.2f}", f"{found['best_ms'][name]:.2f}"]
+        for name, value in found["warm_ms"].items()
     ]
     rows.append(["ratio", f"{found['ratio']:.2f}", f"{verdict} {TARGET_RATIO:g}"])
     processes = found["process_ms"]
     rows += [[f"new process: {name}", f"{value:.0f}", ""] for name, value in processes.items()]
     imports = processes["tippetop simulate"] / processes[IMPORTS]
-    rows.append(["tippetop simulate over these imports", f"{imports:.2f}", f"at most {TARGET_IMPORTS:g}"])
-    heads = [f"{SPIN:g} rad/s, {DURATION:g} s, {SAMPLES} samples, all variables", "median, ms", "best, ms"]
+    rows.append(
+        ["tippetop simulate over these imports", f"{imports:.2f}", f"at most {TARGET_IMPORTS:g}"]
+    )
+    heads = [
+        f"{SPIN:g} rad/s, {DURATION:g} s, {SAMPLES} samples, all variables",
+        "median, ms",
+        "best, ms",
+    ]
     if "profile" not in found:
         return markdown(heads, rows)
     spots = [
         [spot["function"], f"{spot['calls']:g}", f"{spot['own_ms']:.2f}", f"{spot['total_ms']:.2f}"]
         for spot in found["profile"]
     ]
-    where = markdown(["under a profiler, which adds to every call", "calls", "own, ms", "total, ms"], spots)
+    where = markdown(
+        ["under a profiler, which adds to every call", "calls", "own, ms", "total, ms"], spots
+    )
     return f"{markdown(heads, rows)}\n\n{where}"

@@ -1,9 +1,10 @@
 """Launches per second of the sweep's engine and of others, at the same measured error, in one run.
 
-Every contender follows launches for 20 s on all processors at once, one process each: the report's top at
-spins where it turns over and stays on the table. The error of each is that of its final tilts against runs
-exact to rounding, the largest over the launches; a contender is timed at the loosest of its tolerances whose
-error is below the target. Processor time counts beside the clock, as other programs may be running.
+Every contender follows launches for 20 s on all processors at once, one process each: the report's
+top at spins where it turns over and stays on the table. The error of each is that of its final
+tilts against runs exact to rounding, the largest over the launches; a contender is timed at the
+loosest of its tolerances whose error is below the target. Processor time counts beside the clock,
+as other programs may be running.
 """
 
 import json
@@ -72,7 +73,9 @@ class Figure:
 
 
 def work(name: str, spins: Array, tolerance: float) -> None:
-    """Follow launches in this process: a few to warm up, and, when told to, all of them by the clock."""
+    """Follow launches in this process: a few to warm up, and, when told to, all of them by the
+    clock.
+    """
     method = CONTENDERS[name].method
     # A compiler that knows the number of launches, such as jax, needs that many to warm up.
     method(spins if "vmap" in name else spins[:WARM], tolerance)
@@ -119,7 +122,9 @@ def race(name: str, spins: Array, tolerance: float, truth: Array) -> Figure:
     for process in running:
         said, _ = process.communicate()
         found.append(json.loads(said))
-    errors = [np.abs(np.array(one["found"]) - truth[k::PROCESSORS]).max() for k, one in enumerate(found)]
+    errors = [
+        np.abs(np.array(one["found"]) - truth[k::PROCESSORS]).max() for k, one in enumerate(found)
+    ]
     return Figure(
         name,
         tolerance,
@@ -179,7 +184,11 @@ def measure(quick: bool, say: Callable[[str], None]) -> dict[str, Any]:
         if figure is None or figure.error > TARGET:
             raise SystemExit(f"{name} does not reach an error of {TARGET:g} rad")
         figures.append(figure)
-    return {"target_error": TARGET, "contenders": [asdict(figure) for figure in figures], "absent": absent}
+    return {
+        "target_error": TARGET,
+        "contenders": [asdict(figure) for figure in figures],
+        "absent": absent,
+    }
 
 
 def tables(found: dict[str, Any]) -> str:

@@ -1,7 +1,8 @@
 """What a sweep costs: by grid size, by workers, by flights, and in memory.
 
-Spin from 0 to 250 rad/s and friction from 0.05 to 1 s/m, 20 s each, by the command line, as the maps in the
-documentation. Memory is the largest of all processes of the sweep together, looked at twice a second.
+Spin from 0 to 250 rad/s and friction from 0.05 to 1 s/m, 20 s each, by the command line, as the
+maps in the documentation. Memory is the largest of all processes of the sweep together, looked at
+twice a second.
 """
 
 import json
@@ -69,15 +70,17 @@ def sweep_by_command(liftoff: str, side: int, workers: int) -> Cost:
             time.sleep(0.5)
         clock, after = time.perf_counter() - began, os.times()
         said: dict[str, Any] = json.loads(process.stdout.read() if process.stdout else "{}")
-    used = after.children_user - before.children_user + after.children_system - before.children_system
+    used = (
+        after.children_user - before.children_user + after.children_system - before.children_system
+    )
     return Cost(liftoff, side, workers, clock, used, peak / 2**20, said["flights"])
 
 
 def cost_of_a_flight(cells: int) -> tuple[float, float]:
     """Processor time that a flight adds to a launch, ms, and flights a launch made.
 
-    The same launches are followed over the time in which none lifts off, which gives the cost of a step; what
-    is left of the whole run is the cost of the flights.
+    The same launches are followed over the time in which none lifts off, which gives the cost of a
+    step; what is left of the whole run is the cost of the flights.
     """
     problem = report_problem(spin=200.0)
     axis = Axis.of("launch.spin", {"from": 190.0, "to": 210.0, "count": cells})
@@ -94,13 +97,18 @@ def cost_of_a_flight(cells: int) -> tuple[float, float]:
         raise SystemExit("some of the calm launches fly: the cost of a step cannot be told")
     step = times[0] / found[0]["steps"].sum()
     flights = found[1]["flights"].sum()
-    return 1e3 * float((times[1] - step * found[1]["steps"].sum()) / flights), float(flights) / cells
+    return (
+        1e3 * float((times[1] - step * found[1]["steps"].sum()) / flights),
+        float(flights) / cells,
+    )
 
 
 def measure(quick: bool, whole: bool, say: Callable[[str], None]) -> dict[str, Any]:
     """All costs; with those of the whole maps, a million launches each, if asked for."""
     flight, number = cost_of_a_flight(512 if quick else 2048)
-    plans = [(side, workers) for side in (QUICK_SIDES if quick else SIDES) for workers in {1, PROCESSORS}]
+    plans = [
+        (side, workers) for side in (QUICK_SIDES if quick else SIDES) for workers in {1, PROCESSORS}
+    ]
     plans += [(WHOLE, PROCESSORS)] if whole else []
     costs = []
     for liftoff in ("stop", "fly"):
@@ -136,7 +144,7 @@ def tables(found: dict[str, Any]) -> str:
         for cost in (Cost(**one) for one in found["costs"])
     ]
     return (
-        f"{markdown(heads, rows)}\n\n"
-        f"A flight adds {1e3 * found['flight_ms']:.3g} microseconds of a processor to a launch (measured on "
-        f"launches of {found['flights_a_launch']:.3g} flights), a cell {found['bytes_a_cell']:.3g} bytes."
+        f"{markdown(heads, rows)}\n\nA flight adds {1e3 * found['flight_ms']:.3g} microseconds of a"
+        f" processor to a launch (measured on launches of {found['flights_a_launch']:.3g} flights),"
+        f" a cell {found['bytes_a_cell']:.3g} bytes."
     )

@@ -108,7 +108,9 @@ def _batch_integrator(kind: Any, tolerance: float) -> Any:
 
 
 def bare_batch(spins: Array, tolerance: float) -> Array:
-    """The batch integrator of heyoka with the event that the table lets go, and its final state alone."""
+    """The batch integrator of heyoka with the event that the table lets go, and its final state
+    alone.
+    """
     given = starts(spins)
     run, lanes = _batch_integrator(given.kind, tolerance), hy.recommended_simd_size()
     found = np.empty_like(given.states)
@@ -166,7 +168,9 @@ def scipy_published(spins: Array, tolerance: float) -> Array:
 
     for spin in spins:
         start = np.array([problem().launch.tilt, 0.0, 0.0, 0.0, spin, 0.0, 0.0])
-        run = solve_ivp(rates, (0.0, DURATION), start, method="DOP853", rtol=tolerance, atol=tolerance)
+        run = solve_ivp(
+            rates, (0.0, DURATION), start, method="DOP853", rtol=tolerance, atol=tolerance
+        )
         found.append(_wrapped(run.y[0, -1]))
     return np.array(found)
 
@@ -196,11 +200,14 @@ for spin = spins
   printf("%%.17g\\n", y(end, 1));
 end
 """
-"""The published equations in Octave's language, without which its ode45 has nothing to integrate."""
+"""The published equations in Octave's language, without which its ode45 has nothing to integrate.
+"""
 
 
 def octave(spins: Array, tolerance: float) -> Array:
-    """Octave's ode45, the method of the report's listing, without its jump of theta at the poles."""
+    """Octave's ode45, the method of the report's listing, without its jump of theta at the
+    poles.
+    """
     code = _OCTAVE % (tolerance, tolerance, " ".join(f"{spin:.17g}" for spin in spins))
     command = ["octave", "--no-gui", "--quiet", "--eval", code]
     said = subprocess.run(command, capture_output=True, text=True, check=True)

@@ -16,9 +16,13 @@ COMMAND_LINE = "-m", "tippetop"
 """Given to `python`, this is `tippetop`."""
 
 IMPORTS, USUAL = "import heyoka, xarray", 0.5
-"""By how long this takes in a new process, machines are compared; and that, s, for which times are wanted."""
+"""By how long this takes in a new process, machines are compared; and that, s, for which times are
+wanted.
+"""
 
-PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+PROCESSORS = (
+    len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+)
 """How many processors may be used."""
 
 _LIBRARIES = ("heyoka", "numpy", "scipy", "diffrax", "jax", "zarr")

@@ -7,10 +7,14 @@ from pathlib import Path
 
 from jupyter_client.manager import KernelManager
 
-os.environ["MATPLOTLIBRC"] = str(Path(__file__).parent / "matplotlibrc")  # read by the notebooks' kernels
+os.environ["MATPLOTLIBRC"] = str(
+    Path(__file__).parent / "matplotlibrc"
+)  # read by the notebooks' kernels
 sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 if encryption := KernelManager.class_traits().get("transport_encryption"):
-    encryption.default_value = "auto"  # kernels warn of channels that anyone on the machine can read
+    encryption.default_value = (
+        "auto"  # kernels warn of channels that anyone on the machine can read
+    )
 
 project = "tippetop"
 author = "The tippetop authors"
@@ -50,7 +54,14 @@ html_sidebars = {page: [] for page in ("index", "start", "gallery", "validation"
 html_math_renderer = "mathml"
 math_numfig = False
 
-myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence", "fieldlist", "attrs_inline"]
+myst_enable_extensions = [
+    "dollarmath",
+    "amsmath",
+    "deflist",
+    "colon_fence",
+    "fieldlist",
+    "attrs_inline",
+]
 myst_heading_anchors = 3
 nb_execution_mode = "auto"
 nb_execution_raise_on_error = True

@@ -6,7 +6,9 @@ from urllib.parse import urlparse
 
 import pytest
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+CHROMIUM = (
+    shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+)
 ARGUMENTS = [
     "--no-sandbox",
     # The shared memory of a container is small.
@@ -42,16 +44,22 @@ class Visit:
     """A visitor's page, which minds what it asks for and what goes wrong in it."""
 
     def __init__(self, browser, **options) -> None:  # type: ignore[no-untyped-def]
-        self.context = browser.new_context(**{"viewport": {"width": 1000, "height": 700}, **options})
+        self.context = browser.new_context(
+            **{"viewport": {"width": 1000, "height": 700}, **options}
+        )
         self.page = self.context.new_page()
         self.page.set_default_timeout(60_000)
         self.trouble: list[str] = []
         self.requests: list[str] = []
-        self.page.on("console", lambda said: said.type == "error" and self.trouble.append(said.text))
+        self.page.on(
+            "console", lambda said: said.type == "error" and self.trouble.append(said.text)
+        )
         self.page.on("pageerror", lambda error: self.trouble.append(str(error)))
         self.context.on("request", lambda request: self.requests.append(request.url))
 
-    def open(self, address: str, ready: str = "globalThis.tippetopLab?.player?.frames > 0") -> "Visit":
+    def open(
+        self, address: str, ready: str = "globalThis.tippetopLab?.player?.frames > 0"
+    ) -> "Visit":
         self.page.goto(address)
         self.page.wait_for_function(f"() => {ready}")
         return self
@@ -74,7 +82,9 @@ class Visit:
         unexpected = [said for said in self.trouble if not any(part in said for part in expected)]
         assert not unexpected
         away = {
-            urlparse(url).hostname for url in self.requests if not url.startswith(("data:", "blob:", "file:"))
+            urlparse(url).hostname
+            for url in self.requests
+            if not url.startswith(("data:", "blob:", "file:"))
         }
         assert away <= {"127.0.0.1"}, "nothing is asked of any other machine"
 

@@ -19,7 +19,9 @@ anywhere = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("default", anywhere)
 settings.register_profile("ci", anywhere, derandomize=True)
 settings.register_profile("thorough", anywhere, max_examples=2000)
-settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci" if "CI" in os.environ else "default"))
+settings.load_profile(
+    os.environ.get("HYPOTHESIS_PROFILE", "ci" if "CI" in os.environ else "default")
+)
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -27,11 +29,15 @@ def _player(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Where what runs in browsers is not built, pages are written with a stand-in for it."""
     if not (bundle.BUILT / "player.js").exists():
         bundle.BUILT = tmp_path_factory.mktemp("built")
-        (bundle.BUILT / "player.js").write_text("export const createPlayer = () => {};", encoding="utf-8")
+        (bundle.BUILT / "player.js").write_text(
+            "export const createPlayer = () => {};", encoding="utf-8"
+        )
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark what needs the browser, so that it can be run by itself: it is the slowest part of the tests."""
+    """Mark what needs the browser, so that it can be run by itself: it is the slowest part of the
+    tests.
+    """
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.browser)

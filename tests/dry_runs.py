@@ -1,4 +1,6 @@
-"""Runs with set-valued friction in natural units (mass, size and gravity 1), as the modes of contact go."""
+"""Runs with set-valued friction in natural units (mass, size and gravity 1), as the modes of
+contact go.
+"""
 
 import math
 

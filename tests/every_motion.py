@@ -1,4 +1,6 @@
-"""Every motion of every mode, for every surface and friction law there is, and states to look at it in."""
+"""Every motion of every mode, for every surface and friction law there is, and states to look at it
+in.
+"""
 
 from typing import NamedTuple
 
@@ -54,7 +56,13 @@ class Case(NamedTuple):
 
 def sliding_motions(top):
     """Every motion of a top in which it slips."""
-    kind, numbers, surface, law, rolls = top.kind, top.numbers, top.surface, top.friction, top.resists_rolling
+    kind, numbers, surface, law, rolls = (
+        top.kind,
+        top.numbers,
+        top.surface,
+        top.friction,
+        top.resists_rolling,
+    )
     yield "sliding", sliding_motion(kind, True), numbers
     endings = [Vanishing(slip=False)] if rolls else []
     if rolls:
@@ -83,7 +91,11 @@ def sticking_motions(top):
     for form in (Sticking, StickingWithoutRolling)[: 1 + rolls]:
         yield form.name, form(top, None).motion, numbers
     if rolls:
-        yield "sticking closing", closing_motion(kind, Vanishing(False, True), True), (*numbers, 1e9, 1e-3)
+        yield (
+            "sticking closing",
+            closing_motion(kind, Vanishing(False, True), True),
+            (*numbers, 1e9, 1e-3),
+        )
 
 
 CASES = [

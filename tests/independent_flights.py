@@ -1,8 +1,9 @@
 """A second simulation of a hopping tippe top that shares no line with the package.
 
-Sliding follows the published equations in Euler angles, flight the Euler equations of a free symmetric top,
-both by the classical Runge-Kutta method in small steps; lift-off and touchdown are bracketed by a step and
-found by bisection; the impact is integrated in the normal impulse with an inertia matrix of skew matrices.
+Sliding follows the published equations in Euler angles, flight the Euler equations of a free
+symmetric top, both by the classical Runge-Kutta method in small steps; lift-off and touchdown are
+bracketed by a step and found by bisection; the impact is integrated in the normal impulse with an
+inertia matrix of skew matrices.
 """
 
 from dataclasses import dataclass
@@ -83,7 +84,9 @@ class Toy:
         return -dph * sin(th) * first + dth * np.array([0.0, 1.0, 0.0]) + w * axis, axis
 
     def arm(self, y):
-        return self.alpha * self.R * np.array([sin(y[0]), 0.0, cos(y[0])]) - self.R * np.array([0, 0, 1.0])
+        return self.alpha * self.R * np.array([sin(y[0]), 0.0, cos(y[0])]) - self.R * np.array(
+            [0, 0, 1.0]
+        )
 
     def centre_velocity(self, y):
         """Horizontal velocity of the centre of mass of a sliding toy along X and Y."""
@@ -91,7 +94,9 @@ class Toy:
         return np.array([y[5], y[6]]) - np.cross(omega, self.arm(y))[:2]
 
     def hit(self, y, u, dz):
-        """Impact with no restitution: new (theta', phi', omega3), new u and z' = 0 at the contact."""
+        """Impact with no restitution: new (theta', phi', omega3), new u and z' = 0 at the
+        contact.
+        """
         omega, axis = self.spin(y)
         arm = self.arm(y)
         inertia = self.I1 * np.eye(3) + (self.I3 - self.I1) * np.outer(axis, axis)
@@ -109,7 +114,13 @@ class Toy:
         stopped.terminal, stopped.direction = True, 1
         most = 10 * self.m * abs(point[2]) + 1e-300
         path = solve_ivp(
-            rates, (0, most), [*point, 0, 0, 0], events=stopped, rtol=1e-12, atol=1e-16, max_step=most / 20
+            rates,
+            (0, most),
+            [*point, 0, 0, 0],
+            events=stopped,
+            rtol=1e-12,
+            atol=1e-16,
+            max_step=most / 20,
         )
         impulse = path.y_events[0][0][3:]
         velocity = np.array([*u, dz]) + impulse / self.m
@@ -138,7 +149,8 @@ def bisect(rates, y, h, value):
 def slide_and_fly(toy, y, duration, h):
     """Follow y = (theta, theta', phi, phi', omega3, v_x, v_y) from sliding; no restitution.
 
-    Returns the final (theta, theta', phi, phi', omega3), the times of lift-off and those of touchdown.
+    Returns the final (theta, theta', phi, phi', omega3), the times of lift-off and those of
+    touchdown.
     """
     t, lifts, lands = 0.0, [], []
     airborne, u, phi_then = False, None, 0.0
@@ -161,7 +173,9 @@ def slide_and_fly(toy, y, duration, h):
             lands.append(t)
             turn = y[2] - phi_then
             # u is fixed in space in flight; resolve it in the frame that has turned meanwhile.
-            here = np.array([cos(turn) * u[0] + sin(turn) * u[1], -sin(turn) * u[0] + cos(turn) * u[1]])
+            here = np.array(
+                [cos(turn) * u[0] + sin(turn) * u[1], -sin(turn) * u[0] + cos(turn) * u[1]]
+            )
             (dth, dph, w), u = toy.hit(y, here, y[6])
             y = np.array([y[0], dth, y[2], dph, w, 0.0, 0.0])
             omega, _ = toy.spin(y)
@@ -170,7 +184,10 @@ def slide_and_fly(toy, y, duration, h):
         else:
             lifts.append(t)
             u, phi_then = toy.centre_velocity(y), y[2]
-            height, sinking = toy.R * (1 - toy.alpha * cos(y[0])), toy.R * toy.alpha * sin(y[0]) * y[1]
+            height, sinking = (
+                toy.R * (1 - toy.alpha * cos(y[0])),
+                toy.R * toy.alpha * sin(y[0]) * y[1],
+            )
             y = np.array([*y[:5], height, sinking])
             airborne = True
     return y[:5], lifts, lands

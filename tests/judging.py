@@ -1,4 +1,6 @@
-"""What every claim and every figure of the page must do, given the datasets that they are made from."""
+"""What every claim and every figure of the page must do, given the datasets that they are made
+from.
+"""
 
 import xarray as xr
 
@@ -17,7 +19,11 @@ def assert_judged(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) 
 
 
 def assert_judged_otherwise(
-    computed: dict[str, xr.Dataset], name: str, experiment: str, change: dict[str, float], verdict: Verdict
+    computed: dict[str, xr.Dataset],
+    name: str,
+    experiment: str,
+    change: dict[str, float],
+    verdict: Verdict,
 ) -> None:
     """See that a claim is judged so where some variables of an experiment have other values."""
     data = computed[experiment]

@@ -1,4 +1,6 @@
-"""Random launches over every law, surface and ending; and what Python and JavaScript make of them."""
+"""Random launches over every law, surface and ending; and what Python and JavaScript make of
+them.
+"""
 
 import json
 import math
@@ -16,8 +18,9 @@ from tippetop.engine import HERE
 
 SAMPLES = 41
 TOLERANCE = 3e-14
-"""Of both. Launches that stick and slip again and again multiply errors up to 1e5 times, in Python as in the
-page: with 1e-12 a step either may be off by more than the 1e-7 by which they are judged."""
+"""Of both. Launches that stick and slip again and again multiply errors up to 1e5 times, in Python
+as in the page: with 1e-12 a step either may be off by more than the 1e-7 by which they are judged.
+"""
 
 MOST_OFF = 1e-7
 """How much numbers may differ, beside the largest of their unit in the run."""
@@ -85,7 +88,12 @@ def launch_of(seed: int) -> dict[str, Any]:
     if liftoff == "fly" and random.random() < 0.3:
         launch["gap"] = size * random.uniform(0.1, 1.0)
     fields: dict[str, Any] = {
-        "body": {"mass": mass, "shape": shape, "I1": transverse, "I3": random.uniform(0.4, 1.7) * transverse},
+        "body": {
+            "mass": mass,
+            "shape": shape,
+            "I1": transverse,
+            "I3": random.uniform(0.4, 1.7) * transverse,
+        },
         "friction": any_of(random, laws_of(random, size)),
         "launch": launch,
         "contact": {"liftoff": liftoff, "restitution": float(random.choice([0.0, 0.0, 0.5]))},
@@ -125,7 +133,9 @@ def compared(found: dict[str, Any], run: Any, beside: Any = None) -> list[str]:
     kinds = [str(kind) for kind in run["event_kind"].values]
     others = [event["kind"] for event in found["events"]]
     if others != kinds:
-        first = next((i for i, (a, b) in enumerate(zip(others, kinds, strict=False)) if a != b), None)
+        first = next(
+            (i for i, (a, b) in enumerate(zip(others, kinds, strict=False)) if a != b), None
+        )
         return [*wrong, f"events {len(others)} instead of {len(kinds)}, from number {first} on"]
     modes = [run["mode"].attrs["flag_meanings"].split()[number] for number in run["mode"].values]
     # Where the runs end before their time, one may end a rounding before the last of the samples.
@@ -153,7 +163,9 @@ def compared(found: dict[str, Any], run: Any, beside: Any = None) -> list[str]:
 
 
 def sizes_of(run: Any) -> dict[str, float]:
-    """The largest number of each unit in a run, beside which others are judged; and 1 rad, 1 s and 1."""
+    """The largest number of each unit in a run, beside which others are judged; and 1 rad, 1 s and
+    1.
+    """
     sizes = dict[str, float]()
     for name in SAMPLED | METRICS | LISTED:
         if run[name].dtype.kind == "f":
@@ -174,7 +186,9 @@ def largest(numbers: Any) -> float:
 
 
 def numbers_of(found: dict[str, Any]) -> dict[str, list[Any]]:
-    """The numbers of what JavaScript made of a launch by their names in a run; steps are its own matter."""
+    """The numbers of what JavaScript made of a launch by their names in a run; steps are its own
+    matter.
+    """
     numbers = {name: found["track"][name] for name in SAMPLED}
     numbers |= {name: [found["metrics"][name]] for name in METRICS if name != "steps"}
     for name in LISTED:
@@ -199,7 +213,11 @@ def in_python(fields: dict[str, Any], duration: float) -> Any:
     """The same launch in Python; None if it is refused."""
     try:
         return tt.simulate(
-            tt.Problem(**fields), duration, samples=SAMPLES, integrator="compiled", tolerance=TOLERANCE
+            tt.Problem(**fields),
+            duration,
+            samples=SAMPLES,
+            integrator="compiled",
+            tolerance=TOLERANCE,
         )
     except tt.InvalidInput as refusal:
         return str(refusal)
@@ -207,4 +225,6 @@ def in_python(fields: dict[str, Any], duration: float) -> Any:
 
 def nudged(fields: dict[str, Any]) -> dict[str, Any]:
     """The same launch but for a rounding of its tilt."""
-    return fields | {"launch": fields["launch"] | {"tilt": math.nextafter(fields["launch"]["tilt"], 4.0)}}
+    return fields | {
+        "launch": fields["launch"] | {"tilt": math.nextafter(fields["launch"]["tilt"], 4.0)}
+    }

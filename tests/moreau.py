@@ -1,12 +1,14 @@
-"""Moreau's time-stepping for a body of revolution on a plane with dry friction: an independent reference.
+"""Moreau's time-stepping for a body of revolution on a plane with dry friction: an independent
+reference.
 
-It shares no equation with the package: the orientation is a rotation, velocities are those of the centre of
-mass and of the body-fixed frame, and each step of size h solves, at its midpoint (Moreau 1988),
+It shares no equation with the package: the orientation is a rotation, velocities are those of the
+centre of mass and of the body-fixed frame, and each step of size h solves, at its midpoint (Moreau
+1988),
 
     M (u+ - u) = h f + W L,        L_N >= 0, g_N'+ >= 0, L_N g_N'+ = 0,        L_F in mu L_N B,
 
-by projections. B is the unit disc of forces, or the ellipsoid of forces and drilling torques over rho: first
-order.
+by projections. B is the unit disc of forces, or the ellipsoid of forces and drilling torques over
+rho: first order.
 """
 
 import numpy as np
@@ -104,16 +106,20 @@ def launched(body, mu, rho, tilt, spin, *, rests=False):
 
 
 class OnSpheres(Moreau):
-    """The same on several spheres, of (radius, zeta) each, with a resistance to rolling of this arm.
+    """The same on several spheres, of (radius, zeta) each, with a resistance to rolling of this
+    arm.
 
-    Each has a disc of forces of radius mu L_N, and couples up to arm L_N along the horizontal direction
-    of the axis: those across it would leave open how several contacts share the weight, and do no work.
+    Each has a disc of forces of radius mu L_N, and couples up to arm L_N along the horizontal
+    direction of the axis: those across it would leave open how several contacts share the weight,
+    and do no work.
     """
 
     def __init__(self, body, spheres, mu, arm, rotation, turning, velocity):
         mass, I1, I3, gravity = body
         height = max(radius - zeta * rotation[2, 2] for radius, zeta in spheres)
-        super().__init__((mass, I1, I3, 0.0, 0.0, gravity), mu, 0.0, rotation, turning, height * UP, velocity)
+        super().__init__(
+            (mass, I1, I3, 0.0, 0.0, gravity), mu, 0.0, rotation, turning, height * UP, velocity
+        )
         self.spheres, self.arm = spheres, arm
         self.impulse = np.zeros(4 * len(spheres))
 
@@ -121,7 +127,9 @@ class OnSpheres(Moreau):
         """Change of the velocities in a step, at the midpoint's configuration."""
         R, inverse = self.rotation.as_matrix(), np.linalg.inv(self.inertia)
         free_velocity = self.velocity - h * self.gravity * UP
-        free_turning = self.turning - h * inverse @ np.cross(self.turning, self.inertia @ self.turning)
+        free_turning = self.turning - h * inverse @ np.cross(
+            self.turning, self.inertia @ self.turning
+        )
         along = np.array([R[0, 2], R[1, 2], 0.0]) / np.hypot(R[0, 2], R[1, 2])
         linear, angular, shut = [], [], []
         for radius, zeta in self.spheres:
@@ -139,14 +147,19 @@ class OnSpheres(Moreau):
         self.impulse = impulse
 
     def shared(self, G, start, shut):
-        """Impulses by Gauss-Seidel between normals, forces and couples of all contacts that are shut."""
+        """Impulses by Gauss-Seidel between normals, forces and couples of all contacts that are
+        shut.
+        """
         impulse = self.impulse * np.repeat(shut, 4)
         for _ in range(20000):
             before = impulse.copy()
             for place in 4 * np.flatnonzero(shut):
                 n = place + 3
                 impulse[n] = max(0.0, impulse[n] - (start[n] + G[n] @ impulse) / G[n, n])
-                for part, limit in ((slice(place, place + 2), self.mu), (slice(place + 2, n), self.arm)):
+                for part, limit in (
+                    (slice(place, place + 2), self.mu),
+                    (slice(place + 2, n), self.arm),
+                ):
                     weight = 1.0 / np.linalg.eigvalsh(G[part, part])[-1]
                     trial = impulse[part] - weight * (start[part] + G[part] @ impulse)
                     size = max(np.linalg.norm(trial), 1e-300)

@@ -1,4 +1,6 @@
-"""Where Node is, which runs JavaScript: the machine's, or that of the Python package with its binaries."""
+"""Where Node is, which runs JavaScript: the machine's, or that of the Python package with its
+binaries.
+"""
 
 import shutil
 import subprocess
@@ -21,7 +23,9 @@ NODE = shutil.which("node") or _packaged()
 def printed(script: str) -> str:
     """What a module of JavaScript prints, which must run to its end and complain of nothing."""
     options = [NODE, "--input-type=module", "-"]
-    ran = subprocess.run(options, input=script, capture_output=True, text=True, timeout=60, check=False)
+    ran = subprocess.run(
+        options, input=script, capture_output=True, text=True, timeout=60, check=False
+    )
     assert ran.stderr == ""
     assert ran.returncode == 0
     return ran.stdout

@@ -23,14 +23,18 @@ def numbers(low, high):
 def spheres():
     """Eccentric spheres from a bead to a melon."""
     return st.builds(
-        lambda radius, alpha: SphereSurface(radius, alpha * radius), numbers(0.005, 0.1), numbers(0.05, 0.6)
+        lambda radius, alpha: SphereSurface(radius, alpha * radius),
+        numbers(0.005, 0.1),
+        numbers(0.05, 0.6),
     )
 
 
 def spheroids():
     """Spheroids from a lentil to an egg."""
     return st.builds(
-        lambda across, ratio: SpheroidSurface(across, ratio * across), numbers(0.005, 0.1), numbers(0.5, 2.0)
+        lambda across, ratio: SpheroidSurface(across, ratio * across),
+        numbers(0.005, 0.1),
+        numbers(0.5, 2.0),
     )
 
 
@@ -101,7 +105,8 @@ def problems(draw):
                 numbers(1e-6, 0.999),
             ),
             st.builds(
-                lambda k: {"kind": "spheroid", "across": radius, "along": k * radius}, numbers(0.1, 10.0)
+                lambda k: {"kind": "spheroid", "across": radius, "along": k * radius},
+                numbers(0.1, 10.0),
             ),
         )
     )
@@ -132,7 +137,12 @@ def problems(draw):
         if draw(st.booleans()):
             launch["velocity"] = tuple(draw(numbers(-1.0, 1.0)) for _ in range(3))
             del launch["slip"]
-    body = {"mass": mass, "shape": shape, "I1": transverse, "I3": draw(numbers(0.01, 2.0)) * transverse}
+    body = {
+        "mass": mass,
+        "shape": shape,
+        "I1": transverse,
+        "I3": draw(numbers(0.01, 2.0)) * transverse,
+    }
     try:
         return Problem(
             body=body,

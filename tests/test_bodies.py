@@ -30,7 +30,9 @@ ROUGH = tt.CoulombFriction(mu=1.0)
 def steadily_rolling(body: tt.Body, tilt: float, precession: float, spin: float) -> None:
     """See that a body whose centre is at rest goes on so."""
     launch = tt.Launch(tilt=tilt, precession=precession, spin=spin)
-    run = tt.simulate(tt.Problem(body=body, friction=ROUGH, launch=launch, gravity=9.81), 0.2, samples=41)
+    run = tt.simulate(
+        tt.Problem(body=body, friction=ROUGH, launch=launch, gravity=9.81), 0.2, samples=41
+    )
     assert run.attrs["outcome"] == "completed"
     np.testing.assert_allclose(run["theta"], tilt, rtol=0, atol=2e-9)
     np.testing.assert_allclose(run["phi_dot"], precession, rtol=2e-9)
@@ -49,7 +51,9 @@ def test_a_disk_launched_without_slip_near_flat_has_none() -> None:
     for _ in range(400):
         tilt, azimuth = rng.uniform(1.2e-3, 4e-3), rng.uniform(0.0, 6.0)
         spin, precession, tilt_rate = rng.uniform(-100.0, 100.0, 3)
-        launch = tt.Launch(tilt=tilt, spin=spin, precession=precession, tilt_rate=tilt_rate, azimuth=azimuth)
+        launch = tt.Launch(
+            tilt=tilt, spin=spin, precession=precession, tilt_rate=tilt_rate, azimuth=azimuth
+        )
         problem = tt.Problem(body=DISK, friction=ROUGH, launch=launch)
         assert not is_slipping(*along_table(problem.start()), problem.top), launch
 
@@ -65,11 +69,14 @@ def test_a_disk_that_does_not_spin_falls_flat() -> None:
     """Without friction its centre falls straight down: energy gives its tilt as a quadrature."""
     thin = DISK.model_copy(update={"shape": tt.Ring(radius=DISK_RADIUS)})
     launch = tt.Launch(tilt=1.2, spin=0.0)
-    problem = tt.Problem(body=thin, friction=tt.ViscousFriction(mu=0.0), launch=launch, gravity=9.81)
+    problem = tt.Problem(
+        body=thin, friction=tt.ViscousFriction(mu=0.0), launch=launch, gravity=9.81
+    )
     run = tt.simulate(problem, 1.0)
     assert run.attrs["outcome"] == "lying_flat"
     assert run["theta"].values[-1] == pytest.approx(1e-3, rel=1e-6)
-    # (I1 + m R^2 cos^2) theta'^2 / 2 = m g R (sin 1.2 - sin theta); theta = 1.2 - u^2 takes the root away.
+    # (I1 + m R^2 cos^2) theta'^2 / 2 = m g R (sin 1.2 - sin theta); theta = 1.2 - u^2 takes the
+    # root away.
     nodes, weights = np.polynomial.legendre.leggauss(60)
     u = np.sqrt(1.2 - 1e-3) * (nodes + 1) / 2
     tilt, inertia = 1.2 - u * u, thin.I1
@@ -81,13 +88,18 @@ def test_a_disk_that_does_not_spin_falls_flat() -> None:
 
 
 def test_what_lies_flat_is_not_launched() -> None:
-    with pytest.raises(tt.InvalidInput, match=r"launch\.tilt = 0.* a tilt at which the body does not lie"):
+    with pytest.raises(
+        tt.InvalidInput, match=r"launch\.tilt = 0.* a tilt at which the body does not lie"
+    ):
         tt.Problem(body=DISK, friction=ROUGH, launch=tt.Launch(tilt=0.0, spin=1.0))
 
 
 def test_sweeps_find_disks_lying_flat_as_runs_do() -> None:
     problem = tt.Problem(
-        body=DISK, friction=tt.ViscousFriction(mu=1.0), launch=tt.Launch(tilt=0.3, spin=0.0), gravity=9.81
+        body=DISK,
+        friction=tt.ViscousFriction(mu=1.0),
+        launch=tt.Launch(tilt=0.3, spin=0.0),
+        gravity=9.81,
     )
     found = tt.sweep(
         problem, {"launch.spin": [0.0, 40.0], "launch.tilt": [0.0, 0.3]}, duration=0.2, workers=1
@@ -112,10 +124,16 @@ LAWS = {
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("tilt", "rate"), [(0.16, -20.0), (0.14, -10.0), (math.pi - 0.2, 40.0)])
-def test_a_coin_thrown_onto_its_face_slips_until_it_lies_flat(law: str, tilt: float, rate: float) -> None:
-    """In one plane, where its tip passes the pole within a step, its edge lies flat on the way there."""
+def test_a_coin_thrown_onto_its_face_slips_until_it_lies_flat(
+    law: str, tilt: float, rate: float
+) -> None:
+    """In one plane, where its tip passes the pole within a step, its edge lies flat on the way
+    there.
+    """
     problem = tt.Problem(
-        body=tt.presets.COIN, friction=LAWS[law], launch=tt.Launch(tilt=tilt, spin=0.0, tilt_rate=rate)
+        body=tt.presets.COIN,
+        friction=LAWS[law],
+        launch=tt.Launch(tilt=tilt, spin=0.0, tilt_rate=rate),
     )
     run = tt.simulate(problem, 0.1, samples=1001)
     assert run.attrs["outcome"] == "lying_flat"
@@ -130,7 +148,10 @@ def test_coins_that_slip_until_they_lie_flat_do_the_same_in_a_sweep() -> None:
     problem = tt.Problem(body=tt.presets.COIN, friction=LAWS["coulomb"], launch=launch)
     swept = tt.sweep(problem, {"launch.tilt": [0.18, 0.2]}, duration=0.1, workers=1)
     for tilt in (0.18, 0.2):
-        run, cell = tt.simulate(problem.replace({"launch.tilt": tilt}), 0.1), swept.sel({"launch.tilt": tilt})
+        run, cell = (
+            tt.simulate(problem.replace({"launch.tilt": tilt}), 0.1),
+            swept.sel({"launch.tilt": tilt}),
+        )
         assert float(cell["final_theta"]) == pytest.approx(1e-3, rel=1e-6)
         assert float(cell["end_time"]) == pytest.approx(float(run["end_time"]), rel=1e-9)
         assert float(cell["energy_lost"]) == pytest.approx(float(run["energy_lost"]), rel=1e-9)
@@ -144,6 +165,8 @@ def test_their_shapes_go_into_text_and_come_back(body: tt.Body) -> None:
 
 
 def test_an_egg_may_be_heavier_at_one_end() -> None:
-    egg = tt.Body(mass=0.05, shape=tt.Spheroid(across=0.02, along=0.03, center=0.004), I1=9e-6, I3=5e-6)
+    egg = tt.Body(
+        mass=0.05, shape=tt.Spheroid(across=0.02, along=0.03, center=0.004), I1=9e-6, I3=5e-6
+    )
     assert egg.surface.height(1.0) == pytest.approx(0.03 - 0.004)
     assert egg.surface.height(-1.0) == pytest.approx(0.03 + 0.004)

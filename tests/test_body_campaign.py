@@ -29,13 +29,17 @@ def surface_of(random: np.random.Generator) -> tt.Shape:
         case 0:
             return tt.Sphere(radius=part[0], center=center)
         case 1:
-            return tt.Ring(radius=part[0], center=center, tube=float(random.choice([0.0, 0.3])) * part[1])
+            return tt.Ring(
+                radius=part[0], center=center, tube=float(random.choice([0.0, 0.3])) * part[1]
+            )
         case _:
             return tt.Spheroid(across=part[0], along=part[1], center=0.6 * center)
 
 
 def problem_of(random: np.random.Generator) -> tt.Problem:
-    """A body of two or three surfaces, on the table or above it; another one where that cannot be."""
+    """A body of two or three surfaces, on the table or above it; another one where that cannot
+    be.
+    """
     transverse = random.uniform(0.2, 0.6) * MASS * SIZE**2
     laws: list[dict[str, Any]] = [
         {"kind": "viscous"},
@@ -65,9 +69,10 @@ def problem_of(random: np.random.Generator) -> tt.Problem:
 
 
 CLOSE_CALLS = {24, 29, 72, 94, 186}
-"""Bodies whose slip seems to end where no tilt is left, that lift off as slip begins, that rock in rebounds
-much shorter than a step, whose slip is to end as drilling begins anew beside it, and whose last impacts are
-slow."""
+"""Bodies whose slip seems to end where no tilt is left, that lift off as slip begins, that rock in
+rebounds much shorter than a step, whose slip is to end as drilling begins anew beside it, and whose
+last impacts are slow.
+"""
 
 
 @pytest.mark.parametrize("seed", sorted({*range(COUNT), *CLOSE_CALLS}))
@@ -81,7 +86,9 @@ def test_random_bodies_keep_what_every_one_must(seed: int) -> None:
 
 
 def test_slip_that_begins_goes_no_further_than_to_the_touch_of_another_surface() -> None:
-    """A dry body without slip, leaning towards its second sphere, has it sink in where nothing looks."""
+    """A dry body without slip, leaning towards its second sphere, has it sink in where nothing
+    looks.
+    """
     body = tt.Body(
         mass=MASS,
         shape=[
@@ -92,7 +99,9 @@ def test_slip_that_begins_goes_no_further_than_to_the_touch_of_another_surface()
         I1=2.8397833513940623e-6,
         I3=1.360713432297134e-6,
     )
-    launch = tt.Launch(tilt=1.7461111547956063, spin=-16.118, tilt_rate=-6.18886, precession=10.0157)
+    launch = tt.Launch(
+        tilt=1.7461111547956063, spin=-16.118, tilt_rate=-6.18886, precession=10.0157
+    )
     problem = tt.Problem(body=body, friction=tt.CoulombFriction(mu=0.4682), launch=launch)
     run = tt.simulate(problem, 0.03, samples=301, integrator="compiled", tolerance=3e-14)
     assert "touchdown" in run["event_kind"].values
@@ -102,7 +111,9 @@ def test_slip_that_begins_goes_no_further_than_to_the_touch_of_another_surface()
 
 def test_a_ring_falls_as_deep_as_it_reaches_though_its_centre_be_below_the_table() -> None:
     """As seen from a ring's plane the centre of mass is anywhere on the axis."""
-    ring = tt.Body(mass=MASS, shape=tt.Ring(radius=0.01, center=-0.04, tube=0.002), I1=3e-6, I3=3e-6)
+    ring = tt.Body(
+        mass=MASS, shape=tt.Ring(radius=0.01, center=-0.04, tube=0.002), I1=3e-6, I3=3e-6
+    )
     launch = tt.Launch(tilt=2.4, spin=20.0, gap=0.02)
     problem = tt.Problem(body=ring, friction=tt.ViscousFriction(mu=0.3), launch=launch)
     run = tt.simulate(problem, 0.1, samples=11, integrator="compiled", tolerance=3e-14)
@@ -126,7 +137,8 @@ def test_what_touches_within_rounding_does_not_sink_in(back: float) -> None:
     level = natural_state(problem.start(), units)
     first, second = top.each if back > 0.0 else top.each[::-1]
     lever = first.surface.slope(level.axis[2]) - second.surface.slope(level.axis[2])
-    # A turn about e x z by a small angle moves the tip, and as a rate the gaps: of the second -5e-13, +3e-7.
+    # A turn about e x z by a small angle moves the tip, and as a rate the gaps: of the second
+    # -5e-13, +3e-7.
     n, height = level.axis, np.hypot(*level.axis[:2])
     tip = n[2] - 5e-13 / lever
     axis = (*(x * np.sqrt(1.0 - tip * tip) / height for x in n[:2]), tip)

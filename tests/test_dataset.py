@@ -1,4 +1,6 @@
-"""Results in files: nothing is lost, nothing is overwritten unasked, and no half-written file is left."""
+"""Results in files: nothing is lost, nothing is overwritten unasked, and no half-written file is
+left.
+"""
 
 import gc
 import math
@@ -18,7 +20,9 @@ from tippetop.presets import report_problem
 @pytest.fixture(scope="module")
 def lifted_off():
     """A run with an event in it."""
-    problem = report_problem(0.0, tilt=2.5).replace({"launch.tilt_rate": 100.0, "contact.liftoff": "stop"})
+    problem = report_problem(0.0, tilt=2.5).replace(
+        {"launch.tilt_rate": 100.0, "contact.liftoff": "stop"}
+    )
     run = tt.simulate(problem, 1.0, samples=201)
     assert run.sizes["event"] == 1
     return run
@@ -47,7 +51,10 @@ def run(request):
 
 def test_a_result_is_as_xarray_itself_would_build_it(run):
     built = xr.Dataset(
-        {name: (values.dims, values.values, values.attrs) for name, values in run.data_vars.items()},
+        {
+            name: (values.dims, values.values, values.attrs)
+            for name, values in run.data_vars.items()
+        },
         {name: (name, values.values, values.attrs) for name, values in run.coords.items()},
         run.attrs,
     )
@@ -70,7 +77,9 @@ def test_results_share_nothing_that_can_be_changed(completed):
 
 
 def same(read, written):
-    """Whether everything is the same: values to the last bit, types, dimensions, units and attributes."""
+    """Whether everything is the same: values to the last bit, types, dimensions, units and
+    attributes.
+    """
     xr.testing.assert_identical(read, written)
     assert list(read.attrs) == list(written.attrs)
     for name in written.variables:
@@ -82,7 +91,8 @@ def same(read, written):
     return True
 
 
-# --- there and back -----------------------------------------------------------------------------------------
+# --- there and back
+# -----------------------------------------------------------------------------------------
 
 
 def test_what_is_read_is_what_was_written(run, tmp_path):
@@ -127,7 +137,9 @@ def test_problem_that_is_read_runs_as_the_one_written(lifted_off, tmp_path):
     count=st.integers(0, 3),
     detail=st.text(st.characters(codec="utf-8", exclude_categories=["Cc"])),
 )
-def test_every_number_and_every_sentence_survives_a_file(completed, tmp_path, numbers, count, detail):
+def test_every_number_and_every_sentence_survives_a_file(
+    completed, tmp_path, numbers, count, detail
+):
     """Also what is infinite, not a number, negative zero or too small for full precision."""
     kinds = np.array(["lift-off", "touchdown", "impact"][:count], dtype=completed.event_kind.dtype)
     run = completed.drop_dims(set(completed.sizes) - {"time", "space", "quaternion"})
@@ -140,7 +152,9 @@ def test_every_number_and_every_sentence_survives_a_file(completed, tmp_path, nu
 
 
 def test_file_is_one_that_others_can_read_by_the_conventions(lifted_off, tmp_path):
-    """CF: a convention named, units on every quantity, and flags explained by as many words as values."""
+    """CF: a convention named, units on every quantity, and flags explained by as many words as
+    values.
+    """
     path = tt.write_run(lifted_off, tmp_path / "run.nc")
     with xr.open_dataset(path, engine="h5netcdf", decode_cf=False) as raw:
         assert raw.attrs["Conventions"].startswith("CF-1.")
@@ -160,7 +174,8 @@ def test_file_takes_the_permissions_of_any_new_file(completed, tmp_path):
     assert path.stat().st_mode == (tmp_path / "any").stat().st_mode
 
 
-# --- nothing is overwritten unasked, nor half written -------------------------------------------------------
+# --- nothing is overwritten unasked, nor half written
+# -------------------------------------------------------
 
 
 def told(trouble):
@@ -244,7 +259,8 @@ def test_folder_is_not_replaced_by_a_file(completed, tmp_path):
     assert [path.name for path in tmp_path.rglob("*")] == ["folder"]
 
 
-# --- what cannot be read ------------------------------------------------------------------------------------
+# --- what cannot be read
+# ------------------------------------------------------------------------------------
 
 
 def refused(path):
@@ -254,7 +270,7 @@ def refused(path):
     text = told(trouble)
     assert text.startswith(str(path))
     del trouble
-    gc.collect()  # what complains as it is thrown away does so here, as a warning, and thus as an error
+    gc.collect()  # a complaint of a finalizer is a warning here, and thus an error
     return text
 
 
@@ -301,7 +317,9 @@ def test_what_another_program_changed_is_refused(lifted_off, tmp_path):
 
 def test_netcdf_of_another_program_is_refused(tmp_path):
     path = tmp_path / "weather.nc"
-    weather = xr.Dataset({"temperature": ("time", [280.0, 281.0])}, attrs={"Conventions": "CF-1.11"})
+    weather = xr.Dataset(
+        {"temperature": ("time", [280.0, 281.0])}, attrs={"Conventions": "CF-1.11"}
+    )
     weather.to_netcdf(path, engine="h5netcdf")
     assert "not a result of this program" in refused(path)
 

@@ -24,9 +24,12 @@ PAGES = [
     for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     if "_build" not in path.parts and "jupyter_execute" not in path.parts
 ]
-HOMES = sorted({home for name in tt.__all__ if (home := getattr(getattr(tt, name), "__module__", ""))})
+HOMES = sorted(
+    {home for name in tt.__all__ if (home := getattr(getattr(tt, name), "__module__", ""))}
+)
 BLOCK = re.compile(
-    r"^(?P<fence>`{3,})(?:(?P<python>python|\{code-cell\} python|\{player\}[^\n]*)|(?P<console>console))\n"
+    r"^(?P<fence>`{3,})(?:(?P<python>python|\{code-cell\}"
+    r" python|\{player\}[^\n]*)|(?P<console>console))\n"
     r"(?P<code>.*?)^(?P=fence)$",
     re.MULTILINE | re.DOTALL,
 )
@@ -41,7 +44,9 @@ def maybe(page):
     notebook = "{code-cell}" in text and "NOTEBOOKS" not in os.environ
     reason = "a notebook: run by `make docs` and by `make doctest`"
     return pytest.param(
-        page, id=page.relative_to(ROOT).as_posix(), marks=pytest.mark.skipif(notebook, reason=reason)
+        page,
+        id=page.relative_to(ROOT).as_posix(),
+        marks=pytest.mark.skipif(notebook, reason=reason),
     )
 
 
@@ -69,7 +74,9 @@ def test_every_public_name_has_an_example(name):
 
 @pytest.mark.parametrize("name", tt.__all__)
 def test_every_public_name_has_an_entry(name):
-    entries = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "docs" / "api").glob("*.md"))
+    entries = "\n".join(
+        path.read_text(encoding="utf-8") for path in (ROOT / "docs" / "api").glob("*.md")
+    )
     assert re.search(rf"^\.\. (auto|py:)\w+:: tippetop\.{name}$", entries, re.MULTILINE)
 
 
@@ -106,7 +113,9 @@ def test_the_files_of_pages_are_accepted():
     """The sweep that a page shows, and the piece to be turned."""
     shown = {
         name: re.search(
-            r"^```toml\n(.*?)^```$", (ROOT / "docs/howto" / name).read_text(encoding="utf-8"), re.M | re.S
+            r"^```toml\n(.*?)^```$",
+            (ROOT / "docs/howto" / name).read_text(encoding="utf-8"),
+            re.M | re.S,
         )[1]
         for name in ("sweep.md", "print.md")
     }

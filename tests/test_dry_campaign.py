@@ -19,16 +19,26 @@ LAWS: dict[str, dict[str, Any]] = {
     "ellipsoidal": {"kind": "contensou", "pressure": "ellipsoidal"},
     "hertz": {"kind": "contensou", "pressure": "hertz"},
 }
-RESISTED = {"viscous": {"kind": "viscous"}, "coulomb": LAWS["coulomb"], "ellipsoidal": LAWS["ellipsoidal"]}
+RESISTED = {
+    "viscous": {"kind": "viscous"},
+    "coulomb": LAWS["coulomb"],
+    "ellipsoidal": LAWS["ellipsoidal"],
+}
 
-GAVE_UP = {"coulomb": (), "ellipsoidal": ("too_many_steps", "failed"), "hertz": ("too_many_steps", "failed")}
-"""On a small patch the last moments of drilling are stiff, and not all are followed to their end."""
+GAVE_UP = {
+    "coulomb": (),
+    "ellipsoidal": ("too_many_steps", "failed"),
+    "hertz": ("too_many_steps", "failed"),
+}
+"""On a small patch the last moments of drilling are stiff, and not all are followed to their end.
+"""
 
 
 HARD = {"ellipsoidal": (69,)}
 HARD_RESISTED = {"ellipsoidal": (99,)}
-"""Tops beyond the first ones that were followed wrongly once: slip that begins and is about to end at once,
-and rolling that passes zero by less than can be seen."""
+"""Tops beyond the first ones that were followed wrongly once: slip that begins and is about to end
+at once, and rolling that passes zero by less than can be seen.
+"""
 
 
 def ordinary(law: dict[str, Any], random: np.random.Generator) -> tt.Problem:
@@ -62,7 +72,9 @@ def ordinary(law: dict[str, Any], random: np.random.Generator) -> tt.Problem:
 
 @pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
 @pytest.mark.parametrize("law", RESISTED)
-def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_couple(law: str) -> None:
+def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_couple(
+    law: str,
+) -> None:
     given_up = rested = held_for = 0
     for seed in (*range(COUNT // 2), *HARD_RESISTED.get(law, ())):
         random = np.random.default_rng(1000 + seed)
@@ -78,7 +90,9 @@ def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_
         rested += run.attrs["outcome"] == "at_rest"
         scale = float(np.abs(run["energy"]).max())
         lost = sum(run[f"{name}_loss"].values for name in ("sliding", "drilling", "rolling"))
-        for at, taken in zip(run["event_time"].values, run["event_energy_lost"].values, strict=True):
+        for at, taken in zip(
+            run["event_time"].values, run["event_energy_lost"].values, strict=True
+        ):
             lost = lost + np.where(run["time"].values > at, taken, 0.0)
         off = run["energy"].values - run["energy"].values[0] + lost
         assert np.abs(off).max() < 1e-10 * scale, said
@@ -98,7 +112,9 @@ def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_
 @pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("part", range(2))
-def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(law: str, part: int) -> None:
+def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(
+    law: str, part: int
+) -> None:
     given_up = stuck_for = 0
     for seed in (*range(part, COUNT, 2), *(HARD.get(law, ()) if part else ())):
         problem = ordinary(LAWS[law], np.random.default_rng(seed))
@@ -107,7 +123,10 @@ def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(law: s
         if run.attrs["outcome"] in GAVE_UP[law]:
             given_up += 1
             continue
-        assert run.attrs["outcome"] in ("completed", "lifted_off"), (run.attrs["outcome_advice"], *said)
+        assert run.attrs["outcome"] in ("completed", "lifted_off"), (
+            run.attrs["outcome_advice"],
+            *said,
+        )
         if not float(run["end_time"]):
             continue  # the table would have to pull from the start
         scale = float(np.abs(run["energy"]).max())
@@ -116,7 +135,8 @@ def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(law: s
         assert np.all(np.diff(run["energy"].values) < 1e-12 * scale), said
         force = run["contact_force"].values
         assert force[:, 2].min() > -1e-12 * force[:, 2].max(), said
-        # Where the run ends by lifting off, the normal force is nothing to rounding, of either sign.
+        # Where the run ends by lifting off, the normal force is nothing to rounding, of either
+        # sign.
         tangential, normal = np.hypot(force[:, 0], force[:, 1]), np.abs(force[:, 2])
         assert np.all(tangential <= problem.friction.mu * normal * (1 + 1e-12) + 1e-15), said
         names = np.array(run["mode"].attrs["flag_meanings"].split())[run["mode"].values]

@@ -1,4 +1,6 @@
-"""Runs and sweeps of problems with dry friction: sticking, limits, and one answer wherever it is asked."""
+"""Runs and sweeps of problems with dry friction: sticking, limits, and one answer wherever it is
+asked.
+"""
 
 import json
 
@@ -15,7 +17,12 @@ from tippetop.contact.stopping import Stopping
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
-from tippetop.mechanics.rolling import ContactPoint, contact_motion, slip_reserve, velocity_without_slip
+from tippetop.mechanics.rolling import (
+    ContactPoint,
+    contact_motion,
+    slip_reserve,
+    velocity_without_slip,
+)
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_state, natural_units
@@ -26,7 +33,12 @@ INTEGRATORS = [
 ]
 LAWS = {
     "coulomb": {"kind": "coulomb", "mu": 0.3},
-    "ellipsoidal": {"kind": "contensou", "mu": 0.3, "patch_radius": 1e-3, "pressure": "ellipsoidal"},
+    "ellipsoidal": {
+        "kind": "contensou",
+        "mu": 0.3,
+        "patch_radius": 1e-3,
+        "pressure": "ellipsoidal",
+    },
     "hertz": {"kind": "contensou", "mu": 0.3, "patch_radius": 1e-3},
 }
 
@@ -35,7 +47,9 @@ def dry(law, spin=100.0, **launch):
     """The report's top with dry friction."""
     fields = json.loads(tt.presets.report_problem(spin=spin).to_json())
     fields["launch"] |= launch
-    return tt.Problem.from_json(json.dumps(fields | {"friction": LAWS[law] if isinstance(law, str) else law}))
+    return tt.Problem.from_json(
+        json.dumps(fields | {"friction": LAWS[law] if isinstance(law, str) else law})
+    )
 
 
 def last(run):
@@ -72,7 +86,9 @@ def test_two_integrators_agree(law):
 
 def test_friction_is_against_the_slip_that_begins_from_its_first_instant_on():
     """A top set down without slip on a table too slippery to hold it."""
-    run = tt.simulate(dry({"kind": "coulomb", "mu": 1e-3}, tilt=1.2, tilt_rate=2.0), 1e-4, samples=101)
+    run = tt.simulate(
+        dry({"kind": "coulomb", "mu": 1e-3}, tilt=1.2, tilt_rate=2.0), 1e-4, samples=101
+    )
     force = run["contact_force"].values
     assert np.hypot(force[:, 0], force[:, 1]) == pytest.approx(1e-3 * force[:, 2], rel=1e-12)
     ways = np.arctan2(force[:, 1], force[:, 0])
@@ -81,7 +97,9 @@ def test_friction_is_against_the_slip_that_begins_from_its_first_instant_on():
 
 
 def test_smoothed_friction_tends_to_dry_friction():
-    """The slip that smoothing leaves where a top sticks is proportional to eps, and so is what it changes."""
+    """The slip that smoothing leaves where a top sticks is proportional to eps, and so is what it
+    changes.
+    """
     launch = {"slip": [0.3, 0.0]}
     exact = last(tt.simulate(dry("coulomb", **launch), 0.3))
     off = []
@@ -95,7 +113,9 @@ def test_smoothed_friction_tends_to_dry_friction():
 
 @pytest.mark.parametrize("law", ["ellipsoidal", "hertz"])
 def test_a_small_patch_tends_to_a_point(law):
-    """Drilling speeds of R w beside the slip matter in proportion to their square while the top slides."""
+    """Drilling speeds of R w beside the slip matter in proportion to their square while the top
+    slides.
+    """
     launch = {"slip": [0.5, 0.0], "spin": 20.0}
     exact = last(tt.simulate(dry("coulomb", **launch), 0.02))
     off = []
@@ -155,7 +175,11 @@ def test_another_law_keeps_what_it_has_in_common_and_takes_the_rest():
     changed = viscous.replace(changes)
     assert changed.friction == tt.ContensouFriction(mu=0.2, patch_radius=1e-4)
     assert changed.replace({"friction.kind": "viscous"}) == viscous
-    for wrong in ({"friction.kind": "contensou"}, changes | {"friction.eps": 1.0}, {"friction.kind": "wet"}):
+    for wrong in (
+        {"friction.kind": "contensou"},
+        changes | {"friction.eps": 1.0},
+        {"friction.kind": "wet"},
+    ):
         with pytest.raises(tt.InvalidInput, match="friction"):
             viscous.replace(wrong)
     told = CliRunner().invoke(
@@ -185,17 +209,24 @@ def test_a_sweep_changes_between_the_branches_of_hertz_as_a_run_does(liftoff):
         run = tt.simulate(problem.replace({"launch.spin": spin}), 1.0)
         here = found.sel({"launch.spin": spin})
         turning = run.phi_dot * np.sin(run.theta) ** 2 + run.omega3 * np.cos(run.theta)
-        drilling = np.abs(turning) * problem.friction.patch_radius > np.hypot(run.slip_x, run.slip_y)
+        drilling = np.abs(turning) * problem.friction.patch_radius > np.hypot(
+            run.slip_x, run.slip_y
+        )
         assert 0.0 < float(drilling.mean()) < 1.0
         for name in ("energy_lost", "least_normal_force", "highest", "flights", "airborne_time"):
-            assert float(here[name]) == pytest.approx(float(run[name]), rel=1e-8, abs=1e-12), (spin, name)
+            assert float(here[name]) == pytest.approx(float(run[name]), rel=1e-8, abs=1e-12), (
+                spin,
+                name,
+            )
 
 
 @pytest.mark.parametrize(("slip", "mode"), [(1e-3, Sliding), (-1e-3, Stopping)])
 def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> None:
     """What falls over rolls the way it falls: slip against that ends, slip along it goes on."""
     launch = tt.Launch(tilt=1.0, spin=0.0, slip=(slip, 0.0))
-    problem = tt.Problem(body=tt.presets.REPORT, friction=tt.CoulombFriction(mu=0.01), launch=launch)
+    problem = tt.Problem(
+        body=tt.presets.REPORT, friction=tt.CoulombFriction(mu=0.01), launch=launch
+    )
     top = natural(problem.top)
     rules = rules_for(top, "ignore", 0.0)
     start = natural_state(problem.start(), natural_units(problem.top))
@@ -203,7 +234,9 @@ def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> N
 
 
 def test_what_could_be_held_by_a_pull_only_slips():
-    """Sticking would need a pull, though the gap would close: neither that nor flight is consistent."""
+    """Sticking would need a pull, though the gap would close: neither that nor flight is
+    consistent.
+    """
     rng, count = np.random.default_rng(3), 0
     while count < 40:
         surface = SphereSurface(1.0, rng.uniform(-0.9, 0.9))
@@ -215,7 +248,9 @@ def test_what_could_be_held_by_a_pull_only_slips():
         held = contact_motion(ContactPoint.of(axis, momentum, top), None)[0]
         if held.force[2] > 0.0 or slip_reserve(top, held) < 0.0 or not presses(axis, momentum, top):
             continue
-        state = on_table(SlidingState(axis, momentum, velocity_without_slip(axis, momentum, top)), top)
+        state = on_table(
+            SlidingState(axis, momentum, velocity_without_slip(axis, momentum, top)), top
+        )
         mode = FreeToFly(top, 0.0).resting(0.0, state).then
         segment = next(mode.segments(0.0, state, 1e-3, make_integrator("dop853")))
         touch = contact(*along_table(segment.end_state), top)

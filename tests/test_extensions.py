@@ -1,4 +1,6 @@
-"""A friction law, a surface and a contact mode of a user's own, defined here: in runs and in sweeps."""
+"""A friction law, a surface and a contact mode of a user's own, defined here: in runs and in
+sweeps.
+"""
 
 import subprocess
 import sys
@@ -32,7 +34,9 @@ DURATION = 1.0
 
 
 class StribeckLaw(NamedTuple):
-    """Smoothed Coulomb friction that is stronger while slip is slow: mu (1 + more / (1 + v^2 / slow^2))."""
+    """Smoothed Coulomb friction that is stronger while slip is slow: mu (1 + more / (1 + v^2 /
+    slow^2)).
+    """
 
     mu: Scalar
     more: Scalar
@@ -104,7 +108,9 @@ class SquashedSphere(tt.Shape):
     @model_validator(mode="after")
     def _is_convex(self) -> Self:
         if self.squash > self.radius / 3.0:
-            raise InvalidInput("squash", self.squash, f"at most a third of the radius, {self.radius / 3.0:g}")
+            raise InvalidInput(
+                "squash", self.squash, f"at most a third of the radius, {self.radius / 3.0:g}"
+            )
         return self
 
     @property
@@ -151,7 +157,11 @@ def pinned_motion(kind: Kind) -> Motion:
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         top = kind.top(tuple(numbers))
         wrench, point = pin(y, top)
-        return (*axis_rate(point.axis, (y[3], y[4], y[5]), top), *point.moment(wrench), -1.0 + 0.0 * y[6])
+        return (
+            *axis_rate(point.axis, (y[3], y[4], y[5]), top),
+            *point.moment(wrench),
+            -1.0 + 0.0 * y[6],
+        )
 
     return Motion(rates, 7, kind.numbers, (Guard("released", lambda y, numbers: y[6]),))
 
@@ -191,7 +201,10 @@ PROBLEMS = {
 }
 OVER = {
     "law": {"friction.more": [0.1, 0.6], "launch.spin": [90.0, 155.0]},
-    "law with rolling resistance": {"friction.more": [0.1, 0.6], "rolling_resistance": [1e-5, 3e-4]},
+    "law with rolling resistance": {
+        "friction.more": [0.1, 0.6],
+        "rolling_resistance": [1e-5, 3e-4],
+    },
     "surface": {"body.shape.squash": [1e-3, 2e-3], "launch.spin": [90.0, 155.0]},
     "mode": {"contact.until": [0.1, 0.3], "launch.spin": [90.0, 155.0]},
 }
@@ -218,12 +231,15 @@ def test_the_law_is_the_one_defined() -> None:
     slip = np.hypot(run["slip_x"], run["slip_y"]).values
     force = np.hypot(*run["contact_force"].values[:, :2].T) / run["normal_force"].values
     expected = 0.2 * (1 + 0.5 / (1 + (slip / 0.05) ** 2)) * slip / np.hypot(slip, 0.05)
-    # At launch slip is zero: what is left of it is rounding of 3 m/s, which the law multiplies by 0.3 / 0.05.
+    # At launch slip is zero: what is left of it is rounding of 3 m/s, which the law multiplies by
+    # 0.3 / 0.05.
     np.testing.assert_allclose(force, expected, rtol=1e-9, atol=6.0 * np.spacing(3.0))
 
 
 def test_rolling_resistance_is_a_torque_beside_the_law_defined() -> None:
-    """Against the horizontal angular velocity w_t, of N times its arm; it takes what the law does not."""
+    """Against the horizontal angular velocity w_t, of N times its arm; it takes what the law does
+    not.
+    """
     run = tt.simulate(PROBLEMS["law with rolling resistance"], 0.2, samples=51)
     body, axis, momentum = REPORT.body, run["axis"].values, run["angular_momentum"].values
     along = (1.0 / body.I3 - 1.0 / body.I1) * np.sum(axis * momentum, axis=1)
@@ -309,7 +325,9 @@ PARTS = {"law": "friction", "surface": "body", "mode": "contact"}
 
 
 def test_cells_that_a_part_refuses_are_refused() -> None:
-    found = tt.sweep(PROBLEMS["surface"], {"body.shape.squash": [1e-3, 8e-3]}, duration=0.01, workers=1)
+    found = tt.sweep(
+        PROBLEMS["surface"], {"body.shape.squash": [1e-3, 8e-3]}, duration=0.01, workers=1
+    )
     assert found["fault"].values.tolist() == [Fault.NONE, Fault.VALUE_OUT_OF_RANGE]
 
 
@@ -348,7 +366,9 @@ except tt.InvalidInput as error:
 
 
 def test_what_a_script_defines_is_computed_in_its_own_process() -> None:
-    done = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True
+    )
     first, second = done.stdout.splitlines()
     assert first.startswith("[")
     assert second.startswith("workers = 2 is not possible; accepted: this process alone")

@@ -45,7 +45,12 @@ SITES: list[tuple[str, tt.Problem, str]] = [
 )
 @pytest.mark.parametrize(("site", "problem", "what"), SITES, ids=[what for _, _, what in SITES])
 def test_what_cannot_be_found_is_said_in_words_of_the_motion(
-    monkeypatch: pytest.MonkeyPatch, site: str, problem: tt.Problem, what: str, error: Exception, why: str
+    monkeypatch: pytest.MonkeyPatch,
+    site: str,
+    problem: tt.Problem,
+    what: str,
+    error: Exception,
+    why: str,
 ) -> None:
     def fail(*_: Any, **__: Any) -> Callable[..., Any]:
         raise error
@@ -65,16 +70,24 @@ def test_the_page_says_the_same(spin: float) -> None:
     assert "The end of the flight cannot be found" in run.attrs["outcome_advice"]
 
 
-@pytest.mark.parametrize(("step", "tilt"), [(2e-3, 0.5), (2e-3, 1.2), (4e-3, 0.1), (1e-2, 0.5), (3e-2, 1.2)])
-def test_steps_too_long_for_an_edge_are_told_whatever_they_lead_to(step: float, tilt: float) -> None:
+@pytest.mark.parametrize(
+    ("step", "tilt"), [(2e-3, 0.5), (2e-3, 1.2), (4e-3, 0.1), (1e-2, 0.5), (3e-2, 1.2)]
+)
+def test_steps_too_long_for_an_edge_are_told_whatever_they_lead_to(
+    step: float, tilt: float
+) -> None:
     """They turn the axis beyond flat, where no body can be."""
     for friction in (tt.ViscousFriction(mu=0.3), tt.CoulombFriction(mu=0.3)):
-        problem = tt.Problem(body=tt.presets.COIN, friction=friction, launch=tt.Launch(tilt=tilt, spin=0.0))
+        problem = tt.Problem(
+            body=tt.presets.COIN, friction=friction, launch=tt.Launch(tilt=tilt, spin=0.0)
+        )
         run = tt.simulate(problem, 0.6, integrator="rk4", step=step)
         assert run.attrs["outcome"] in {"inaccurate", "failed"}
 
 
 def test_steps_that_are_lost_in_rounding_are_not_taken_for_ever() -> None:
-    """The bound lets steps be positive that are shorter than the distance of two numbers at that time."""
+    """The bound lets steps be positive that are shorter than the distance of two numbers at that
+    time.
+    """
     with pytest.raises(Unsolved, match="rounding"):
         first_root(lambda _: (1.0, 0.0, 0.0), 1.8, 1.8 + 1e-14, 6.0 / 1e-17**3)

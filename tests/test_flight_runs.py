@@ -13,7 +13,8 @@ from independent_flights import Toy, slide_and_fly
 from tippetop.presets import REPORT, report_problem
 
 FIRST_LIFT_OFF = {175.0: 5.361332, 170.0: 5.85182}
-"""Converged times of the first lift-off of the report's top launched at tilt 0.1 with mu 0.3 s/m."""
+"""Converged times of the first lift-off of the report's top launched at tilt 0.1 with mu 0.3 s/m.
+"""
 
 ONSET = 165.0900
 """Converged spin beyond which that launch leaves the table, rad/s."""
@@ -56,11 +57,20 @@ def test_an_independent_simulation_in_small_steps_flies_alike():
         "spin": float(before.omega3),
         "slip": (float(before.slip_x), float(before.slip_y)),
     }
-    problem = report_problem(175.0).replace({f"launch.{name}": value for name, value in launch.items()})
+    problem = report_problem(175.0).replace(
+        {f"launch.{name}": value for name, value in launch.items()}
+    )
     duration = 0.45
     run = tt.simulate(problem, duration, samples=2)
     toy = Toy(m=0.02, R=0.02, alpha=0.3, I1=REPORT.I1, I3=REPORT.I3, mu=0.3, g=9.8)
-    start = [launch["tilt"], launch["tilt_rate"], 0.0, launch["precession"], launch["spin"], *launch["slip"]]
+    start = [
+        launch["tilt"],
+        launch["tilt_rate"],
+        0.0,
+        launch["precession"],
+        launch["spin"],
+        *launch["slip"],
+    ]
     final, lifts, lands = slide_and_fly(toy, start, duration, 1e-5)
 
     kinds, times = run.event_kind.values, run.event_time.values
@@ -128,13 +138,17 @@ def test_samples_inside_a_flight_lie_on_the_flight():
     t = run.time.values
     np.testing.assert_allclose(run.height, run.height[0].item() + 0.3 * t - 4.9 * t**2, rtol=1e-12)
     np.testing.assert_allclose(run.x, 0.1 * t, atol=1e-15)
-    np.testing.assert_allclose(run.angular_momentum, np.broadcast_to(run.angular_momentum[0], (50, 3)))
+    np.testing.assert_allclose(
+        run.angular_momentum, np.broadcast_to(run.angular_momentum[0], (50, 3))
+    )
     assert (run.normal_force == 0).all()
 
 
 def test_a_dropped_top_falls_and_bounces_back_by_its_restitution():
     drop, restitution = 0.02, 0.6
-    problem = report_problem(0.0, tilt=0.0).replace({"launch.gap": drop, "contact.restitution": restitution})
+    problem = report_problem(0.0, tilt=0.0).replace(
+        {"launch.gap": drop, "contact.restitution": restitution}
+    )
     run = tt.simulate(problem, 1.0)
     falls = math.sqrt(2 * drop / 9.8)
     touchdowns = run.event_time.values[run.event_kind.values == "touchdown"]
@@ -150,7 +164,9 @@ def test_a_dropped_top_falls_and_bounces_back_by_its_restitution():
 
 
 def test_a_perfectly_elastic_bounce_never_ends_and_loses_nothing():
-    problem = report_problem(0.0, tilt=0.0).replace({"launch.gap": 0.001, "contact.restitution": 1.0})
+    problem = report_problem(0.0, tilt=0.0).replace(
+        {"launch.gap": 0.001, "contact.restitution": 1.0}
+    )
     run = tt.simulate(problem, 10.0, phase_limit=100)
     assert run.outcome == "too_many_phases"
     assert "phases" in run.outcome_advice
@@ -159,7 +175,8 @@ def test_a_perfectly_elastic_bounce_never_ends_and_loses_nothing():
 
 
 def test_a_launch_that_the_table_would_have_to_hold_starts_in_flight():
-    # Above the centre of the sphere, the centre of mass needs a downward pull to swing round it so fast.
+    # Above the centre of the sphere, the centre of mass needs a downward pull to swing round it so
+    # fast.
     problem = report_problem(0.0, tilt=2.5).replace({"launch.tilt_rate": 60.0})
     held = tt.simulate(problem.replace({"contact.liftoff": "ignore"}), 1e-4, samples=2)
     assert float(held.normal_force[0]) < 0
@@ -210,7 +227,8 @@ def test_a_coin_tossed_without_spin_tumbles_on_its_edges_until_it_lies_flat(fric
         fall = np.polynomial.Polynomial.fit(t, heights[flight], 2)
         assert np.abs(heights[flight] - fall(t)).max() < 1e-13
         assert fall.deriv(2)(0.0) == pytest.approx(-9.8, rel=1e-5)
-        # Beyond a pole the tilt comes back: as a polynomial in time its cosine is that of a straight line.
+        # Beyond a pole the tilt comes back: as a polynomial in time its cosine is that of a
+        # straight line.
         rates = np.diff(tilts[flight]) / np.diff(t)
         assert np.ptp(np.abs(rates[[0, -1]])) < 1e-6 * np.abs(rates[0])
         turned += rates[0] * rates[-1] < 0.0
@@ -235,14 +253,19 @@ def test_a_coin_tossed_without_spin_does_the_same_in_a_sweep():
     for one in (problem, rings):
         swept = tt.sweep(one, {"launch.tilt": [0.8, 1.2, 1.9]}, duration=0.3, workers=1)
         for tilt in (0.8, 1.2, 1.9):
-            run, cell = tt.simulate(one.replace({"launch.tilt": tilt}), 0.3), swept.sel({"launch.tilt": tilt})
+            run, cell = (
+                tt.simulate(one.replace({"launch.tilt": tilt}), 0.3),
+                swept.sel({"launch.tilt": tilt}),
+            )
             assert run.attrs["outcome"] == "lying_flat"
             for name in ("end_time", "flights", "highest_gap", "airborne_time", "final_theta"):
                 assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-7), (tilt, name)
 
 
 def test_a_flight_that_is_cut_short_rose_no_higher_than_it_was_followed():
-    """It rises as its centre of mass does, whose height is a parabola in time, to within its size."""
+    """It rises as its centre of mass does, whose height is a parabola in time, to within its
+    size.
+    """
     launch = tt.Launch(tilt=1.2, spin=1e6, tilt_rate=1e6 / 3, gap=0.05)
     problem = tt.Problem(body=tt.presets.COIN, friction=tt.CoulombFriction(mu=0.3), launch=launch)
     run = tt.simulate(problem, 0.05, samples=11, step_limit=5000)

@@ -1,4 +1,5 @@
-"""Problems that nobody would ask for: each ends with an outcome within its budget, or with a sentence.
+"""Problems that nobody would ask for: each ends with an outcome within its budget, or with a
+sentence.
 
 TIPPETOP_HOSTILE=10000 asks for as many of them instead of the few that every check takes.
 """
@@ -25,11 +26,15 @@ from tippetop.sweeps.stepper import stepper
 COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "64")), 8
 STEPS, MODES = 2_000, 200
 CLOSE = 1e-6
-"""How far a completed run may be off what its motion keeps, relatively: what is promised of the outcome."""
+"""How far a completed run may be off what its motion keeps, relatively: what is promised of the
+outcome.
+"""
 
 
 def hostile(random: np.random.Generator) -> dict[str, Any]:
-    """Fields of a problem: mostly ordinary numbers, some of them tiny, huge, zero, negative or none."""
+    """Fields of a problem: mostly ordinary numbers, some of them tiny, huge, zero, negative or
+    none.
+    """
 
     def number(low: float, high: float, signed: bool = False) -> float:
         kind = random.random()
@@ -37,7 +42,8 @@ def hostile(random: np.random.Generator) -> dict[str, Any]:
             return float(random.choice([0.0, -0.0, np.nan, np.inf, -1.0, 1e308, 5e-324]))
         reach = 12.0 if kind < 0.12 else 0.0
         size = float(
-            np.exp(random.uniform(np.log(low), np.log(high))) * 10.0 ** random.uniform(-reach, reach)
+            np.exp(random.uniform(np.log(low), np.log(high)))
+            * 10.0 ** random.uniform(-reach, reach)
         )
         return size * (float(random.choice([-1.0, 1.0])) if signed else 1.0)
 
@@ -66,7 +72,10 @@ def hostile(random: np.random.Generator) -> dict[str, Any]:
         "spin": number(1.0, 300.0, signed=True),
         "tilt_rate": some(0.0, number(1e-2, 100.0, signed=True)),
         "precession": some(0.0, number(1e-2, 100.0, signed=True)),
-        "slip": [some(0.0, number(1e-4, 1.0, signed=True)), some(0.0, number(1e-4, 1.0, signed=True))],
+        "slip": [
+            some(0.0, number(1e-4, 1.0, signed=True)),
+            some(0.0, number(1e-4, 1.0, signed=True)),
+        ],
     }
     contact = {
         "liftoff": some("ignore", "stop", "fly"),
@@ -87,7 +96,8 @@ def hostile(random: np.random.Generator) -> dict[str, Any]:
 def broken(problem: tt.Problem, run: Any) -> list[str]:
     """What a completed run does not keep."""
     size = float(np.abs(run["energy"]).max()) + float(np.abs(run["work"]).max())
-    # A launch may begin with an impact (Painleve's paradox), of which the first sample tells already.
+    # A launch may begin with an impact (Painleve's paradox), of which the first sample tells
+    # already.
     off = run["energy"] - run["energy_start"] - run["work"]
     found = {"energy and work": float(np.abs(off).max()) / size if size else 0.0}
     found["unit axis"] = float(np.abs(np.linalg.norm(run["axis"].values, axis=1) - 1.0).max())
@@ -129,7 +139,9 @@ def test_hostile_problems_end_with_an_outcome_or_a_sentence(part: int) -> None:
         pytest.param(66, {"completed"}, id="a small patch that is struck"),
         pytest.param(1284, {"too_many_steps"}, id="slip that is about to end next to a branch"),
         pytest.param(1275, {"failed"}, id="a touchdown without impulse or slip"),
-        pytest.param(6941, {"completed"}, id="slip of hardly more than rounding at a launch in flight"),
+        pytest.param(
+            6941, {"completed"}, id="slip of hardly more than rounding at a launch in flight"
+        ),
         pytest.param(7259, {"failed"}, id="forces beyond all numbers"),
         pytest.param(7394, {"failed"}, id="friction beyond all numbers"),
         pytest.param(2113, {"completed"}, id="a launch with an impact"),
@@ -149,7 +161,9 @@ def test_hostile_problems_that_were_hard(seed: int, outcomes: set[str]) -> None:
     [
         pytest.param(66, "completed", id="a small patch that is struck"),
         pytest.param(324, "completed", id="little slip of a body of much inertia"),
-        pytest.param(6711, "completed", id="Coulomb's friction that could hold a million times the weight"),
+        pytest.param(
+            6711, "completed", id="Coulomb's friction that could hold a million times the weight"
+        ),
     ],
 )
 def test_one_launch_and_many_tell_the_same_of_their_accuracy(seed: int, outcome: str) -> None:
@@ -185,13 +199,19 @@ def swept_ending(problem: tt.Problem, tolerance: float) -> tt.Ending:
     "integrator",
     [
         "dop853",
-        pytest.param("compiled", marks=pytest.mark.skipif(not has_numba(), reason="numba is not installed")),
+        pytest.param(
+            "compiled", marks=pytest.mark.skipif(not has_numba(), reason="numba is not installed")
+        ),
     ],
 )
 def test_stiff_motion_does_not_leave_a_table_that_it_presses(integrator: str) -> None:
-    """Slip decays 1e10 times a second: errors of explicit steps throw the normal force through infinity."""
+    """Slip decays 1e10 times a second: errors of explicit steps throw the normal force through
+    infinity.
+    """
     problem = tt.Problem(**hostile(np.random.default_rng(110)))
-    run = tt.simulate(problem, 2.0, samples=51, step_limit=STEPS, phase_limit=MODES, integrator=integrator)
+    run = tt.simulate(
+        problem, 2.0, samples=51, step_limit=STEPS, phase_limit=MODES, integrator=integrator
+    )
     assert "lift-off" not in run["event_kind"].values
     assert float(run["gap"].min()) > -CLOSE * problem.body.shape.surface.size
 
@@ -214,7 +234,9 @@ def test_what_breaks_down_at_once_has_the_launch_for_a_result(changes: dict[str,
 
 
 def test_a_table_that_would_have_to_pull_at_once_does_not() -> None:
-    """A top whose centre of mass is thrown up by its spin: the force that would hold it is no result."""
+    """A top whose centre of mass is thrown up by its spin: the force that would hold it is no
+    result.
+    """
     problem = tt.presets.report_problem(spin=500.0, tilt=1.5).replace({"contact.liftoff": "stop"})
     run = tt.simulate(problem.replace({"launch.precession": 200.0}), 2.0, samples=51)
     assert run.attrs["outcome"] == "lifted_off"
@@ -241,17 +263,31 @@ def test_a_top_faster_than_any_leaves_the_table_in_its_first_nutation(
         pytest.skip("the integrator is not installed")
     problem = tt.Problem(**hostile(np.random.default_rng(349)))
     run = tt.simulate(
-        problem, 2.0, samples=2, integrator=integrator, tolerance=tolerance, phase_limit=9, step_limit=9
+        problem,
+        2.0,
+        samples=2,
+        integrator=integrator,
+        tolerance=tolerance,
+        phase_limit=9,
+        step_limit=9,
     )
-    # Until then the table hardly turns the angular momentum, about which the axis turns at a constant rate:
-    # normal force and friction change its rate by m h' s (h' s + a f) / I1, a few thousandths.
+    # Until then the table hardly turns the angular momentum, about which the axis turns at a
+    # constant rate: normal force and friction change its rate by m h' s (h' s + a f) / I1, a few
+    # thousandths.
     axis, momentum = (np.array(part) for part in problem.start()[:2])
-    pace, turning = np.linalg.norm(momentum) / problem.body.I1, np.cross(momentum, axis) / problem.body.I1
+    pace, turning = (
+        np.linalg.norm(momentum) / problem.body.I1,
+        np.cross(momentum, axis) / problem.body.I1,
+    )
     bend = np.cross(momentum, turning)[2] / problem.body.I1
     across, along = problem.body.shape.across, problem.body.shape.along
 
     def fall(time: float) -> float:
-        c = axis[2] + turning[2] * np.sin(pace * time) / pace + bend * (1.0 - np.cos(pace * time)) / pace**2
+        c = (
+            axis[2]
+            + turning[2] * np.sin(pace * time) / pace
+            + bend * (1.0 - np.cos(pace * time)) / pace**2
+        )
         rate = turning[2] * np.cos(pace * time) + bend * np.sin(pace * time) / pace
         change = bend * np.cos(pace * time) - pace * turning[2] * np.sin(pace * time)
         stretch, height = along**2 - across**2, np.hypot(across, np.sqrt(along**2 - across**2) * c)
@@ -291,7 +327,9 @@ def test_a_single_impact_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A rod falls on its ends in turn, and the second impact presses the first end onto the table."""
+    """A rod falls on its ends in turn, and the second impact presses the first end onto the
+    table.
+    """
     ends = [tt.Sphere(radius=0.005, center=0.02), tt.Sphere(radius=0.005, center=-0.02)]
     rod = tt.Problem(
         body=tt.Body(mass=0.01, shape=ends, I1=2e-6, I3=1.25e-7),
@@ -314,7 +352,9 @@ def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """Numbers that turn for ever, as the direction of slip may, in the clock in which it ends."""
     monkeypatch.setattr(closing, "MOST", 4)
     monkeypatch.setattr(sampling, "MANY", 16)
-    turning = Motion(lambda y, pace: (pace[0] * y[1], -pace[0] * y[0]), size=2, parameters=1, guards=())
+    turning = Motion(
+        lambda y, pace: (pace[0] * y[1], -pace[0] * y[0]), size=2, parameters=1, guards=()
+    )
     method, start = make_integrator("dop853", 1e-12), (0.0, np.array([1.0, 0.0]))
     arcs = list(closing.followed(method, turning, [1e4], start))
     assert arcs[-1].failure == "slip, or rolling, takes too many steps to end"
@@ -324,7 +364,10 @@ def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     assert slow[-1].failure is None
     assert [arc.solution.end for arc in slow] == [*closing.SOON, closing.LONGEST]
     late = list(closing.followed(method, turning, [1e-4], (closing.LONGEST - 1.0, start[1])))
-    assert [arc.solution.end for arc in late] == [closing.LONGEST - 1.0 + closing.SOON[0], closing.LONGEST]
+    assert [arc.solution.end for arc in late] == [
+        closing.LONGEST - 1.0 + closing.SOON[0],
+        closing.LONGEST,
+    ]
 
 
 @pytest.mark.parametrize("duration", [1e308, 1e300, np.inf, np.nan, 0.0])

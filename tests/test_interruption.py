@@ -1,4 +1,5 @@
-"""Ctrl-C at the command line: one line, the exit code of shells, no half-written file, and no waiting.
+"""Ctrl-C at the command line: one line, the exit code of shells, no half-written file, and no
+waiting.
 
 TIPPETOP_INTERRUPTS=50 asks for as many random moments instead of the few that every check takes.
 """

@@ -1,7 +1,9 @@
-"""Friction that turns comes to press the contact onto the table: Painleve's paradox in the midst of slip.
+"""Friction that turns comes to press the contact onto the table: Painleve's paradox in the midst of
+slip.
 
-A heavy core in a light sphere: the contact point answers to a normal force with the acceleration A, which
-friction in some directions of slip makes less than zero. Slip that is slowed down turns towards them.
+A heavy core in a light sphere: the contact point answers to a normal force with the acceleration A,
+which friction in some directions of slip makes less than zero. Slip that is slowed down turns
+towards them.
 """
 
 import itertools
@@ -22,7 +24,9 @@ from tippetop.mechanics.stick_slip import slip_of
 M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
 """Mass, radius, distance of the centres, moments of inertia, friction and gravity, SI."""
 
-pytestmark = pytest.mark.skipif(not has_taylor(), reason="the other integrators take long to come so near")
+pytestmark = pytest.mark.skipif(
+    not has_taylor(), reason="the other integrators take long to come so near"
+)
 
 
 SLOW, BRISK, FAST = 0.05, 0.5, 1.0
@@ -43,7 +47,9 @@ def jamming(liftoff: str = "fly", slip: float = SLOW) -> tt.Problem:
 
 
 def on_springs(slip: float, stiffness: float, jams: float, eps: float = 1e-6) -> np.ndarray:
-    """Angular velocity at the end of compression on an elastic table, without any notion of an impact."""
+    """Angular velocity at the end of compression on an elastic table, without any notion of an
+    impact.
+    """
     start = jamming(slip=slip).start()
 
     def contact(y: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
@@ -179,7 +185,9 @@ def test_a_ball_jams_beside_another_that_has_just_opened(mu: float, launch: tt.L
 
 
 def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
-    """The Delassus number and the acceleration it is to balance vanish together, and the force is finite."""
+    """The Delassus number and the acceleration it is to balance vanish together, and the force is
+    finite.
+    """
     problem = tt.Problem(
         body=tt.presets.BODIES["coin"],
         friction=tt.ContensouFriction(mu=2.1580557528878686, patch_radius=0.00034573999501228336),
@@ -196,7 +204,10 @@ def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
     run = tt.simulate(problem, 0.2, samples=101)
     assert run.attrs["outcome"] == "failed"
     assert "rigid bodies do not tell" in run.attrs["outcome_advice"]
-    last = {name: run[name].values[-1] for name in ("axis", "angular_momentum", "velocity", "normal_force")}
+    last = {
+        name: run[name].values[-1]
+        for name in ("axis", "angular_momentum", "velocity", "normal_force")
+    }
     touch = contact(last["axis"], last["angular_momentum"], last["velocity"][:2], problem.top)
     weight = problem.body.mass * problem.gravity
     assert abs(touch.delassus) * problem.body.mass < 1e-9
@@ -210,7 +221,10 @@ def heavy_core(
     """A sphere of little inertia that rubs hard."""
     return tt.Problem(
         body=tt.Body(
-            mass=M, shape=tt.EccentricSphere(radius=radius, eccentricity=off), I1=inertia[0], I3=inertia[1]
+            mass=M,
+            shape=tt.EccentricSphere(radius=radius, eccentricity=off),
+            I1=inertia[0],
+            I3=inertia[1],
         ),
         friction=tt.CoulombFriction(mu=mu),
         launch=launch,
@@ -264,7 +278,9 @@ def test_slip_that_has_all_but_ended_where_it_jams_sticks(problem: tt.Problem) -
 
 
 @pytest.mark.parametrize("law", [{}, {"friction.kind": "contensou", "friction.patch_radius": 1e-3}])
-def test_what_sticks_at_once_takes_the_energy_of_its_slip_and_does_not_open(law: dict[str, object]) -> None:
+def test_what_sticks_at_once_takes_the_energy_of_its_slip_and_does_not_open(
+    law: dict[str, object],
+) -> None:
     lost = []
     for part in (1e-3, 1e-2):
         problem = jamming(slip=part * SLOW).replace({**law, "launch.spin": 40.0 * part})

@@ -87,10 +87,18 @@ def test_what_is_no_number_is_not_trusted(number: float) -> None:
 def test_many_launches_are_held_against_what_each_keeps() -> None:
     problems = [PROBLEM.replace({"launch.spin": spin}) for spin in (1e-8, 50.0, 155.0)]
     starts = [natural_state(one.start(), natural_units(one.top)) for one in problems]
-    many = State.unpack([np.array(numbers) for numbers in zip(*(one.pack() for one in starts), strict=True)])
+    many = State.unpack(
+        [np.array(numbers) for numbers in zip(*(one.pack() for one in starts), strict=True)]
+    )
     monitor = Monitor(TOP, many)
     for off in (0.0, 1e-3):
-        told = (length(many.axis), many.axis[2], many.height, energy(many, TOP), lowest_jellett(many, TOP))
+        told = (
+            length(many.axis),
+            many.axis[2],
+            many.height,
+            energy(many, TOP),
+            lowest_jellett(many, TOP),
+        )
         size, *others, jellett = (number[None] for number in told)
         size[0, 2] += off
         jellett[0, :2] += off

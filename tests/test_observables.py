@@ -1,4 +1,6 @@
-"""What is integrated along a run, and read off it, against integrations and closed forms beside it."""
+"""What is integrated along a run, and read off it, against integrations and closed forms beside
+it.
+"""
 
 import math
 
@@ -22,7 +24,9 @@ NEARLY_HALF_TURNS = np.hstack((np.full((100, 1), 1e-9), RANDOM[:100, 1:]))
 
 
 def seen(turned):
-    """The quaternions, made from axis and angle, of bodies turned so, each in the chart of its pole."""
+    """The quaternions, made from axis and angle, of bodies turned so, each in the chart of its
+    pole.
+    """
     axis, marker = turned.apply([0.0, 0.0, 1.0]), turned.apply([1.0, 0.0, 0.0])
     pole = np.where(axis[:, 2] >= 0.0, 1.0, -1.0)
     normal = np.cross(np.stack([0.0 * pole, 0.0 * pole, pole], axis=1), axis)
@@ -30,7 +34,9 @@ def seen(turned):
     least = Rotation.from_rotvec(
         (np.arctan2(sine, pole * axis[:, 2]) / np.where(sine > 0.0, sine, 1.0))[:, None] * normal
     )
-    over = Rotation.from_rotvec(np.where(pole > 0.0, 0.0, np.pi)[:, None] * np.array([0.0, 1.0, 0.0]))
+    over = Rotation.from_rotvec(
+        np.where(pole > 0.0, 0.0, np.pi)[:, None] * np.array([0.0, 1.0, 0.0])
+    )
     x, y, _ = (least * over).inv().apply(marker).T
     return np.stack(orientation(tuple(axis.T), np.arctan2(y, x), pole, np), axis=1)
 
@@ -56,12 +62,19 @@ def test_orientation_does_not_jump_from_sample_to_sample():
 
 
 ACROSS_THE_EQUATOR = report_problem(spin=100.0, tilt=1.5).replace(
-    {"launch.tilt_rate": 30.0, "launch.azimuth": 0.7, "launch.slip": (0.1, -0.2), "contact.liftoff": "ignore"}
+    {
+        "launch.tilt_rate": 30.0,
+        "launch.azimuth": 0.7,
+        "launch.slip": (0.1, -0.2),
+        "contact.liftoff": "ignore",
+    }
 )
 
 
 def test_place_orientation_and_work_of_a_run_are_those_of_an_integration_beside_it():
-    """A marker moved by k' = omega x k, in SI; the run is in natural units and goes through the equator."""
+    """A marker moved by k' = omega x k, in SI; the run is in natural units and goes through the
+    equator.
+    """
     problem, top = ACROSS_THE_EQUATOR, ACROSS_THE_EQUATOR.top
     times = np.linspace(0.0, 0.3, 61)
     run = tt.simulate(problem, 0.3, times=times)
@@ -105,7 +118,9 @@ def test_a_flying_body_turns_as_a_free_symmetric_top_does():
     top, start, times = problem.top, problem.start(), np.linspace(0.0, 0.4, 101)
     run = tt.simulate(problem, 0.4, times=times)
     assert (np.diff(np.sign(run.axis.values[:, 2])) != 0).sum() > 5
-    along = np.dot(start.momentum, start.axis) * (1.0 / top.axial_inertia - 1.0 / top.transverse_inertia)
+    along = np.dot(start.momentum, start.axis) * (
+        1.0 / top.axial_inertia - 1.0 / top.transverse_inertia
+    )
     precession = np.array(start.momentum) / top.transverse_inertia
     begin = Rotation.from_euler("ZYZ", [problem.launch.azimuth, problem.launch.tilt, 0.0])
     expected = (
@@ -114,7 +129,8 @@ def test_a_flying_body_turns_as_a_free_symmetric_top_does():
         * Rotation.from_rotvec(times[:, None] * np.array([0.0, 0.0, along]))
     )
     found = Rotation.from_quat(run.orientation.values, scalar_first=True)
-    # Within a step the rate of the angle is interpolated: steps are half a radian, Gauss's points eight.
+    # Within a step the rate of the angle is interpolated: steps are half a radian, Gauss's points
+    # eight.
     np.testing.assert_allclose(found.as_matrix(), expected.as_matrix(), rtol=0, atol=1e-10)
     np.testing.assert_allclose(run.x, 0.3 * times, rtol=0, atol=1e-14)
     np.testing.assert_allclose(run.y, -0.2 * times, rtol=0, atol=1e-14)
@@ -122,13 +138,17 @@ def test_a_flying_body_turns_as_a_free_symmetric_top_does():
 
 
 def test_the_highest_place_of_a_flight_is_its_apex():
-    """A body that does not turn is thrown up by v: it rises by v^2 / 2g, between samples and steps."""
+    """A body that does not turn is thrown up by v: it rises by v^2 / 2g, between samples and
+    steps.
+    """
     problem = report_problem(spin=0.0, tilt=0.0).replace(
         {"launch.velocity": (0.0, 0.0, 1.0), "contact.liftoff": "fly"}
     )
     start = problem.start()
     run = tt.simulate(problem, 0.15, samples=2)
-    assert float(run.highest) == pytest.approx(start.height + 1.0 / (2.0 * problem.gravity), rel=1e-12)
+    assert float(run.highest) == pytest.approx(
+        start.height + 1.0 / (2.0 * problem.gravity), rel=1e-12
+    )
 
 
 def test_what_an_impact_at_launch_takes_is_work_of_the_table():
@@ -171,4 +191,6 @@ def test_what_is_compiled_reads_what_arrays_read(monkeypatch, friction, shape):
     for name, values in plain.data_vars.items():
         if "time" in values.dims and name != "mode":
             scale = float(np.abs(values).max()) + (name in ("orientation", "phi")) * 3.0
-            np.testing.assert_allclose(quick[name], values, rtol=0, atol=1e-12 * scale, err_msg=name)
+            np.testing.assert_allclose(
+                quick[name], values, rtol=0, atol=1e-12 * scale, err_msg=name
+            )

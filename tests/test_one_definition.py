@@ -1,4 +1,6 @@
-"""A number has one definition: the same wherever it is asked for, and however many samples there are."""
+"""A number has one definition: the same wherever it is asked for, and however many samples there
+are.
+"""
 
 import json
 import re
@@ -18,7 +20,9 @@ from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.ensemble import follow_cells
 
 SAME = sorted(set(METRICS) - {"steps", "jellett_error", "final_phi_dot"})
-"""What is the same for every executor: events, extremes and losses; not how many steps, or their rounding."""
+"""What is the same for every executor: events, extremes and losses; not how many steps, or their
+rounding.
+"""
 EXACT = 2.3e-16
 LAUNCHES = {"turns over": 155.0, "flies and turns over": 175.0, "stops half-way": 50.0}
 
@@ -57,10 +61,14 @@ def test_the_command_line_says_what_python_says(problem, run):
 
 @pytest.mark.skipif(not has_taylor(), reason="sweeps and runs then use methods of different orders")
 def test_a_sweep_says_what_a_run_says(problem, run):
-    found = tt.sweep(problem, {"launch.tilt": [problem.launch.tilt]}, duration=20.0, tolerance=EXACT)
+    found = tt.sweep(
+        problem, {"launch.tilt": [problem.launch.tilt]}, duration=20.0, tolerance=EXACT
+    )
     cell = found.isel({"launch.tilt": 0})
     for name in SAME:
-        assert float(cell[name]) == pytest.approx(float(run[name]), abs=1e-9, rel=1e-9, nan_ok=True), name
+        assert float(cell[name]) == pytest.approx(
+            float(run[name]), abs=1e-9, rel=1e-9, nan_ok=True
+        ), name
     assert found["turns_over"].attrs == run["turns_over"].attrs
 
 
@@ -72,19 +80,26 @@ def test_a_sweep_without_heyoka_says_what_a_run_says(monkeypatch):
     run = tt.simulate(problem, 8.0, samples=11, integrator="compiled")
     assert run.sizes["flight"] > 0
     for name in SAME:
-        assert float(found[name][0]) == pytest.approx(float(run[name]), abs=1e-9, rel=1e-9, nan_ok=True), name
+        assert float(found[name][0]) == pytest.approx(
+            float(run[name]), abs=1e-9, rel=1e-9, nan_ok=True
+        ), name
 
 
 @pytest.mark.skipif(not has_taylor(), reason="sweeps and runs then use methods of different orders")
 @pytest.mark.parametrize("tilt", [1.1, 1.44])
 def test_extremes_agree_where_many_dips_come_close(tilt):
     """Of dips that nearly tie, looks alone would take the wrong one."""
-    problem, spins = report_problem(155.0).replace({"launch.tilt": tilt}), np.linspace(140.0, 210.0, 8)
+    problem, spins = (
+        report_problem(155.0).replace({"launch.tilt": tilt}),
+        np.linspace(140.0, 210.0, 8),
+    )
     found = tt.sweep(problem, {"launch.spin": spins}, duration=8.0, tolerance=EXACT)
     for place, spin in enumerate(spins):
         run = tt.simulate(problem.replace({"launch.spin": spin}), 8.0, samples=3)
         for name in ("least_normal_force", "highest", "highest_gap"):
-            assert float(found[name][place]) == pytest.approx(float(run[name]), rel=1e-9, abs=1e-12), name
+            assert float(found[name][place]) == pytest.approx(
+                float(run[name]), rel=1e-9, abs=1e-12
+            ), name
 
 
 def test_the_laboratory_tells_the_time_of_the_run(run):

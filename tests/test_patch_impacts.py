@@ -1,4 +1,6 @@
-"""Impacts of patches followed as motions, against an integration of the whole law by other means."""
+"""Impacts of patches followed as motions, against an integration of the whole law by other
+means.
+"""
 
 import numpy as np
 import pytest
@@ -13,7 +15,12 @@ from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.impulse import contact_velocity
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import along_table, angular_velocity, moment_per_normal_force, on_table
+from tippetop.mechanics.motion import (
+    along_table,
+    angular_velocity,
+    moment_per_normal_force,
+    on_table,
+)
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.surface import SphereSurface, contact_vector
@@ -37,7 +44,9 @@ def struck_top(law, random):
 
 
 def integrated(state, top):
-    """State and normal impulse where the contact point stops sinking, by SciPy and with the whole law."""
+    """State and normal impulse where the contact point stops sinking, by SciPy and with the whole
+    law.
+    """
     arm = contact_vector(state.axis, top.surface)
 
     def now(y):
@@ -56,7 +65,14 @@ def integrated(state, top):
     sinking.terminal, sinking.direction = True, 1.0
     start = [*state.momentum, *state.velocity]
     found = solve_ivp(
-        rates, (0.0, 100.0), start, method="DOP853", events=sinking, rtol=1e-13, atol=1e-14, max_step=0.05
+        rates,
+        (0.0, 100.0),
+        start,
+        method="DOP853",
+        events=sinking,
+        rtol=1e-13,
+        atol=1e-14,
+        max_step=0.05,
     )
     assert found.status == 1
     return now(found.y[:, -1]), found.t[-1]

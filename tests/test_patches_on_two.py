@@ -65,7 +65,9 @@ def couple(pressure: str) -> float:
 
 @pytest.mark.parametrize("pressure", PRESSURES)
 def test_what_turns_stops_under_the_couple_of_forces_and_of_drilling(pressure: str) -> None:
-    turns = with_patch(DUMBBELL, pressure).replace({"launch.precession": 5.0, "launch.velocity": (0, 0, 0)})
+    turns = with_patch(DUMBBELL, pressure).replace(
+        {"launch.precession": 5.0, "launch.velocity": (0, 0, 0)}
+    )
     run = followed_by_steps(turns, 1.0)
     assert run.attrs["outcome"] == "at_rest"
     assert times(run, "stick") == pytest.approx(
@@ -93,7 +95,9 @@ def test_both_end_at_once_and_neither_slips_nor_drills_then(pressure: str) -> No
 
 
 def test_small_patches_stick_when_coulombs_friction_has_both_stick() -> None:
-    """One of two contacts sticks first there; here it creeps, and the less the smaller its patch."""
+    """One of two contacts sticks first there; here it creeps, and the less the smaller its
+    patch.
+    """
     dry = times(followed_by_steps(lying(10), 0.2), "stick")
     off = []
     for radius in (4e-4, 1e-4):
@@ -106,8 +110,9 @@ def test_small_patches_stick_when_coulombs_friction_has_both_stick() -> None:
 @pytest.mark.parametrize("pressure", PRESSURES)
 @pytest.mark.parametrize("seed", [SLIPS_AGAIN])
 def test_it_rolls_on_as_long_as_friction_can_turn_its_way_round(seed: int, pressure: str) -> None:
-    """It rolls as a cone, Omega along the line of both contacts: its centre, h high, with
-    Omega^2 h cot(tilt)."""
+    """It rolls as a cone, Omega along the line of both contacts: its centre, h high, with Omega^2 h
+    cot(tilt).
+    """
     body = with_patch(lying(seed), pressure)
     tilt = body.launch.tilt
     sphere = body.body.shape[0]
@@ -140,8 +145,9 @@ def rolling(turning: float, arm: float) -> tt.Problem:
 
 
 def holding(problem: tt.Problem, turning: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What holds it, as a force along and across and a moment about the vertical, the normal forces, and
-    where they act; from m V' and L' of a body that rolls at this rate."""
+    """What holds it, as a force along and across and a moment about the vertical, the normal
+    forces, and where they act; from m V' and L' of a body that rolls at this rate.
+    """
     body, tilt = problem.body, problem.launch.tilt
     s, c = np.sin(tilt), np.cos(tilt)
     spheres = [shape.surface for shape in body.shapes]
@@ -157,9 +163,11 @@ def holding(problem: tt.Problem, turning: float) -> tuple[np.ndarray, np.ndarray
 
 
 def spared(problem: tt.Problem, turning: float) -> float:
-    """How many times what holds it both patches can exert, less 1, by the least of a convex function.
+    """How many times what holds it both patches can exert, less 1, by the least of a convex
+    function.
 
-    A motion in which they slip, and in which what holds it has the power 1, loses this to friction at least.
+    A motion in which they slip, and in which what holds it has the power 1, loses this to friction
+    at least.
     """
     wrench, normal, places = holding(problem, turning)
     scaled = wrench / (1.0, 1.0, R)
@@ -172,11 +180,16 @@ def spared(problem: tt.Problem, turning: float) -> float:
         return float(problem.friction.mu * normal @ np.hypot(slips, drilled * turned / R))
 
     starts = ([0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0])
-    return min(minimize(loss, start, method="BFGS", options={"gtol": 1e-13}).fun for start in starts) - 1.0
+    return (
+        min(minimize(loss, start, method="BFGS", options={"gtol": 1e-13}).fun for start in starts)
+        - 1.0
+    )
 
 
 def test_moments_of_drilling_hold_what_forces_alone_do_not() -> None:
-    """It rolls until that ends, though across the line one contact would need more than its mu N."""
+    """It rolls until that ends, though across the line one contact would need more than its mu
+    N.
+    """
     problem = rolling(6.0, 0.0076)
     wrench, normal, places = holding(problem, 0.0)
     across = np.linalg.solve([[1.0, 1.0], places], wrench[1:])
@@ -190,7 +203,9 @@ def test_moments_of_drilling_hold_what_forces_alone_do_not() -> None:
 
 
 def test_patches_slip_when_rolling_has_become_too_slow_for_what_holds_them() -> None:
-    """The fewer it presses one contact with, of which the needed force across the line stays the same."""
+    """The fewer it presses one contact with, of which the needed force across the line stays the
+    same.
+    """
     problem = rolling(10.0, 0.00775)
     held = brentq(lambda turning: spared(problem, turning), 0.5, 10.0, xtol=1e-12)
     assert 1.0 < held < 9.0
@@ -238,8 +253,12 @@ def test_what_holds_hertz_s_patch_without_drilling_is_an_expression():
         ),
     ],
 )
-def test_a_ball_comes_down_in_the_last_moments_of_slip_on_the_other(mu: float, launch: tt.Launch) -> None:
-    """Where slip and drilling end together, as power series tell, within milliseconds of the touch."""
+def test_a_ball_comes_down_in_the_last_moments_of_slip_on_the_other(
+    mu: float, launch: tt.Launch
+) -> None:
+    """Where slip and drilling end together, as power series tell, within milliseconds of the
+    touch.
+    """
     law = tt.ContensouFriction(mu=mu, patch_radius=5e-4, pressure="ellipsoidal")
     balls = tt.presets.BODIES["hurricane-balls"]
     run = tt.simulate(tt.Problem(body=balls, friction=law, launch=launch), 0.3, samples=3001)

@@ -1,4 +1,6 @@
-"""Problems: what they refuse and how they say so, that they are values, and that writing loses nothing."""
+"""Problems: what they refuse and how they say so, that they are values, and that writing loses
+nothing.
+"""
 
 import copy
 import inspect
@@ -34,7 +36,12 @@ from tippetop.problem import Problem
 from tippetop.shapes import EccentricSphere, Ring, Sphere, Spheroid
 from tippetop.validation import Quantity
 
-EGG = {"mass": 0.05, "shape": {"kind": "spheroid", "across": 0.02, "along": 0.03}, "I1": 1.3e-5, "I3": 8e-6}
+EGG = {
+    "mass": 0.05,
+    "shape": {"kind": "spheroid", "across": 0.02, "along": 0.03},
+    "I1": 1.3e-5,
+    "I3": 8e-6,
+}
 COULOMB = {"kind": "regularized_coulomb", "mu": 0.3, "eps": 1e-3}
 ENTRIES = re.MULTILINE | re.DOTALL
 WRITTEN = {
@@ -173,7 +180,9 @@ class TestRefusals:
         slip[index] = math.nan
         with pytest.raises(InvalidInput) as caught:
             top_problem(launch__slip=tuple(slip))
-        assert the_one_line_of(caught.value).startswith(f"launch.slip.{index} = nan is not possible")
+        assert the_one_line_of(caught.value).startswith(
+            f"launch.slip.{index} = nan is not possible"
+        )
 
     def test_a_velocity_leaves_no_slip_to_choose(self):
         with pytest.raises(InvalidInput) as caught:
@@ -181,7 +190,9 @@ class TestRefusals:
         assert the_one_line_of(caught.value).startswith("launch.slip = (0.1, 0) is not possible")
 
     @pytest.mark.parametrize("liftoff", ["stop", "ignore"])
-    @pytest.mark.parametrize(("name", "value"), [("launch.gap", 0.1), ("launch.velocity", (0.0, 0.0, 1.0))])
+    @pytest.mark.parametrize(
+        ("name", "value"), [("launch.gap", 0.1), ("launch.velocity", (0.0, 0.0, 1.0))]
+    )
     def test_a_top_that_may_not_fly_starts_on_the_table(self, liftoff, name, value):
         with pytest.raises(InvalidInput) as caught:
             presets.report_problem().replace({"contact.liftoff": liftoff, name: value})
@@ -194,7 +205,8 @@ class TestRefusals:
             presets.report_problem().replace({"friction": patch})
         told = the_one_line_of(caught.value)
         assert told.startswith(
-            f"friction.patch_radius = {typed(radius)} is not possible; accepted: from 2.01e-11 to 0.02"
+            f"friction.patch_radius = {typed(radius)} is not possible; accepted: from 2.01e-11 to"
+            " 0.02"
         )
 
     @pytest.mark.parametrize("size", [0.01, 0.0123456, 0.0199999, 0.0999951, 1 / 7])
@@ -222,24 +234,36 @@ class TestRefusals:
     def test_a_patch_and_an_arm_fit_the_largest_surface_whichever_comes_first(self):
         ball, tip = Sphere(radius=0.02, center=-0.006), Sphere(radius=0.004, center=0.02)
         for two in ([ball, tip], [tip, ball]):
-            patch = {"friction.kind": "contensou", "friction.patch_radius": 0.01, "rolling_resistance": 0.01}
+            patch = {
+                "friction.kind": "contensou",
+                "friction.patch_radius": 0.01,
+                "rolling_resistance": 0.01,
+            }
             problem = presets.report_problem(mu=0.3).replace({"body.shape": two} | patch)
             for name, value in (("friction.patch_radius", 1e-11), ("rolling_resistance", 0.021)):
                 with pytest.raises(InvalidInput) as caught:
                     problem.replace({name: value})
-                assert the_one_line_of(caught.value).startswith(f"{name} = {typed(value)} is not possible")
+                assert the_one_line_of(caught.value).startswith(
+                    f"{name} = {typed(value)} is not possible"
+                )
 
     @pytest.mark.parametrize("slip", [(0.0, 0.0, 0.0), "no", 1.0])
     def test_a_slip_that_is_not_two_numbers(self, slip):
         with pytest.raises(InvalidInput) as caught:
             top_problem(launch__slip=slip)
-        assert the_one_line_of(caught.value).startswith(f"launch.slip = {typed(slip)} is not possible")
+        assert the_one_line_of(caught.value).startswith(
+            f"launch.slip = {typed(slip)} is not possible"
+        )
 
-    @pytest.mark.parametrize(("name", "value"), [("across", 0.0), ("along", -0.03), ("along", math.nan)])
+    @pytest.mark.parametrize(
+        ("name", "value"), [("across", 0.0), ("along", -0.03), ("along", math.nan)]
+    )
     def test_a_spheroid_that_cannot_be(self, name, value):
         with pytest.raises(InvalidInput) as caught:
             top_problem(body={**EGG, "shape": {**EGG["shape"], name: value}})
-        assert the_one_line_of(caught.value).startswith(f"body.shape.{name} = {typed(value)} is not possible")
+        assert the_one_line_of(caught.value).startswith(
+            f"body.shape.{name} = {typed(value)} is not possible"
+        )
 
     @pytest.mark.parametrize(
         ("name", "value"), [("mu", -0.1), ("eps", 0.0), ("eps", 5e-324), ("eps", math.inf)]
@@ -247,7 +271,9 @@ class TestRefusals:
     def test_a_coulomb_friction_that_cannot_be(self, name, value):
         with pytest.raises(InvalidInput) as caught:
             top_problem(friction={**COULOMB, name: value})
-        assert the_one_line_of(caught.value).startswith(f"friction.{name} = {typed(value)} is not possible")
+        assert the_one_line_of(caught.value).startswith(
+            f"friction.{name} = {typed(value)} is not possible"
+        )
 
     @pytest.mark.parametrize(
         ("part", "name", "value"),
@@ -276,7 +302,16 @@ class TestRefusals:
 
     @pytest.mark.parametrize(
         "name",
-        ["body", "friction", "launch", "body.mass", "body.I3", "body.shape", "launch.tilt", "friction.mu"],
+        [
+            "body",
+            "friction",
+            "launch",
+            "body.mass",
+            "body.I3",
+            "body.shape",
+            "launch.tilt",
+            "friction.mu",
+        ],
     )
     def test_a_missing_key(self, name):
         with pytest.raises(InvalidInput) as caught:
@@ -332,9 +367,14 @@ class TestRefusals:
     def test_values_without_their_names_are_answered_with_the_names(self):
         with pytest.raises(InvalidInput) as caught:
             Launch(0.1, 155.0)
-        told = "Launch = (0.1, 155) is not possible; accepted: its fields by name: tilt, spin, azimuth, "
+        told = (
+            "Launch = (0.1, 155) is not possible; accepted: its fields by name: tilt, spin,"
+            " azimuth, "
+        )
         assert the_one_line_of(caught.value).startswith(told)
-        assert next(iter(inspect.signature(Launch).parameters)) == "tilt", "and help tells of no others"
+        assert next(iter(inspect.signature(Launch).parameters)) == "tilt", (
+            "and help tells of no others"
+        )
 
     def test_a_misspelt_key_is_told_before_the_key_that_is_missing_for_it(self):
         fields = fields_with("launch.tilt", ...)
@@ -406,11 +446,15 @@ class TestRefusals:
 
 
 class TestPainlevesParadox:
-    """A launch in which the table's push would drag the body further into it has no motion to compute."""
+    """A launch in which the table's push would drag the body further into it has no motion to
+    compute.
+    """
 
     @staticmethod
     def critical_slip(tilt):
-        """Slip at which I1 + m R^2 alpha^2 s^2 = m R^2 alpha s (1 - alpha c) mu v_x, for the tippe top."""
+        """Slip at which I1 + m R^2 alpha^2 s^2 = m R^2 alpha s (1 - alpha c) mu v_x, for the tippe
+        top.
+        """
         m, R, alpha, mu, I1 = 0.02, 0.02, 0.3, 0.3, 131 / 350 * 0.02 * 0.02**2
         s, c = math.sin(tilt), math.cos(tilt)
         return (I1 + m * R**2 * alpha**2 * s**2) / (m * R**2 * alpha * s * (1.0 - alpha * c) * mu)
@@ -446,12 +490,16 @@ class TestPainlevesParadox:
 @pytest.mark.parametrize(
     "changes",
     [
-        pytest.param({"friction": COULOMB, "launch.slip": (1e200, 0.0)}, id="Coulomb friction at 1e200 m/s"),
+        pytest.param(
+            {"friction": COULOMB, "launch.slip": (1e200, 0.0)}, id="Coulomb friction at 1e200 m/s"
+        ),
         pytest.param({"friction": {**COULOMB, "eps": 1e-100}}, id="eps of 1e-100 m/s"),
         pytest.param(
             {"body.shape": {"kind": "spheroid", "across": 1e-200, "along": 1e-200}}, id="a tiny egg"
         ),
-        pytest.param({"body.shape": {"kind": "spheroid", "across": 1e200, "along": 1e200}}, id="a huge egg"),
+        pytest.param(
+            {"body.shape": {"kind": "spheroid", "across": 1e200, "along": 1e200}}, id="a huge egg"
+        ),
     ],
 )
 def test_absurd_sizes_are_accepted_or_refused_but_do_not_break_the_arithmetic(changes):
@@ -463,7 +511,9 @@ def test_absurd_sizes_are_accepted_or_refused_but_do_not_break_the_arithmetic(ch
 
 @pytest.mark.parametrize("along", [1e-9, 1e9])
 def test_a_spheroid_so_thin_that_rounding_decides_its_curvature_is_refused(along):
-    with pytest.raises(InvalidInput, match=r"along = .* is not possible; accepted: within a factor of"):
+    with pytest.raises(
+        InvalidInput, match=r"along = .* is not possible; accepted: within a factor of"
+    ):
         Spheroid(across=0.02, along=along)
 
 
@@ -499,7 +549,9 @@ class TestFiles:
         """
         read = Problem.read(self.write(tmp_path / "egg.toml", text))
         expected = Problem(
-            body=EGG, friction=RegularizedCoulombFriction(mu=0.3), launch=Launch(tilt=0.0, spin=200.0)
+            body=EGG,
+            friction=RegularizedCoulombFriction(mu=0.3),
+            launch=Launch(tilt=0.0, spin=200.0),
         )
         assert read == expected
         assert read.friction.eps == 1e-3
@@ -528,10 +580,14 @@ class TestFiles:
     def test_json_that_is_no_object(self, tmp_path, text):
         with pytest.raises(InvalidInput) as caught:
             Problem.read(self.write(tmp_path / "a.json", text))
-        assert the_one_line_of(caught.value).endswith(" in a.json is not possible; accepted: a JSON object")
+        assert the_one_line_of(caught.value).endswith(
+            " in a.json is not possible; accepted: a JSON object"
+        )
 
     def test_every_truncated_toml_is_refused_or_lacks_only_defaults(self, tmp_path):
-        """A file cut short anywhere is refused in one line, unless what is left is a problem by itself."""
+        """A file cut short anywhere is refused in one line, unless what is left is a problem by
+        itself.
+        """
         text = top_problem(launch__azimuth=0.5).to_toml()
         refused = 0
         for end in range(len(text) - 1):
@@ -558,7 +614,9 @@ class TestFiles:
             Problem.read(path)
         the_one_line_of(caught.value)
 
-    @pytest.mark.parametrize("text", ["", "tilt", "tilt = ", "[body", "[body]\n[body]", "\x00", "a = 'b\n'"])
+    @pytest.mark.parametrize(
+        "text", ["", "tilt", "tilt = ", "[body", "[body]\n[body]", "\x00", "a = 'b\n'"]
+    )
     def test_toml_that_is_not_a_problem(self, tmp_path, text):
         path = self.write(tmp_path / "problem.toml", text)
         with pytest.raises(InvalidInput) as caught:
@@ -607,10 +665,14 @@ class TestFiles:
     @pytest.mark.parametrize(
         ("read", "text"),
         [
-            pytest.param(Problem.from_json, '{"gravity": ' + "1" * 5000 + "}", id="JSON, 5000 digits"),
+            pytest.param(
+                Problem.from_json, '{"gravity": ' + "1" * 5000 + "}", id="JSON, 5000 digits"
+            ),
             pytest.param(Problem.from_toml, "gravity = " + "1" * 5000, id="TOML, 5000 digits"),
             pytest.param(Problem.from_json, "[" * 100_000, id="JSON, 100000 brackets"),
-            pytest.param(Problem.from_toml, "gravity = " + "[" * 100_000, id="TOML, 100000 brackets"),
+            pytest.param(
+                Problem.from_toml, "gravity = " + "[" * 100_000, id="TOML, 100000 brackets"
+            ),
         ],
     )
     def test_digits_or_brackets_without_end_are_refused_in_one_line(self, read, text):
@@ -658,7 +720,11 @@ class TestRoundTrips:
 class TestValues:
     def test_a_problem_cannot_be_changed(self):
         original = top_problem()
-        for part, name in ((original, "gravity"), (original.launch, "spin"), (original.body.shape, "radius")):
+        for part, name in (
+            (original, "gravity"),
+            (original.launch, "spin"),
+            (original.body.shape, "radius"),
+        ):
             before = getattr(part, name)
             with pytest.raises(InvalidInput, match="no change, but a copy"):
                 setattr(part, name, 1.0)
@@ -719,7 +785,9 @@ class TestValues:
         lighter = presets.report_problem().replace({"body.I1": 1e-6, "body.I3": 1.9e-6})
         assert (lighter.body.I1, lighter.body.I3) == (1e-6, 1.9e-6)
 
-    @pytest.mark.parametrize("name", ["launch.tlt", "gravty", "launch.tilt.x", "body.shape.along", "", "."])
+    @pytest.mark.parametrize(
+        "name", ["launch.tlt", "gravty", "launch.tilt.x", "body.shape.along", "", "."]
+    )
     def test_replacing_a_field_that_is_not_there(self, name):
         with pytest.raises(InvalidInput) as caught:
             top_problem().replace({name: 1.0})
@@ -743,7 +811,9 @@ class TestValues:
         assert start.axis[2] == pytest.approx(math.cos(launch.tilt), abs=1e-15)
         spin = sum(a * b for a, b in zip(start.momentum, start.axis, strict=True)) / body.I3
         swing = abs(launch.precession) + abs(launch.tilt_rate)
-        assert spin == pytest.approx(launch.spin, abs=1e-12 * (abs(launch.spin) + swing * body.I1 / body.I3))
+        assert spin == pytest.approx(
+            launch.spin, abs=1e-12 * (abs(launch.spin) + swing * body.I1 / body.I3)
+        )
         if launch.velocity is not None:
             assert start.velocity == launch.velocity
             return
@@ -763,7 +833,9 @@ class TestValues:
         if launch.velocity is None:
             omega = angular_velocity(start.axis, start.momentum, top)
             point = point_velocity(start.velocity, omega, arm)
-            assert point[2] == pytest.approx(0.0, abs=1e-13 * (size * length(omega) + length(start.velocity)))
+            assert point[2] == pytest.approx(
+                0.0, abs=1e-13 * (size * length(omega) + length(start.velocity))
+            )
 
     @pytest.mark.parametrize(("tilt", "pole"), [(0.0, 1.0), (math.pi, -1.0)])
     def test_a_launch_at_a_pole_is_exactly_vertical(self, tilt, pole):
@@ -791,18 +863,26 @@ class TestPresets:
     def test_presets_are_found_by_their_names(self):
         assert presets.body("report") == presets.REPORT
         assert presets.body("report-table-1") == presets.REPORT_TABLE_1
-        assert presets.body("leine-glocker") == presets.LEINE_GLOCKER == presets.leine_glocker_problem().body
+        assert (
+            presets.body("leine-glocker")
+            == presets.LEINE_GLOCKER
+            == presets.leine_glocker_problem().body
+        )
 
     def test_leine_and_glockers_centre_of_mass_is_3_mm_from_the_middle(self):
         shape = presets.LEINE_GLOCKER.shape
         assert shape.radius * shape.eccentricity == pytest.approx(3e-3, rel=1e-15)
 
     def test_the_reports_problem_is_launched_at_rest_in_tilt(self):
-        """theta = 0.1 rad and omega3 = 155 rad/s with everything else zero, mu = 0.3 s/m, g = 9.8 m/s^2."""
+        """theta = 0.1 rad and omega3 = 155 rad/s with everything else zero, mu = 0.3 s/m, g = 9.8
+        m/s^2.
+        """
         assert presets.report_problem() == Problem(
             body=presets.REPORT,
             friction=ViscousFriction(mu=0.3),
-            launch=Launch(tilt=0.1, spin=155.0, azimuth=0.0, tilt_rate=0.0, precession=0.0, slip=(0.0, 0.0)),
+            launch=Launch(
+                tilt=0.1, spin=155.0, azimuth=0.0, tilt_rate=0.0, precession=0.0, slip=(0.0, 0.0)
+            ),
             gravity=9.8,
         )
         other = presets.report_problem(spin=50.0, tilt=0.2, mu=1.0)
@@ -846,7 +926,9 @@ def conforms(value, schema, root):
                 isinstance(value, dict)
                 and set(schema.get("required", [])) <= set(value)
                 and not schema["additionalProperties"]
-                and all(name in known and conforms(v, known[name], root) for name, v in value.items())
+                and all(
+                    name in known and conforms(v, known[name], root) for name, v in value.items()
+                )
             )
     raise AssertionError(f"unknown schema: {schema}")
 

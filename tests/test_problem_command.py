@@ -22,7 +22,9 @@ def test_comments_change_nothing(problem):
 
 @given(problems())
 def test_every_number_is_explained(problem):
-    numbers = [line.strip() for line in commented_toml(problem).splitlines() if NUMBER.match(line.strip())]
+    numbers = [
+        line.strip() for line in commented_toml(problem).splitlines() if NUMBER.match(line.strip())
+    ]
     assert len(numbers) >= 8
     assert [line for line in numbers if "  # " not in line] == []
 
@@ -39,8 +41,12 @@ def test_units_are_those_of_the_fields():
     text = commented_toml(report_problem())
     assert "gravity = 9.8  # m/s^2: acceleration of gravity\n" in text
     assert "mu = 0.3  # s/m: friction coefficient\n" in text
-    assert re.search(r"I1 = \S+  # kg m\^2: moment of inertia transverse to the axis of symmetry\n", text)
-    assert "eccentricity = 0.3  # distance of the centre of mass from the centre, in radii\n" in text
+    assert re.search(
+        r"I1 = \S+  # kg m\^2: moment of inertia transverse to the axis of symmetry\n", text
+    )
+    assert (
+        "eccentricity = 0.3  # distance of the centre of mass from the centre, in radii\n" in text
+    )
     assert 'liftoff = "fly"  # "fly" or "stop" or "ignore"\n' in text
 
 

@@ -87,9 +87,15 @@ def test_a_job_that_kills_every_process_is_given_up() -> None:
 
 @pytest.mark.parametrize(
     ("call", "kind", "match"),
-    [(refuse, InvalidInput, "spin = -1"), (be_odd, RuntimeError, "Odd"), (divmod, TypeError, "divmod")],
+    [
+        (refuse, InvalidInput, "spin = -1"),
+        (be_odd, RuntimeError, "Odd"),
+        (divmod, TypeError, "divmod"),
+    ],
 )
-def test_what_a_job_raises_is_raised_here(call: Callable[[], Any], kind: type[Exception], match: str) -> None:
+def test_what_a_job_raises_is_raised_here(
+    call: Callable[[], Any], kind: type[Exception], match: str
+) -> None:
     with pytest.raises(kind, match=match):
         elsewhere(call)
 
@@ -167,8 +173,12 @@ for _, blocked in shared(lambda: waiting.pop() if waiting else None, 2):
 """
 
 
-@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="this system cannot block signals")
+@pytest.mark.skipif(
+    not hasattr(signal, "pthread_sigmask"), reason="this system cannot block signals"
+)
 def test_processes_cannot_hear_ctrl_c_from_their_first_moment() -> None:
     """The very first of them neither, which Python starts together with a process of its own."""
-    done = subprocess.run([sys.executable, "-c", BLOCKED], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", BLOCKED], capture_output=True, text=True, check=True
+    )
     assert (done.stdout, done.stderr) == ("True\nTrue\n", "")

@@ -15,7 +15,11 @@ HEAVY = sorted({"xarray", "heyoka", "numpy", "pydantic", "pandas"} | NEVER_NEEDE
 def in_new_process(code):
     """Run code in a process of its own, with warnings as errors; return what it prints."""
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-W", "error", "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )
     assert (done.stderr, done.returncode) == ("", 0)
     return done.stdout.strip()
@@ -33,7 +37,9 @@ def test_import_loads_no_library():
 
 
 def test_looking_at_the_names_loads_no_library():
-    assert loaded_after("import tippetop; dir(tippetop); tippetop.__version__; tippetop.__doc__") == []
+    assert (
+        loaded_after("import tippetop; dir(tippetop); tippetop.__version__; tippetop.__doc__") == []
+    )
 
 
 def test_stating_a_problem_loads_no_library_that_only_running_it_needs():
@@ -42,7 +48,10 @@ def test_stating_a_problem_loads_no_library_that_only_running_it_needs():
 
 
 def test_simulating_loads_neither_matplotlib_nor_the_laboratory():
-    assert set(loaded_after("import tippetop as tt; tt.simulate")) & {"matplotlib", "anywidget"} == set()
+    assert (
+        set(loaded_after("import tippetop as tt; tt.simulate")) & {"matplotlib", "anywidget"}
+        == set()
+    )
 
 
 @pytest.mark.skipif(not has_taylor(), reason="heyoka is not installed")
@@ -86,7 +95,9 @@ for name in {tt.__all__}:
 
 
 def test_all_can_be_imported_at_once():
-    names = in_new_process("from tippetop import *; print(*sorted(set(dir()) - {'__annotations__'}))").split()
+    names = in_new_process(
+        "from tippetop import *; print(*sorted(set(dir()) - {'__annotations__'}))"
+    ).split()
     assert set(tt.__all__) <= set(names)
 
 
@@ -96,9 +107,9 @@ def test_dir_lists_the_public_names_in_order():
 
 
 def test_what_users_are_shown_is_public():
-    shown = """Problem Body EccentricSphere Sphere Ring Spheroid ViscousFriction Launch Contact presets
-        simulate summarize plot view sweep predict critical_spins steady_states read_run write_run
-        write_csv write_glb write_html write_movie write_solid
+    shown = """Problem Body EccentricSphere Sphere Ring Spheroid ViscousFriction Launch Contact
+        presets simulate summarize plot view sweep predict critical_spins steady_states read_run
+        write_run write_csv write_glb write_html write_movie write_solid
         Workpiece Insert design_insert design_bowl"""
     assert set(shown.split()) <= set(tt.__all__)
     assert callable(tt.simulate)
@@ -113,9 +124,10 @@ def test_unknown_name_is_an_attribute_error_that_names_it():
 
 
 def test_no_module_hides_a_public_name():
-    """A module that is imported becomes an attribute of its package: none may be called as a public name."""
-    in_new_process(
-        f"""
+    """A module that is imported becomes an attribute of its package: none may be called as a public
+    name.
+    """
+    in_new_process(f"""
 import pkgutil
 from contextlib import suppress
 from importlib import import_module
@@ -128,8 +140,7 @@ for found in pkgutil.walk_packages(tippetop.__path__, "tippetop."):
 for name, value in before.items():
     assert getattr(tippetop, name) is value, name
     assert name == "presets" or not isinstance(value, ModuleType), name
-"""
-    )
+""")
 
 
 def test_errors_are_what_their_kind_suggests():

@@ -104,19 +104,25 @@ def test_what_rolls_straight_on_two_surfaces_slows_down_evenly_and_rests(shape: 
     assert events(run, "rolling stops") == pytest.approx([rests, rests], rel=1e-12)
     early = run["time"].values < rests
     np.testing.assert_allclose(
-        run["omega3"].values[early], spin * (1 - run["time"].values[early] / rests), atol=1e-12 * spin
+        run["omega3"].values[early],
+        spin * (1 - run["time"].values[early] / rests),
+        atol=1e-12 * spin,
     )
     np.testing.assert_allclose(run["contact_torque"].values[early, 0], -ARM * MASS * G, rtol=1e-12)
     assert float(run["y"][-1]) == pytest.approx(-BALL * spin * rests / 2, rel=1e-12)
     assert losses(run) == pytest.approx([0.0, 0.0, kinetic], rel=1e-12, abs=1e-13 * kinetic)
     start = problem.start()
-    found = pair_motion(ContactPair.of(start.axis, start.momentum, problem.top.each), (None, None), 1.0)
+    found = pair_motion(
+        ContactPair.of(start.axis, start.momentum, problem.top.each), (None, None), 1.0
+    )
     couples = [wrench.torque[0] for wrench in found.wrenches]
     assert couples == pytest.approx([-ARM * MASS * G / 3, -ARM * MASS * G * 2 / 3], rel=1e-12)
 
 
 def test_what_slides_across_begins_to_roll_sticks_and_rests() -> None:
-    """m v' = -mu m g and I_3 w' = (mu r - arm) m g until v = r w, and then as what rolls straight."""
+    """m v' = -mu m g and I_3 w' = (mu r - arm) m g until v = r w, and then as what rolls
+    straight.
+    """
     run = followed(dumbbell(velocity=(0.0, -0.2, 0.0)), 2.0)
     quicker = MASS * G * (MU * BALL - ARM) / ALONG
     sticks = 0.2 / (MU * G + BALL * quicker)
@@ -130,17 +136,24 @@ def test_what_slides_across_begins_to_roll_sticks_and_rests() -> None:
 
 
 @pytest.mark.parametrize("velocity", [(0.0, 0.2, 0.0), (0.2, 0.0, 0.0)])
-def test_what_is_held_on_two_surfaces_slides_as_a_block(velocity: tuple[float, float, float]) -> None:
+def test_what_is_held_on_two_surfaces_slides_as_a_block(
+    velocity: tuple[float, float, float],
+) -> None:
     """Across, the couple of friction is mu r < arm; along, there is none."""
     mu = 0.5 * ARM / BALL
     run = followed(dumbbell(mu=mu, velocity=velocity), 2.0)
     assert run.attrs["outcome"] == "at_rest"
     assert events(run, "stick") == pytest.approx([0.2 / (mu * G)] * 2, rel=1e-12)
     assert not events(run, "rolling starts")
-    assert set(words(run)) == {"sliding_without_rolling_on_0_and_1", "sticking_without_rolling_on_0_and_1"}
+    assert set(words(run)) == {
+        "sliding_without_rolling_on_0_and_1",
+        "sticking_without_rolling_on_0_and_1",
+    }
     assert losses(run) == pytest.approx([0.5 * MASS * 0.2**2, 0.0, 0.0], rel=1e-12)
     couple = ARM * MASS * G * 0.5 if velocity[1] else 0.0
-    np.testing.assert_allclose(run["contact_torque"].values[:-2, 0], couple, atol=1e-12 * ARM * MASS * G)
+    np.testing.assert_allclose(
+        run["contact_torque"].values[:-2, 0], couple, atol=1e-12 * ARM * MASS * G
+    )
 
 
 def test_it_rolls_once_friction_needs_more_than_the_resistance_can() -> None:
@@ -186,7 +199,9 @@ def test_rolling_that_slip_held_up_begins_when_that_ends(monkeypatch: pytest.Mon
 
 
 class SmoothedLaw(NamedTuple):
-    """Coulomb's friction and a resistance to rolling, both smoothed: an equation of sliding on two."""
+    """Coulomb's friction and a resistance to rolling, both smoothed: an equation of sliding on
+    two.
+    """
 
     mu: Scalar
     eps: Scalar
@@ -207,8 +222,12 @@ class SmoothedLaw(NamedTuple):
         return (self.mu, self.eps / units.speed, self.arm / units.length, self.slow * units.time)
 
 
-def ends(problem: tt.Problem, duration: float, law: SmoothedLaw | None = None) -> tuple[np.ndarray, set[str]]:
-    """Axis, angular momentum and velocity at the end, in natural units, and in which modes it went there."""
+def ends(
+    problem: tt.Problem, duration: float, law: SmoothedLaw | None = None
+) -> tuple[np.ndarray, set[str]]:
+    """Axis, angular momentum and velocity at the end, in natural units, and in which modes it went
+    there.
+    """
     units, top = natural_units(problem.top), problem.top
     top = natural(top if law is None else top._replace(friction=law, rolling_resistance=None))
     start = rules_for(top, "fly", 0.0).launch(natural_state(problem.start(), units))
@@ -219,12 +238,18 @@ def ends(problem: tt.Problem, duration: float, law: SmoothedLaw | None = None) -
     return np.array([*run.state.axis, *run.state.momentum, *run.state.velocity]), modes
 
 
-SEEDS = {"sticks, and stops": (56, 0.14), "stops, and sticks": (31, 0.2), "starts again": (64, 0.06)}
+SEEDS = {
+    "sticks, and stops": (56, 0.14),
+    "stops, and sticks": (31, 0.2),
+    "starts again": (64, 0.06),
+}
 """Launches and how long they are followed."""
 
 
 @pytest.mark.parametrize(("seed", "duration"), SEEDS.values(), ids=SEEDS)
-def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(seed: int, duration: float) -> None:
+def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(
+    seed: int, duration: float
+) -> None:
     problem = resisted(seed)
     run = followed(problem, duration, 201)
     assert events(run, "rolling stops")
@@ -233,11 +258,14 @@ def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(seed: int, 
     # The tilt stays as accelerations have it stay: its drift goes as the tolerance of steps.
     assert float(abs(run["gap"]).max()) < 1e-11 * R
     assert sum(losses(run)) == pytest.approx(float(run["energy_lost"]), rel=1e-12)
-    axis, momentum, normal = (run[name].values for name in ("axis", "angular_momentum", "normal_force"))
+    axis, momentum, normal = (
+        run[name].values for name in ("axis", "angular_momentum", "normal_force")
+    )
     along = np.hypot(*axis[:, :2].T)
     couple = np.sum(run["contact_torque"].values[:, :2] * axis[:, :2], axis=1) / along
     limit = problem.rolling_resistance * normal
-    # The torque is about the first contact point, from which the second is off by the drift of the gap.
+    # The torque is about the first contact point, from which the second is off by the drift of the
+    # gap.
     lifted = np.abs(run["gap"].values) * np.hypot(*run["contact_force"].values[:, :2].T)
     assert np.all(np.abs(couple) <= limit * (1 + 1e-12) + 2 * lifted)
     held = np.array(["without_rolling" in word for word in words(run)])
@@ -298,7 +326,9 @@ def test_straight_slip_on_two_ends_when_friction_has_taken_it(tolerance: float |
         run = tt.simulate(problem, 1.0, samples=2, tolerance=tolerance)
         assert run.attrs["outcome"] == "at_rest"
         friction = float(getattr(problem.friction, "mu", 0.0))
-        assert float(run["end_time"]) == pytest.approx(speed / (friction * problem.gravity), rel=1e-7)
+        assert float(run["end_time"]) == pytest.approx(
+            speed / (friction * problem.gravity), rel=1e-7
+        )
 
 
 def test_sweeps_find_what_runs_find() -> None:
@@ -314,5 +344,7 @@ def test_sweeps_find_what_runs_find() -> None:
         assert (outcomes[int(cell["outcome"])] == "at_rest") is rested[-1]
         size = float(run["energy_start"])
         for name in ("end_time", "final_omega3", "energy_lost_sliding", "energy_lost_rolling"):
-            assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-9, abs=1e-11 * size), name
+            assert float(cell[name]) == pytest.approx(
+                float(run[name]), rel=1e-9, abs=1e-11 * size
+            ), name
     assert rested == [False, True]

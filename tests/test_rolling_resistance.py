@@ -10,11 +10,15 @@ import tippetop as tt
 G = 9.8
 R, M, ARM = 0.02, 0.015, 1e-4
 BALL = tt.Body(
-    mass=M, shape={"kind": "spheroid", "across": R, "along": R}, I1=0.4 * M * R * R, I3=0.4 * M * R * R
+    mass=M,
+    shape={"kind": "spheroid", "across": R, "along": R},
+    I1=0.4 * M * R * R,
+    I3=0.4 * M * R * R,
 )
 COULOMB = tt.CoulombFriction(mu=0.3)
 PATCHES = [
-    tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure=word) for word in ("hertz", "ellipsoidal")
+    tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure=word)
+    for word in ("hertz", "ellipsoidal")
 ]
 REPORT = tt.presets.report_problem(spin=100.0, tilt=0.1)
 
@@ -123,13 +127,15 @@ def test_an_inverted_top_under_a_smooth_law_stops_rolling_and_stands(friction):
         assert np.all(couple <= 1e-5 * run["normal_force"].values * (1 + 1e-12))
     one, other = runs
     np.testing.assert_allclose(one["theta"], other["theta"], atol=1e-7)
-    np.testing.assert_allclose(events(one, "rolling stops"), events(other, "rolling stops"), rtol=1e-6)
+    np.testing.assert_allclose(
+        events(one, "rolling stops"), events(other, "rolling stops"), rtol=1e-6
+    )
 
 
 def test_losses_add_up_to_the_energy_lost():
-    problem = REPORT.replace({"launch.spin": 60.0, "launch.tilt": 0.8, "launch.gap": 0.005}).model_copy(
-        update={"friction": PATCHES[1], "rolling_resistance": ARM}
-    )
+    problem = REPORT.replace(
+        {"launch.spin": 60.0, "launch.tilt": 0.8, "launch.gap": 0.005}
+    ).model_copy(update={"friction": PATCHES[1], "rolling_resistance": ARM})
     run = tt.simulate(problem, 2.0, samples=201)
     parts = [run[f"energy_lost_{name}"].item() for name in ("sliding", "drilling", "rolling")]
     assert min(parts) > 0.0
@@ -154,7 +160,11 @@ def test_sweeps_find_what_runs_find():
     found = tt.sweep(
         problem, {"rolling_resistance": arms, "launch.spin": spins}, duration=3.0, tolerance=1e-15
     )
-    names = ("final_theta", "end_time", *(f"energy_lost_{how}" for how in ("sliding", "drilling", "rolling")))
+    names = (
+        "final_theta",
+        "end_time",
+        *(f"energy_lost_{how}" for how in ("sliding", "drilling", "rolling")),
+    )
     words = found["outcome"].attrs["flag_meanings"].split()
     outcomes = set()
     for i, arm in enumerate(arms):
@@ -165,7 +175,9 @@ def test_sweeps_find_what_runs_find():
             cell = found.isel({"rolling_resistance": i, "launch.spin": j})
             scale = float(run["energy_start"])
             for name in names:
-                assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-9, abs=1e-11 * scale), name
+                assert float(cell[name]) == pytest.approx(
+                    float(run[name]), rel=1e-9, abs=1e-11 * scale
+                ), name
             rested = words[int(cell["outcome"])] == "at_rest"
             assert rested == (run.attrs["outcome"] == "at_rest")
             outcomes.add(rested)
@@ -203,10 +215,14 @@ SLIPPERY = [law.model_copy(update={"mu": 0.02}) for law in (COULOMB, *PATCHES)]
         *[(law, 0.0) for law in SLIPPERY],
         (PATCHES[0], 1e-5),
     ],
-    ids=lambda it: str(it) if isinstance(it, float) else f"{it.kind}-{it.mu}-{getattr(it, 'pressure', '')}",
+    ids=lambda it: (
+        str(it) if isinstance(it, float) else f"{it.kind}-{it.mu}-{getattr(it, 'pressure', '')}"
+    ),
 )
 def test_a_top_released_at_rest_falls_under_every_law(friction, arm):
-    """What begins to slip, or to roll, lasts no shorter for a velocity beside it that is zero and goes on."""
+    """What begins to slip, or to roll, lasts no shorter for a velocity beside it that is zero and
+    goes on.
+    """
     problem = REPORT.model_copy(
         update={
             "friction": friction,
@@ -214,7 +230,9 @@ def test_a_top_released_at_rest_falls_under_every_law(friction, arm):
             "rolling_resistance": arm,
         }
     )
-    run, other = (tt.simulate(problem, 0.1, samples=11, integrator=name) for name in ("taylor", "dop853"))
+    run, other = (
+        tt.simulate(problem, 0.1, samples=11, integrator=name) for name in ("taylor", "dop853")
+    )
     assert run.attrs["outcome"] == other.attrs["outcome"] == "completed"
     assert abs(float(run["energy_error"])) < 1e-14
     assert np.ptp(run["theta"].values) > 0.01

@@ -1,4 +1,6 @@
-"""Whole runs: against converged numbers, exact laws, symmetries, and what they promise their users."""
+"""Whole runs: against converged numbers, exact laws, symmetries, and what they promise their
+users.
+"""
 
 import functools
 import math
@@ -20,14 +22,19 @@ from tippetop.integrators import has_numba, has_taylor, make_integrator
 from tippetop.presets import REPORT, report_problem
 
 few_and_slow = settings(
-    max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much]
+    max_examples=10,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
 )
 EXACT_INTEGRATORS = ["taylor", "dop853"] if has_taylor() else ["dop853"]
 
 
 def report(spin=155.0, liftoff="ignore", mu=0.3, **launch):
     """The report's top, by default with a table that may pull."""
-    changes = {"contact.liftoff": liftoff, **{f"launch.{name}": value for name, value in launch.items()}}
+    changes = {
+        "contact.liftoff": liftoff,
+        **{f"launch.{name}": value for name, value in launch.items()},
+    }
     return report_problem(spin, mu=mu).replace(changes)
 
 
@@ -50,14 +57,21 @@ def egg(spin=60.0, tilt=1.2, mu=1.0, **launch):
 @st.composite
 def tippe_tops(draw, liftoffs=("stop", "ignore")):
     """Tippe tops of all sizes with either friction, launched at any tilt, spinning either way."""
-    radius, mass, gravity = draw(numbers(0.005, 0.1)), draw(numbers(0.001, 1.0)), draw(numbers(1.6, 25.0))
+    radius, mass, gravity = (
+        draw(numbers(0.005, 0.1)),
+        draw(numbers(0.001, 1.0)),
+        draw(numbers(1.6, 25.0)),
+    )
     speed = math.sqrt(gravity * radius)
     rate = speed / radius
     mu = draw(numbers(0.0, 1.0))
     friction = draw(
         st.one_of(
             st.just(tt.ViscousFriction(mu=mu / speed)),
-            st.builds(lambda eps: tt.RegularizedCoulombFriction(mu=mu, eps=eps * speed), numbers(0.01, 1.0)),
+            st.builds(
+                lambda eps: tt.RegularizedCoulombFriction(mu=mu, eps=eps * speed),
+                numbers(0.01, 1.0),
+            ),
         )
     )
     transverse = draw(numbers(0.2, 1.0)) * mass * radius**2
@@ -90,7 +104,8 @@ def largest(values):
     return float(np.abs(values).max())
 
 
-# --- converged numbers --------------------------------------------------------------------------------------
+# --- converged numbers
+# --------------------------------------------------------------------------------------
 
 THETA_AT = {
     50.0: {
@@ -110,7 +125,9 @@ THETA_AT = {
         20.0: 3.141443639505,
     },
 }
-"""Tilt at some times, s, for the report's launch at these spins, rad/s, converged by independent programs."""
+"""Tilt at some times, s, for the report's launch at these spins, rad/s, converged by independent
+programs.
+"""
 AFTER_20_S = {50.0: (35.254677, -8.207585), 155.0: (0.999451, -82.8658819364)}
 """Precession and axial spin, rad/s."""
 
@@ -132,14 +149,17 @@ def test_spin_of_50_ends_in_the_steady_state_of_constant_tilt():
     """omega3 = phi' (c - alpha) and phi'^2 = m g R alpha / (I1 c + I3 (alpha - c))."""
     body, gravity = REPORT, 9.8
     alpha = body.shape.eccentricity
-    end = tt.simulate(report(50.0), 300.0, times=[300.0], integrator=EXACT_INTEGRATORS[0]).isel(time=0)
+    end = tt.simulate(report(50.0), 300.0, times=[300.0], integrator=EXACT_INTEGRATORS[0]).isel(
+        time=0
+    )
     c, precession = math.cos(end.theta), float(end.phi_dot)
     torque = body.mass * gravity * body.shape.radius * alpha
     assert float(end.omega3) == pytest.approx(precession * (c - alpha), rel=1e-8)
     assert precession**2 == pytest.approx(torque / (body.I1 * c + body.I3 * (alpha - c)), rel=1e-8)
 
 
-# --- what must hold in every run ----------------------------------------------------------------------------
+# --- what must hold in every run
+# ----------------------------------------------------------------------------
 
 
 @pytest.mark.skipif(not has_taylor(), reason="200 long runs take minutes without heyoka")
@@ -148,10 +168,10 @@ def test_spin_of_50_ends_in_the_steady_state_of_constant_tilt():
 def test_jellett_and_energy_hold_for_every_tippe_top(problem):
     """The invariants over 20 s, to the rounding of the numbers they are made of.
 
-    Jellett's integral -L.a may be as near to 0 as it likes: with a vertical L and a contact vector across it,
-    or with two terms that cancel. Rounding L and n by a part in 1e16 changes it by |L| |a| / 1e16 all the
-    same, so that |L| |a| is what its drift must be small against: at launch, or, where friction turns sliding
-    into spin, later.
+    Jellett's integral -L.a may be as near to 0 as it likes: with a vertical L and a contact vector
+    across it, or with two terms that cancel. Rounding L and n by a part in 1e16 changes it by |L|
+    |a| / 1e16 all the same, so that |L| |a| is what its drift must be small against: at launch, or,
+    where friction turns sliding into spin, later.
     """
     run = tt.simulate(problem, 20.0, samples=101)
     shape = problem.body.shape
@@ -165,8 +185,8 @@ def test_jellett_and_energy_hold_for_every_tippe_top(problem):
     lengths = np.linalg.norm(run.axis, axis=1)
     np.testing.assert_allclose(lengths, 1.0, rtol=0, atol=1e-12)
     if problem.contact.liftoff == "stop" and run.sizes["time"] > 1:
-        # A table that does not pull takes energy and never gives any. (A launch that it would have to hold
-        # down ends where it begins.)
+        # A table that does not pull takes energy and never gives any. (A launch that it would have
+        # to hold down ends where it begins.)
         assert most == pytest.approx(before, rel=1e-11)
         assert np.all(np.diff(run.work) <= 1e-13 * before)
         assert float(run.normal_force.min()) >= -1e-12 * problem.body.mass * problem.gravity
@@ -175,23 +195,31 @@ def test_jellett_and_energy_hold_for_every_tippe_top(problem):
 @pytest.mark.skipif(not has_taylor(), reason="the steps of others are chosen by every number")
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-12, None])
 def test_huge_slip_leads_no_axis_astray(tolerance):
-    """Coulomb's friction is the same however fast the top slips, and so is what it does to the axis."""
+    """Coulomb's friction is the same however fast the top slips, and so is what it does to the
+    axis.
+    """
     rules = {"friction": tt.CoulombFriction(mu=0.3), "contact.liftoff": "ignore"}
     fast, faster = (
         tt.simulate(
-            report(155.0).replace({**rules, "launch.slip": (slip, 0.0)}), 0.5, samples=51, tolerance=tolerance
+            report(155.0).replace({**rules, "launch.slip": (slip, 0.0)}),
+            0.5,
+            samples=51,
+            tolerance=tolerance,
         )
         for slip in (1e6, 1e8)
     )
     allowed = 10.0 * int(faster.steps) * (tolerance or np.finfo(float).eps)
     np.testing.assert_allclose(np.linalg.norm(faster.axis, axis=1), 1.0, rtol=0, atol=allowed)
-    # The slip changes by less than 10 m/s, and its direction by less than a part in a hundred thousand.
+    # The slip changes by less than 10 m/s, and its direction by less than a part in a hundred
+    # thousand.
     np.testing.assert_allclose(faster.axis, fast.axis, rtol=0, atol=1e-5 + allowed)
 
 
 @pytest.mark.parametrize("problem", [report(155.0), egg()], ids=["tippe top", "egg"])
 def test_newtons_laws_hold_for_what_a_result_says(problem):
-    """m r'' and L', differentiated from the samples, against the force and the arm that go with them."""
+    """m r'' and L', differentiated from the samples, against the force and the arm that go with
+    them.
+    """
     dt = 1e-4
     run = tt.simulate(problem, 3.0, times=1.0 + dt * np.arange(2001))
     body, inner = problem.body, slice(2, -2)
@@ -217,22 +245,28 @@ def test_newtons_laws_hold_for_what_a_result_says(problem):
 
     position = np.stack((run.x, run.y, run.height), axis=1)
     fastest = largest(run.velocity)
-    np.testing.assert_allclose(rate(position), run.velocity.values[inner], rtol=0, atol=1e-6 * fastest)
+    np.testing.assert_allclose(
+        rate(position), run.velocity.values[inner], rtol=0, atol=1e-6 * fastest
+    )
 
     moment = np.cross(lowest_points(body.shape, run.axis.values[inner]), force)
-    np.testing.assert_allclose(rate(run.angular_momentum.values), moment, rtol=0, atol=1e-6 * largest(moment))
+    np.testing.assert_allclose(
+        rate(run.angular_momentum.values), moment, rtol=0, atol=1e-6 * largest(moment)
+    )
 
 
 def lowest_points(shape, axes):
     """From the centre of mass to where the body touches the table.
 
-    Of a sphere, the centre and then a radius down; of an ellipsoid r.(1/Q) r = 1 with Q = b^2 (1 - n n) + d^2
-    n n, the point -Q z / sqrt(z.Q z) with a horizontal tangent plane.
+    Of a sphere, the centre and then a radius down; of an ellipsoid r.(1/Q) r = 1 with Q = b^2 (1 -
+    n n) + d^2 n n, the point -Q z / sqrt(z.Q z) with a horizontal tangent plane.
     """
     down = np.array([0.0, 0.0, -1.0])
     if isinstance(shape, tt.EccentricSphere):
         return shape.radius * (shape.eccentricity * axes + down)
-    stretched = shape.across**2 * down + (shape.along**2 - shape.across**2) * (axes @ down)[:, None] * axes
+    stretched = (
+        shape.across**2 * down + (shape.along**2 - shape.across**2) * (axes @ down)[:, None] * axes
+    )
     return stretched / np.sqrt(stretched @ down)[:, None]
 
 
@@ -281,10 +315,13 @@ def test_egg_rises_on_its_end_and_does_not_keep_jelletts_integral():
     np.testing.assert_allclose(run.gap, 0.0, atol=1e-15)
 
 
-# --- lift-off -----------------------------------------------------------------------------------------------
+# --- lift-off
+# -----------------------------------------------------------------------------------------------
 
 FIRST_LIFT_OFF = {175.0: (5.361332, 5e-7), 170.0: (5.85182, 5e-6)}
-"""When the normal force first falls to zero, s, and to what that is rounded, for the report's launch."""
+"""When the normal force first falls to zero, s, and to what that is rounded, for the report's
+launch.
+"""
 SHORTLY_BEFORE = 5.2
 
 OWN_TOLERANCE = {
@@ -308,7 +345,9 @@ def test_lift_off_is_where_the_normal_force_first_falls_to_zero(spin):
     assert float(run.event_time[0]) == pytest.approx(when, abs=rounding)
     # The run ends there and then.
     assert float(run.time[-1]) == float(run.event_time[0])
-    np.testing.assert_array_equal(run.time[:-1], np.linspace(0.0, 20.0, 2001)[: run.sizes["time"] - 1])
+    np.testing.assert_array_equal(
+        run.time[:-1], np.linspace(0.0, 20.0, 2001)[: run.sizes["time"] - 1]
+    )
     weight = REPORT.mass * 9.8
     assert float(run.normal_force[-1]) == pytest.approx(0.0, abs=1e-12 * weight)
     assert float(run.normal_force[:-1].min()) > 0
@@ -337,10 +376,12 @@ def test_every_integrator_locates_lift_off_to_its_own_tolerance(integrator):
     if integrator == "compiled" and not has_numba():
         pytest.skip("numba is not installed")
     step = STEP if integrator == "rk4" else None
-    run = tt.simulate(launch_shortly_before_lift_off(), 0.2, samples=2, integrator=integrator, step=step)
+    run = tt.simulate(
+        launch_shortly_before_lift_off(), 0.2, samples=2, integrator=integrator, step=step
+    )
     when, rounding = FIRST_LIFT_OFF[175.0]
-    # In the top's unit of time, sqrt(R / g), the normal force falls by about its usual size in a unit: errors
-    # of the motion and of the time are alike.
+    # In the top's unit of time, sqrt(R / g), the normal force falls by about its usual size in a
+    # unit: errors of the motion and of the time are alike.
     unit = math.sqrt(REPORT.shape.radius / 9.8)
     per_step = (175.0 * STEP) ** 5 / 120 if step else OWN_TOLERANCE[integrator]
     allowed = rounding + 10 * run.steps.item() * per_step * unit
@@ -358,7 +399,11 @@ def test_a_table_that_may_pull_changes_nothing_before_it_does():
     assert float(before.normal_force.min()) > 0
     for name in ("theta", "omega3", "normal_force", "energy", "x", "axis", "orientation"):
         np.testing.assert_allclose(
-            stopped[name][:-1], before[name], rtol=0, atol=1e-9 * largest(before[name]), err_msg=name
+            stopped[name][:-1],
+            before[name],
+            rtol=0,
+            atol=1e-9 * largest(before[name]),
+            err_msg=name,
         )
 
 
@@ -388,7 +433,8 @@ def test_launch_that_the_table_would_have_to_hold_ends_as_it_begins():
     assert float(run.theta[0]) == pytest.approx(2.5)
 
 
-# --- the poles ----------------------------------------------------------------------------------------------
+# --- the poles
+# ----------------------------------------------------------------------------------------------
 
 NOT_AT_THE_POLES = {"phi_dot"}
 """What is documented not to be a number where the axis is vertical."""
@@ -396,7 +442,10 @@ NOT_AT_THE_POLES = {"phi_dot"}
 
 @pytest.mark.parametrize(("tilt", "up"), [(0.0, 1.0), (math.pi, -1.0)])
 @settings(few_and_slow)
-@given(spin=st.one_of(st.sampled_from([155.0, -155.0, 0.0]), numbers(-300.0, 300.0)), azimuth=numbers(-4, 4))
+@given(
+    spin=st.one_of(st.sampled_from([155.0, -155.0, 0.0]), numbers(-300.0, 300.0)),
+    azimuth=numbers(-4, 4),
+)
 def test_vertical_launch_stays_exactly_vertical(tilt, up, spin, azimuth):
     run = tt.simulate(report(spin, tilt=tilt, azimuth=azimuth, liftoff="stop"), 5.0, samples=11)
     assert run.attrs["outcome"] == "completed"
@@ -418,10 +467,11 @@ def test_vertical_launch_stays_exactly_vertical(tilt, up, spin, azimuth):
 def thrown_through_the_pole(up, spin, tilt):
     """A frictionless top that passes exactly through a pole, and what it then must do.
 
-    With p = I3 omega3, a vertical angular momentum of +-p lets the axis reach the pole. Measured from there,
-    by the angle t of cosine c, the energy is I1 t'^2/2 + m (R alpha s t')^2/2 + p^2 (1 - c)/(2 I1 (1 + c))
-    +- m g R (1 - alpha c); a top that starts at rest in tilt at t0 passes the pole after a quarter of its
-    period. Returns the problem, that time, and the rate at which the pole is passed.
+    With p = I3 omega3, a vertical angular momentum of +-p lets the axis reach the pole. Measured
+    from there, by the angle t of cosine c, the energy is I1 t'^2/2 + m (R alpha s t')^2/2 + p^2 (1
+    - c)/(2 I1 (1 + c)) +- m g R (1 - alpha c); a top that starts at rest in tilt at t0 passes the
+    pole after a quarter of its period. Returns the problem, that time, and the rate at which the
+    pole is passed.
     """
     body, gravity = REPORT, 9.8
     m, R, alpha, p = body.mass, body.shape.radius, body.shape.eccentricity, body.I3 * spin
@@ -434,7 +484,9 @@ def thrown_through_the_pole(up, spin, tilt):
         """Rate of the tilt at t = tilt - short."""
         c, s = math.cos(t), math.sin(t)
         potential = p**2 / (body.I1 * (1 + c) * (1 + c0)) + up * m * gravity * R * alpha
-        return math.sqrt(2 * cosine_gained(t, short) * potential / (body.I1 + m * (R * alpha * s) ** 2))
+        return math.sqrt(
+            2 * cosine_gained(t, short) * potential / (body.I1 + m * (R * alpha * s) ** 2)
+        )
 
     def time_per_phase(phase):
         short = 2 * tilt * math.sin((math.pi / 2 - phase) / 2) ** 2
@@ -487,7 +539,8 @@ def test_tilt_of_a_billionth_grows_as_the_linear_equations_say_and_turns_over():
         np.testing.assert_allclose(run.energy, run.energy[0] + run.work, rtol=1e-12)
 
 
-# --- symmetries ---------------------------------------------------------------------------------------------
+# --- symmetries
+# ---------------------------------------------------------------------------------------------
 
 BRIEFLY = {"duration": 0.5, "samples": 51}
 
@@ -532,8 +585,8 @@ def test_mirrored_launch_gives_the_mirrored_run(problem):
 def comparison(problem):
     """How far apart numbers of runs may be that rounding at launch alone sets apart.
 
-    Tops are sensitive to where they start: in half a second rounding grows by several powers of ten. What is
-    small is measured in the top's own units of mass, length and time.
+    Tops are sensitive to where they start: in half a second rounding grows by several powers of
+    ten. What is small is measured in the top's own units of mass, length and time.
     """
     mass, length = problem.body.mass, problem.body.shape.radius
     speed = math.sqrt(problem.gravity * length)
@@ -560,7 +613,8 @@ def comparison(problem):
     return near
 
 
-# --- what a result holds ------------------------------------------------------------------------------------
+# --- what a result holds
+# ------------------------------------------------------------------------------------
 
 UNITS = {
     "theta": "rad",
@@ -632,7 +686,9 @@ def test_numbers_of_numpy_are_numbers_of_floats_and_none_may_be_infinite():
 
 
 def test_tolerance_and_step_are_written_down_as_they_were_given():
-    assert tt.simulate(report(), 0.01, integrator="dop853", tolerance=1e-7).attrs["tolerance"] == 1e-7
+    assert (
+        tt.simulate(report(), 0.01, integrator="dop853", tolerance=1e-7).attrs["tolerance"] == 1e-7
+    )
     classical = tt.simulate(report(), 0.01, integrator="rk4", step=1e-4).attrs
     assert classical["step"] == pytest.approx(1e-4, rel=1e-15)
     assert "tolerance" not in classical
@@ -691,7 +747,8 @@ def test_contact_mode_is_flagged_the_way_of_the_conventions(usual):
     assert meanings[flags.tolist().index(int(usual.mode[0]))] == "sliding"
 
 
-# --- sample times -------------------------------------------------------------------------------------------
+# --- sample times
+# -------------------------------------------------------------------------------------------
 
 
 def test_samples_are_equally_spaced_from_launch_to_end():
@@ -700,7 +757,9 @@ def test_samples_are_equally_spaced_from_launch_to_end():
     np.testing.assert_array_equal(run.time, np.linspace(0.0, 0.3, 7))
 
 
-@pytest.mark.parametrize("kind", [list, tuple, np.array, xr.DataArray], ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize(
+    "kind", [list, tuple, np.array, xr.DataArray], ids=lambda kind: kind.__name__
+)
 def test_times_can_be_given_instead(kind):
     times = [0.0, 0.1, 0.1 + 1e-9, 0.25]
     run = tt.simulate(report(), 0.3, times=kind(times))
@@ -764,7 +823,8 @@ def test_bytes_per_sample_are_enough():
     assert peak < BYTES_PER_SAMPLE * samples
 
 
-# --- what cannot be -----------------------------------------------------------------------------------------
+# --- what cannot be
+# -----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -781,7 +841,10 @@ def test_bytes_per_sample_are_enough():
             for bad in ([-0.1, 0.5], [0.0, 1.1], ["a", "b"], [[0.0], [0.1, 0.2]], "0 1")
         ),
         *(("integrator", {"integrator": bad}) for bad in ("euler", "", "Taylor", 4, ["taylor"])),
-        *(("tolerance", {"tolerance": bad}) for bad in (0.0, -1e-9, 1.0, math.nan, math.inf, 1e-20, "small")),
+        *(
+            ("tolerance", {"tolerance": bad})
+            for bad in (0.0, -1e-9, 1.0, math.nan, math.inf, 1e-20, "small")
+        ),
         *(
             ("step", {"integrator": "rk4", "step": bad})
             for bad in (None, 0, -1e-3, math.nan, math.inf, "long")
@@ -803,7 +866,8 @@ def test_what_cannot_be_is_refused_in_one_line_that_names_it(field, arguments):
     assert "\n" not in told
 
 
-# --- the seam -----------------------------------------------------------------------------------------------
+# --- the seam
+# -----------------------------------------------------------------------------------------------
 
 
 class Quitter:
@@ -839,7 +903,9 @@ class Idle:
     name, caution, integrate = "idle", "", None
 
 
-@pytest.mark.parametrize("incomplete", [Nameless(), Careless(), Silent(), Idle(), Quitter, object(), 3])
+@pytest.mark.parametrize(
+    "incomplete", [Nameless(), Careless(), Silent(), Idle(), Quitter, object(), 3]
+)
 def test_integrators_that_lack_something_are_refused_before_the_run(incomplete):
     needed = "a method integrate, and as texts a name and a caution"
     with pytest.raises(tt.InvalidInput, match=needed) as refusal:

@@ -25,7 +25,11 @@ def test_people_and_programs_are_told_what_summarize_returns() -> None:
     assert {name: told[name] for name in summary} == summary
     lines = said("--spin", "175", "--duration", "8").splitlines()
     found = {line.rsplit(maxsplit=2)[0] for line in lines[1:]}
-    assert {"turns over at", "within 0.01 rad of its final tilt at", "energy lost in impacts"} <= found
+    assert {
+        "turns over at",
+        "within 0.01 rad of its final tilt at",
+        "energy lost in impacts",
+    } <= found
     (line,) = [line for line in lines if line.startswith("turns over at")]
     assert float(line.split()[-2]) == pytest.approx(summary["turns_over"], rel=1e-6)
 
@@ -48,7 +52,9 @@ def test_the_drift_of_jellett_is_told_where_it_is_conserved_alone() -> None:
 
 def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
     kinds = {"out": "nc", "plot": "png", "csv": "csv", "glb": "glb", "html": "html", "gif": "gif"}
-    options = [word for kind, end in kinds.items() for word in (f"--{kind}", str(tmp_path / f"run.{end}"))]
+    options = [
+        word for kind, end in kinds.items() for word in (f"--{kind}", str(tmp_path / f"run.{end}"))
+    ]
     told = said("--duration", "0.1", *options)
     assert {path.suffix[1:] for path in tmp_path.iterdir()} == set(kinds.values())
     assert told.count("wrote ") == len(kinds)
@@ -57,7 +63,10 @@ def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["--csv", "run.txt"], "--csv = 'run.txt' is not possible; accepted: a file name that ends in .csv"),
+        (
+            ["--csv", "run.txt"],
+            "--csv = 'run.txt' is not possible; accepted: a file name that ends in .csv",
+        ),
         (
             ["--html", "a.html", "--out", "a.html"],
             "--out = 'a.html' is not possible; accepted: a file name that ends in .nc",
@@ -100,7 +109,9 @@ def test_what_is_no_number_is_refused_as_everything_else(command: str, sentence:
         ("simulate one.toml two.toml", "two.toml"),
     ],
 )
-def test_a_command_line_that_is_none_is_refused_in_one_sentence(command: str, sentence: str) -> None:
+def test_a_command_line_that_is_none_is_refused_in_one_sentence(
+    command: str, sentence: str
+) -> None:
     done = CliRunner().invoke(app, command.split())
     assert isinstance(done.exception, tt.TippetopError)
     assert sentence in str(done.exception)
@@ -140,7 +151,9 @@ def test_a_place_is_written_in_one_way() -> None:
 def test_critical_refuses_friction_in_the_words_of_users() -> None:
     done = CliRunner().invoke(app, ["critical", "--set", "friction.kind=coulomb"])
     assert isinstance(done.exception, tt.InvalidInput)
-    assert str(done.exception).startswith("friction = 'dry friction of a point' is not possible; accepted: ")
+    assert str(done.exception).startswith(
+        "friction = 'dry friction of a point' is not possible; accepted: "
+    )
 
 
 def test_critical_tells_why_it_leaves_out_how_long_a_launch_takes() -> None:

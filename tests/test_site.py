@@ -9,7 +9,9 @@ import pytest
 
 BUILT = Path(os.environ.get("DOCS", "docs/_build/html")).resolve()
 PAGES = sorted(
-    path for path in BUILT.rglob("*.html") if not {"_static", "_players"} & set(path.relative_to(BUILT).parts)
+    path
+    for path in BUILT.rglob("*.html")
+    if not {"_static", "_players"} & set(path.relative_to(BUILT).parts)
 )
 CHROMIUM = Path("/usr/bin/chromium")
 
@@ -51,7 +53,11 @@ def test_no_link_is_dead(links):
             if parts.scheme:
                 continue
             where = (page.parent / unquote(parts.path)).resolve() if parts.path else page
-            known = where not in links or not parts.fragment or unquote(parts.fragment) in links[where].places
+            known = (
+                where not in links
+                or not parts.fragment
+                or unquote(parts.fragment) in links[where].places
+            )
             if not (where.exists() and known):
                 dead.append((page.relative_to(BUILT).as_posix(), target))
     assert dead == []
@@ -75,7 +81,9 @@ def browser():
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(BUILT).as_posix())
 def test_a_page_is_whole_on_a_phone_and_accessible(page, scheme, browser):
-    """It asks nobody for anything, fits a phone, equations begin in sight; axe has no serious finding."""
+    """It asks nobody for anything, fits a phone, equations begin in sight; axe has no serious
+    finding.
+    """
     axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
     tab = browser.new_page(viewport={"width": 390, "height": 800}, color_scheme=scheme)
     asked, wrong = [], []
@@ -86,7 +94,8 @@ def test_a_page_is_whole_on_a_phone_and_accessible(page, scheme, browser):
     too_wide = tab.evaluate("document.documentElement.scrollWidth - innerWidth")
     cut_off = tab.evaluate(
         """[...document.querySelectorAll('div.math > math')].filter((one) =>
-        one.getBoundingClientRect().left < one.parentElement.getBoundingClientRect().left - 1).length"""
+        one.getBoundingClientRect().left
+          < one.parentElement.getBoundingClientRect().left - 1).length"""
     )
     serious = [
         (finding["id"], finding["nodes"][0]["html"])

@@ -33,7 +33,9 @@ LEINE_GLOCKER = tt.Problem(
     gravity=9.81,
 )
 STEMMED = [tt.Sphere(radius=0.02, center=0.006), tt.Sphere(radius=0.004, center=0.026)]
-REPORT = tt.presets.report_problem().replace({"body.shape": [shape.model_dump() for shape in STEMMED]})
+REPORT = tt.presets.report_problem().replace(
+    {"body.shape": [shape.model_dump() for shape in STEMMED]}
+)
 
 
 @cache
@@ -57,7 +59,9 @@ def surfaces(run: xr.Dataset, kind: str) -> list[int]:
 
 
 def test_leine_and_glocker_s_top_to_eight_seconds() -> None:
-    """Against an independent solver of the same equations: Routh's impacts, ellipsoidal limit surface."""
+    """Against an independent solver of the same equations: Routh's impacts, ellipsoidal limit
+    surface.
+    """
     run = leine_glocker()
     touches = times(run, "touchdown")
     assert touches[0] == pytest.approx(1.37104325139, abs=1e-8)
@@ -126,12 +130,16 @@ def test_the_end_of_rocking_converges_at_first_order(monkeypatch: pytest.MonkeyP
 
 
 def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
-    """Of two plastic impacts, p_i = v_i / A_ii and v_j = A_ji p_i: a cycle is A_12 A_21 / (A_11 A_22)."""
+    """Of two plastic impacts, p_i = v_i / A_ii and v_j = A_ji p_i: a cycle is A_12 A_21 / (A_11
+    A_22).
+    """
     run = leine_glocker()
     rebounds = np.diff(times(run, "touchdown"))[4:]
     cycles = rebounds[:-1:2][:26] + rebounds[1::2][:26]
     here = run.sel(time=times(run, "double contact")[0] + 1e-3, method="nearest")
-    vectors = (tuple(here[name].values.tolist()) for name in ("axis", "angular_momentum", "velocity"))
+    vectors = (
+        tuple(here[name].values.tolist()) for name in ("axis", "angular_momentum", "velocity")
+    )
     axis, momentum, velocity = vectors
     state = SlidingState(axis, momentum, velocity[:2])
     tops = LEINE_GLOCKER.top.each
@@ -144,18 +152,27 @@ def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
     assert (cycles[1:] / cycles[:-1])[18:24] == pytest.approx(expected, abs=2e-3)
 
 
-@pytest.mark.parametrize("sideways", [-0.5, 0.0, -1.0, 1.0], ids=["both drill", "first", "second", "neither"])
-def test_two_patches_which_each_drill_or_slide_move_a_body_as_newton_and_euler_say(sideways: float) -> None:
-    """Two normal forces, with Hertz's law at each patch, give all rates, and keep both contacts closed.
+@pytest.mark.parametrize(
+    "sideways", [-0.5, 0.0, -1.0, 1.0], ids=["both drill", "first", "second", "neither"]
+)
+def test_two_patches_which_each_drill_or_slide_move_a_body_as_newton_and_euler_say(
+    sideways: float,
+) -> None:
+    """Two normal forces, with Hertz's law at each patch, give all rates, and keep both contacts
+    closed.
 
-    The patches slip across their line, at velocities of which the second exceeds the first by what they turn.
+    The patches slip across their line, at velocities of which the second exceeds the first by what
+    they turn.
     """
     problem = LEINE_GLOCKER.replace({"friction.pressure": "hertz", "friction.patch_radius": 5e-3})
     top, unit = natural(problem.top), natural_units(problem.top).length
     tops, (low, high), law = tuple(top.each), problem.body.shapes, problem.friction.law
     c = (high.radius - low.radius) / (high.center - low.center)
     axis, turning = np.array([np.sqrt(1.0 - c * c), 0.0, c]), np.array([-0.5, 0.0, 2.0])
-    inertia, apart = (top.transverse_inertia, top.axial_inertia), (high.center - low.center) / unit * axis[0]
+    inertia, apart = (
+        (top.transverse_inertia, top.axial_inertia),
+        (high.center - low.center) / unit * axis[0],
+    )
     momentum = inertia[0] * turning + (inertia[1] - inertia[0]) * (turning @ axis) * axis
     arms = [np.array(contact_vector(tuple(axis), one.surface)) for one in tops]
     slips = [np.array([0.0, (sideways + k) * apart * turning[2], 0.0]) for k in (0, 1)]
@@ -217,7 +234,9 @@ def test_what_cannot_be_is_refused_in_a_sentence(changes, field, accepted) -> No
     assert caught.value.accepted == accepted
 
 
-def test_jellett_s_integral_is_that_of_the_surface_that_touches_in_whatever_order_they_are() -> None:
+def test_jellett_s_integral_is_that_of_the_surface_that_touches_in_whatever_order_they_are() -> (
+    None
+):
     """The sphere of the report's top does not let its stem touch before 0.9 s."""
     shapes = list(REPORT.body.shape)
     for order in (shapes, shapes[::-1]):
@@ -238,7 +257,10 @@ def test_sweeps_follow_stems_as_runs_do() -> None:
             run = tt.simulate(REPORT.replace(changes), 7.0, samples=11)
             for name in set(SWEPT) & set(run.variables) - {"steps"}:
                 one, other = float(found[name].sel(changes)), float(run[name])
-                assert one == pytest.approx(other, rel=1e-9, abs=1e-12, nan_ok=True), (name, changes)
+                assert one == pytest.approx(other, rel=1e-9, abs=1e-12, nan_ok=True), (
+                    name,
+                    changes,
+                )
     assert found["body.shape.1.center"].attrs["units"] == "m"
 
 
@@ -281,11 +303,15 @@ def test_two_balls_that_friction_holds_rock_to_rest() -> None:
     impulses = run["event_impulse"].values[run["event_kind"].values == "impact"]
     assert impulses[1:10] / impulses[:9] == pytest.approx(np.full(9, 7 / 17), rel=1e-6)
     assert run.attrs["outcome"] == "at_rest"
-    assert times(run, "stick")[-2:] == pytest.approx(np.full(2, times(run, "double contact")[0]), rel=1e-9)
+    assert times(run, "stick")[-2:] == pytest.approx(
+        np.full(2, times(run, "double contact")[0]), rel=1e-9
+    )
 
 
 def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[OnSeveral, State]:
-    """A body on two like spheres, whose axis lies along x and which moves along it, in natural units."""
+    """A body on two like spheres, whose axis lies along x and which moves along it, in natural
+    units.
+    """
     shapes = [tt.Sphere(radius=0.005, center=center) for center in centers]
     body = tt.Body(mass=0.01, shape=shapes, I1=2e-6, I3=1.25e-7)
     launch = tt.Launch(tilt=1.3, spin=5.0, gap=0.01)
@@ -343,7 +369,9 @@ def test_the_farther_of_two_surfaces_beside_the_centre_of_mass_opens_and_is_name
     ids=["first", "second"],
 )
 def test_a_surface_that_has_just_opened_is_drawn_back_where_the_other_sticks(mu, launch) -> None:
-    """By rounding it touches still; what slip let rise, sticking draws to the table, and not through it."""
+    """By rounding it touches still; what slip let rise, sticking draws to the table, and not
+    through it.
+    """
     problem = tt.Problem(
         body=tt.presets.HURRICANE_BALLS,
         friction=tt.CoulombFriction(mu=mu),
@@ -354,6 +382,7 @@ def test_a_surface_that_has_just_opened_is_drawn_back_where_the_other_sticks(mu,
     assert run.attrs["outcome"] == "completed"
     assert (run["event_kind"] == "double contact").any()
     heights = [
-        ball.radius - ball.center * run["axis"].values[:, 2] for ball in tt.presets.HURRICANE_BALLS.shapes
+        ball.radius - ball.center * run["axis"].values[:, 2]
+        for ball in tt.presets.HURRICANE_BALLS.shapes
     ]
     assert np.all(run["height"] >= np.max(heights, axis=0) - 1e-13)

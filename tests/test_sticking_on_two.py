@@ -1,4 +1,6 @@
-"""Two dry contacts of one body: how slip ends on one or on both, what holds them then, and how it begins."""
+"""Two dry contacts of one body: how slip ends on one or on both, what holds them then, and how it
+begins.
+"""
 
 from functools import cache
 
@@ -62,10 +64,14 @@ def test_a_dumbbell_that_slides_along_itself_stops_as_a_block() -> None:
 def test_a_dumbbell_that_turns_stops_under_the_couple_of_both_ends() -> None:
     """I_1 w' = -mu m g HALF."""
     run = tt.simulate(
-        DUMBBELL.replace({"launch.precession": 5.0, "launch.velocity": (0.0, 0.0, 0.0)}), 1.0, samples=11
+        DUMBBELL.replace({"launch.precession": 5.0, "launch.velocity": (0.0, 0.0, 0.0)}),
+        1.0,
+        samples=11,
     )
     assert run.attrs["outcome"] == "at_rest"
-    assert times(run, "stick") == pytest.approx([5.0 * ACROSS / (MU * MASS * G * HALF)] * 2, rel=1e-12)
+    assert times(run, "stick") == pytest.approx(
+        [5.0 * ACROSS / (MU * MASS * G * HALF)] * 2, rel=1e-12
+    )
 
 
 def test_a_dumbbell_that_slides_across_comes_to_roll() -> None:
@@ -80,8 +86,9 @@ def test_a_dumbbell_that_slides_across_comes_to_roll() -> None:
 
 
 ONE_THEN_BOTH, SLIPS_AGAIN, BEYOND_THE_LIMIT = 8, 11, 13
-"""Of the first both contacts stick in turn; of the others one sticks, and slips again: of the last as soon as
-the other has stopped."""
+"""Of the first both contacts stick in turn; of the others one sticks, and slips again: of the last
+as soon as the other has stopped.
+"""
 DURATION = {ONE_THEN_BOTH: 0.12, SLIPS_AGAIN: 0.3, BEYOND_THE_LIMIT: 0.0826}
 
 
@@ -141,7 +148,9 @@ def test_force_across_leaves_less_along() -> None:
     """Against many ways to share the force out between both contacts."""
     segment = next(s for s in followed(ONE_THEN_BOTH) if isinstance(s.mode, StickingOnTwo))
     (_, state), *_ = states(segment)
-    held = pair_motion(ContactPair.of(state.axis, state.momentum, segment.mode.tops), (None, None), 0.0)
+    held = pair_motion(
+        ContactPair.of(state.axis, state.momentum, segment.mode.tops), (None, None), 0.0
+    )
     limits = segment.mode.top.friction.mu * np.array(held.normal)
     e = np.array([*state.axis[:2], 0.0]) / np.hypot(*state.axis[:2])
     t, across = np.array([-e[1], e[0], 0.0]), limits * (0.3, -0.7)
@@ -149,7 +158,9 @@ def test_force_across_leaves_less_along() -> None:
     seen = set()
     for along in np.linspace(0.0, 2.0, 41) * limits.sum():
         forces = across[0] * t + along * e, across[1] * t
-        wrenches = [Wrench((f[0], f[1], n), NO_TORQUE) for f, n in zip(forces, held.normal, strict=True)]
+        wrenches = [
+            Wrench((f[0], f[1], n), NO_TORQUE) for f, n in zip(forces, held.normal, strict=True)
+        ]
         motion = held._replace(wrenches=tuple(wrenches))
         fits = np.hypot(shares, across[0]) <= limits[0]
         fits &= np.hypot(along - shares, across[1]) <= limits[1]
@@ -160,7 +171,9 @@ def test_force_across_leaves_less_along() -> None:
 
 @pytest.mark.parametrize(("seed", "near"), [(ONE_THEN_BOTH, 1e-3), (SLIPS_AGAIN, 1e-2)])
 def test_it_is_the_limit_of_friction_that_is_smoothed(seed, near) -> None:
-    """With f = -mu v / sqrt(v^2 + eps^2) both contacts creep, by the equations of sliding on two."""
+    """With f = -mu v / sqrt(v^2 + eps^2) both contacts creep, by the equations of sliding on
+    two.
+    """
     problem, duration, names = lying(seed), DURATION[seed], ["axis", "angular_momentum", "velocity"]
     dry = followed_by_steps(problem, duration)[names]
     off = []
@@ -202,8 +215,12 @@ def test_slip_that_begins_at_the_limit_grows_with_the_square_of_time() -> None:
 
 @pytest.mark.parametrize("seed", [SLIPS_AGAIN, BEYOND_THE_LIMIT])
 def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
-    """From early in its series on, by an implicit method and in other numbers; it has no digits to lose."""
-    begin = next(segment for segment in followed(seed) if isinstance(segment.mode, SlipBeginningOnTwo))
+    """From early in its series on, by an implicit method and in other numbers; it has no digits to
+    lose.
+    """
+    begin = next(
+        segment for segment in followed(seed) if isinstance(segment.mode, SlipBeginningOnTwo)
+    )
     knots = begin.solution.knots
     early, late = (knots[0] + part * (knots[-1] - knots[0]) for part in (0.3, 0.9))
     mode, (first, last) = begin.mode, begin.solution(np.array([early, late])).tolist()

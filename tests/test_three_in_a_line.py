@@ -64,7 +64,9 @@ def test_what_lies_between_changes_nothing(law: str, motion: str) -> None:
         assert run["event_kind"].values.tolist() == without["event_kind"].values.tolist()
         for name in ("event_time", "event_impulse", "axis", "angular_momentum", "velocity"):
             size = float(abs(without[name]).max()) if without[name].size else 0.0
-            np.testing.assert_allclose(run[name], without[name], rtol=0, atol=1e-9 * size, err_msg=name)
+            np.testing.assert_allclose(
+                run[name], without[name], rtol=0, atol=1e-9 * size, err_msg=name
+            )
         assert "double contact" in run["event_kind"].values
         outer = "_and_".join(str(number) for number in sorted(map(ORDERS[order].index, (0, 2))))
         assert words(run)[-1].endswith(f"_on_{outer}")

@@ -13,7 +13,13 @@ from tippetop.sweeps.grid import Product
 
 PROBLEM = tt.presets.report_problem()
 PIECE = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
-NONE = {"None": None, "a word": "x", "a number": 3, "a body": PROBLEM.body, "rows": np.zeros((2, 2))}
+NONE = {
+    "None": None,
+    "a word": "x",
+    "a number": 3,
+    "a body": PROBLEM.body,
+    "rows": np.zeros((2, 2)),
+}
 
 OF_A_PROBLEM = {
     "simulate": lambda wrong: tt.simulate(wrong, 1.0),
@@ -101,7 +107,9 @@ def test_what_is_no_piece_and_no_stem(wrong, tmp_path):
 
 @pytest.mark.parametrize("gravity", [0, -9.8, float("nan"), "g", None])
 def test_no_gravity_to_stand_in(gravity):
-    refused("gravity", lambda: tt.least_jellett_to_stand(tt.presets.LEINE_GLOCKER_STEM, gravity=gravity))
+    refused(
+        "gravity", lambda: tt.least_jellett_to_stand(tt.presets.LEINE_GLOCKER_STEM, gravity=gravity)
+    )
 
 
 @pytest.mark.parametrize(
@@ -150,7 +158,10 @@ def test_what_is_neither_true_nor_false(wrong, tmp_path):
 
 @pytest.mark.parametrize("name", ["overwrite", "resume"])
 def test_there_is_nothing_to_overwrite_or_resume_in_memory(name):
-    refused(name, lambda: tt.sweep(PROBLEM, {"launch.spin": [50.0]}, duration=0.1, workers=1, **{name: True}))
+    refused(
+        name,
+        lambda: tt.sweep(PROBLEM, {"launch.spin": [50.0]}, duration=0.1, workers=1, **{name: True}),
+    )
 
 
 @pytest.mark.parametrize("height", [0, -3, "tall", 1.5, float("nan"), None])
@@ -163,7 +174,9 @@ def test_changes_that_are_no_dict(wrong):
     refused("changes", PROBLEM.replace, wrong)
 
 
-@pytest.mark.parametrize("wrong", [[1], [("launch.spin", [50.0], 3)], [(None, [50.0])], ["launch.spin"], 3])
+@pytest.mark.parametrize(
+    "wrong", [[1], [("launch.spin", [50.0], 3)], [(None, [50.0])], ["launch.spin"], 3]
+)
 def test_axes_that_are_no_table(wrong):
     refused("axes", lambda: tt.sweep(PROBLEM, wrong, duration=1.0, workers=1))
 
@@ -209,7 +222,9 @@ def test_what_is_no_dataset_to_write(wrong, tmp_path):
 
 def test_more_values_than_fields():
     refused("Listed", Listed, "launch.spin", (1.0, 2.0), 3)
-    refused("Sweep", Sweep, PROBLEM, Product([Listed("launch.spin", (1.0, 2.0))]), 1.0, 1e-9, None, 7)
+    refused(
+        "Sweep", Sweep, PROBLEM, Product([Listed("launch.spin", (1.0, 2.0))]), 1.0, 1e-9, None, 7
+    )
 
 
 @pytest.mark.parametrize("name", ["numbers", "values", "field"])
@@ -225,7 +240,9 @@ def test_a_part_of_a_sweep_in_its_place_and_by_its_name(name):
 
 def test_a_sweep_of_both_axes_and_draws():
     draws = tt.Draws((tt.Range("launch.spin", 1.0, 2.0),), count=2)
-    refused("axes and draws", lambda: Sweep(PROBLEM, Product.of({"launch.tilt": [0.1]}), draws=draws))
+    refused(
+        "axes and draws", lambda: Sweep(PROBLEM, Product.of({"launch.tilt": [0.1]}), draws=draws)
+    )
 
 
 def test_a_sweep_that_is_to_last_nothing():

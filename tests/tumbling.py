@@ -1,4 +1,6 @@
-"""Bodies that turn uniformly about a horizontal axis in flight, and when they land, by their tilt alone."""
+"""Bodies that turn uniformly about a horizontal axis in flight, and when they land, by their tilt
+alone.
+"""
 
 import math
 from typing import NamedTuple
@@ -19,7 +21,9 @@ EDGES = {
 
 
 def reach(shape, tilt):
-    """How far below the centre of mass a body reaches at any tilt, beyond pi too: of its lowest point."""
+    """How far below the centre of mass a body reaches at any tilt, beyond pi too: of its lowest
+    point.
+    """
     sine, cosine = np.abs(np.sin(tilt)), np.cos(tilt)
     match shape:
         case RingSurface(radius, center, tube):
@@ -31,7 +35,9 @@ def reach(shape, tilt):
 
 
 class Tumbling(NamedTuple):
-    """A body that turns uniformly about a horizontal axis while its centre of mass is on a parabola."""
+    """A body that turns uniformly about a horizontal axis while its centre of mass is on a
+    parabola.
+    """
 
     shape: object
     tilt: float
@@ -61,7 +67,11 @@ class Tumbling(NamedTuple):
         last = (self.rise + math.sqrt(self.rise**2 + 19.6 * (self.up + 0.1))) / 9.8
         looks = np.linspace(0.0, last, 40_001)[1:]
         first = np.flatnonzero(self.gap(looks) <= 0.0)[0]
-        return brentq(self.gap, looks[first - 1], looks[first], xtol=1e-16, rtol=1e-15) if first else 0.0
+        return (
+            brentq(self.gap, looks[first - 1], looks[first], xtol=1e-16, rtol=1e-15)
+            if first
+            else 0.0
+        )
 
     @property
     def highest(self):
@@ -69,5 +79,7 @@ class Tumbling(NamedTuple):
         turned = self.rate * self.landing
         first, last = sorted((self.tilt, self.tilt + turned))
         poles = np.arange(math.ceil(first / math.pi), math.floor(last / math.pi) + 1) * math.pi
-        looks = np.concatenate([np.linspace(0.0, self.landing, 20_001), (poles - self.tilt) / self.rate])
+        looks = np.concatenate(
+            [np.linspace(0.0, self.landing, 20_001), (poles - self.tilt) / self.rate]
+        )
         return self.gap(looks).max()

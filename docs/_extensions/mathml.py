@@ -1,4 +1,6 @@
-"""Equations as MathML, which browsers draw themselves: nothing is loaded, and screen readers read them."""
+"""Equations as MathML, which browsers draw themselves: nothing is loaded, and screen readers read
+them.
+"""
 
 import re
 from html import unescape
@@ -15,7 +17,10 @@ BOLD = {"omega": "\U0001d74e", "beta": "\U0001d737", "zeta": "\U0001d73b", "vart
 
 SPELLED: list[tuple[re.Pattern[str], Any]] = [
     (re.compile(r"(frac)(\d)(\d)"), r"\1{\2}{\3}"),
-    (re.compile(r"\\boldsymbol(?:\{\\([a-z]+)\}|\\([a-z]+))"), lambda found: BOLD[found[1] or found[2]]),
+    (
+        re.compile(r"\\boldsymbol(?:\{\\([a-z]+)\}|\\([a-z]+))"),
+        lambda found: BOLD[found[1] or found[2]],
+    ),
     (re.compile(r"\|([^|]{1,30})\|"), r"\\lvert \1\\rvert "),
 ]
 """What TeX understands and the converter does not, spelled out."""

@@ -1,4 +1,6 @@
-"""What moves in a page: ``{player}`` plays the run of a `problem` that its lines state; ``{laboratory}``."""
+"""What moves in a page: ``{player}`` plays the run of a `problem` that its lines state;
+``{laboratory}``.
+"""
 
 import shutil
 from pathlib import Path
@@ -32,9 +34,9 @@ class Frame(SphinxDirective):
         title = self.arguments[0]
         where = "../" * self.env.docname.count("/") + f"{FOLDER}/{name}.html"
         frame = (
-            f'<figure class="{kind}"><iframe src="{where}" title="{title}" loading="lazy" '
-            f'allowfullscreen></iframe><figcaption>{title} <a href="{where}">Alone on a page</a></figcaption>'
-            "</figure>"
+            f'<figure class="{kind}"><iframe src="{where}" title="{title}" loading="lazy"'
+            f' allowfullscreen></iframe><figcaption>{title} <a href="{where}">Alone on a'
+            " page</a></figcaption></figure>"
         )
         return [nodes.raw("", frame, format="html")]
 
@@ -59,7 +61,9 @@ class Player(Frame):
         name = self.options["name"]
         namespace: dict[str, Any] = {"tt": tt}
         exec("\n".join(self.content), namespace)
-        run = tt.simulate(namespace["problem"], duration=self.options.get("duration", 10.0), samples=4001)
+        run = tt.simulate(
+            namespace["problem"], duration=self.options.get("duration", 10.0), samples=4001
+        )
         tt.write_html(run, self.folder / f"{name}.html", overwrite=True)
         return self.frame(name, "player")
 

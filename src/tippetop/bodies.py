@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from tippetop.lathe.workpiece import Insert, Workpiece
 
 
-def _a_profile(points: tuple[tuple[float, ...], ...] | None) -> tuple[tuple[float, ...], ...] | None:
+def _a_profile(
+    points: tuple[tuple[float, ...], ...] | None,
+) -> tuple[tuple[float, ...], ...] | None:
     """Refuse points of which no body could be turned."""
     if points is not None:
         from tippetop.lathe.profile import profile_of  # noqa: PLC0415 - slow to import
@@ -35,15 +37,17 @@ class Body(Part):
     mass
         Mass, kg.
     shape
-        Outer surface, and where the centre of mass is in it; or several, whose convex hull the body is.
+        Outer surface, and where the centre of mass is in it; or several, whose convex hull the body
+        is.
     I1
         Moment of inertia about the centre of mass, transverse to the axis of symmetry, kg m^2.
     I3
         Moment of inertia about the axis of symmetry, kg m^2; at most 2 I1.
     profile
-        What the body looks like, as pictures of it show it where it fits its surfaces: points (distance from
-        the axis, height above the centre of mass) or, at the end of an arc, (distance, height, radius), m, as
-        those of `tippetop.lathe.workpiece.Workpiece`. Without it, pictures show the hull of its surfaces.
+        What the body looks like, as pictures of it show it where it fits its surfaces: points
+        (distance from the axis, height above the centre of mass) or, at the end of an arc,
+        (distance, height, radius), m, as those of `tippetop.lathe.workpiece.Workpiece`. Without it,
+        pictures show the hull of its surfaces.
 
     Examples
     --------
@@ -51,13 +55,15 @@ class Body(Part):
     >>> sphere = tt.EccentricSphere(radius=0.02, eccentricity=0.3)
     >>> top = tt.Body(mass=0.02, shape=sphere, I1=3.0e-6, I3=3.2e-6)
     >>> tt.Body(mass=0.02, shape=sphere, I1=3.0e-6, I3=7e-6)
-    Traceback (most recent call last):
-    tippetop.errors.InvalidInput: I3 = 7e-06 is not possible; accepted: at most 2 I1 = 6e-06, as for any body
+    Traceback (most recent call last): tippetop.errors.InvalidInput: I3 = 7e-06 is not possible;
+    accepted: at most 2 I1 = 6e-06, as for any body
     """
 
     mass: Annotated[Positive, Quantity("kg", "mass of the body")]
     shape: Annotated[Shape | tuple[Shape, ...], ONE_OR_SEVERAL]
-    I1: Annotated[Positive, Quantity("kg m2", "moment of inertia transverse to the axis of symmetry")]
+    I1: Annotated[
+        Positive, Quantity("kg m2", "moment of inertia transverse to the axis of symmetry")
+    ]
     I3: Annotated[Positive, Quantity("kg m2", "moment of inertia along the axis of symmetry")]
     profile: Annotated[
         Points | None, AfterValidator(_a_profile), Quantity("m", "profile that pictures show")
@@ -70,7 +76,9 @@ class Body(Part):
         for number, shape in enumerate(self.shapes):
             if len(self.shapes) > 1 and not _reaches_out(number, self.shapes):
                 numbers = ", ".join(f"{name} = {value}" for name, value in shape)
-                raise InvalidInput(f"shape.{number}", numbers, "a surface that the others do not enclose")
+                raise InvalidInput(
+                    f"shape.{number}", numbers, "a surface that the others do not enclose"
+                )
         return self
 
     @property
@@ -95,30 +103,34 @@ class Body(Part):
         unit: Literal["m", "cm", "mm", "in"] | None = None,
         whole: bool = False,
     ) -> Self:
-        """The body that a lathe makes: mass, moments of inertia and the surfaces it touches the table with.
+        """The body that a lathe makes: mass, moments of inertia and the surfaces it touches the
+        table with.
 
-        They are exact for the profile, whose edges are straight or arcs of circles, and which pictures show.
+        They are exact for the profile, whose edges are straight or arcs of circles, and which
+        pictures show.
 
         Parameters
         ----------
         profile
-            Points (distance from the axis, height) or, at the end of an arc, (distance, height, radius), as
-            in `tippetop.lathe.workpiece.Workpiece`; or such a workpiece; or a .toml, .csv or .svg file, as in
-            `tippetop.lathe.files.read_workpiece`.
+            Points (distance from the axis, height) or, at the end of an arc, (distance, height,
+            radius), as in `tippetop.lathe.workpiece.Workpiece`; or such a workpiece; or a .toml,
+            .csv or .svg file, as in `tippetop.lathe.files.read_workpiece`.
         density
             Density, kg/m^3.
         inserts
-            Cavities and weights: `tippetop.lathe.workpiece.Insert` or their fields, profile and density.
+            Cavities and weights: `tippetop.lathe.workpiece.Insert` or their fields, profile and
+            density.
         unit
             What the numbers of the profile are in: "m" if left out.
         whole
-            Take spheres and rings that the body has only a part of as whole. Otherwise it is refused if it
-            does not stay within them.
+            Take spheres and rings that the body has only a part of as whole. Otherwise it is
+            refused if it does not stay within them.
 
         Raises
         ------
         InvalidInput
-            If the profile is no body's, or if no surfaces that are known make up what it touches with.
+            If the profile is no body's, or if no surfaces that are known make up what it touches
+            with.
         FileTrouble
             If a file cannot be read.
         """
@@ -137,14 +149,16 @@ class Body(Part):
         mass, center, I1, I3 = piece.mass_properties
         shapes = touching(piece, whole)
         shown = piece.outline.points_above(center)
-        return cls(mass=mass, shape=shapes[0] if len(shapes) == 1 else shapes, I1=I1, I3=I3, profile=shown)
+        return cls(
+            mass=mass, shape=shapes[0] if len(shapes) == 1 else shapes, I1=I1, I3=I3, profile=shown
+        )
 
 
 def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
     """The surfaces that a turned body touches the table with, as seen from its centre of mass.
 
-    Raises `InvalidInput` if there are others than spheres and rings; or, unless they may be taken as whole,
-    if one of these, were it whole, would be outside of the body.
+    Raises `InvalidInput` if there are others than spheres and rings; or, unless they may be taken
+    as whole, if one of these, were it whole, would be outside of the body.
     """
     center, hull, reach = piece.mass_properties.center, piece.hull, PROTRUDING * piece.outline.size
     if len(hull.zones) > MOST:
@@ -155,7 +169,8 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
         if hull.protrusion(zone)[0] > reach and not whole:
             part = f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
             wanted = (
-                "surfaces that stay inside the body where it does not stand on them, or to take them as whole"
+                "surfaces that stay inside the body where it does not stand on them, or to take"
+                " them as whole"
             )
             raise InvalidInput("profile", part, wanted)
     shapes = [found[zone] for zone in hull.whole(reach)]
@@ -181,7 +196,8 @@ PROTRUDING = 1e-6
 """How far a surface taken as whole may reach out of the body, in sizes of this."""
 
 LOOKS, SEARCHES = 64, 5
-"""Looks at the tilts where a surface may be outermost, repeated so often around the best of them."""
+"""Looks at the tilts where a surface may be outermost, repeated so often around the best of them.
+"""
 
 REACH = 1e-9
 """How far a surface must reach beyond the others, in its sizes, to be one of the body's."""
@@ -195,7 +211,10 @@ def _reaches_out(number: int, shapes: tuple[Shape, ...]) -> bool:
     for _ in range(SEARCHES):
         looks = [low + (high - low) * k / LOOKS for k in range(LOOKS + 1)]
         try:
-            ahead = [own.height(c) - max(other.height(c) for other in others) for c in map(math.cos, looks)]
+            ahead = [
+                own.height(c) - max(other.height(c) for other in others)
+                for c in map(math.cos, looks)
+            ]
         except ArithmeticError:
             return True
         if max(ahead) > REACH * own.size:

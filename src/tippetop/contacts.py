@@ -19,10 +19,11 @@ class Contact(Variant):
     Attributes
     ----------
     liftoff
-        "fly": the top leaves the table; "stop": the run ends there; "ignore": the table pulls (bilateral
-        contact).
+        "fly": the top leaves the table; "stop": the run ends there; "ignore": the table pulls
+        (bilateral contact).
     restitution
-        Ratio of the normal impulses of restitution and compression in an impact (Poisson), in [0, 1].
+        Ratio of the normal impulses of restitution and compression in an impact (Poisson), in [0,
+        1].
 
     Examples
     --------
@@ -35,7 +36,8 @@ class Contact(Variant):
     restitution: Annotated[Fraction, Quantity("1", "coefficient of restitution")] = 0.0
 
     def rules(self, top: Top, units: Units) -> Any:
-        """What follows where contact begins or ends, in natural units, where that is not as described here.
+        """What follows where contact begins or ends, in natural units, where that is not as
+        described here.
 
         Parameters
         ----------

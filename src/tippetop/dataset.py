@@ -26,7 +26,9 @@ CONVENTIONS = "CF-1.11"
 
 
 def require_run(run: object) -> None:
-    """Raise `InvalidInput` unless something is a run, as `simulate` returns it, or some of its samples."""
+    """Raise `InvalidInput` unless something is a run, as `simulate` returns it, or some of its
+    samples.
+    """
     named = {"time", *SAMPLED, *METRICS, *MONITORS, *LISTED}
     if not (isinstance(run, xr.Dataset) and named <= set(run.variables) and run.sizes.get("time")):
         raise InvalidInput("run", run, "a run that simulate returned, whole or some of its samples")
@@ -47,9 +49,9 @@ def assemble(
 ) -> xr.Dataset:
     """Label the arrays of a run as `tippetop.catalogue` says.
 
-    Over the sample times, s, shape (k,): the variables of `SAMPLED`, shape (k, ...), and the numbers of the
-    contact modes, shape (k,), with the names that they stand for. Single numbers are those of `METRICS` and
-    `MONITORS`, lists those of `LISTED`; the attributes are the provenance.
+    Over the sample times, s, shape (k,): the variables of `SAMPLED`, shape (k, ...), and the
+    numbers of the contact modes, shape (k,), with the names that they stand for. Single numbers are
+    those of `METRICS` and `MONITORS`, lists those of `LISTED`; the attributes are the provenance.
     """
     found: dict[Any, xr.Variable] = {}
     for name, values in samples.items():

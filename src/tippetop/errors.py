@@ -1,7 +1,7 @@
 """What can go wrong, each with one sentence that says what to do.
 
     TippetopError
-    |-- InvalidInput (ValueError)      a value that cannot be: names the field, the value and what is accepted
+    |-- InvalidInput (ValueError)      names the field, the value and what is accepted
     |-- FileTrouble (OSError)          a file that cannot be read, or may not be overwritten
     `-- Unavailable (RuntimeError)     something optional that is not installed here
 
@@ -75,11 +75,15 @@ class InvalidInput(TippetopError, ValueError):
     ('tilt', 4.0, 'a number at least 0 and at most pi')
     """
 
-    def __init__(self, field: str, value: object, accepted: str, others: int = 0, file: str = "") -> None:
+    def __init__(
+        self, field: str, value: object, accepted: str, others: int = 0, file: str = ""
+    ) -> None:
         more = f" (and {others} more)" if others else ""
         name = field if field.isprintable() else repr(field)
         where = f" in {file}" if file else ""
-        fault = f"is missing{where}" if value is MISSING else f"= {short(value)}{where} is not possible"
+        fault = (
+            f"is missing{where}" if value is MISSING else f"= {short(value)}{where} is not possible"
+        )
         super().__init__(f"{name} {fault}; accepted: {accepted}{more}")
         self.field = field
         self.value = value
@@ -88,7 +92,9 @@ class InvalidInput(TippetopError, ValueError):
         self.file = file
 
     def within(self, part: str, more: int = 0) -> "InvalidInput":
-        """The same of a field of a part, or of the part itself if it names none; more cannot be besides."""
+        """The same of a field of a part, or of the part itself if it names none; more cannot be
+        besides.
+        """
         field = ".".join([name for name in (part, self.field) if name])
         return InvalidInput(field, self.value, self.accepted, self.others + more, self.file)
 
@@ -141,7 +147,9 @@ def is_whole(value: object) -> TypeGuard[int]:
 
 
 def short(value: object, limit: int = 60) -> str:
-    """A value as it would be typed, numbers as briefly as can be, cut to at most `limit` characters."""
+    """A value as it would be typed, numbers as briefly as can be, cut to at most `limit`
+    characters.
+    """
     try:
         text = _typed(value)
     except RecursionError:

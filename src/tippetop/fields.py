@@ -36,7 +36,9 @@ def table_at(fields: dict[str, Any], where: str) -> dict[str, Any]:
 
 
 def with_its_list(fields: dict[str, Any], name: str, value: Any) -> tuple[str, Any]:
-    """A field and a value for it; of what is in a list, named by its place, the list with that in it."""
+    """A field and a value for it; of what is in a list, named by its place, the list with that in
+    it.
+    """
     where, _, place = name.rpartition(".")
     whole = part_at(fields, where)
     if not (isinstance(whole, tuple) and _is_place(place, whole)):
@@ -55,6 +57,8 @@ def dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
         if isinstance(value, dict):
             yield from dotted_names(value, f"{prefix}{name}.")
         elif isinstance(value, tuple) and value and isinstance(value[0], dict):
-            yield from dotted_names({str(k): inner for k, inner in enumerate(value)}, f"{prefix}{name}.")
+            yield from dotted_names(
+                {str(k): inner for k, inner in enumerate(value)}, f"{prefix}{name}."
+            )
         else:
             yield f"{prefix}{name}"

@@ -27,7 +27,20 @@ LONGEST_NAME = 300
 
 
 _OF_OTHERS = {
-    *(".png", ".svg", ".pdf", ".html", ".htm", ".csv", ".glb", ".mp4", ".gif", ".json", ".toml", ".zarr"),
+    *(
+        ".png",
+        ".svg",
+        ".pdf",
+        ".html",
+        ".htm",
+        ".csv",
+        ".glb",
+        ".mp4",
+        ".gif",
+        ".json",
+        ".toml",
+        ".zarr",
+    ),
     *(".stl", ".3mf"),
 }
 """How the names of files of other kinds than NetCDF end."""
@@ -48,20 +61,24 @@ def refuse_ending_of_others(field: str, path: Path) -> None:
 
 
 def refuse_overwriting(path: Path, overwrite: bool, otherwise: str = "") -> None:
-    """Raise `FileTrouble` if something is there, even a link to nothing, and may not be overwritten.
+    """Raise `FileTrouble` if something is there, even a link to nothing, and may not be
+    overwritten.
 
-    What else may be done with it is told, if anything: "it is <otherwise>overwritten only with ...".
+    What else may be done with it is told, if anything: "it is <otherwise>overwritten only with
+    ...".
     """
     require("overwrite", overwrite, bool, "True or False")
     if os.path.lexists(path) and not overwrite:
-        raise FileTrouble(f"{named(path)} exists; it is {otherwise}overwritten only with {OVERWRITE}")
+        raise FileTrouble(
+            f"{named(path)} exists; it is {otherwise}overwritten only with {OVERWRITE}"
+        )
 
 
 def place_for(path: Path | str, overwrite: bool) -> Path:
     """The file that writing to a path makes or replaces: the end of its links.
 
-    Raises `FileTrouble` if something is there and `overwrite` is false or it is no regular file, or there is
-    no such folder.
+    Raises `FileTrouble` if something is there and `overwrite` is false or it is no regular file, or
+    there is no such folder.
     """
     with in_words(path, "written"):
         target = Path(os.path.realpath(path))
@@ -78,9 +95,9 @@ def place_for(path: Path | str, overwrite: bool) -> Path:
 def written_beside(path: Path | str, overwrite: bool = False) -> Iterator[Path]:
     """A temporary file beside `path`, with its suffix, that takes its place once all is written.
 
-    It is on the disk before it does, has the permissions of the file it replaces, and is nobody else's. What
-    writers that were killed have left in the folder is removed. Raises `FileTrouble` if the file exists and
-    `overwrite` is false, or cannot be written; nothing is then left of it.
+    It is on the disk before it does, has the permissions of the file it replaces, and is nobody
+    else's. What writers that were killed have left in the folder is removed. Raises `FileTrouble`
+    if the file exists and `overwrite` is false, or cannot be written; nothing is then left of it.
     """
     target = place_for(path, overwrite)
     file = None
@@ -103,7 +120,8 @@ def written_beside(path: Path | str, overwrite: bool = False) -> Iterator[Path]:
 
 
 def put_in_place(beside: Path, path: Path | str, overwrite: bool) -> None:
-    """Move a finished file to its place, at once; of several that make the same new file, one succeeds.
+    """Move a finished file to its place, at once; of several that make the same new file, one
+    succeeds.
 
     Raises `FileTrouble` as `place_for` does, at this very moment.
     """
@@ -129,7 +147,9 @@ def read_text(path: Path | str, accepted: str) -> str:
     with in_words(path, "read"), Path(path).open("rb") as file:
         content = file.read(LONGEST_TEXT + 1)
     if len(content) > LONGEST_TEXT:
-        raise FileTrouble(f"{named(path)} has more than {LONGEST_TEXT:,} bytes; accepted: {accepted}")
+        raise FileTrouble(
+            f"{named(path)} has more than {LONGEST_TEXT:,} bytes; accepted: {accepted}"
+        )
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -138,7 +158,8 @@ def read_text(path: Path | str, accepted: str) -> str:
 
 @contextmanager
 def made_of(path: Path | str, given: Container[str] = (), part: str = "") -> Iterator[None]:
-    """Say of what cannot be that it is in this file, unless it is in another, or a field that is given.
+    """Say of what cannot be that it is in this file, unless it is in another, or a field that is
+    given.
 
     If only a part is in the file, it is said of fields of that alone.
     """
@@ -239,7 +260,9 @@ def _holds(handle: int) -> bool | None:
 
 
 def _claim(beside: Path, target: Path, path: Path | str) -> None:
-    """Make the target, which is to be new, out of a file; where a file has one name only, make it empty."""
+    """Make the target, which is to be new, out of a file; where a file has one name only, make it
+    empty.
+    """
     try:
         try:
             os.link(beside, target)
@@ -248,4 +271,6 @@ def _claim(beside: Path, target: Path, path: Path | str) -> None:
         except OSError:
             os.close(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
     except FileExistsError:
-        raise FileTrouble(f"{named(path)} exists; it is overwritten only with {OVERWRITE}") from None
+        raise FileTrouble(
+            f"{named(path)} exists; it is overwritten only with {OVERWRITE}"
+        ) from None

@@ -13,7 +13,9 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.validation import NO_WORD, NotNegative, Positive, Quantity, Variant
 
 LEAST_PATCH = 1e-9
-"""Least radius of a contact patch in units of the body's size: smaller, its drilling is lost in rounding."""
+"""Least radius of a contact patch in units of the body's size: smaller, its drilling is lost in
+rounding.
+"""
 
 LEAST_EPS = 1e-100
 """Least slip speed that a law is smoothed below, m/s: the square of a much smaller one is 0."""
@@ -109,10 +111,11 @@ class RegularizedCoulombFriction(Friction):
 
 
 class CoulombFriction(Friction):
-    """Dry friction, Coulomb's law as it is: ``-mu N v / |v|`` for slip velocity v and normal force N.
+    """Dry friction, Coulomb's law as it is: ``-mu N v / |v|`` for slip velocity v and normal force
+    N.
 
-    Where v = 0 the force is what keeps it so, up to mu N: the top sticks, and rolls. Drilling, which is
-    turning about the vertical on the spot, is not resisted.
+    Where v = 0 the force is what keeps it so, up to mu N: the top sticks, and rolls. Drilling,
+    which is turning about the vertical on the spot, is not resisted.
 
     Attributes
     ----------
@@ -122,8 +125,9 @@ class CoulombFriction(Friction):
     Examples
     --------
     >>> import tippetop as tt
-    >>> run = tt.simulate(tt.presets.report_problem().replace({"friction.kind": "coulomb"}), duration=1.0)
-    >>> str(run["event_kind"].values[0]), bool(run["turns_over"].isnull())  # it sticks at once, and rolls
+    >>> problem = tt.presets.report_problem().replace({"friction.kind": "coulomb"})
+    >>> run = tt.simulate(problem, duration=1.0)
+    >>> str(run["event_kind"].values[0]), bool(run["turns_over"].isnull())  # it sticks and rolls
     ('stick', True)
     """
 
@@ -139,8 +143,8 @@ class CoulombFriction(Friction):
 class ContensouFriction(Friction):
     """Dry friction of a round patch that slides and drills at once (Contensou 1963).
 
-    Every part of the patch rubs by Coulomb's law against its own velocity: drilling makes sliding easier, and
-    sliding makes drilling easier. The top sticks while neither is needed to hold it.
+    Every part of the patch rubs by Coulomb's law against its own velocity: drilling makes sliding
+    easier, and sliding makes drilling easier. The top sticks while neither is needed to hold it.
 
     Attributes
     ----------
@@ -149,14 +153,16 @@ class ContensouFriction(Friction):
     patch_radius
         Radius R of the patch, m; see `hertz_patch_radius`.
     pressure
-        "hertz": the pressure of Hertz's contact, its law exact; "ellipsoidal": the approximation of its limit
-        surface by an ellipsoid that drills as hard, semi-axis (3 pi/16) R (Leine and Glocker 2003).
+        "hertz": the pressure of Hertz's contact, its law exact; "ellipsoidal": the approximation of
+        its limit surface by an ellipsoid that drills as hard, semi-axis (3 pi/16) R (Leine and
+        Glocker 2003).
 
     Examples
     --------
     >>> import tippetop as tt
     >>> law = tt.ContensouFriction(mu=0.3, patch_radius=1e-3).law
-    >>> slow, fast = (law.traction((0.001, 0.0), (0.0, 0.0, spin)).force[0] for spin in (0.0, 100.0))
+    >>> slip, still, spinning = (0.001, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 100.0)
+    >>> slow, fast = (law.traction(slip, spin).force[0] for spin in (still, spinning))
     >>> round(slow, 4), round(fast, 4)  # drilling makes sliding easier
     (-0.3, -0.0035)
     """
@@ -169,7 +175,9 @@ class ContensouFriction(Friction):
     @property
     def law(self) -> FrictionLaw:
         """The law as the mechanics takes it."""
-        return (HertzLaw if self.pressure == "hertz" else EllipsoidalLaw)(self.mu, self.patch_radius)
+        return (HertzLaw if self.pressure == "hertz" else EllipsoidalLaw)(
+            self.mu, self.patch_radius
+        )
 
     def fits(self, size: Scalar) -> bool:
         """As `Friction.fits`: a patch is no larger than the body, and more than a point."""

@@ -1,4 +1,6 @@
-"""The patch of two elastic bodies pressed together (Hertz 1882; Johnson, Contact Mechanics, chapter 4)."""
+"""The patch of two elastic bodies pressed together (Hertz 1882; Johnson, Contact Mechanics, chapter
+4).
+"""
 
 import math
 from typing import Annotated
@@ -36,12 +38,15 @@ STEEL = Material(modulus=207e9, poisson=0.30)
 WOOD = Material(modulus=12e9, poisson=0.29)
 PLASTIC = Material(modulus=2.8e9, poisson=0.33)
 MATERIALS = {"glass": GLASS, "steel": STEEL, "wood": WOOD, "plastic": PLASTIC}
-"""Soda-lime glass, plain carbon steel, Douglas fir along its grain and polystyrene (Callister, Materials
-Science and Engineering, 7th edition, appendix B). Wood is not isotropic: for it the patch is an order of
-magnitude."""
+"""Soda-lime glass, plain carbon steel, Douglas fir along its grain and polystyrene (Callister,
+Materials Science and Engineering, 7th edition, appendix B). Wood is not isotropic: for it the patch
+is an order of magnitude.
+"""
 
 
-def hertz_patch_radius(load: float, radius: float, body: Material, table: Material | None = None) -> float:
+def hertz_patch_radius(
+    load: float, radius: float, body: Material, table: Material | None = None
+) -> float:
     """Radius of the contact patch of a sphere on a plane, (3 P r / (4 E*))^(1/3), m.
 
     Parameters
@@ -75,5 +80,7 @@ def hertz_patch_radius(load: float, radius: float, body: Material, table: Materi
     compliance = sum((1.0 - m.poisson**2) / m.modulus for m in (body, table) if m is not None)
     found = float((0.75 * load * radius * compliance) ** (1.0 / 3.0))
     if not 0.0 < found < math.inf:
-        raise InvalidInput("load", load, "a number whose product with the radius is neither 0 nor infinite")
+        raise InvalidInput(
+            "load", load, "a number whose product with the radius is neither 0 nor infinite"
+        )
     return found

@@ -11,8 +11,12 @@ from importlib import import_module
 from types import FrameType
 from typing import TypeVar
 
-ENDINGS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-"""The signals that ask a program to end: Ctrl-C, the system's, and that of a terminal that is closed."""
+ENDINGS = [
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+]
+"""The signals that ask a program to end: Ctrl-C, the system's, and that of a terminal that is
+closed.
+"""
 INTERRUPTED = 130
 """Exit code of a program that they ended."""
 GLANCE = 0.1
@@ -22,7 +26,8 @@ Made = TypeVar("Made")
 
 
 def let_end(at_first: bool = False) -> None:
-    """Let signals to end do so at once, with a word: for where nothing is begun that would have to be undone.
+    """Let signals to end do so at once, with a word: for where nothing is begun that would have to
+    be undone.
 
     Later than `at_first` it undoes `let_raise`.
     """
@@ -55,7 +60,9 @@ def _raise(number: int, frame: FrameType | None) -> None:
 
 
 def asked_to_end() -> bool:
-    """Whether a signal has raised a `KeyboardInterrupt`; imports may have made another error of it."""
+    """Whether a signal has raised a `KeyboardInterrupt`; imports may have made another error of
+    it.
+    """
     return bool(_raised)
 
 
@@ -87,7 +94,9 @@ def hear() -> None:
 
 
 def import_heard(name: str) -> None:
-    """Import a module, if it is not, of which an interrupted import would leave pieces and another error."""
+    """Import a module, if it is not, of which an interrupted import would leave pieces and another
+    error.
+    """
     if name not in sys.modules:
         heard(lambda: import_module(name))
 
@@ -95,8 +104,8 @@ def import_heard(name: str) -> None:
 def heard(work: Callable[[], Made]) -> Made:
     """What comes of work that is deaf to signals, as a compiler is; they are heard meanwhile.
 
-    The main thread waits while another one works. Where it is interrupted the work still goes to its end, and
-    the interpreter does not end before.
+    The main thread waits while another one works. Where it is interrupted the work still goes to
+    its end, and the interpreter does not end before.
     """
     if threading.current_thread() is not threading.main_thread():
         return work()

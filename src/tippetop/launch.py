@@ -32,13 +32,14 @@ class Launch(Part):
     precession
         phi', rad/s.
     slip
-        Slip velocity of the contact point, m/s: along the direction into which the axis leans, and 90
-        degrees to the left of it.
+        Slip velocity of the contact point, m/s: along the direction into which the axis leans, and
+        90 degrees to the left of it.
     gap
-        Height of the lowest point above the table, m: more than 0 for a top that is dropped or thrown.
+        Height of the lowest point above the table, m: more than 0 for a top that is dropped or
+        thrown.
     velocity
-        Velocity of the centre of mass along x, y and z, m/s; it takes the place of `slip`. Without it the
-        lowest point moves with the slip velocity and neither up nor down.
+        Velocity of the centre of mass along x, y and z, m/s; it takes the place of `slip`. Without
+        it the lowest point moves with the slip velocity and neither up nor down.
 
     Examples
     --------
@@ -53,11 +54,15 @@ class Launch(Part):
     azimuth: Annotated[Number, Quantity("rad", "azimuth of the axis at launch")] = 0.0
     tilt_rate: Annotated[Number, Quantity("rad s-1", "rate of the tilt at launch")] = 0.0
     precession: Annotated[Number, Quantity("rad s-1", "precession at launch")] = 0.0
-    slip: Annotated[tuple[Number, Number], Quantity("m s-1", "slip velocity at launch", LEANING)] = (0.0, 0.0)
+    slip: Annotated[
+        tuple[Number, Number], Quantity("m s-1", "slip velocity at launch", LEANING)
+    ] = (0.0, 0.0)
     gap: Annotated[NotNegative, Quantity("m", "height of the lowest point at launch")] = 0.0
     velocity: Annotated[
         tuple[Number, Number, Number] | None,
-        Quantity("m s-1", "velocity of the centre of mass at launch", ("along x", "along y", "along z")),
+        Quantity(
+            "m s-1", "velocity of the centre of mass at launch", ("along x", "along y", "along z")
+        ),
     ] = None
 
     @model_validator(mode="after")

@@ -9,14 +9,18 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, dot
 
 LEVEL = 1e-9
-"""Difference of height, in sizes, up to which two surfaces are equally low: then the first of them counts."""
+"""Difference of height, in sizes, up to which two surfaces are equally low: then the first of them
+counts.
+"""
 
 LOOKS = 65
 """Tilts at which the height of the centre of mass is looked at."""
 
 
 def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
-    """Vectors from the centre of mass to the lowest point of the body; of numbers, or arrays of one shape."""
+    """Vectors from the centre of mass to the lowest point of the body; of numbers, or arrays of one
+    shape.
+    """
     if not isinstance(surface, Hull):
         return contact_vector(axis, surface)
     level = outer_height(surface, axis[2]) - LEVEL * surface.size
@@ -30,7 +34,8 @@ def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
 
 
 def highest_between(surface: Surface, low: Scalar, high: Scalar) -> Scalar:
-    """Largest height of the centre of mass on the table for n_z from `low` to `high`, in some looks.
+    """Largest height of the centre of mass on the table for n_z from `low` to `high`, in some
+    looks.
 
     A sphere's is linear in n_z: there it is at one of the ends.
     """
@@ -42,5 +47,7 @@ def highest_between(surface: Surface, low: Scalar, high: Scalar) -> Scalar:
 
 
 def lowest_jellett(state: State, top: Top) -> Scalar:
-    """Jellett's integral -L.a about the lowest point of the body, whichever surface that is on, kg m^3/s."""
+    """Jellett's integral -L.a about the lowest point of the body, whichever surface that is on, kg
+    m^3/s.
+    """
     return -dot(state.momentum, lowest_contact_vector(state.axis, top.surface))

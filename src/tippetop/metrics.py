@@ -1,7 +1,8 @@
 """Each number of a launch, defined once: for one launch and for arrays of them.
 
-A number is an event or an extreme of the motion itself, never of its samples. `Ends` is what an executor
-finds on its way, in natural units; `metrics` makes every number of `tippetop.catalogue.METRICS` of it.
+A number is an event or an extreme of the motion itself, never of its samples. `Ends` is what an
+executor finds on its way, in natural units; `metrics` makes every number of
+`tippetop.catalogue.METRICS` of it.
 """
 
 from collections.abc import Sequence
@@ -56,7 +57,9 @@ class Ends:
     airborne: Scalar
     highest_gap: Scalar
     highest: Scalar
-    """Time spent in the air, and there the largest gap and the largest height of the centre of mass."""
+    """Time spent in the air, and there the largest gap and the largest height of the centre of
+    mass.
+    """
     down: Scalar
     up: Scalar
     """Least and largest n_z."""
@@ -93,15 +96,29 @@ class Ends:
     ) -> "Ends":
         """The ends of one launch.
 
-        `resisted` has the energy lost to drilling and to rolling; `least`, the least values of the normal
-        force, n_z, -n_z and, in flights, the negative height; `when`, the times `turned` and `arrived`.
+        `resisted` has the energy lost to drilling and to rolling; `least`, the least values of the
+        normal force, n_z, -n_z and, in flights, the negative height; `when`, the times `turned` and
+        `arrived`.
         """
         lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
         struck, count = sum([event.energy_lost for event in events]), len(flights.rows)
         force, down, up, depth = least
         pressed = 0.0 if lift_offs or count else force, min(lift_offs, default=np.nan)
         aloft = flights.duration, flights.highest_gap, max(-depth, 0.0)
-        return cls(state, time, outcome, steps, count, *pressed, struck, *resisted, *aloft, down, -up, *when)
+        return cls(
+            state,
+            time,
+            outcome,
+            steps,
+            count,
+            *pressed,
+            struck,
+            *resisted,
+            *aloft,
+            down,
+            -up,
+            *when,
+        )
 
     def put(self, where: NDArray[np.intp], found: "Ends") -> None:
         """Put what was found of some launches in its places."""
@@ -150,8 +167,8 @@ def tilt(state: State) -> Array:
 def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArray[Any]]:
     """Every number of `tippetop.catalogue.METRICS` in SI, by name, each of shape (n,).
 
-    `start` has the states at launch in natural units, every number of shape (n,); `top` and `units`, the tops
-    in natural units and those units, have numbers, or arrays of shape (n,).
+    `start` has the states at launch in natural units, every number of shape (n,); `top` and
+    `units`, the tops in natural units and those units, have numbers, or arrays of shape (n,).
     """
     end = ends.state
     with np.errstate(all="ignore"):
@@ -159,7 +176,9 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         change = np.abs(lowest_jellett(end, top) - lowest_jellett(start, top))
         drift = change / np.where(moment > 0, moment, np.nan)
         lost = energy(start, top) - energy(end, top)
-        precession = np.where(axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan)
+        precession = np.where(
+            axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan
+        )
         highest = np.fmax(highest_between(top.surface, ends.down, ends.up), ends.highest)
     return {
         "final_theta": tilt(end),

@@ -11,23 +11,37 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, length
 
 LEAST_MOMENT = 1e-6
-"""Size |L| h of Jellett's integral at launch, in natural units, below which its drift says nothing."""
+"""Size |L| h of Jellett's integral at launch, in natural units, below which its drift says nothing.
+"""
 
 WORST, ACCUMULATED = 1e-6, 1e4
-"""How far, relatively, a run may be off what every motion keeps: this, or this many times its tolerance."""
+"""How far, relatively, a run may be off what every motion keeps: this, or this many times its
+tolerance.
+"""
 
 WAYS_TO_END = (Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.AT_REST, Outcome.LYING_FLAT)
-"""Outcomes that tell what the motion came to, which is not known of a run that cannot be trusted; the others
-say why it is not told."""
+"""Outcomes that tell what the motion came to, which is not known of a run that cannot be trusted;
+the others say why it is not told.
+"""
 
 
 def kept(state: State, top: Top) -> tuple[Scalar, Scalar, Scalar, Scalar, Scalar]:
-    """What `Monitor.see` sees of a state but the work: |n|, n_z, height, energy and Jellett's integral."""
-    return length(state.axis), state.axis[2], state.height, energy(state, top), lowest_jellett(state, top)
+    """What `Monitor.see` sees of a state but the work: |n|, n_z, height, energy and Jellett's
+    integral.
+    """
+    return (
+        length(state.axis),
+        state.axis[2],
+        state.height,
+        energy(state, top),
+        lowest_jellett(state, top),
+    )
 
 
 class Monitor:
-    """How far launches go off what they begin with, in natural units: one, or n with arrays for numbers."""
+    """How far launches go off what they begin with, in natural units: one, or n with arrays for
+    numbers.
+    """
 
     def __init__(self, top: Top, start: State) -> None:
         self.top = top
@@ -49,7 +63,8 @@ class Monitor:
 
     @property
     def inaccuracy(self) -> Scalar:
-        """How far, relatively, the run is off what every motion keeps: energy and work, |n|, lambda, gaps.
+        """How far, relatively, the run is off what every motion keeps: energy and work, |n|,
+        lambda, gaps.
 
         No number if one of these is none.
         """
@@ -60,12 +75,18 @@ class Monitor:
         return np.maximum(np.maximum(imbalance, self._off_unit), np.maximum(drift, self._sunk))
 
     def is_trusted(self, tolerance: float) -> Scalar:
-        """Whether that is little, for steps of a relative error: a truth value, or an array of them."""
+        """Whether that is little, for steps of a relative error: a truth value, or an array of
+        them.
+        """
         return self.inaccuracy <= max(WORST, ACCUMULATED * tolerance)
 
     def judged(self, outcome: Outcome, tolerance: float) -> Outcome:
         """How one launch ended: as its motion came to end only if it can be trusted."""
-        return Outcome.INACCURATE if outcome in WAYS_TO_END and not self.is_trusted(tolerance) else outcome
+        return (
+            Outcome.INACCURATE
+            if outcome in WAYS_TO_END and not self.is_trusted(tolerance)
+            else outcome
+        )
 
     def concluded(self, outcome: Outcome, state: State, work: Scalar, tolerance: float) -> Outcome:
         """How one launch ended, by its last state, too, and all work since launch; see `judged`."""
@@ -74,7 +95,13 @@ class Monitor:
         return self.judged(outcome, tolerance)
 
     def see(
-        self, size: Scalar, cosine: Scalar, height: Scalar, energy: Scalar, jellett: Scalar, work: Scalar
+        self,
+        size: Scalar,
+        cosine: Scalar,
+        height: Scalar,
+        energy: Scalar,
+        jellett: Scalar,
+        work: Scalar,
     ) -> None:
         """See some instants: |n|, n_z, and of work all since launch.
 

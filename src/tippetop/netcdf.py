@@ -1,8 +1,9 @@
 """Runs in NetCDF files, read back as they were written or not at all.
 
-A file ends in a line with the digest of all that stands before it. HDF5, and so every reader of NetCDF,
-passes over what follows its own end. Here nothing is made of a file before its digest is found right: HDF5
-itself takes damaged numbers and words for good ones, and may crash where a file is damaged elsewhere.
+A file ends in a line with the digest of all that stands before it. HDF5, and so every reader of
+NetCDF, passes over what follows its own end. Here nothing is made of a file before its digest is
+found right: HDF5 itself takes damaged numbers and words for good ones, and may crash where a file
+is damaged elsewhere.
 """
 
 import hashlib
@@ -13,7 +14,14 @@ import psutil
 import xarray as xr
 
 from tippetop.errors import FileTrouble, require
-from tippetop.files import in_words, named, path_of, place_for, refuse_ending_of_others, written_beside
+from tippetop.files import (
+    in_words,
+    named,
+    path_of,
+    place_for,
+    refuse_ending_of_others,
+    written_beside,
+)
 
 SEAL = b"\ntippetop sha256 "
 """What stands between the NetCDF and its digest."""
@@ -22,7 +30,8 @@ _LENGTH = len(SEAL) + 2 * hashlib.sha256().digest_size + 1
 
 
 def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
-    """Write a result as NetCDF, beside its place first, so that no half-written file is ever left there.
+    """Write a result as NetCDF, beside its place first, so that no half-written file is ever left
+    there.
 
     Raises
     ------
@@ -87,19 +96,22 @@ def _sealed(content: bytes | memoryview) -> bytes:
 
 
 def _whole(path: Path) -> bytes:
-    """What a file holds that is, to the last bit, as it was written, and for which there is memory twice."""
+    """What a file holds that is, to the last bit, as it was written, and for which there is memory
+    twice.
+    """
     size, free = path.stat().st_size, psutil.virtual_memory().available
     if not path.is_file():
         raise FileTrouble(f"{named(path)} cannot be read: it is no file")
     if 2 * size > free:
         raise FileTrouble(
-            f"{named(path)} cannot be read: it has {size:,} bytes, twice as many are needed, and {free:,} of "
-            "memory are free"
+            f"{named(path)} cannot be read: it has {size:,} bytes, twice as many are needed, and"
+            f" {free:,} of memory are free"
         )
     content = path.read_bytes()
     if not content[-_LENGTH:].startswith(SEAL):
         raise FileTrouble(
-            f"{named(path)} cannot be read: it is not a result of this program, or no longer all of it"
+            f"{named(path)} cannot be read: it is not a result of this program, or no longer all"
+            " of it"
         )
     if content[-_LENGTH:] != _sealed(memoryview(content)[:-_LENGTH]):
         raise FileTrouble(f"{named(path)} cannot be read: it is damaged")

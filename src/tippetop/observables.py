@@ -1,4 +1,6 @@
-"""What is read off a run on its way: its samples, what is integrated along it, and what it must keep."""
+"""What is read off a run on its way: its samples, what is integrated along it, and what it must
+keep.
+"""
 
 import numpy as np
 
@@ -26,7 +28,9 @@ _INTEGRALS = np.array(
         for unit in np.eye(len(NODES))
     ]
 )
-"""The integrals of Lagrange's polynomials on Gauss's points, from 0, in powers from -1 to 1 over a step."""
+"""The integrals of Lagrange's polynomials on Gauss's points, from 0, in powers from -1 to 1 over a
+step.
+"""
 
 
 def kept_in(mode: Mode, y: Row) -> tuple[Scalar, ...]:
@@ -35,14 +39,17 @@ def kept_in(mode: Mode, y: Row) -> tuple[Scalar, ...]:
 
 
 class Recorder:
-    """Takes the samples of a launch on its way, and what is integrated along it; all in natural units.
+    """Takes the samples of a launch on its way, and what is integrated along it; all in natural
+    units.
 
-    It is made of the top, the state at launch, the direction `azimuth` into which the axis leans there, rad
-    (the marker lies in the plane of axis and vertical), increasing sample times, shape (k,), and the energy
-    `lost` in an impact at launch.
+    It is made of the top, the state at launch, the direction `azimuth` into which the axis leans
+    there, rad (the marker lies in the plane of axis and vertical), increasing sample times, shape
+    (k,), and the energy `lost` in an impact at launch.
     """
 
-    def __init__(self, top: Top, start: State, azimuth: float, times: Array, lost: float = 0.0) -> None:
+    def __init__(
+        self, top: Top, start: State, azimuth: float, times: Array, lost: float = 0.0
+    ) -> None:
         self.top, self.times = top, times
         self._parts: list[Array] = []
         self.modes = [Sliding.name, Flight.name]
@@ -68,13 +75,19 @@ class Recorder:
             self._sample(block, times, *integrals)
 
     def outcome_of(self, trajectory: Trajectory) -> Outcome:
-        """How a trajectory of which all was taken ended, by what it kept on its way and keeps at its end."""
+        """How a trajectory of which all was taken ended, by what it kept on its way and keeps at
+        its end.
+        """
         assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
         tolerance = getattr(trajectory.integrator, "tolerance", 0.0)
-        return self.monitor.concluded(trajectory.outcome, trajectory.state, self._sums[3], tolerance)
+        return self.monitor.concluded(
+            trajectory.outcome, trajectory.state, self._sums[3], tolerance
+        )
 
     def finish(self, end: float, state: State, early: bool) -> Samples:
-        """All samples of a launch that ended; where it did so early, its end is the last of them."""
+        """All samples of a launch that ended; where it did so early, its end is the last of
+        them.
+        """
         if early and not (self._parts and self._parts[-1][0, -1] >= end):
             if self._last is None:
                 self._parts.append(self._single(state))
@@ -95,7 +108,9 @@ class Recorder:
         step = block.step_at(times)
         part = parts_of(times, block.starts[step], block.ends[step])
         integrals = _INTEGRALS @ powers(2.0 * part - 1.0, len(NODES) + 1).T * block.spans[step]
-        sums = values.take(step, axis=1) + np.einsum("ik,qik->qk", integrals, rates.take(step, axis=2))
+        sums = values.take(step, axis=1) + np.einsum(
+            "ik,qik->qk", integrals, rates.take(step, axis=2)
+        )
         rows = np.empty((10 + TOLD, len(times)))
         rows[0], rows[2:6], rows[6:8] = times, sums[:4], -sums[4:] if self._resisted else 0.0
         rows[8], rows[9] = struck[step], poles[step]
@@ -119,10 +134,10 @@ class Recorder:
         Returns
         -------
         tuple
-            Rates of the quadratures at Gauss's points, shape (q, 8, k), their values where the steps begin,
-            shape (q, k), the charts of the angle, and what impacts took before, both of shape (k,). The
-            quadratures are x, y, the angle and the work, and beside them, for a law with a torque, the work
-            of drilling and of rolling.
+            Rates of the quadratures at Gauss's points, shape (q, 8, k), their values where the
+            steps begin, shape (q, k), the charts of the angle, and what impacts took before, both
+            of shape (k,). The quadratures are x, y, the angle and the work, and beside them, for a
+            law with a torque, the work of drilling and of rolling.
         """
         count = len(block.starts)
         rates, axis = np.empty((len(self._sums), len(NODES), count)), np.empty((2, count))
@@ -159,7 +174,9 @@ class Recorder:
 
 
 def evenly_summed(gains: Array) -> Array:
-    """Sums of the first gains, from none to all, without adding up the rounding of many that are alike."""
+    """Sums of the first gains, from none to all, without adding up the rounding of many that are
+    alike.
+    """
     mean = np.mean(gains)
     found: Array = mean * np.arange(len(gains) + 1.0)
     found[1:] += np.cumsum(gains - mean)

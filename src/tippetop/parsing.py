@@ -17,8 +17,8 @@ def parse_json(text: str, field: str, file: str = "") -> dict[str, Any]:
 
     They show the text, or its file if it has one.
 
-    Raises `InvalidInput` if it is no JSON object, is nested deeper than `DEEPEST`, or holds whole numbers of
-    thousands of digits.
+    Raises `InvalidInput` if it is no JSON object, is nested deeper than `DEEPEST`, or holds whole
+    numbers of thousands of digits.
     """
     return _parsed("JSON", json.loads, text, field, file)
 
@@ -28,7 +28,9 @@ def parse_toml(text: str, field: str, file: str = "") -> dict[str, Any]:
     return _parsed("TOML", tomllib.loads, text, field, file)
 
 
-def _parsed(language: str, loads: Callable[[str], Any], text: str, field: str, file: str) -> dict[str, Any]:
+def _parsed(
+    language: str, loads: Callable[[str], Any], text: str, field: str, file: str
+) -> dict[str, Any]:
     require(field, text, str, f"a text in {language}")
     try:
         fields = loads(text)

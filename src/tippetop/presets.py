@@ -13,7 +13,9 @@ _MASS, _RADIUS = 0.02, 0.02
 _TWO_FIFTHS = 2 / 5 * _MASS * _RADIUS**2
 _OTHER = 131 / 350 * _MASS * _RADIUS**2
 
-REPORT = Body(mass=_MASS, shape=EccentricSphere(radius=_RADIUS, eccentricity=0.3), I1=_OTHER, I3=_TWO_FIFTHS)
+REPORT = Body(
+    mass=_MASS, shape=EccentricSphere(radius=_RADIUS, eccentricity=0.3), I1=_OTHER, I3=_TWO_FIFTHS
+)
 """The report's top with the inertias of its listing, which are the ones that give its results."""
 
 REPORT_TABLE_1 = Body(
@@ -21,11 +23,14 @@ REPORT_TABLE_1 = Body(
 )
 """The report's top as its Table 1 prints it, with the two inertias exchanged."""
 
-LEINE_GLOCKER = Body(mass=6e-3, shape=EccentricSphere(radius=1.5e-2, eccentricity=0.2), I1=8e-7, I3=7e-7)
+LEINE_GLOCKER = Body(
+    mass=6e-3, shape=EccentricSphere(radius=1.5e-2, eccentricity=0.2), I1=8e-7, I3=7e-7
+)
 """The sphere of Leine and Glocker's top, whose centre of mass is 3 mm from the middle of 15 mm.
 
-R. I. Leine and Ch. Glocker, "A set-valued force law for spatial Coulomb-Contensou friction", European Journal
-of Mechanics A/Solids 22 (2003) 193-216. `LEINE_GLOCKER_STEM` has their second sphere, the stem's.
+R. I. Leine and Ch. Glocker, "A set-valued force law for spatial Coulomb-Contensou friction",
+European Journal of Mechanics A/Solids 22 (2003) 193-216. `LEINE_GLOCKER_STEM` has their second
+sphere, the stem's.
 """
 
 
@@ -44,7 +49,8 @@ LEINE_GLOCKER_STEM = _ball_with_tip(6e-3, _LEINE_BALL, _LEINE_TIP, I1=8e-7, I3=7
 """The whole of Leine and Glocker's top: its sphere, and the smaller one at the end of the stem."""
 
 FRIEDL = _ball_with_tip(6e-3, _LEINE_BALL, _LEINE_TIP, I1=9e-7, I3=7e-7)
-"""Friedl's top that hangs at a tilt between: Leine and Glocker's, which is his, with more inertia across.
+"""Friedl's top that hangs at a tilt between: Leine and Glocker's, which is his, with more inertia
+across.
 
 C. Friedl, "Der Stehaufkreisel", thesis, University of Augsburg, 1997.
 """
@@ -56,12 +62,16 @@ def _report_with(tip: Sphere) -> Body:
 
 
 REPORT_STEM = _report_with(Sphere(radius=0.012, center=0.017))
-"""The report's top with a stem so blunt that it stands up on it when launched as in the report's Fig. 4."""
+"""The report's top with a stem so blunt that it stands up on it when launched as in the report's
+Fig. 4.
+"""
 
 REPORT_THIN_STEM = _report_with(Sphere(radius=0.004, center=0.026))
 """The report's top with a stem so thin that it falls back from it."""
 
-COHEN = Body(mass=0.015, shape=EccentricSphere(radius=0.025, eccentricity=0.2), I1=3.75e-6, I3=3.75e-6)
+COHEN = Body(
+    mass=0.015, shape=EccentricSphere(radius=0.025, eccentricity=0.2), I1=3.75e-6, I3=3.75e-6
+)
 """Cohen's top: I1 = I3 = 0.4 m R^2.
 
 R. J. Cohen, "The tippe top revisited", American Journal of Physics 45 (1977) 12-17.
@@ -69,7 +79,9 @@ R. J. Cohen, "The tippe top revisited", American Journal of Physics 45 (1977) 12
 
 
 def _bored_ball(diameter: float, bore: float, depth: float, spindle: float, height: float) -> Body:
-    """A ball of wood that is bored flat from above, with a spindle that is round at its end; inches."""
+    """A ball of wood that is bored flat from above, with a spindle that is round at its end;
+    inches.
+    """
     ball, hole, stem = diameter / 2, bore / 2, spindle / 2
     mouth = math.sqrt(ball * ball - hole * hole)
     floor, end = mouth - depth, mouth + height
@@ -79,13 +91,15 @@ def _bored_ball(diameter: float, bore: float, depth: float, spindle: float, heig
 
 
 WOODEN = _bored_ball(diameter=1.25, bore=0.875, depth=0.382, spindle=0.25, height=0.49)
-"""A common wooden tippe top by a turner's measures: a ball of 31.75 mm, bored, with a spindle of 6.35 mm.
+"""A common wooden tippe top by a turner's measures: a ball of 31.75 mm, bored, with a spindle of
+6.35 mm.
 
-E. Pfau's table for balls of 1 1/4 inches (Waxhaw Woodturners, August 2011): spindle 1/4, counterbore 7/8 and
-0.382 deep, spindle 0.490 above it. Depth and height are taken from the counterbore's edge, which the table
-leaves open: the height over the diameter is then 1.249, and 36 to 29 mm of one that is sold (Curious Minds,
-"Flip Over Top") is 1.241. Ours are the spindle's round end and one wood for both parts, beech or hard maple
-of 720 kg/m^3; mass, centre of mass and inertias follow from the profile.
+E. Pfau's table for balls of 1 1/4 inches (Waxhaw Woodturners, August 2011): spindle 1/4,
+counterbore 7/8 and 0.382 deep, spindle 0.490 above it. Depth and height are taken from the
+counterbore's edge, which the table leaves open: the height over the diameter is then 1.249, and 36
+to 29 mm of one that is sold (Curious Minds, "Flip Over Top") is 1.241. Ours are the spindle's round
+end and one wood for both parts, beech or hard maple of 720 kg/m^3; mass, centre of mass and
+inertias follow from the profile.
 """
 
 
@@ -93,21 +107,27 @@ def _cylinder(mass: float, radius: float, thickness: float) -> Body:
     """A solid cylinder with sharp edges, which a disk, a coin or a rod are."""
     edges = tuple(Ring(radius=radius, center=side * thickness / 2) for side in (-1, 1))
     return Body(
-        mass=mass, shape=edges, I1=mass * (3 * radius**2 + thickness**2) / 12, I3=mass * radius**2 / 2
+        mass=mass,
+        shape=edges,
+        I1=mass * (3 * radius**2 + thickness**2) / 12,
+        I3=mass * radius**2 / 2,
     )
 
 
 EULER_DISK = _cylinder(0.4, 0.0375, 0.0125)
 """Euler's disk, the toy, as large and heavy as in H. K. Moffatt, Nature 404 (2000) 833-834.
 
-That it is 12.5 mm thick, with sharp edges, is assumed; of steel of 7,850 kg/m^3 it would be 11.5 mm.
+That it is 12.5 mm thick, with sharp edges, is assumed; of steel of 7,850 kg/m^3 it would be 11.5
+mm.
 """
 
 COIN = _cylinder(7.5e-3, 0.023_25 / 2, 2.33e-3)
-"""A coin of one euro by its specification: 7.5 g, 23.25 mm across, 2.33 mm thick, as if of one metal.
+"""A coin of one euro by its specification: 7.5 g, 23.25 mm across, 2.33 mm thick, as if of one
+metal.
 
-Diameter and mass stand in Council Regulation (EC) No 975/98, the thickness in the European Central Bank's
-list of euro coins; that it is of one metal all through, with flat faces and sharp edges, is assumed.
+Diameter and mass stand in Council Regulation (EC) No 975/98, the thickness in the European Central
+Bank's list of euro coins; that it is of one metal all through, with flat faces and sharp edges, is
+assumed.
 """
 
 _BALL, _BALL_RADIUS = 0.032, 0.01
@@ -129,8 +149,9 @@ HURRICANE_BALLS = Body(
 )
 """Two balls of steel, 20 mm across and 32 g each, welded together.
 
-As in D. P. Jackson, D. Mertens and B. J. Pearson, American Journal of Physics 83 (2015) 959-968, but for
-their size, which is assumed, and the weld, which is only drawn: how they roll depends on the radius alone.
+As in D. P. Jackson, D. Mertens and B. J. Pearson, American Journal of Physics 83 (2015) 959-968,
+but for their size, which is assumed, and the weld, which is only drawn: how they roll depends on
+the radius alone.
 """
 
 EGG = Body(
@@ -141,8 +162,8 @@ EGG = Body(
 )
 """A hard-boiled hen's egg of common size, as a spheroid that is the same all through.
 
-Typical dimensions, assumed: 44 by 56 mm, and a mass within the class M of 53 to 63 g of Commission Regulation
-(EC) No 589/2008. A real egg is blunter at one end, and not quite the same all through.
+Typical dimensions, assumed: 44 by 56 mm, and a mass within the class M of 53 to 63 g of Commission
+Regulation (EC) No 589/2008. A real egg is blunter at one end, and not quite the same all through.
 """
 
 BODIES = {
@@ -172,12 +193,17 @@ def body(name: str) -> Body:
 
 
 def report_problem(spin: float = 155.0, tilt: float = 0.1, mu: float = 0.3) -> Problem:
-    """The report's top and table, launched at rest in tilt: spin in rad/s, tilt in rad, mu in s/m."""
-    return Problem(body=REPORT, friction=ViscousFriction(mu=mu), launch=Launch(tilt=tilt, spin=spin))
+    """The report's top and table, launched at rest in tilt: spin in rad/s, tilt in rad, mu in
+    s/m.
+    """
+    return Problem(
+        body=REPORT, friction=ViscousFriction(mu=mu), launch=Launch(tilt=tilt, spin=spin)
+    )
 
 
 def leine_glocker_problem(spin: float = 180.0, tilt: float = 0.1, mu: float = 0.3) -> Problem:
-    """Leine and Glocker's top on dry friction, without drilling: spin in rad/s, tilt in rad, mu a number.
+    """Leine and Glocker's top on dry friction, without drilling: spin in rad/s, tilt in rad, mu a
+    number.
 
     See `LEINE_GLOCKER` for the reference.
     """

@@ -48,9 +48,9 @@ class Problem(Part):
     gravity
         Acceleration of gravity, m/s^2.
     rolling_resistance
-        Arm of the normal force's couple against rolling beside any law of friction, m, no longer than the
-        body is large: the table resists the horizontal angular velocity w_t with the torque N
-        rolling_resistance, and holds it at zero where less is enough for that.
+        Arm of the normal force's couple against rolling beside any law of friction, m, no longer
+        than the body is large: the table resists the horizontal angular velocity w_t with the
+        torque N rolling_resistance, and holds it at zero where less is enough for that.
 
     Examples
     --------
@@ -95,8 +95,8 @@ class Problem(Part):
             raise InvalidInput(
                 "launch.slip",
                 self.launch.slip,
-                "less slip or less friction: here any push of the table would drag the body further into it "
-                "(Painleve's paradox), unless contact.liftoff is 'fly'",
+                "less slip or less friction: here any push of the table would drag the body further"
+                " into it (Painleve's paradox), unless contact.liftoff is 'fly'",
             )
         return self
 
@@ -105,7 +105,9 @@ class Problem(Part):
         """The problem's numbers as the mechanics takes them, SI."""
         body, arm = self.body, self.rolling_resistance
         resistance = None if isinstance(arm, float) and not arm else RollingResistance(arm)
-        return Top(body.mass, body.I1, body.I3, body.surface, self.friction.law, self.gravity, resistance)
+        return Top(
+            body.mass, body.I1, body.I3, body.surface, self.friction.law, self.gravity, resistance
+        )
 
     def standing(self, functions: Functions = math) -> Top:
         """The top on the surface that reaches lowest at launch."""
@@ -115,10 +117,17 @@ class Problem(Part):
         return top._replace(surface=lowest_surface(top.surface, cosine))
 
     def start(self, functions: Functions = math) -> State:
-        """The state at launch, SI; with sine and cosine for whatever the fields are, such as arrays."""
+        """The state at launch, SI; with sine and cosine for whatever the fields are, such as
+        arrays.
+        """
         launch, top = self.launch, self.standing(functions)
         angles = Angles(
-            launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, launch.slip
+            launch.tilt,
+            launch.tilt_rate,
+            launch.azimuth,
+            launch.precession,
+            launch.spin,
+            launch.slip,
         )
         touching = on_table(state_from_angles(angles, top, PoleExact(functions)), top)
         return touching._replace(
@@ -127,21 +136,26 @@ class Problem(Part):
         )
 
     def replace(self, changes: Mapping[str, Any]) -> Self:
-        """Copy with some fields replaced, named with dots: ``problem.replace({"launch.spin": 100.0})``.
+        """Copy with some fields replaced, named with dots: ``problem.replace({"launch.spin":
+        100.0})``.
 
-        Another `kind` of a part keeps the fields that the new one has too, and may be given the rest.
+        Another `kind` of a part keeps the fields that the new one has too, and may be given the
+        rest.
 
         Raises
         ------
         InvalidInput
-            If there is no such field, it cannot have such a value, or is given again within another's.
+            If there is no such field, it cannot have such a value, or is given again within
+            another's.
         """
         if not (isinstance(changes, Mapping) and all(isinstance(name, str) for name in changes)):
             raise InvalidInput("changes", changes, "a dict of values by the names of fields")
         for name in changes:
             whole = next((other for other in changes if name.startswith(f"{other}.")), None)
             if whole is not None:
-                raise InvalidInput(name, changes[name], f"none beside a value of {whole}, its whole")
+                raise InvalidInput(
+                    name, changes[name], f"none beside a value of {whole}, its whole"
+                )
         fields = self.model_dump()
         renewed = set()
         for name, value in changes.items():
@@ -157,7 +171,9 @@ class Problem(Part):
             where, _, last = name.rpartition(".")
             table = table_at(fields, where)
             if last not in table and where not in renewed:
-                raise InvalidInput("field", name, "one of " + one_of(name, list(dotted_names(fields))))
+                raise InvalidInput(
+                    "field", name, "one of " + one_of(name, list(dotted_names(fields)))
+                )
             table[last] = value
         return type(self)(**fields)
 
@@ -221,8 +237,8 @@ def _refuse_what_does_not_fit(problem: Problem) -> None:
         raise InvalidInput(
             "friction.patch_radius",
             getattr(problem.friction, "patch_radius", MISSING),
-            f"from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} on this body; a smaller "
-            "patch is a point, for which there is coulomb",
+            f"from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} on this body; a"
+            " smaller patch is a point, for which there is coulomb",
         )
     if problem.rolling_resistance > size:
         raise InvalidInput(
@@ -245,12 +261,16 @@ def _resistance(problem: Problem) -> float:
 
 
 def _largest_square(problem: Problem) -> float:
-    """The largest square among the numbers of the launch in natural units, and in SI; nan without one."""
+    """The largest square among the numbers of the launch in natural units, and in SI; nan without
+    one.
+    """
     try:
         units = natural_units(problem.top)
         start = natural_state(problem.start(), units)
         largest = float(max(map(abs, (*start.momentum, *start.velocity, start.height))))
-        return largest**2 * max(1.0, float(units.energy), float(problem.body.mass * problem.gravity))
+        return largest**2 * max(
+            1.0, float(units.energy), float(problem.body.mass * problem.gravity)
+        )
     except ArithmeticError:
         return math.nan
 
@@ -263,7 +283,9 @@ def _lying_flat(problem: Problem) -> InvalidInput | None:
         return None
     if not edge or math.cos(problem.launch.tilt) ** 2 < 1.0:
         return None
-    return InvalidInput("launch.tilt", problem.launch.tilt, "a tilt at which the body does not lie flat")
+    return InvalidInput(
+        "launch.tilt", problem.launch.tilt, "a tilt at which the body does not lie flat"
+    )
 
 
 def _out_of_reach(problem: Problem) -> InvalidInput:

@@ -1,8 +1,8 @@
 """The one way to run work in processes beside this one.
 
-They are fresh interpreters, which is the one way to start that is the same on every system and safe beside
-threads. They run this package alone and never the caller's script, have one thread each, leave Ctrl-C to this
-process, and end with it even if it is killed. One that is killed is replaced.
+They are fresh interpreters, which is the one way to start that is the same on every system and safe
+beside threads. They run this package alone and never the caller's script, have one thread each,
+leave Ctrl-C to this process, and end with it even if it is killed. One that is killed is replaced.
 """
 
 import multiprocessing
@@ -47,7 +47,9 @@ class Worker:
 
     def __init__(self) -> None:
         self.end, theirs = _SPAWN.Pipe()
-        self._process = _SPAWN.Process(target=_work, args=(theirs,), daemon=True, name="tippetop worker")
+        self._process = _SPAWN.Process(
+            target=_work, args=(theirs,), daemon=True, name="tippetop worker"
+        )
         try:
             with _apart():
                 self._process.start()
@@ -80,10 +82,11 @@ class Worker:
 def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any, Any]]:
     """Do jobs in so many processes, and give the name and the result of each as it comes.
 
-    When a process is free, `next_job` gives another, or None if there is none, or none before another result.
-    With a count of 1 all is done in this process.
+    When a process is free, `next_job` gives another, or None if there is none, or none before
+    another result. With a count of 1 all is done in this process.
 
-    Raises `Unavailable` if the process of a job was killed, again and again, and whatever a job raises.
+    Raises `Unavailable` if the process of a job was killed, again and again, and whatever a job
+    raises.
     """
     if count == 1:
         while (job := next_job()) is not None:
@@ -111,8 +114,8 @@ def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any
                 except EOFError:
                     if kills == RESTARTS:
                         raise Unavailable(
-                            f"processes were killed {kills + 1} times during {job.name}, perhaps for want of "
-                            "memory; try again, or with fewer workers"
+                            f"processes were killed {kills + 1} times during {job.name}, perhaps"
+                            " for want of memory; try again, or with fewer workers"
                         ) from None
                     worker.close()
                     crew.append(Worker())
@@ -147,7 +150,9 @@ def _apart() -> Iterator[None]:
 
 @contextmanager
 def _unheard() -> Iterator[None]:
-    """Block Ctrl-C in this thread, where a system can: what is started meanwhile inherits that, for good."""
+    """Block Ctrl-C in this thread, where a system can: what is started meanwhile inherits that, for
+    good.
+    """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -183,7 +188,9 @@ def _follow_parent() -> None:
 
 
 def _portable(error: Exception) -> Exception:
-    """An error as it can be sent: with where it was raised, unless it is one that is raised on purpose."""
+    """An error as it can be sent: with where it was raised, unless it is one that is raised on
+    purpose.
+    """
     if not isinstance(error, TippetopError):
         error.add_note(traceback.format_exc())
     try:

@@ -62,36 +62,38 @@ def simulate(
     times
         Sample times instead, s: increasing, from 0 to `duration`.
     integrator
-        "taylor", "collocation", "compiled", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for the
-        best installed, which collocation relieves where friction is stiff; or an object of one's own, which
-        follows motions as `tippetop.integrators.base.Integrator` does.
+        "taylor", "collocation", "compiled", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4";
+        None for the best installed, which collocation relieves where friction is stiff; or an
+        object of one's own, which follows motions as `tippetop.integrators.base.Integrator` does.
     tolerance
-        Relative error per step; None for the integrator's own default. Only with an integrator by name.
+        Relative error per step; None for the integrator's own default. Only with an integrator by
+        name.
     step
         Step size of "rk4", s; for no other.
     phase_limit
         How many modes (slides and flights) the run may go through before it ends early.
     step_limit
-        How many steps of the integrator it may take before it ends early: they are counted piece by piece,
-        of up to 4096 steps.
+        How many steps of the integrator it may take before it ends early: they are counted piece by
+        piece, of up to 4096 steps.
     callback
         Told now and then which part of the run is done, between 0 and 1.
 
     Returns
     -------
     xarray.Dataset
-        The variables of `tippetop.catalogue` with their SI units. Over `time`: those of `SAMPLED`, and the
-        contact mode. Over `event` and `flight`: those of `LISTED`. Single numbers: those of `METRICS`, which
-        are events and extremes of the motion and do not depend on the samples, and of `MONITORS`. Attributes:
-        problem (JSON), outcome, outcome_advice, integrator (every one that took steps), tolerance (the
-        largest) or step, tippetop_version, Conventions. When the run ends before `duration`, the last sample
-        is its end, unless its numbers grew beyond all bounds.
+        The variables of `tippetop.catalogue` with their SI units. Over `time`: those of `SAMPLED`,
+        and the contact mode. Over `event` and `flight`: those of `LISTED`. Single numbers: those of
+        `METRICS`, which are events and extremes of the motion and do not depend on the samples, and
+        of `MONITORS`. Attributes: problem (JSON), outcome, outcome_advice, integrator (every one
+        that took steps), tolerance (the largest) or step, tippetop_version, Conventions. When the
+        run ends before `duration`, the last sample is its end, unless its numbers grew beyond all
+        bounds.
 
     Raises
     ------
     InvalidInput
-        If the problem is none, or the duration, samples, integrator, tolerance, step, a limit or the callback
-        cannot be.
+        If the problem is none, or the duration, samples, integrator, tolerance, step, a limit or
+        the callback cannot be.
     Unavailable
         If the integrator is not installed.
 
@@ -140,7 +142,9 @@ def simulate(
         "title": "Motion of a spinning top on a table",
         "problem": problem.to_json(),
         "outcome": outcome.name.lower(),
-        "outcome_advice": " ".join(filter(None, (outcome.value, trajectory.detail, method.caution))),
+        "outcome_advice": " ".join(
+            filter(None, (outcome.value, trajectory.detail, method.caution))
+        ),
         **_method_attributes([method, *tally.methods.values()], units),
         "tippetop_version": __version__,
     }
@@ -164,7 +168,12 @@ def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Arra
         grid = np.array(times, dtype=float)
     except (TypeError, ValueError):
         raise InvalidInput("times", times, "a list of increasing finite numbers") from None
-    if grid.ndim != 1 or not len(grid) or not np.all(np.isfinite(grid)) or np.any(np.diff(grid) <= 0):
+    if (
+        grid.ndim != 1
+        or not len(grid)
+        or not np.all(np.isfinite(grid))
+        or np.any(np.diff(grid) <= 0)
+    ):
         raise InvalidInput("times", times, "a list of increasing finite numbers")
     if grid[0] < 0 or grid[-1] > duration:
         raise InvalidInput("times", times, f"times from 0 to the duration, {duration:g} s")
@@ -210,7 +219,9 @@ def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, NDArray[An
     }
 
 
-def _flight_arrays(flights: Sequence[tuple[float, float, float]], units: Units) -> dict[str, NDArray[Any]]:
+def _flight_arrays(
+    flights: Sequence[tuple[float, float, float]], units: Units
+) -> dict[str, NDArray[Any]]:
     """Values over the flights, in SI."""
     starts, ends, gaps = np.array(flights).reshape(-1, 3).T
     return {

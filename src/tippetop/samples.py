@@ -34,7 +34,8 @@ class Samples(NamedTuple):
     rolled: Array
     """Energy lost since launch in impacts, to drilling and to rolling."""
     pole: Array
-    """Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`)."""
+    """Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`).
+    """
     mode: NDArray[np.int8]
     """Number of the contact mode, among the names that the recorder has met."""
 
@@ -46,9 +47,11 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     sine, (slip_x, slip_y), tilting = axis_sine(axis), told.slip, told.tilting
     upright = sine == 0.0
     if np.any(upright):
-        # Where the axis is vertical it leans nowhere; X is then the space axis x, and theta' the rate at
-        # which the axis leaves the pole.
-        slip_x, slip_y = (np.where(upright, *both) for both in zip(told.point, told.slip, strict=True))
+        # Where the axis is vertical it leans nowhere; X is then the space axis x, and theta' the
+        # rate at which the axis leaves the pole.
+        slip_x, slip_y = (
+            np.where(upright, *both) for both in zip(told.point, told.slip, strict=True)
+        )
         leaving = np.hypot(momentum[0], momentum[1]) / top.transverse_inertia
         tilting = np.where(upright, np.copysign(leaving, axis[2]), tilting)
     return {
@@ -64,7 +67,8 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "contact_torque": np.stack(scale(units.energy, told.torque), -1),
         "energy": told.energy * units.energy,
         "work": samples.work * units.energy,
-        "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled) * units.energy,
+        "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled)
+        * units.energy,
         "drilling_loss": samples.drilled * units.energy,
         "rolling_loss": samples.rolled * units.energy,
         "jellett": told.jellett * units.jellett,

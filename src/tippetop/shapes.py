@@ -13,7 +13,8 @@ Center = Annotated[Number, Quantity("m", "height of the surface's middle above t
 
 
 class Shape(Variant):
-    """The outer surface of a body, and where the centre of mass is in it; a kind of it is a subclass.
+    """The outer surface of a body, and where the centre of mass is in it; a kind of it is a
+    subclass.
 
     Attributes
     ----------
@@ -70,7 +71,8 @@ class EccentricSphere(Shape):
 
 
 class Sphere(Shape):
-    """A sphere whose centre is anywhere on the axis: the tip of a stem, or one of two hurricane balls.
+    """A sphere whose centre is anywhere on the axis: the tip of a stem, or one of two hurricane
+    balls.
 
     Attributes
     ----------
@@ -113,7 +115,7 @@ class Ring(Shape):
     Examples
     --------
     >>> import tippetop as tt
-    >>> tt.Ring(radius=0.0125, center=0.0).surface.height(0.0)  # of the centre, where it stands on its edge
+    >>> tt.Ring(radius=0.0125, center=0.0).surface.height(0.0)  # standing on its edge
     0.0125
     """
 
@@ -129,7 +131,9 @@ class Ring(Shape):
 
 
 MOST_ASPECT = 1e6
-"""Ratio of a spheroid's semi-axes; the square of it is still far from rounding, as its curvature needs."""
+"""Ratio of a spheroid's semi-axes; the square of it is still far from rounding, as its curvature
+needs.
+"""
 
 
 class Spheroid(Shape):

@@ -15,13 +15,13 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
     Returns
     -------
     dict
-        Keys: outcome, advice, duration (s), final (theta, theta_dot, omega3, phi_dot: rad and rad/s),
-        turns_over (s: the tilt first passes pi/2; None if never), arrives (s: first within 0.01 rad of
-        its last value), first_lift_off (s), highest (m), least_normal_force (N), energy_start, energy_lost,
-        energy_lost_sliding, energy_lost_drilling, energy_lost_rolling (J), jellett_drift and energy_error
-        (relative), flights (how many), airborne_time (s), highest_gap (m), impact_energy_lost (J), events
-        (kind and time, s),
-        integrator, steps, evaluations. What is not a number is None.
+        Keys: outcome, advice, duration (s), final (theta, theta_dot, omega3, phi_dot: rad and
+        rad/s), turns_over (s: the tilt first passes pi/2; None if never), arrives (s: first within
+        0.01 rad of its last value), first_lift_off (s), highest (m), least_normal_force (N),
+        energy_start, energy_lost, energy_lost_sliding, energy_lost_drilling, energy_lost_rolling
+        (J), jellett_drift and energy_error (relative), flights (how many), airborne_time (s),
+        highest_gap (m), impact_energy_lost (J), events (kind and time, s), integrator, steps,
+        evaluations. What is not a number is None.
 
     Examples
     --------
@@ -50,8 +50,14 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
 
 
 _OTHERWISE = {
-    "final_theta", "final_omega3", "final_phi_dot", "end_time", "steps", "evaluations", "jellett_error",
-}  # fmt: skip
+    "final_theta",
+    "final_omega3",
+    "final_phi_dot",
+    "end_time",
+    "steps",
+    "evaluations",
+    "jellett_error",
+}
 NUMBERS = [name for name in (*METRICS, *MONITORS) if name not in _OTHERWISE]
 """The single numbers of a run that are told under their names."""
 

@@ -1,4 +1,6 @@
-"""What is found on the way of one launch, block by block: events and extremes of the dense solution."""
+"""What is found on the way of one launch, block by block: events and extremes of the dense
+solution.
+"""
 
 from collections.abc import Callable, Sequence
 
@@ -16,7 +18,9 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
 
 AT_ONCE = 4
-"""Steps that are searched together for when something happens first; then so many times more, and again."""
+"""Steps that are searched together for when something happens first; then so many times more, and
+again.
+"""
 
 FORCE_DEGREE = 20
 """Degree of the polynomials in which the least normal force is looked for."""
@@ -28,7 +32,9 @@ class Tally:
     def __init__(self) -> None:
         self._tips: list[tuple[Polynomials, Array, Array, Array]] = []
         self.flights = Flights()
-        self._lowest, self._highest, self._raised, self._pressed = (list[Polynomials]() for _ in range(4))
+        self._lowest, self._highest, self._raised, self._pressed = (
+            list[Polynomials]() for _ in range(4)
+        )
         self._turned = np.nan
         self._drilled = self._rolled = 0.0
         self.steps = self.evaluations = 0
@@ -72,7 +78,8 @@ class Tally:
         """Take in the normal force."""
         force = Rates(*group.nodes).force
         least = force.min(axis=0)
-        # Between Gauss's points, and beyond them, it is lower by a small part of what it varies by there.
+        # Between Gauss's points, and beyond them, it is lower by a small part of what it varies by
+        # there.
         near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
         places, transform, to_powers = chebyshev(FORCE_DEGREE)
         unit = to_powers @ (transform @ Rates(*group.at(places, near)).force)
@@ -88,9 +95,14 @@ class Tally:
         """All that was found, as numbers, given how and where it ended."""
         last = State.unpack([np.float64(number) for number in state.pack()])
         least = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
-        resisted, when = (self._drilled, self._rolled), (self._turned, self.arrival(*final_band(last)))
+        resisted, when = (
+            (self._drilled, self._rolled),
+            (self._turned, self.arrival(*final_band(last))),
+        )
         number, ended = OUTCOMES.index(outcome), np.float64(time)
-        return Ends.of_one(last, ended, number, events, self.flights, self.steps, resisted, least, when)
+        return Ends.of_one(
+            last, ended, number, events, self.flights, self.steps, resisted, least, when
+        )
 
     def arrival(self, low: Scalar, high: Scalar) -> float:
         """First time at which n_z is between `low` and `high`; nan if it never is."""
@@ -104,7 +116,9 @@ class Tally:
 def _first(
     known: float, tip: Polynomials, starts: Array, near: Flags, find: Callable[[Polynomials], Array]
 ) -> float:
-    """The first time that is found on steps where it may be, or the one that is known if that is earlier."""
+    """The first time that is found on steps where it may be, or the one that is known if that is
+    earlier.
+    """
     which, count = np.flatnonzero(near & ~(starts > known)), AT_ONCE
     while len(which):
         some, which, count = which[:count], which[count:], AT_ONCE * count

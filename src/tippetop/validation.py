@@ -54,13 +54,17 @@ POINTS = "a list of points [distance from the axis, height, radius]"
 
 
 def _listed(value: Any) -> Any:
-    if not isinstance(value, list | tuple) or not all(isinstance(point, list | tuple) for point in value):
+    if not isinstance(value, list | tuple) or not all(
+        isinstance(point, list | tuple) for point in value
+    ):
         raise PydanticCustomError("points", POINTS)
     return value
 
 
 Points: TypeAlias = Annotated[tuple[tuple[Number, ...], ...], BeforeValidator(_listed)]
-"""Points of a profile: distance from the axis, height along it and, at the end of an arc, its radius."""
+"""Points of a profile: distance from the axis, height along it and, at the end of an arc, its
+radius.
+"""
 
 
 def require_callback(field: str, value: object) -> None:
@@ -88,14 +92,20 @@ class Part(BaseModel):
         If a field is missing, unknown, not finite or outside its range.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True
+    )
 
     if not TYPE_CHECKING:  # else mypy takes it that values may do without names
 
         def __new__(cls, /, *values: Any, **_: Any) -> Self:
-            """Refuse values without their names here, where signatures of parts, made of `__init__`, stay."""
+            """Refuse values without their names here, where signatures of parts, made of
+            `__init__`, stay.
+            """
             if values and cls.__init__ is Part.__init__:
-                raise InvalidInput(cls.__name__, values, f"its fields by name: {', '.join(_written(cls))}")
+                raise InvalidInput(
+                    cls.__name__, values, f"its fields by name: {', '.join(_written(cls))}"
+                )
             return super().__new__(cls)
 
     def __init__(self, /, **fields: Any) -> None:
@@ -126,13 +136,23 @@ class Part(BaseModel):
             several = self.quantity(where)
             return several._replace(long_name=f"{several.long_name} {several.places[int(last)]}")
         info = type(part).model_fields[last]
-        return next((item for item in info.metadata if isinstance(item, Quantity)), Quantity("", last))
+        return next(
+            (item for item in info.metadata if isinstance(item, Quantity)), Quantity("", last)
+        )
 
     def modules(self) -> set[str]:
-        """The modules outside this package in which the kinds of this part, and of the parts in it, are."""
-        here = {type(self).__module__} if type(self).__module__.partition(".")[0] != _PACKAGE else set()
+        """The modules outside this package in which the kinds of this part, and of the parts in it,
+        are.
+        """
+        here = (
+            {type(self).__module__}
+            if type(self).__module__.partition(".")[0] != _PACKAGE
+            else set()
+        )
         values = [getattr(self, name) for name in type(self).model_fields]
-        several = [inner for value in values for inner in (value if isinstance(value, tuple) else (value,))]
+        several = [
+            inner for value in values for inner in (value if isinstance(value, tuple) else (value,))
+        ]
         return here.union(*(value.modules() for value in several if isinstance(value, Part)))
 
 
@@ -160,9 +180,9 @@ def in_order(
 class Variant(Part):
     """A part of which there are several kinds: its subclasses, told apart by their field `kind`.
 
-    A ``class Mine(Shape)`` with a field ``kind: Literal["mine"] = "mine"`` is a kind of `Shape` wherever it
-    is defined, and whatever has a `Shape` takes it. One that is defined again, as in a notebook, replaces its
-    former self.
+    A ``class Mine(Shape)`` with a field ``kind: Literal["mine"] = "mine"`` is a kind of `Shape`
+    wherever it is defined, and whatever has a `Shape` takes it. One that is defined again, as in a
+    notebook, replaces its former self.
 
     Attributes
     ----------
@@ -183,15 +203,23 @@ class Variant(Part):
             raise TypeError(f'{cls.__name__} needs a word: kind: Literal["word"] = "word"')
         known = cls.kinds.get(info.default)
         if known and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
-            raise TypeError(f"{cls.__name__} needs another word: {info.default!r} is {known.__name__}")
+            raise TypeError(
+                f"{cls.__name__} needs another word: {info.default!r} is {known.__name__}"
+            )
         cls.kinds[info.default] = cls
 
     @classmethod
     def fields_of(cls, kind: Any) -> set[str]:
-        """The names of the fields of another kind of the same part; those of this one if there is none."""
+        """The names of the fields of another kind of the same part; those of this one if there is
+        none.
+        """
         base = next(part for part in cls.__mro__ if Variant in part.__bases__)
         known: Any = base.kinds  # type: ignore[attr-defined]
-        return set(known.get(kind, cls).model_fields) if isinstance(kind, str) else set(cls.model_fields)
+        return (
+            set(known.get(kind, cls).model_fields)
+            if isinstance(kind, str)
+            else set(cls.model_fields)
+        )
 
 
 class _OfItsKind:
@@ -245,7 +273,11 @@ class _OfItsKind:
         base: Any = schema["metadata"]["base"]
         known = [*([] if inspect.isabstract(base) else [base]), *base.kinds.values()]
         one = {"oneOf": [handler(kind.__pydantic_core_schema__) for kind in known]}
-        return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]} if self.several else one
+        return (
+            {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
+            if self.several
+            else one
+        )
 
 
 OF_ITS_KIND = _OfItsKind()
@@ -253,7 +285,9 @@ ONE_OR_SEVERAL = _OfItsKind(several=True)
 
 
 def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
-    """Turn a validation error into the one sentence a user reads, about the most telling of its details."""
+    """Turn a validation error into the one sentence a user reads, about the most telling of its
+    details.
+    """
     details = sorted(error.errors(), key=lambda detail: detail["type"] != "extra_forbidden")
     first, others = details[0], len(details) - 1
     field = ".".join(str(step) for step in first["loc"])

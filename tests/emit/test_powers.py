@@ -29,9 +29,13 @@ EDGES = [
 def test_powers(exponent):
     from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - LLVM may be missing
 
-    numbers = np.concatenate([EDGES, 10.0 ** np.random.default_rng(1).uniform(-323.0, 308.0, 20_000)])
+    numbers = np.concatenate(
+        [EDGES, 10.0 ** np.random.default_rng(1).uniform(-323.0, 308.0, 20_000)]
+    )
     numbers = np.concatenate([numbers, np.ones(-len(numbers) % ABREAST)])
-    function = machine_code({"made": record(lambda y, p: [y[0] ** exponent], 1, 0)}, ABREAST)["made"]
+    function = machine_code({"made": record(lambda y, p: [y[0] ** exponent], 1, 0)}, ABREAST)[
+        "made"
+    ]
     found = np.empty((1, len(numbers)))
     function(numbers[None].copy(), np.empty((0, len(numbers))), found)
     with np.errstate(invalid="ignore"):

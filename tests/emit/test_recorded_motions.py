@@ -1,4 +1,6 @@
-"""What is printed of the mechanics computes what the mechanics does: in JavaScript and in LLVM's code."""
+"""What is printed of the mechanics computes what the mechanics does: in JavaScript and in LLVM's
+code.
+"""
 
 import json
 import math
@@ -40,7 +42,9 @@ def by_floats(function, rows, parameters):
 
 
 def assert_same(found, expected):
-    """Equal to rounding of the largest number, where floats have one that is real; and they often have."""
+    """Equal to rounding of the largest number, where floats have one that is real; and they often
+    have.
+    """
     compared = 0
     for row, right in zip(found, expected, strict=True):
         if right is None:
@@ -64,8 +68,12 @@ def operations(recorded):
 
 def by_node(lines):
     """What lines of JavaScript that fill `found` leave there."""
-    script = "\n".join(["const found = {};", *lines, "process.stdout.write(JSON.stringify(found));"])
-    done = subprocess.run([NODE, "-"], input=script, capture_output=True, text=True, timeout=60, check=False)
+    script = "\n".join(
+        ["const found = {};", *lines, "process.stdout.write(JSON.stringify(found));"]
+    )
+    done = subprocess.run(
+        [NODE, "-"], input=script, capture_output=True, text=True, timeout=60, check=False
+    )
     assert done.stderr == ""
     return json.loads(done.stdout)
 
@@ -120,7 +128,9 @@ def by_llvm(recorded, rows, parameters, abreast=8):
 @pytest.mark.parametrize("shape", SURFACES)
 @pytest.mark.parametrize("abreast", [1, llvm.ABREAST])
 def test_machine_code_computes_what_the_mechanics_does(shape, abreast, monkeypatch):
-    monkeypatch.setattr(llvm, "ROUNDING", "")  # as Python rounds, so that what cancels is the same too
+    monkeypatch.setattr(
+        llvm, "ROUNDING", ""
+    )  # as Python rounds, so that what cancels is the same too
     for case in CASES:
         if case.name.startswith(shape):
             rows, function = states(case.motion, POINTS), everything(case.motion)
@@ -134,7 +144,12 @@ def test_every_launch_has_its_own_choice_and_its_own_numbers():
 
     def function(y, p):
         chosen = plain.choose(plain.below(y[0], p[0]), plain.size(y[0]), y[0] ** 0.3)
-        return chosen, plain.total([y[0] * float(k) for k in range(1, 6)]), plain.least(y[0], 1.5), 1.0
+        return (
+            chosen,
+            plain.total([y[0] * float(k) for k in range(1, 6)]),
+            plain.least(y[0], 1.5),
+            1.0,
+        )
 
     places = np.linspace(-2.0, 4.0, 24)
     chosen, total, least, one = by_llvm(record(function, 1, 1), places[:, None], (0.5,)).T
@@ -156,7 +171,9 @@ def test_what_is_rarely_needed_is_there_for_those_who_need_it():
         return chosen, cube + chosen * chosen, shared
 
     # Launches eight at a time: none needs it, all do, and some.
-    places = np.concatenate((np.linspace(1.0, 2.0, 8), np.linspace(-2.0, -1.0, 8), np.linspace(-1.2, 1.1, 8)))
+    places = np.concatenate(
+        (np.linspace(1.0, 2.0, 8), np.linspace(-2.0, -1.0, 8), np.linspace(-1.2, 1.1, 8))
+    )
     chosen, cube, shared = by_llvm(record(function, 1, 1), places[:, None], (2.0,)).T
     np.testing.assert_array_equal(shared, 2.0 * places)
     wanted = np.where(places < 0.0, 2.0 * places + np.sqrt(2.0 * np.abs(places)), 2.0 * places)
@@ -216,7 +233,11 @@ def test_a_choice_that_depends_on_numbers_is_refused():
     law = HertzLaw(0.3, 0.02)
     kind = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0).kind
     with pytest.raises(NotRecordable, match="select"):
-        record(lambda y, p: kind.top(tuple(p)).friction.reserve(y[0], (y[1], y[2]), y[3]), 8, kind.numbers)
+        record(
+            lambda y, p: kind.top(tuple(p)).friction.reserve(y[0], (y[1], y[2]), y[3]),
+            8,
+            kind.numbers,
+        )
     assert operations(record(lambda y, p: (1.0 * (y[0] > 0.0),), 1, 0)) == 1
 
 
@@ -236,7 +257,12 @@ class Elementary:
 def test_elementary_functions_and_selections_are_printed():
     def function(y, p):
         rates = published_rates(y, REPORT, Elementary())
-        return (*rates, y[0].graph.select(y[0] < y[1], y[0], abs(-y[1])), y[2] ** 1.3, y[2] ** -2.25)
+        return (
+            *rates,
+            y[0].graph.select(y[0] < y[1], y[0], abs(-y[1])),
+            y[2] ** 1.3,
+            y[2] ** -2.25,
+        )
 
     y = [0.3, 1.2, 0.7, 2.0, 90.0, 0.01, -0.02]
     expected = (*published_rates(y, REPORT, math), 0.3, 0.7**1.3, 0.7**-2.25)
@@ -265,4 +291,6 @@ def test_nothing_is_computed_twice_or_for_nothing(function, count):
     found = record(lambda y, p: (function(y[0]),), 1, 0)
     assert operations(found) == count
     if has_llvm():
-        assert by_llvm(found, np.array([[0.7]]), ())[0, 0] == pytest.approx(function(0.7), abs=1e-15)
+        assert by_llvm(found, np.array([[0.7]]), ())[0, 0] == pytest.approx(
+            function(0.7), abs=1e-15
+        )

@@ -112,14 +112,17 @@ def tuples():
     (b, _), c = (5.0, 6.0), 7.0
     point = Point(y=1.0, x=a)
     x, y = point._replace(x=8.0)
-    return [a, rest, b, c, x, y, point == (1.0, 1.0), point == Point.of([1.0, 1.0]), Point(3.0, 4.0).size,
+    return [a, rest, b, c, x, y, point == (1.0, 1.0), point == Point.of([1.0, 1.0]),
+            Point(3.0, 4.0).size,
             Maker(Point, 0.75).two()[1].size, Maker(Point, 0.0).two()[0].y,
-            rest[-1], rest[::-1], rest[1:], rest[:-1], [*rest, *point], (0.0,) * 3, point != (1.0, 2.0)]
+            rest[-1], rest[::-1], rest[1:], rest[:-1], [*rest, *point], (0.0,) * 3,
+            point != (1.0, 2.0)]
 
 def records():
     here = Louder("a", Point(1.0), volume=4.0)
     there = replace(here, name="b")
-    return [there.told(), there.told(twice=True), there.loud, there == replace(here, name="b"), there == here,
+    return [there.told(), there.told(twice=True), there.loud, there == replace(here, name="b"),
+            there == here,
             list(there.parts(2)), there.place.y, isinstance(there, Base), here.volume]
 
 def arithmetic():
@@ -137,10 +140,14 @@ def arithmetic():
     three, none = Ring(5) + 4, inf - inf
     gold = Ring(1) + Gold(2)
     rings = [(Ring(5) + Knot()).number, gold.number, isinstance(gold, Gold)]
-    return [*found, *rings, (2 + three).number, (three * three).number, 7 // 2, -7 // 2, -7 % 3, 2.0**0.5,
-            True + 1, -inf < 0.0, distance(3.0, 4.0), sum([1, 2], 10), max(3, 1, 2), min([4.0, 2.0]),
-            max([], default=-1.0), 1 if not () else 0, max(2.0, 5.0, 3.0), min(2.0, 2), max(*[1.0, 4.0]),
-            max(none, 1.0) != max(none, 1.0), max(1.0, none), min(1.0, none), max(False, 0), max(0, False),
+    return [*found, *rings, (2 + three).number, (three * three).number, 7 // 2, -7 // 2, -7 % 3,
+            2.0**0.5,
+            True + 1, -inf < 0.0, distance(3.0, 4.0), sum([1, 2], 10), max(3, 1, 2),
+            min([4.0, 2.0]),
+            max([], default=-1.0), 1 if not () else 0, max(2.0, 5.0, 3.0), min(2.0, 2),
+            max(*[1.0, 4.0]),
+            max(none, 1.0) != max(none, 1.0), max(1.0, none), min(1.0, none), max(False, 0),
+            max(0, False),
             min(True, 3), list(range(2, 9, 3)), list(range(5, 0, -2)), list(range(3, 3)),
             list(map(lambda a: a + 1, (1, 2))), list(map(lambda a, b: a * b, (1, 2, 3), [4, 5])),
             list(map(lambda a, b, c: a + b - c, (1, 2), range(2), (5, 6, 7)))]
@@ -209,7 +216,9 @@ def both(tmp_path_factory):
     lines.append(f"console.log(JSON.stringify([{', '.join(f'{name}()' for name in TESTS)}]));")
     found, wrong = run(lines, tmp_path_factory.mktemp("translated"))
     assert not wrong, wrong
-    return {name: plain(space[name]()) for name in TESTS}, dict(zip(TESTS, json.loads(found), strict=True))
+    return {name: plain(space[name]()) for name in TESTS}, dict(
+        zip(TESTS, json.loads(found), strict=True)
+    )
 
 
 @pytest.mark.parametrize("name", TESTS)
@@ -241,7 +250,9 @@ def test_arithmetic_of_numbers_alone_is_that_of_javascript_and_means_the_same(tm
     assert "TypeError: what is compared, or added to something, is no number" in wrong
 
 
-@pytest.mark.parametrize("statement", ["return f(**k)", "with open(x) as f: pass", 'return f"{x:.0e}"'])
+@pytest.mark.parametrize(
+    "statement", ["return f(**k)", "with open(x) as f: pass", 'return f"{x:.0e}"']
+)
 def test_what_is_not_known_is_refused(statement):
     text = f"def some(x, k, f):\n    {statement}\n"
     program = Program({"sample": text}, {}, ())
@@ -255,7 +266,9 @@ def test_what_a_module_leaves_out_is_the_runtimes():
         "two": "from one import size\ndef f(x):\n    return size(x)\n",
     }
     assert "return size(x);" in "".join(Definitions(Program(sources, {}, ()), "two").module_lines())
-    assert "return py.size(x);" in "".join(Definitions(Program(sources, {}, ("size",)), "two").module_lines())
+    assert "return py.size(x);" in "".join(
+        Definitions(Program(sources, {}, ("size",)), "two").module_lines()
+    )
 
 
 def test_what_is_written_by_hand_is_not_taken_for_another_modules():

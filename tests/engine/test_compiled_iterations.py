@@ -13,7 +13,10 @@ def told(expression, **given):
     script = "\n".join(
         [
             f"import * as compile from {json.dumps((HERE / 'compile.js').as_uri())};",
-            *(f"const {name} = {json.dumps(np.asarray(value).tolist())};" for name, value in given.items()),
+            *(
+                f"const {name} = {json.dumps(np.asarray(value).tolist())};"
+                for name, value in given.items()
+            ),
             f"console.log(JSON.stringify({expression}));",
         ]
     )
@@ -26,7 +29,8 @@ def test_numbers_of_several_values_are_made_better_until_they_are_good():
         """(() => {
           const better = ([y], [p], values) => [(y.__add__(p.__truediv__(y))).__mul__(0.5),
             values.total(y.__mul__(y).__sub__(p).__abs__())];
-          const improve = compile.iterated(better, 1, 1, 2), y = compile.room(2), out = compile.room(2);
+          const improve = compile.iterated(better, 1, 1, 2);
+          const y = compile.room(2), out = compile.room(2);
           compile.put_rows(y, 0, [2], 2);
           return [improve(y, Float64Array.from(squares), out, 1e-12, 50), ...y, ...out];
         })()""",
@@ -40,15 +44,14 @@ def test_numbers_of_several_values_are_made_better_until_they_are_good():
 
 def test_trouble_in_what_is_made_of_a_mode_is_told():
     """What cannot be recorded, and what is recorded and not compiled, says so."""
-    kinds = told(
-        """(() => {
-          const plus = ([y]) => [y.__add__(1.0)], branches = () => { throw new RangeError("a branch"); };
+    kinds = told("""(() => {
+          const plus = ([y]) => [y.__add__(1.0)];
+          const branches = () => { throw new RangeError("a branch"); };
           const found = [typeof compile.compiled(plus, 1, 0)];
           for (const one of [branches, plus]) {
             try { compile.compiled(one, 1, 0); } catch ({ name }) { found.push(name); }
             globalThis.Function = function () { throw new TypeError("no such operation"); };
           }
           return found;
-        })()"""
-    )
+        })()""")
     assert kinds == ["function", "RangeError", "TypeError"]

@@ -1,4 +1,5 @@
-"""Problems that nobody would ask for, in the engine: each ends as in Python, with an outcome or refused.
+"""Problems that nobody would ask for, in the engine: each ends as in Python, with an outcome or
+refused.
 
 TIPPETOP_HOSTILE=1000 asks for as many of them instead of the few that every check takes.
 """
@@ -38,7 +39,11 @@ def named(fields: dict[str, Any]) -> str:
 
 def named_there(found: dict[str, Any]) -> str:
     """The same of what the engine tells."""
-    return found["outcome"]["name"] if "outcome" in found else found.get("refused", str(found)).split()[0]
+    return (
+        found["outcome"]["name"]
+        if "outcome" in found
+        else found.get("refused", str(found)).split()[0]
+    )
 
 
 def test_hostile_problems_end_as_in_python() -> None:
@@ -48,7 +53,9 @@ def test_hostile_problems_end_as_in_python() -> None:
     limits = {"step_limit": STEPS, "phase_limit": MODES}
     asked = {"duration": DURATION, "tolerance": TOLERANCE, "times": TIMES, **limits}
     found = in_javascript([{"problem": fields, **asked} for fields in told])
-    ends = [(named_there(theirs), named(fields)) for fields, theirs in zip(told, found, strict=True)]
+    ends = [
+        (named_there(theirs), named(fields)) for fields, theirs in zip(told, found, strict=True)
+    ]
     assert not [(number, *both) for number, both in enumerate(ends) if both[0] != both[1]]
     outcomes = [ours for _, ours in ends]
     assert outcomes.count("completed") > 0.2 * len(outcomes)

@@ -52,7 +52,9 @@ def test_operands_are_numbers_in_launches_of_every_kind(checked):
         problem = tt.presets.report_problem(spin=175.0).replace(
             {"friction": friction, "contact.restitution": 0.3}
         )
-        launches.append(asked(0, 6.0) | {"problem": json.loads(problem.to_json()), "tolerance": TOLERANCE})
+        launches.append(
+            asked(0, 6.0) | {"problem": json.loads(problem.to_json()), "tolerance": TOLERANCE}
+        )
     found = [*in_javascript(launches, engine=checked)]
     assert [one["broken"] for one in found if "broken" in one] == []
     assert sum(len(one["flights"]) for one in found) > 10
@@ -62,7 +64,8 @@ def test_what_is_no_number_is_seen(checked):
     asking = f"""
       import * as m from {json.dumps((checked / "mechanics.js").as_uri())};
       for (const one of [[1], new m.Tip(), "1"]) {{
-        try {{ m.stays_positive(one, 0, 0, 0, 0.5); }} catch (error) {{ console.log(error.message); }}
+        try {{ m.stays_positive(one, 0, 0, 0, 0.5); }}
+        catch (error) {{ console.log(error.message); }}
       }}
     """
     assert printed(asking).count("no number: ") == 3

@@ -14,7 +14,9 @@ SEEDS = range(300)
 
 
 def told(ask: Callable[[], Any]) -> Any:
-    """What Python answers as plain data, with words for what JSON does not know; of a refusal the field."""
+    """What Python answers as plain data, with words for what JSON does not know; of a refusal the
+    field.
+    """
     try:
         found = ask()
     except tt.InvalidInput as refusal:

@@ -28,7 +28,9 @@ def numbers(model: "pygltflib.GLTF2", accessor: int) -> np.ndarray:
     view = model.bufferViews[entry.bufferView]
     width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[entry.type]
     kind = {5126: "<f4", 5125: "<u4"}[entry.componentType]
-    return np.frombuffer(model.binary_blob(), kind, entry.count * width, view.byteOffset).reshape(-1, width)
+    return np.frombuffer(model.binary_blob(), kind, entry.count * width, view.byteOffset).reshape(
+        -1, width
+    )
 
 
 def test_csv_holds_every_number_with_its_unit(flying: xr.Dataset, tmp_path: Path) -> None:
@@ -37,7 +39,9 @@ def test_csv_holds_every_number_with_its_unit(flying: xr.Dataset, tmp_path: Path
         rows = list(csv.DictReader(file))
     assert len(rows) == flying.sizes["time"]
     assert [float(row["theta (rad)"]) for row in rows] == flying["theta"].values.tolist()
-    assert [float(row["velocity_z (m s-1)"]) for row in rows] == flying["velocity"].values[:, 2].tolist()
+    assert [float(row["velocity_z (m s-1)"]) for row in rows] == flying["velocity"].values[
+        :, 2
+    ].tolist()
     assert {row["mode"] for row in rows} == {"sliding", "flight"}
 
 
@@ -106,13 +110,20 @@ def test_glb_is_a_model_in_metres_with_y_up(flying: xr.Dataset, tmp_path: Path) 
     root = Rotation.from_quat(model.nodes[model.scenes[0].nodes[0]].rotation)
     assert root.apply([0.0, 0.0, 1.0]) == pytest.approx([0, 1, 0], abs=1e-12)
     toy = model.meshes[model.nodes[1].mesh]
-    corners = np.concatenate([numbers(model, primitive.attributes.POSITION) for primitive in toy.primitives])
+    corners = np.concatenate(
+        [numbers(model, primitive.attributes.POSITION) for primitive in toy.primitives]
+    )
     assert np.linalg.norm(corners, axis=1).max() == pytest.approx(1.3 * 0.02, rel=1e-6)
     for primitive in toy.primitives:
-        assert numbers(model, primitive.indices).max() < model.accessors[primitive.attributes.POSITION].count
+        assert (
+            numbers(model, primitive.indices).max()
+            < model.accessors[primitive.attributes.POSITION].count
+        )
 
 
-def test_a_run_with_too_many_keys_is_refused(flying: xr.Dataset, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_with_too_many_keys_is_refused(
+    flying: xr.Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("tippetop.export.glb.MOST_KEYS", 100)
     with pytest.raises(tt.InvalidInput, match="duration"):
         key_times(flying, tt.presets.REPORT)
@@ -126,7 +137,11 @@ def short() -> xr.Dataset:
 def test_gif_has_a_picture_for_every_moment(short: xr.Dataset, tmp_path: Path) -> None:
     told: list[tuple[int, int]] = []
     path = write_movie(
-        short, tmp_path / "run.gif", fps=10.0, pixels=(96, 72), progress=lambda *so_far: told.append(so_far)
+        short,
+        tmp_path / "run.gif",
+        fps=10.0,
+        pixels=(96, 72),
+        progress=lambda *so_far: told.append(so_far),
     )
     assert told == [(number, len(told)) for number in range(1, len(told) + 1)]
     with Image.open(path) as film:
@@ -135,7 +150,9 @@ def test_gif_has_a_picture_for_every_moment(short: xr.Dataset, tmp_path: Path) -
         assert film.info["duration"] == 100
 
 
-@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg makes .mp4 files and is not on the PATH")
+@pytest.mark.skipif(
+    shutil.which("ffmpeg") is None, reason="ffmpeg makes .mp4 files and is not on the PATH"
+)
 def test_mp4_is_written_whole(short: xr.Dataset, tmp_path: Path) -> None:
     path = write_movie(short, tmp_path / "run.mp4", fps=10.0, pixels=(96, 72))
     assert path.read_bytes()[4:8] == b"ftyp"
@@ -185,7 +202,9 @@ def test_the_film_shows_the_top_where_it_is(short: xr.Dataset) -> None:
 
 
 @pytest.mark.parametrize("write", [write_csv, write_glb, write_html, write_movie])
-def test_a_file_that_exists_is_kept_unless_told_otherwise(short: xr.Dataset, tmp_path: Path, write) -> None:  # type: ignore[no-untyped-def]
+def test_a_file_that_exists_is_kept_unless_told_otherwise(
+    short: xr.Dataset, tmp_path: Path, write
+) -> None:  # type: ignore[no-untyped-def]
     suffix = "gif" if write is write_movie else write.__name__.removeprefix("write_")
     path = tmp_path / f"run.{suffix}"
     path.write_text("mine")
@@ -198,7 +217,9 @@ def test_a_file_that_exists_is_kept_unless_told_otherwise(short: xr.Dataset, tmp
 
 
 @pytest.mark.parametrize(("asked", "each"), [(30.0, 30), (20.0, 50), (240.0, 20), (7.0, 140)])
-def test_a_gif_plays_in_time_at_any_rate(short: xr.Dataset, tmp_path: Path, asked: float, each: int) -> None:
+def test_a_gif_plays_in_time_at_any_rate(
+    short: xr.Dataset, tmp_path: Path, asked: float, each: int
+) -> None:
     with Image.open(write_movie(short, tmp_path / "run.gif", fps=asked, pixels=(32, 32))) as film:
         assert film.info["duration"] == each
         total = sum(_shown(film, number) for number in range(film.n_frames))

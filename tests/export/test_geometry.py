@@ -74,17 +74,24 @@ def test_rays_meet_the_toy_where_the_triangles_are(body: tt.Body) -> None:
         if part.opacity < 1:
             continue
         mesh = lathe(part, 1.0, 240)
-        middles, normals = mesh.points[mesh.triangles].mean(axis=1), mesh.normals[mesh.triangles].mean(axis=1)
+        middles, normals = (
+            mesh.points[mesh.triangles].mean(axis=1),
+            mesh.normals[mesh.triangles].mean(axis=1),
+        )
         start = middles + 0.02 * normals
         distance, normal, parts = toy.meet(start, -normals)
         assert distance.max() < FAR
         seen = np.abs(distance - 0.02) < 0.005
         assert seen.mean() > 0.85
-        assert (np.einsum("ij,ij->i", normal, normals)[seen] > 0.9 * (normals**2).sum(axis=1)[seen]).all()
+        assert (
+            np.einsum("ij,ij->i", normal, normals)[seen] > 0.9 * (normals**2).sum(axis=1)[seen]
+        ).all()
         # Near the borders of a part and of its sectors, facets and surface differ.
         colours = toy.paint(start - distance[:, None] * normals, parts)[seen]
         assert (np.isin(colours, [to_rgb(colour) for colour in part.colours])).mean() > 0.9
-        first = np.arctan2(middles[:, 1], middles[:, 0]) % (2 * np.pi) < 2 * np.pi / len(part.colours)
+        first = np.arctan2(middles[:, 1], middles[:, 0]) % (2 * np.pi) < 2 * np.pi / len(
+            part.colours
+        )
         sector = (colours == to_rgb(part.colours[0])).all(axis=1)
         assert sector[first[seen]].mean() > 0.8
 
@@ -94,12 +101,18 @@ def test_a_turned_body_is_drawn_as_it_was_turned() -> None:
     assert pieces is not None
     points = np.concatenate(pieces)
     inside = (points[:, 1] > 0.0) & (points[:, 1] < 0.013) & (points[:, 0] < 0.012)
-    assert points[inside, 0].min() == pytest.approx(0.125 * 25.4e-3), "the spindle in the bore, no hull"
+    assert points[inside, 0].min() == pytest.approx(0.125 * 25.4e-3), (
+        "the spindle in the bore, no hull"
+    )
     toy = Toy(TURNED)
     beside = (0.25 + 0.875) / 4 * 25.4e-3 / toy.size
     floor = points[inside, 1].min() / toy.size
-    hits = toy.meet(np.array([[beside, 0.0, 5.0], [0.0, 0.0, 5.0]]), np.tile([0.0, 0.0, -1.0], (2, 1)))
-    assert hits.distances == pytest.approx([5.0 - floor, 5.0 - points[:, 1].max() / toy.size], abs=1e-6)
+    hits = toy.meet(
+        np.array([[beside, 0.0, 5.0], [0.0, 0.0, 5.0]]), np.tile([0.0, 0.0, -1.0], (2, 1))
+    )
+    assert hits.distances == pytest.approx(
+        [5.0 - floor, 5.0 - points[:, 1].max() / toy.size], abs=1e-6
+    )
     assert hits.normals == pytest.approx(np.tile([0.0, 0.0, 1.0], (2, 1)), abs=1e-6)
 
 
@@ -107,9 +120,13 @@ def test_a_profile_that_is_not_of_the_surfaces_is_not_drawn() -> None:
     longer = tt.Sphere(radius=0.004, center=0.03)
     other = TURNED.model_copy(update={"shape": (TURNED.shapes[0], longer)})
     assert own_profile(other) is None
-    assert max(part.profile[:, 1].max() for part in toy_parts(other)) * size(other) == pytest.approx(0.034)
+    assert max(part.profile[:, 1].max() for part in toy_parts(other)) * size(
+        other
+    ) == pytest.approx(0.034)
     alone = TURNED.model_copy(update={"shape": tt.EccentricSphere(radius=0.01, eccentricity=0.1)})
-    assert [part.name for part in toy_parts(alone)] == [part.name for part in toy_parts(tt.presets.REPORT)]
+    assert [part.name for part in toy_parts(alone)] == [
+        part.name for part in toy_parts(tt.presets.REPORT)
+    ]
 
 
 def test_the_corners_of_a_disk_are_met() -> None:
@@ -122,7 +139,9 @@ def test_rays_that_pass_the_toy_by_miss_it() -> None:
     toy = Toy(tt.presets.REPORT)
     beside = toy.middle + np.array([[-5.0, 1.01, 0.0], [-5.0, 0.3, 0.6], [-5.0, 0.0, 1.01]])
     ahead = np.tile([1.0, 0.0, 0.0], (3, 1))
-    assert (toy.meet(beside, ahead).distances == FAR).all(), "beside the sphere, the stem, and above it"
+    assert (toy.meet(beside, ahead).distances == FAR).all(), (
+        "beside the sphere, the stem, and above it"
+    )
     through = toy.middle + np.array([[-5.0, 0.0, 0.6], [-5.0, 0.0, 0.99]])
     assert (toy.meet(through, ahead[:2]).distances < 5).all(), "the stem is there"
 

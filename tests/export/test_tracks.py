@@ -21,7 +21,9 @@ def test_a_block_holds_the_run(flying: xr.Dataset) -> None:
     assert times == pytest.approx(flying["time"].values, abs=0)
     numbers = np.frombuffer(block, "<f4", offset=start + times.nbytes)
     assert len(numbers) == header["samples"] * sum(width for _, width in header["columns"])
-    assert numbers[: 4 * len(times)].reshape(-1, 4) == pytest.approx(flying["orientation"].values, abs=1e-7)
+    assert numbers[: 4 * len(times)].reshape(-1, 4) == pytest.approx(
+        flying["orientation"].values, abs=1e-7
+    )
 
 
 def test_every_flight_is_shaded_and_neighbours_are_joined_when_there_are_too_many(
@@ -58,16 +60,20 @@ def test_friction_takes_the_energy_that_slides_away() -> None:
     phi = run["phi"].values
     slip_x, slip_y = run["slip_x"].values, run["slip_y"].values
     slip = np.stack(
-        [slip_x * np.cos(phi) - slip_y * np.sin(phi), slip_x * np.sin(phi) + slip_y * np.cos(phi)], axis=1
+        [slip_x * np.cos(phi) - slip_y * np.sin(phi), slip_x * np.sin(phi) + slip_y * np.cos(phi)],
+        axis=1,
     )
     power = np.einsum("ij,ij->i", force, slip)
-    work = np.concatenate([[0], np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(run["time"].values))])
+    work = np.concatenate(
+        [[0], np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(run["time"].values))]
+    )
     assert work == pytest.approx(run["work"].values, abs=1e-4 * abs(run["work"].values[-1]))
 
 
 def test_a_faster_top_gets_more_samples_up_to_a_limit() -> None:
     counts = [
-        track.sample_count(tt.presets.report_problem(spin=spin), 20.0) for spin in (50.0, 155.0, 300.0, 1e5)
+        track.sample_count(tt.presets.report_problem(spin=spin), 20.0)
+        for spin in (50.0, 155.0, 300.0, 1e5)
     ]
     assert counts == sorted(counts)
     assert counts[-1] <= track.MOST_SAMPLES + 1

@@ -36,9 +36,13 @@ def test_in_between_it_settles_where_theory_says() -> None:
 def test_flights_are_counted_from_the_first() -> None:
     run = tt.simulate(tt.presets.report_problem(spin=175.0), 20.0)
     first = float(run["flight_start"][0])
-    assert tell(run).headline.endswith(f"leaves the table {run.sizes['flight']} times from {first:.2f} s")
+    assert tell(run).headline.endswith(
+        f"leaves the table {run.sizes['flight']} times from {first:.2f} s"
+    )
     bilateral = tell(
-        tt.simulate(tt.presets.report_problem(spin=175.0).replace({"contact.liftoff": "stop"}), 20.0)
+        tt.simulate(
+            tt.presets.report_problem(spin=175.0).replace({"contact.liftoff": "stop"}), 20.0
+        )
     )
     assert "would have to pull" in bilateral.headline
     assert bilateral.details[0].startswith(tt.Outcome.LIFTED_OFF.value[:30])
@@ -122,13 +126,17 @@ def test_a_dropped_top_is_told_to_bounce() -> None:
 
 
 def test_numbers_have_a_true_minus_sign_and_zero_none() -> None:
-    assert "ω₃ = −82.87 rad/s" in steady_in_words(predict(tt.presets.report_problem(spin=155.0)).final)
+    assert "ω₃ = −82.87 rad/s" in steady_in_words(
+        predict(tt.presets.report_problem(spin=155.0)).final
+    )
     still = predict(tt.presets.report_problem(spin=0.0, tilt=1.0)).final
     assert steady_in_words(still) == "upright spin with ω₃ = 0.00 rad/s"
 
 
 def test_where_the_launch_decides_all_ends_are_told() -> None:
-    sphere = tt.EccentricSphere(radius=0.02, eccentricity=0.3)  # slender: both upright and tilted are stable
+    sphere = tt.EccentricSphere(
+        radius=0.02, eccentricity=0.3
+    )  # slender: both upright and tilted are stable
     body = tt.Body(mass=0.02, shape=sphere, I1=0.6 * 3.2e-6, I3=3.2e-6)
     launch = tt.presets.report_problem(spin=150.0, tilt=1.0).model_copy(update={"body": body})
     prediction = predict(launch)

@@ -1,4 +1,6 @@
-"""Runs whose files were damaged are refused: never read wrong, and never the end of the interpreter."""
+"""Runs whose files were damaged are refused: never read wrong, and never the end of the
+interpreter.
+"""
 
 import os
 import sys
@@ -24,7 +26,9 @@ def written(tmp_path_factory):
 
 
 def damages(content, rng, count):
-    """Contents that differ from a good one: bits that flipped, bytes of zero, of other places, or missing."""
+    """Contents that differ from a good one: bits that flipped, bytes of zero, of other places, or
+    missing.
+    """
     size = len(content)
     for number in range(count):
         damaged = bytearray(content)
@@ -63,14 +67,18 @@ def test_others_read_the_file_as_it_is(written):
         assert opened.attrs["outcome"] == tt.read_run(written).attrs["outcome"]
 
 
-def test_a_run_for_which_there_is_no_memory_is_refused_before_it_is_read(written, tmp_path, monkeypatch):
+def test_a_run_for_which_there_is_no_memory_is_refused_before_it_is_read(
+    written, tmp_path, monkeypatch
+):
     path = tmp_path / "run.nc"
     path.write_bytes(written.read_bytes())
     with path.open("r+b") as file:
         file.truncate(2**43)
     with pytest.raises(tt.FileTrouble, match="memory"):
         tt.read_run(path)
-    monkeypatch.setattr(netcdf.psutil, "virtual_memory", lambda: type("Memory", (), {"available": 100}))
+    monkeypatch.setattr(
+        netcdf.psutil, "virtual_memory", lambda: type("Memory", (), {"available": 100})
+    )
     with pytest.raises(tt.FileTrouble, match="memory"):
         tt.read_run(written)
 

@@ -1,4 +1,6 @@
-"""Text that is no problem, however it is meant, is refused in one sentence: in files and options."""
+"""Text that is no problem, however it is meant, is refused in one sentence: in files and
+options.
+"""
 
 import json
 

@@ -1,4 +1,6 @@
-"""Files meet links, devices, other writers, full disks and signals; what is there and what is left."""
+"""Files meet links, devices, other writers, full disks and signals; what is there and what is
+left.
+"""
 
 import contextlib
 import csv
@@ -41,17 +43,25 @@ def small_movie(run, path, overwrite=False):
     return write_movie(run, path, overwrite, fps=5.0, pixels=(32, 32))
 
 
-WRITERS = [(tt.write_run, "run.nc"), (write_csv, "run.csv"), (write_glb, "run.glb"), (small_movie, "run.gif")]
+WRITERS = [
+    (tt.write_run, "run.nc"),
+    (write_csv, "run.csv"),
+    (write_glb, "run.glb"),
+    (small_movie, "run.gif"),
+]
 
 
 def permissions(path):
     return stat.S_IMODE(path.stat().st_mode)
 
 
-# --- links, permissions, what is no file --------------------------------------------------------------------
+# --- links, permissions, what is no file
+# --------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("writer", "name"), WRITERS, ids=lambda value: getattr(value, "__name__", ""))
+@pytest.mark.parametrize(
+    ("writer", "name"), WRITERS, ids=lambda value: getattr(value, "__name__", "")
+)
 class TestEveryWriter:
     def test_follows_links(self, run, tmp_path, writer, name):
         folder = tmp_path / "folder"
@@ -135,7 +145,8 @@ def test_a_file_keeps_its_owner(tmp_path):
     assert (status.st_uid, status.st_gid) == (12345, 12345)
 
 
-# --- several writers ----------------------------------------------------------------------------------------
+# --- several writers
+# ----------------------------------------------------------------------------------------
 
 
 def compete(path, number, barrier, results):
@@ -160,7 +171,8 @@ def test_of_writers_of_one_new_name_one_succeeds(tmp_path, monkeypatch, linked):
         path = tmp_path / f"{attempt}.txt"
         barrier, results = context.Barrier(writers), context.SimpleQueue()
         processes = [
-            context.Process(target=compete, args=(path, n, barrier, results)) for n in range(writers)
+            context.Process(target=compete, args=(path, n, barrier, results))
+            for n in range(writers)
         ]
         for process in processes:
             process.start()
@@ -195,7 +207,8 @@ def test_writers_of_many_names_do_not_disturb_each_other(tmp_path):
     assert len(list(tmp_path.iterdir())) == 80 * MANY
 
 
-# --- ended in the middle ------------------------------------------------------------------------------------
+# --- ended in the middle
+# ------------------------------------------------------------------------------------
 
 SLOW = """
 import signal, sys, time
@@ -221,7 +234,10 @@ def test_at_whatever_moment_a_writer_is_ended_the_file_is_whole(tmp_path, number
     path = tmp_path / "a.txt"
     for attempt in range(3 * MANY):
         process = subprocess.Popen(
-            [sys.executable, "-c", SLOW, str(path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            [sys.executable, "-c", SLOW, str(path)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
         )
         process.stdout.readline()
         time.sleep(0.01 + 0.0137 * (attempt % 7))
@@ -233,7 +249,9 @@ def test_at_whatever_moment_a_writer_is_ended_the_file_is_whole(tmp_path, number
         if number != signal.SIGKILL:
             assert set(tmp_path.iterdir()) <= {path}
     write(path, overwrite=True)
-    assert list(tmp_path.iterdir()) == [path], "what a killed writer left is cleared away by the next"
+    assert list(tmp_path.iterdir()) == [path], (
+        "what a killed writer left is cleared away by the next"
+    )
 
 
 def test_what_a_killed_writer_left_is_cleared_away_and_nothing_else(tmp_path):
@@ -270,7 +288,8 @@ def test_a_finished_file_moves_to_a_new_place_once(tmp_path):
     assert [path.name for path in (tmp_path / "stage").iterdir()] == ["b"]
 
 
-# --- full disks ---------------------------------------------------------------------------------------------
+# --- full disks
+# ---------------------------------------------------------------------------------------------
 
 
 @contextlib.contextmanager
@@ -295,7 +314,8 @@ from tippetop.export.html import write_html
 from tippetop.export.movie import write_movie
 sys.modules[write_html.__module__].player_packed = lambda: "the player"
 run = tt.simulate(tt.presets.report_problem(), 0.2, samples=101)
-writers = {"nc": tt.write_run, "csv": write_csv, "glb": write_glb, "html": write_html, "gif": write_movie}
+writers = {"nc": tt.write_run, "csv": write_csv, "glb": write_glb}
+writers |= {"html": write_html, "gif": write_movie}
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 for size in map(int, sys.argv[2:]):
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
@@ -349,7 +369,8 @@ def test_a_file_larger_than_the_disk_leaves_the_old_one(run, tmp_path):
         assert len(list(csv.reader(file))) == 102
 
 
-# --- at the command line ------------------------------------------------------------------------------------
+# --- at the command line
+# ------------------------------------------------------------------------------------
 
 
 def test_the_command_line_names_its_option(tmp_path):

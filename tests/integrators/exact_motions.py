@@ -1,4 +1,6 @@
-"""Motions whose solutions are known in closed form, and every integrator with the error it may make."""
+"""Motions whose solutions are known in closed form, and every integrator with the error it may
+make.
+"""
 
 import itertools
 from collections.abc import Callable
@@ -68,7 +70,9 @@ def whole(arcs):
 
 
 def follow(method, exact, guards=(), **changes):
-    """Follow an exact motion, or a variant of it, to its end or a guard; return all of it as one arc."""
+    """Follow an exact motion, or a variant of it, to its end or a guard; return all of it as one
+    arc.
+    """
     exact = replace(exact, **changes)
     motion = replace(exact.motion, guards=tuple(guards))
     return whole(method.integrator.integrate(motion, exact.parameters, exact.start, exact.end))
@@ -78,8 +82,8 @@ def follow(method, exact, guards=(), **changes):
 class ExactMotion:
     """Equations of motion, a start, and the state at any time.
 
-    `sensitivity` is how many times larger an error can be at the end than where it was made, and `rate` how
-    fast the motion changes where it is fastest.
+    `sensitivity` is how many times larger an error can be at the end than where it was made, and
+    `rate` how fast the motion changes where it is fastest.
     """
 
     label: str
@@ -157,8 +161,9 @@ KEPLER = ExactMotion(
     (1.0,),
     end=7.0,
     state=_on_ellipse,
-    # An error dE of the energy shifts the phase by 3/2 a dE t. Where the centre is nearest, at 1 - e, a shift
-    # of the phase moves the velocity by (1 - e)^-2 and an error of position the energy by as much.
+    # An error dE of the energy shifts the phase by 3/2 a dE t. Where the centre is nearest, at 1 -
+    # e, a shift of the phase moves the velocity by (1 - e)^-2 and an error of position the energy
+    # by as much.
     sensitivity=1.5 * 2.0 * 7.0 / (1.0 - ECCENTRICITY) ** 4,
     rate=(1.0 - ECCENTRICITY) ** -1.5,
 )
@@ -169,7 +174,9 @@ AXIS = np.array([0.6, 0.0, 0.8])
 
 
 def _about_momentum(t):
-    """The axis of a free symmetric top, turned about the constant angular momentum at the rate L / I1."""
+    """The axis of a free symmetric top, turned about the constant angular momentum at the rate L /
+    I1.
+    """
     size = np.linalg.norm(MOMENTUM)
     unit, angle = MOMENTUM / size, size * t / INERTIA
     along = unit * (unit @ AXIS)
@@ -178,7 +185,11 @@ def _about_momentum(t):
 
 FREE_TOP = ExactMotion(
     "free top",
-    Motion(lambda n, p: tuple(rate / p[3] for rate in cross((p[0], p[1], p[2]), n)), size=3, parameters=4),
+    Motion(
+        lambda n, p: tuple(rate / p[3] for rate in cross((p[0], p[1], p[2]), n)),
+        size=3,
+        parameters=4,
+    ),
     (*MOMENTUM, INERTIA),
     end=4.0,
     state=_about_momentum,

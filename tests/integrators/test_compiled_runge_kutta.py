@@ -41,7 +41,8 @@ def test_its_steps_are_those_of_scipys_method():
 
 
 @pytest.mark.parametrize(
-    "name", ["hull coulomb and rolling sliding", "spheroid ellipsoidal sticking", "hull viscous two"]
+    "name",
+    ["hull coulomb and rolling sliding", "spheroid ellipsoidal sticking", "hull viscous two"],
 )
 def test_motions_of_tops_end_where_scipys_do(name):
     case = next(case for case in CASES if case.name.startswith(name))
@@ -57,14 +58,18 @@ def test_rounding_does_not_gather():
     """A thousand times around."""
     motion = Motion(lambda y, p: (y[1], -p[0] * y[0]), size=2, parameters=1)
     arc = whole(
-        make_integrator("compiled", 3e-14).integrate(motion, (1.0,), (0.0, np.array([1.0, 0.0])), 6e3)
+        make_integrator("compiled", 3e-14).integrate(
+            motion, (1.0,), (0.0, np.array([1.0, 0.0])), 6e3
+        )
     )
     assert abs(math.hypot(*arc.end_state) - 1.0) < 1e-11
     assert arc.steps > 5000
 
 
 def pendulums(count):
-    """Pendulums of frequencies 1, 2, 3 that know nothing of each other, each with a level and its guard."""
+    """Pendulums of frequencies 1, 2, 3 that know nothing of each other, each with a level and its
+    guard.
+    """
 
     def rates(y, p):
         return [*y[count:], *(-((1.0 + i) ** 2) * y[i] for i in range(count))]
@@ -77,9 +82,13 @@ def pendulums(count):
 
 @pytest.mark.parametrize("count", [1, 4, 5])
 def test_states_of_any_size_and_every_one_of_several_guards(count):
-    """Numbers fill a row, or a part, or more than one, and levels are passed at every part of a step."""
+    """Numbers fill a row, or a part, or more than one, and levels are passed at every part of a
+    step.
+    """
     motion, frequencies = pendulums(count), 1.0 + np.arange(count)
-    for last, side, level in itertools.product(range(count), (1.0, -1.0), np.linspace(-0.9, 0.9, 9)):
+    for last, side, level in itertools.product(
+        range(count), (1.0, -1.0), np.linspace(-0.9, 0.9, 9)
+    ):
         levels = np.where(np.arange(count) == last, level, -1.5)
         start = np.repeat([side, 0.0], count)
         arc = whole(make_integrator("compiled").integrate(motion, levels, (0.0, start), 9.0))
@@ -110,7 +119,9 @@ def test_no_fall_is_looked_for_where_every_guard_is_far_from_zero(count, monkeyp
 
 @pytest.mark.parametrize("rise", [1e-3, 1e-6])
 def test_a_hop_far_shorter_than_a_step_ends_where_it_lands(rise):
-    """A guard that starts at zero, rises and is back before any look: thrown up, it falls as long."""
+    """A guard that starts at zero, rises and is back before any look: thrown up, it falls as
+    long.
+    """
     guards = (Guard("landing", lambda y, p: y[0]),)
     # The first step is chosen by the largest number.
     motion = Motion(lambda y, p: (y[1], -p[0], 0.0 * y[2]), size=3, parameters=1, guards=guards)
@@ -134,7 +145,9 @@ LOOKED_AT = {
     "is infinite": (lambda part: math.inf, 1e-8, 8, False),
     "falls to zero": (lambda part: 1.0 - part, 1e-8, 8, True),
 }
-"""Guards along a step, a tolerance, in how many places they are looked at, and whether they may fall."""
+"""Guards along a step, a tolerance, in how many places they are looked at, and whether they may
+fall.
+"""
 
 
 @pytest.mark.parametrize("name", LOOKED_AT)
@@ -149,13 +162,17 @@ def test_a_guard_is_looked_at_closely_unless_it_hardly_varies(name):
     terms, values = np.zeros(dormand_prince.POWERS), np.zeros((dormand_prince.LOOKS + 2, 1))
     terms[1], values[0] = 1.0, along(0.0)
     room, tight = np.zeros(0), tolerance <= dormand_prince.TIGHT
-    assert dormand_prince.suspect(guards, (), terms, 0, np.zeros(1), values, room, tight) == may_fall
+    assert (
+        dormand_prince.suspect(guards, (), terms, 0, np.zeros(1), values, room, tight) == may_fall
+    )
     assert len(looks) == most
     assert len(set(looks)) == most
 
 
 def test_a_trial_is_a_single_step(monkeypatch):
-    """It is no longer than one that was taken, so that it needs no search for how long the first may be."""
+    """It is no longer than one that was taken, so that it needs no search for how long the first
+    may be.
+    """
     landed, trials = stepping.Stepping.landed, []
 
     def seen(other, time, state, end):
@@ -213,7 +230,9 @@ def test_processes_share_what_they_compile_and_damage_is_thrown_away(tmp_path):
     for process in [started(tmp_path), started(tmp_path)]:
         ended(process)
     whole_ones = contents(tmp_path)
-    assert len(list(tmp_path.glob(f"*/{SEAL}"))) == 3, "the loop, the motion, and its guards at all looks"
+    assert len(list(tmp_path.glob(f"*/{SEAL}"))) == 3, (
+        "the loop, the motion, and its guards at all looks"
+    )
     assert not any(MAKING.fullmatch(path.name) for path in tmp_path.iterdir())
     ended(started(tmp_path))
     assert contents(tmp_path) == whole_ones, "nothing was compiled again"
@@ -230,7 +249,9 @@ def test_processes_share_what_they_compile_and_damage_is_thrown_away(tmp_path):
 
 
 def test_what_was_left_of_compiling_is_removed_by_the_next_who_compiles(tmp_path, monkeypatch):
-    """A compiler that is interrupted, or killed, cannot clean up; one that is at work is left alone."""
+    """A compiler that is interrupted, or killed, cannot clean up; one that is at work is left
+    alone.
+    """
     monkeypatch.setenv(VARIABLE, str(tmp_path))
     code = "code-" + 32 * "0"
     ended_long_ago, at_work = (
@@ -252,7 +273,8 @@ def test_a_cache_that_cannot_be_written_is_done_without(tmp_path):
 
 def test_the_reports_run_is_that_of_the_other_integrators():
     runs = [
-        tt.simulate(report_problem(), 2.0, samples=21, integrator=name) for name in ("compiled", "dop853")
+        tt.simulate(report_problem(), 2.0, samples=21, integrator=name)
+        for name in ("compiled", "dop853")
     ]
     np.testing.assert_allclose(runs[0].theta, runs[1].theta, rtol=0, atol=1e-9)
     assert runs[0].attrs["integrator"] == "compiled"
@@ -263,7 +285,9 @@ def test_the_reports_run_is_that_of_the_other_integrators():
 def test_whole_numbers_are_numbers(name, kind):
     """A motion of a user's own may be given parameters, and a start, in integers."""
     touches = Guard("touches", lambda y, p: y[0] + p[1])
-    motion = Motion(lambda y, p: (y[1], -p[0] + 0.0 * y[0]), size=2, parameters=2, guards=(touches,))
+    motion = Motion(
+        lambda y, p: (y[1], -p[0] + 0.0 * y[0]), size=2, parameters=2, guards=(touches,)
+    )
     *_, arc = make_integrator(name).integrate(motion, kind([2, 0]), (0, np.array([4, 0])), 7)
     assert arc.guard == "touches"
     assert arc.solution.end == pytest.approx(2.0, rel=1e-12)

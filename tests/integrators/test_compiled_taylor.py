@@ -1,4 +1,6 @@
-"""The Taylor method is compiled once for all values, and kept between processes where that is possible."""
+"""The Taylor method is compiled once for all values, and kept between processes where that is
+possible.
+"""
 
 import itertools
 import os
@@ -102,7 +104,9 @@ def test_long_motions_are_followed_in_arcs_that_do_not_show(monkeypatch, long):
 @pytest.mark.parametrize("relieved", [False, True])
 @pytest.mark.parametrize("begin", [0.0, 1e3])
 def test_what_turns_beside_what_blows_up_keeps_its_length_to_the_end(begin, relieved):
-    """One number is 1e8 / (1 - t), and two turn at 50 / (1 - t), whose steps must be the shorter ones."""
+    """One number is 1e8 / (1 - t), and two turn at 50 / (1 - t), whose steps must be the shorter
+    ones.
+    """
 
     def rates(y, _):
         growth = 1e-8 * y[0]
@@ -153,7 +157,8 @@ def test_threads_that_share_a_compilation_do_not_mix_their_motions():
         np.testing.assert_allclose(found, np.cos(frequency * times), atol=1e-11)
 
 
-# --- between processes --------------------------------------------------------------------------------------
+# --- between processes
+# --------------------------------------------------------------------------------------
 
 SWING = """
 import numpy as np
@@ -181,9 +186,13 @@ def swing_elsewhere(**variables):
 
 
 def kept(folder):
-    """The files of compiled code in a cache: their content, and what would change if it were made again."""
+    """The files of compiled code in a cache: their content, and what would change if it were made
+    again.
+    """
     files = [path for path in folder.rglob("*") if path.is_file()]
-    return {path: (path.stat().st_ino, path.stat().st_mtime_ns, path.read_bytes()) for path in files}
+    return {
+        path: (path.stat().st_ino, path.stat().st_mtime_ns, path.read_bytes()) for path in files
+    }
 
 
 @pytest.fixture(scope="module")

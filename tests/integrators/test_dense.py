@@ -24,10 +24,16 @@ def polynomial(coefficients):
 
 def size_of(coefficients, knots):
     """The largest that its terms can be anywhere between the knots."""
-    return (np.abs(coefficients) @ np.abs(knots).max() ** np.arange(coefficients.shape[1])).max() + 1e-300
+    return (
+        np.abs(coefficients) @ np.abs(knots).max() ** np.arange(coefficients.shape[1])
+    ).max() + 1e-300
 
 
-@given(arrays(float, (3, 6), elements=st.floats(-1.0, 1.0, allow_subnormal=False)), KNOTS, st.integers(5, 15))
+@given(
+    arrays(float, (3, 6), elements=st.floats(-1.0, 1.0, allow_subnormal=False)),
+    KNOTS,
+    st.integers(5, 15),
+)
 def test_polynomials_are_fitted_exactly(coefficients, knots, degree):
     exact = polynomial(coefficients)
     solution = DenseSolution.fitted(lambda t: exact(t).T, knots, degree)
@@ -36,10 +42,15 @@ def test_polynomials_are_fitted_exactly(coefficients, knots, degree):
     np.testing.assert_allclose(solution(times), exact(times), rtol=0, atol=fuzz)
     assert solution.terms.shape == (len(knots) - 1, 3, degree + 1)
     # Their terms are values and derivatives at the start of each step.
-    slopes = np.polynomial.polynomial.polyval(knots[:-1], np.polynomial.polynomial.polyder(coefficients.T)).T
+    slopes = np.polynomial.polynomial.polyval(
+        knots[:-1], np.polynomial.polynomial.polyder(coefficients.T)
+    ).T
     np.testing.assert_allclose(solution.terms[:, :, 0], exact(knots[:-1]), rtol=0, atol=fuzz)
     np.testing.assert_allclose(
-        solution.terms[:, :, 1], slopes * np.diff(knots)[:, None], rtol=0, atol=10 * degree**2 * fuzz
+        solution.terms[:, :, 1],
+        slopes * np.diff(knots)[:, None],
+        rtol=0,
+        atol=10 * degree**2 * fuzz,
     )
 
 
@@ -58,7 +69,9 @@ def test_what_is_no_polynomial_is_fitted_as_well_as_chebyshevs_points_allow(degr
 
 
 def pieces():
-    """A solution that jumps, so that the step which a time belongs to shows: it is the number of the step."""
+    """A solution that jumps, so that the step which a time belongs to shows: it is the number of
+    the step.
+    """
     return DenseSolution(np.array([1.0, 2.0, 4.0, 5.0]), np.arange(3.0).reshape(3, 1, 1))
 
 
@@ -90,7 +103,9 @@ def test_at_its_knots_a_solution_has_the_values_at_the_ends_of_its_steps():
     knots = np.array([0.0, 0.3, 1.1])
     solution = DenseSolution.fitted(lambda t: (np.sin(t), np.cos(t)), knots, 14)
     np.testing.assert_array_equal(solution(knots[:1])[0], solution.terms[0, :, 0])
-    np.testing.assert_allclose(solution(knots), np.stack([np.sin(knots), np.cos(knots)], axis=1), atol=1e-15)
+    np.testing.assert_allclose(
+        solution(knots), np.stack([np.sin(knots), np.cos(knots)], axis=1), atol=1e-15
+    )
     np.testing.assert_allclose(solution.terms[1, :, 0], solution(knots[1:2])[0], rtol=0, atol=1e-15)
 
 
@@ -126,7 +141,9 @@ def test_steps_of_next_to_no_length_are_fitted_with_numbers(span):
     assert np.all(np.isfinite(solution.terms))
     np.testing.assert_allclose(solution(knots), [[1.0, 1.0], [1.0 + span, 1.0]], rtol=0, atol=1e-15)
     inside = at_fractions(solution.terms, np.array([0.0, 0.5, 1.0]))
-    np.testing.assert_allclose(inside[0, :, 0], 1.0 + span * np.array([0.0, 0.5, 1.0]), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(
+        inside[0, :, 0], 1.0 + span * np.array([0.0, 0.5, 1.0]), rtol=0, atol=1e-15
+    )
 
 
 def test_a_solution_is_asked_when_a_component_that_grows_has_a_value():
@@ -137,9 +154,13 @@ def test_a_solution_is_asked_when_a_component_that_grows_has_a_value():
     root = np.sqrt(values**2 / 4.0 + 1.0 / 27.0)
     exact = np.cbrt(values / 2.0 + root) + np.cbrt(values / 2.0 - root)
     np.testing.assert_allclose(solution.when(1, values), exact, rtol=0, atol=1e-14)
-    np.testing.assert_allclose(solution.rows(solution.when(1, values))[0], -2.0 * exact, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(
+        solution.rows(solution.when(1, values))[0], -2.0 * exact, rtol=0, atol=1e-13
+    )
     # Every other step begins a polynomial, as two are short beside the radius of convergence.
-    np.testing.assert_allclose(solution.knots_of(1, 5.0), [0.0, 0.5 + 0.5**3, 5.0], rtol=1e-14, atol=1e-15)
+    np.testing.assert_allclose(
+        solution.knots_of(1, 5.0), [0.0, 0.5 + 0.5**3, 5.0], rtol=1e-14, atol=1e-15
+    )
     np.testing.assert_allclose(solution.knots_of(1, 0.6), [0.0, 0.6], rtol=1e-14, atol=1e-15)
 
 
@@ -148,7 +169,9 @@ def test_a_solution_is_moved_in_time_to_end_exactly():
     whole = DenseSolution.fitted(lambda t: (np.exp(t), 1.0), knots, 9)
     moved = whole.moved(1e3, 1000.3)
     assert moved.end == 1000.3
-    np.testing.assert_allclose(moved(np.array([1000.2])), whole(np.array([0.2])), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(
+        moved(np.array([1000.2])), whole(np.array([0.2])), rtol=0, atol=1e-12
+    )
     assert moved.size == 2
 
 
@@ -174,7 +197,8 @@ def test_chebyshevs_points_lie_within_and_his_coefficients_give_back_the_values(
     assert np.all((places > 0.0) & (places < 1.0))
     assert places + places[::-1] == pytest.approx(1.0, abs=1e-15)
     there = np.vander(places, degree + 1, increasing=True) @ to_powers @ transform
-    # Powers of numbers up to 1 lose digits as the coefficients grow, (3 + 8^1/2)^degree / 2 at most.
+    # Powers of numbers up to 1 lose digits as the coefficients grow, (3 + 8^1/2)^degree / 2 at
+    # most.
     lost = 1e-15 * (3.0 + math.sqrt(8.0)) ** degree
     assert there == pytest.approx(np.eye(degree + 1), abs=lost + 1e-14)
 
@@ -189,7 +213,10 @@ def test_what_polynomials_leave_unresolved_is_the_last_of_chebyshevs():
     solution = DenseSolution.fitted(numbers, knots, 14)
     assert solution.unresolved == pytest.approx(0.3, rel=1e-12)
     # Values near 1 are known to a rounding, and so is what is left of their last polynomial.
-    assert DenseSolution.fitted(lambda t: [np.exp(-0.1 * t)], knots, 14).unresolved < np.finfo(float).eps
+    assert (
+        DenseSolution.fitted(lambda t: [np.exp(-0.1 * t)], knots, 14).unresolved
+        < np.finfo(float).eps
+    )
 
 
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other allocators have other rules")

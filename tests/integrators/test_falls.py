@@ -80,7 +80,9 @@ def test_a_pole_beyond_which_a_guard_is_negative_hides_no_fall_before_it(pole):
     def along(time):
         return np.array([time - STEP[0]])
 
-    beyond = Guard("beyond", lambda y, p: 1.0 / (pole + STEP[0] - (y[0] + STEP[0]))).with_parameters(())
+    beyond = Guard(
+        "beyond", lambda y, p: 1.0 / (pole + STEP[0] - (y[0] + STEP[0]))
+    ).with_parameters(())
     before = Guard("before", lambda y, p: pole - 1e-3 - y[0]).with_parameters(())
     with pytest.raises(ZeroDivisionError):
         beyond(along(STEP[0] + pole))

@@ -48,7 +48,8 @@ def test_every_integrator_is_tested():
     assert [method.integrator.name for method in DEFAULTS] == names
 
 
-# --- exact solutions ----------------------------------------------------------------------------------------
+# --- exact solutions
+# ----------------------------------------------------------------------------------------
 
 
 @every_method_also_loose
@@ -58,7 +59,9 @@ def test_motion_ends_where_the_exact_solution_does(method, exact):
     assert arc.failure is None
     assert arc.guard is None
     assert arc.solution.end == exact.end
-    np.testing.assert_allclose(arc.end_state, exact.state(exact.end), rtol=0, atol=method.allowed(arc, exact))
+    np.testing.assert_allclose(
+        arc.end_state, exact.state(exact.end), rtol=0, atol=method.allowed(arc, exact)
+    )
 
 
 @every_method
@@ -105,7 +108,9 @@ def test_clock_may_start_anywhere(method):
     start = (3.0, OSCILLATOR.state(0.0))
     arc = whole(method.integrator.integrate(OSCILLATOR.motion, OSCILLATOR.parameters, start, 4.0))
     allowed = 10 * method.allowed(arc, OSCILLATOR)
-    np.testing.assert_allclose(arc.solution(times), OSCILLATOR.states(times - 3.0), rtol=0, atol=allowed)
+    np.testing.assert_allclose(
+        arc.solution(times), OSCILLATOR.states(times - 3.0), rtol=0, atol=allowed
+    )
     assert (arc.solution.knots[0], arc.solution.end) == (3.0, 4.0)
 
 
@@ -117,7 +122,8 @@ def test_classical_or_adaptive_work_is_counted(method):
     assert long.evaluations >= long.steps
 
 
-# --- steps and arcs -----------------------------------------------------------------------------------------
+# --- steps and arcs
+# -----------------------------------------------------------------------------------------
 
 
 @every_method
@@ -130,14 +136,17 @@ def test_solution_goes_from_start_to_end_step_by_step(method, exact):
     assert terms.shape[:2] == (len(knots) - 1, exact.motion.size)
     assert arc.steps == len(terms)
     np.testing.assert_allclose(terms[0, :, 0], exact.start[1], rtol=0, atol=joint(method, exact))
-    np.testing.assert_allclose(arc.solution(knots[-1:])[0], arc.end_state, rtol=0, atol=joint(method, exact))
+    np.testing.assert_allclose(
+        arc.solution(knots[-1:])[0], arc.end_state, rtol=0, atol=joint(method, exact)
+    )
 
 
 def joint(method, exact):
     """How far apart a step may begin from where the one before it ended, numbers of the size 1.
 
-    Methods that use several steps put their polynomial through all of them, and none of them exactly; steps
-    of the classical method are polynomials but for the terms of the series from (rate h)^6 / 6! on.
+    Methods that use several steps put their polynomial through all of them, and none of them
+    exactly; steps of the classical method are polynomials but for the terms of the series from
+    (rate h)^6 / 6! on.
     """
     if method.step:
         return (exact.rate * method.step) ** 6 / 720
@@ -165,24 +174,31 @@ def test_how_a_solution_is_cut_into_arcs_does_not_show(method, monkeypatch):
     module, smaller = CUTS.get(method.integrator.name) or (sampling, {"MANY": 7})
     for name, number in smaller.items():
         monkeypatch.setattr(module, name, number)
-    arcs = list(method.integrator.integrate(KEPLER.motion, KEPLER.parameters, KEPLER.start, KEPLER.end))
+    arcs = list(
+        method.integrator.integrate(KEPLER.motion, KEPLER.parameters, KEPLER.start, KEPLER.end)
+    )
     assert len(arcs) > 3
     assert max(arc.steps for arc in arcs) == max(smaller.values())
     cut, allowed = whole(arcs), method.allowed(uncut, KEPLER)
     assert cut.steps == uncut.steps
     assert cut.evaluations == uncut.evaluations
     times = np.linspace(0.0, KEPLER.end, 57)
-    np.testing.assert_allclose(cut.solution(times), uncut.solution(times), rtol=0, atol=min(allowed, 1e-12))
+    np.testing.assert_allclose(
+        cut.solution(times), uncut.solution(times), rtol=0, atol=min(allowed, 1e-12)
+    )
 
 
-# --- guards -------------------------------------------------------------------------------------------------
+# --- guards
+# -------------------------------------------------------------------------------------------------
 
 QUARTER_TURN = math.pi / 2 / FREQUENCY
 AT_MINOR_AXIS = math.pi / 2 - ECCENTRICITY
 LANDING = math.sqrt(2 * 3.0 / GRAVITY)
 
 POSITION = Guard("position", lambda y, _: y[0])
-NEARER_THAN_MEAN = Guard("nearer than the mean distance", lambda y, _: 1.0 - (y[0] ** 2 + y[1] ** 2) ** 0.5)
+NEARER_THAN_MEAN = Guard(
+    "nearer than the mean distance", lambda y, _: 1.0 - (y[0] ** 2 + y[1] ** 2) ** 0.5
+)
 
 CROSSINGS = [
     # motion, guard, when it falls through zero, and how fast
@@ -216,7 +232,9 @@ def test_solution_stops_at_the_guard(method):
 
 @every_method
 def test_rising_through_zero_is_no_end(method):
-    """The speed of the oscillator starts by falling, so that it rises through zero half a turn later."""
+    """The speed of the oscillator starts by falling, so that it rises through zero half a turn
+    later.
+    """
     speed = Guard("speed", lambda y, _: y[1])
     later = OSCILLATOR.state(QUARTER_TURN)
     arc = follow(method, OSCILLATOR, [speed], state=lambda _: later, end=2 * QUARTER_TURN)
@@ -243,7 +261,9 @@ CLEARANCE = Motion(OSCILLATOR.motion.rates, size=2, parameters=2, guards=(DIP,))
 
 
 def dive(method, depth, phase):
-    """Follow a swing through a dip of this depth, begun at this phase; return the arc and the true time."""
+    """Follow a swing through a dip of this depth, begun at this phase; return the arc and the true
+    time.
+    """
     begin = np.array([math.cos(phase), -math.sin(phase)])
     arc = whole(method.integrator.integrate(CLEARANCE, (1.0, 1.0 - depth), (0.0, begin), 5.0))
     return arc, math.acos(depth - 1.0) - phase
@@ -262,7 +282,9 @@ def test_shallow_dip_below_zero_is_found_wherever_in_a_step_it_is(method):
 
 @pytest.mark.parametrize("method", LOOSE, ids=lambda method: method.label)
 def test_shallow_dip_is_found_in_the_long_steps_of_a_loose_tolerance(method):
-    missed = [phase for phase in np.linspace(0.0, 2.9, 30) if dive(method, 1e-3, phase)[0].guard is None]
+    missed = [
+        phase for phase in np.linspace(0.0, 2.9, 30) if dive(method, 1e-3, phase)[0].guard is None
+    ]
     assert missed == []
 
 
@@ -286,7 +308,8 @@ def test_throw_much_shorter_than_a_step_ends_though_it_starts_below_zero_by_roun
     assert arc.solution.end == pytest.approx(2.0 * speed / GRAVITY, abs=allowed)
 
 
-# --- motions that cannot go on ------------------------------------------------------------------------------
+# --- motions that cannot go on
+# ------------------------------------------------------------------------------
 
 
 class TooMuchWork(AssertionError):
@@ -321,7 +344,9 @@ SINGULAR = [
 def test_motion_that_ceases_to_exist_is_a_failure_and_no_exception(method, rates, begin, last):
     if method.step and rates((1.0, 0.0), ())[0] < 0:
         pytest.skip("fixed steps leap over the singularity")
-    arc = whole(method.integrator.integrate(Motion(limited(rates), 2, 0), (), (0.0, np.array(begin)), 2.0))
+    arc = whole(
+        method.integrator.integrate(Motion(limited(rates), 2, 0), (), (0.0, np.array(begin)), 2.0)
+    )
     assert arc.failure
     assert "\n" not in arc.failure
     assert arc.guard is None
@@ -346,7 +371,8 @@ def test_motion_that_is_singular_from_the_start_is_a_failure_and_no_exception(me
     assert arc.steps == 0
 
 
-# --- the order of the classical method ----------------------------------------------------------------------
+# --- the order of the classical method
+# ----------------------------------------------------------------------
 
 
 def classical_run(exact, step, end):
@@ -389,7 +415,8 @@ def test_step_that_does_not_divide_the_time_is_shortened_at_the_end():
     np.testing.assert_allclose(arc.end_state, OSCILLATOR.state(1.0), atol=1e-2)
 
 
-# --- asking for one -----------------------------------------------------------------------------------------
+# --- asking for one
+# -----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", [method.integrator.name for method in LOOSE])

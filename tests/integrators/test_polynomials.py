@@ -39,7 +39,9 @@ def test_first_fall_is_the_smallest_root_at_which_the_polynomial_falls(roots, sp
 @pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
 def test_a_dip_between_two_looks_is_found(width):
     middle = 0.5 / LOOKS + 10 / LOOKS
-    found = Polynomials(with_roots([middle - width / LOOKS, middle + width / LOOKS]), ones()).first_fall()[0]
+    found = Polynomials(
+        with_roots([middle - width / LOOKS, middle + width / LOOKS]), ones()
+    ).first_fall()[0]
     assert found == pytest.approx(middle - width / LOOKS, rel=1e-9)
 
 
@@ -52,7 +54,9 @@ def test_a_dip_in_the_first_or_the_last_interval_is_found(middle):
 
 def test_a_dip_right_before_a_fall_is_found():
     roots = [1.3125, 1.34375, 1.375]
-    assert Polynomials(-with_roots(roots), ones(1.65625)).first_fall()[0] == pytest.approx(1.3125, rel=1e-9)
+    assert Polynomials(-with_roots(roots), ones(1.65625)).first_fall()[0] == pytest.approx(
+        1.3125, rel=1e-9
+    )
 
 
 def test_a_graze_that_does_not_touch_is_none():
@@ -80,7 +84,9 @@ def test_zeros_are_to_the_last_bit_those_that_fewer_polynomials_have(count):
     random = np.random.default_rng(1)
     terms = random.normal(size=(21, 2000)) * 0.5 ** np.arange(21.0)[:, None]
     every = Polynomials(terms, np.ones(2000))
-    lots = [every.some(np.arange(first, min(first + count, 2000))) for first in range(0, 2000, count)]
+    lots = [
+        every.some(np.arange(first, min(first + count, 2000))) for first in range(0, 2000, count)
+    ]
     found = every.first_fall()
     assert np.isfinite(found).sum() > 300
     np.testing.assert_array_equal(found, np.concatenate([lot.first_fall() for lot in lots]))
@@ -113,7 +119,9 @@ def test_an_extreme_at_an_end_is_the_end():
 def test_a_dip_between_an_end_and_the_next_look_is_found():
     terms = np.array([[0.0], [-0.02], [1.0]])
     for coefficients in (terms, np.array([[0.98], [-1.98], [1.0]])):
-        assert Polynomials(coefficients, ones()).refined_least()[1][0] == pytest.approx(-1e-4, rel=1e-12)
+        assert Polynomials(coefficients, ones()).refined_least()[1][0] == pytest.approx(
+            -1e-4, rel=1e-12
+        )
 
 
 def test_the_least_values_of_lots_are_found_whatever_their_degrees():
@@ -122,7 +130,8 @@ def test_the_least_values_of_lots_are_found_whatever_their_degrees():
     assert least_of_each([lines, dip], [], [lines]) == [pytest.approx(0.05, rel=1e-12), np.inf, 0.5]
 
 
-# --- sag ----------------------------------------------------------------------------------------------------
+# --- sag
+# ------------------------------------------------------------------------------------------
 
 ANY_TERMS = st.lists(st.floats(-1.0, 1.0, allow_subnormal=False), min_size=1, max_size=22)
 PLACES = np.linspace(0.0, 1.0, 1001)
@@ -157,8 +166,12 @@ def test_powers_stay_within_their_sag(degree, sign):
 @pytest.mark.parametrize("degree", range(2, 12))
 @pytest.mark.parametrize("side", [0.0, 0.5])
 def test_waves_between_gausss_points_stay_within_their_sag(degree, side):
-    """Chebyshev's polynomials on the interval, and their squares, turn near its ends and all over it."""
-    wave = np.polynomial.Chebyshev.basis(degree, domain=[0.0, 1.0]).convert(kind=np.polynomial.Polynomial)
+    """Chebyshev's polynomials on the interval, and their squares, turn near its ends and all over
+    it.
+    """
+    wave = np.polynomial.Chebyshev.basis(degree, domain=[0.0, 1.0]).convert(
+        kind=np.polynomial.Polynomial
+    )
     terms = wave.convert(domain=[-1.0, 1.0], window=[-1.0, 1.0]).coef
     assert_within_sag(terms)
     assert_within_sag(-terms)
@@ -185,6 +198,8 @@ def test_so_many_that_they_are_taken_in_parts_are_as_one_by_one():
     many, middle = Polynomials(terms, span), np.array([0, 255, 256, 511, 512, 599])
     few = Polynomials(terms[:, middle], span[middle])
     for name in ("values", "slopes", "bending", "sag"):
-        assert getattr(many, name)[..., middle] == pytest.approx(getattr(few, name), rel=1e-14, abs=1e-14)
+        assert getattr(many, name)[..., middle] == pytest.approx(
+            getattr(few, name), rel=1e-14, abs=1e-14
+        )
     assert many.values.shape == (LOOKS + 1, 600)
     assert few.values[LOOKS] == pytest.approx(np.sum(few.unit, axis=0), rel=1e-13, abs=1e-13)

@@ -17,7 +17,9 @@ NEEDS_TAYLOR = pytest.mark.skipif(not has_taylor(), reason="Taylor's method is r
 
 
 def following(y, numbers):
-    """A number that is damped towards a coordinate of a point on a circle (Prothero and Robinson 1974)."""
+    """A number that is damped towards a coordinate of a point on a circle (Prothero and Robinson
+    1974).
+    """
     followed, x, z = y
     return (-numbers[0] * (followed - x) - z, -z, x)
 
@@ -40,7 +42,9 @@ def test_damping_neither_costs_steps_nor_digits(damping):
 
 
 def test_rounding_that_no_shorter_step_lessens_costs_no_steps():
-    """What drives the motion is known to 14 digits, as slip is that is a difference of velocities."""
+    """What drives the motion is known to 14 digits, as slip is that is a difference of
+    velocities.
+    """
 
     def rounded(y, numbers):
         followed, x, z = y
@@ -56,7 +60,9 @@ def test_rounding_that_no_shorter_step_lessens_costs_no_steps():
 
 @pytest.mark.parametrize("rate", [-1.0, -1.0 + 5.0j, 3.0j])
 def test_a_step_is_the_approximation_of_pade_that_vanishes_far_left(rate):
-    """For y' = rate y a step of Radau's method is Pade's (s - 1, s), of order 2 s - 1 (Ehle 1969)."""
+    """For y' = rate y a step of Radau's method is Pade's (s - 1, s), of order 2 s - 1 (Ehle
+    1969).
+    """
     s = STAGES
 
     def stepped(span):
@@ -85,7 +91,9 @@ def test_a_guard_within_a_long_step_is_found_to_rounding():
     """Steps of the solution are longer than what the guard takes to fall and rise again."""
     dip = Guard("dip", lambda y, _: y[1] + 0.9)
     arc = whole(
-        make_integrator("collocation").integrate(Motion(following, 3, 1, guards=(dip,)), (1e6,), START, 20.0)
+        make_integrator("collocation").integrate(
+            Motion(following, 3, 1, guards=(dip,)), (1e6,), START, 20.0
+        )
     )
     assert arc.guard == "dip"
     assert arc.solution.end == pytest.approx(np.arccos(-0.9), abs=1e-13)
@@ -136,7 +144,10 @@ def test_the_implicit_method_relieves_what_is_stiff_and_not_the_rest():
     explicit, start = Recorded(), (0.0, np.array([2.0, -2.0 / 3.0]))
     motion = Motion(oscillator, 2, 1)
     arcs = list(Relieved(explicit).integrate(motion, (1e5,), start, 2.0))
-    assert {None if arc.method is None else arc.method.name for arc in arcs} == {None, "collocation"}
+    assert {None if arc.method is None else arc.method.name for arc in arcs} == {
+        None,
+        "collocation",
+    }
     assert len(explicit.asked) > 2
     found = whole(arcs)
     assert found.failure is None
@@ -169,7 +180,10 @@ def test_what_polynomials_say_beyond_a_step_is_what_they_say_within_it():
     terms = np.zeros((STAGES + 1, 1))
     terms[:3, 0] = 1.0, 0.5, 0.25
     step = Step(1.0, 3.0, terms, np.array([1.75]))
-    assert step.beyond(np.array([3.0, 5.0])).ravel().tolist() == [step(3.0)[0], 1.0 + 1.5 + 0.25 * 17.0]
+    assert step.beyond(np.array([3.0, 5.0])).ravel().tolist() == [
+        step(3.0)[0],
+        1.0 + 1.5 + 0.25 * 17.0,
+    ]
 
 
 def stiff(mu, **changes):
@@ -182,7 +196,9 @@ def rolling():
     """The same top under dry friction that it never overcomes: it rolls."""
     problem = stiff(0.3, friction=tt.CoulombFriction(mu=50.0))
     run = tt.simulate(problem, 1.0, samples=101)
-    assert set(run["mode"].values.tolist()) == {run["mode"].attrs["flag_meanings"].split().index("sticking")}
+    assert set(run["mode"].values.tolist()) == {
+        run["mode"].attrs["flag_meanings"].split().index("sticking")
+    }
     return run
 
 
@@ -223,7 +239,9 @@ def test_a_sweep_follows_stiff_launches_as_runs_are():
         run = tt.simulate(stiff(mu), 1.0, samples=11)
         assert swept["steps"].values[cell] < 4 * PATIENCE
         for name in ("final_theta", "final_omega3", "least_normal_force", "energy_lost", "arrives"):
-            assert swept[name].values[cell] == pytest.approx(run[name].item(), rel=1e-7, abs=1e-12), name
+            assert swept[name].values[cell] == pytest.approx(
+                run[name].item(), rel=1e-7, abs=1e-12
+            ), name
 
 
 @NEEDS_TAYLOR

@@ -1,4 +1,6 @@
-"""Where heyoka is not installed, other integrators give the same results: numba's, or else SciPy's."""
+"""Where heyoka is not installed, other integrators give the same results: numba's, or else
+SciPy's.
+"""
 
 import json
 import subprocess
@@ -56,7 +58,9 @@ HIDDEN = {"compiled": ["heyoka"], "dop853": ["heyoka", "numba"]}
 @pytest.fixture(
     scope="module",
     params=[
-        pytest.param("compiled", marks=pytest.mark.skipif(not has_numba(), reason="numba is not installed")),
+        pytest.param(
+            "compiled", marks=pytest.mark.skipif(not has_numba(), reason="numba is not installed")
+        ),
         "dop853",
     ],
 )

@@ -24,6 +24,8 @@ def lab(page: Path, visit: Callable[..., Visit]) -> Callable[..., Visit]:
     def open_page(link: str = "", **options: object) -> Visit:
         visitor = visit(offline=True, **{"locale": "en-US", **options})
         address = f"{page.as_uri()}#{link}" if link else page.as_uri()
-        return visitor.open(address, "globalThis.tippetopLab?.track && tippetopLab.player.frames > 0")
+        return visitor.open(
+            address, "globalThis.tippetopLab?.track && tippetopLab.player.frames > 0"
+        )
 
     return open_page

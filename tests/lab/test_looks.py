@@ -17,7 +17,14 @@ GENERATED = WEB / "generated" / "looks.json"
 
 LOOSE = tt.presets.WOODEN.model_copy(update={"shape": tt.presets.REPORT_STEM.shape})
 BACKWARDS = tt.presets.REPORT_STEM.model_copy(
-    update={"profile": [(0.0, 0.029), (0.012, 0.017, -0.012), (0.02, 0.006, -0.06), (0.0, -0.014, -0.02)]}
+    update={
+        "profile": [
+            (0.0, 0.029),
+            (0.012, 0.017, -0.012),
+            (0.02, 0.006, -0.06),
+            (0.0, -0.014, -0.02),
+        ]
+    }
 )
 BODIES = {**tt.presets.BODIES, "another shape": LOOSE, "from above": BACKWARDS}
 
@@ -32,7 +39,9 @@ def test_the_page_draws_each_body_as_films_do(tmp_path: Path) -> None:
         code = (WEB / "run" / f"{name}.js").read_text(encoding="utf-8").replace('"engine"', engine)
         told = f"const looks = {looks.as_json()};"
         code = code.replace('import looks from "../generated/looks.json";', told)
-        (tmp_path / f"{name}.mjs").write_text(code.replace("./arc.js", "./arc.mjs"), encoding="utf-8")
+        (tmp_path / f"{name}.mjs").write_text(
+            code.replace("./arc.js", "./arc.mjs"), encoding="utf-8"
+        )
     bodies = [body.model_dump(mode="json", exclude_none=True) for body in BODIES.values()]
     (tmp_path / "told.mjs").write_text(
         'import { sizeOf, toyParts } from "./looks.mjs";\n'
@@ -40,7 +49,9 @@ def test_the_page_draws_each_body_as_films_do(tmp_path: Path) -> None:
         "console.log(JSON.stringify(bodies.map((body) => [sizeOf(body), toyParts(body)])));\n",
         encoding="utf-8",
     )
-    found = json.loads(subprocess.check_output([NODE, "told.mjs"], cwd=tmp_path, text=True, timeout=60))
+    found = json.loads(
+        subprocess.check_output([NODE, "told.mjs"], cwd=tmp_path, text=True, timeout=60)
+    )
     for (name, body), (size, parts) in zip(BODIES.items(), found, strict=True):
         assert size == pytest.approx(looks.size(body), rel=1e-8), name
         expected = looks.toy_parts(body)

@@ -10,7 +10,9 @@ import pytest
 
 import tippetop as tt
 
-pytest.importorskip("anywidget", reason="anywidget shows runs in notebooks; it comes with the lab extra")
+pytest.importorskip(
+    "anywidget", reason="anywidget shows runs in notebooks; it comes with the lab extra"
+)
 
 from tippetop.export.bundle import built
 from tippetop.lab.notebook import view
@@ -46,7 +48,10 @@ HOST = """async ([code, first, second]) => {
 
 
 def test_the_widget_plays_a_run_and_then_another(page: Path, visit: Callable) -> None:
-    runs = [tt.simulate(tt.presets.report_problem(spin=spin), 1.0, samples=400) for spin in (20.0, 155.0)]
+    runs = [
+        tt.simulate(tt.presets.report_problem(spin=spin), 1.0, samples=400)
+        for spin in (20.0, 155.0)
+    ]
     widget = view(runs[0], height=300)
     first = widget.track
     widget.show(runs[1])
@@ -84,8 +89,12 @@ def test_the_notebook_runs_from_top_to_bottom(
     code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
     imports = [line for text in code for line in text.splitlines() if "import" in line]
     assert imports == ["import tippetop as tt"]
-    assert all(cell["outputs"] for cell in cells if cell["cell_type"] == "code"), "it shows what comes out"
+    assert all(cell["outputs"] for cell in cells if cell["cell_type"] == "code"), (
+        "it shows what comes out"
+    )
     assert NOTEBOOK.stat().st_size < 300_000, "its outputs are light"
     for text in code:
         exec(text, names)
-    assert set(os.listdir(tmp_path)) == {f"flying.{suffix}" for suffix in ("html", "glb", "csv", "nc")}
+    assert set(os.listdir(tmp_path)) == {
+        f"flying.{suffix}" for suffix in ("html", "glb", "csv", "nc")
+    }

@@ -31,7 +31,9 @@ def problem_of(visitor: Visit) -> tt.Problem:
 
 
 def settled(visitor: Visit, condition: str) -> None:
-    """Wait until a launch is shown of which something holds, and that is no longer about to change."""
+    """Wait until a launch is shown of which something holds, and that is no longer about to
+    change.
+    """
     visitor.wait(f"() => ((problem) => {condition})({PROBLEM}) && !tippetopLab.engine.busy")
 
 
@@ -48,7 +50,9 @@ def headline(visitor: Visit) -> str:
 def test_the_page_is_one_small_file_that_asks_for_nothing(page: Path, lab: Lab) -> None:
     assert page.stat().st_size < 2_000_000
     visitor = lab("launch.spin=155")
-    assert [url for url in visitor.requests if not url.startswith(("file:", "blob:", "data:"))] == []
+    assert [
+        url for url in visitor.requests if not url.startswith(("file:", "blob:", "data:"))
+    ] == []
     expected = float(tt.simulate(tt.presets.report_problem(), 20.0, samples=3)["arrives"])
     assert headline(visitor) == f"Turns over: upside down at {expected:.2f} s"
     visitor.wait("() => tippetopLab.player.time > 0.2")  # it plays
@@ -129,7 +133,9 @@ def test_a_pinned_run_plays_beside_the_next(lab: Lab) -> None:
 
 def test_the_camera_sinks_as_the_top_turns_over_unless_it_is_held(lab: Lab) -> None:
     visitor = lab("launch.spin=155")
-    visitor.ask("() => { tippetopLab.player.toggle(false); tippetopLab.player.scene.eye.release(); }")
+    visitor.ask(
+        "() => { tippetopLab.player.toggle(false); tippetopLab.player.scene.eye.release(); }"
+    )
     down = """(t) => { const { player } = tippetopLab; player.seek(t); player.draw();
       return player.scene.eye.place[1]; }"""
     turned = visitor.ask("() => tippetopLab.player.turnsOver")
@@ -165,7 +171,9 @@ def test_a_top_of_ones_own_is_weighed_and_spun(lab: Lab, tmp_path: Path) -> None
     mass, center, across, along = piece.mass_properties
     assert (body.mass, body.I1, body.I3) == pytest.approx((mass, across, along), rel=1e-6)
     assert center == pytest.approx(0.0, abs=2e-9)
-    trimesh = pytest.importorskip("trimesh", reason="trimesh reads solids; it comes with the lathe extra")
+    trimesh = pytest.importorskip(
+        "trimesh", reason="trimesh reads solids; it comes with the lathe extra"
+    )
     printed = trimesh.load(tmp_path / "top.stl")
     assert printed.is_watertight
     (expected,) = solids(piece, 180).values()
@@ -193,7 +201,9 @@ def test_downloads_open_again(lab: Lab, tmp_path: Path) -> None:
     assert list(numbers["mode"]) == list(expected["mode"])
     for name in expected.columns.drop("mode"):
         within = 1e-6 * expected[name].abs().max() + 1e-12
-        assert numbers[name].to_numpy() == pytest.approx(expected[name].to_numpy(), abs=within, nan_ok=True)
+        assert numbers[name].to_numpy() == pytest.approx(
+            expected[name].to_numpy(), abs=within, nan_ok=True
+        )
     model = pytest.importorskip("pygltflib").GLTF2().load(str(files["glb"]))
     assert len(model.animations) == 1
     assert files["picture"].read_bytes().startswith(b"\x89PNG")
@@ -204,7 +214,9 @@ def test_downloads_open_again(lab: Lab, tmp_path: Path) -> None:
 
 def test_going_back_takes_back(lab: Lab) -> None:
     visitor = lab("tab=launch&launch.spin=100")
-    number = visitor.page.get_by_label("Spin ω₃ (rad/s)").and_(visitor.page.locator("input[type=text]"))
+    number = visitor.page.get_by_label("Spin ω₃ (rad/s)").and_(
+        visitor.page.locator("input[type=text]")
+    )
     number.fill("60")
     number.press("Enter")
     settled(visitor, "problem.launch.spin === 60")
@@ -221,14 +233,18 @@ def test_what_cannot_be_is_refused_at_its_control_in_the_visitors_units(lab: Lab
     number.press("Enter")
     said = visitor.page.locator(".dial .refused")
     said.wait_for()
-    assert said.inner_text() == "Tilt cannot be 200°. Possible: a number at least 0 and at most 180°."
+    assert (
+        said.inner_text() == "Tilt cannot be 200°. Possible: a number at least 0 and at most 180°."
+    )
     assert number.get_attribute("aria-invalid") == "true"
     assert problem_of(visitor).launch.tilt == 0.1
     number.fill("11.459155902616466")
     number.press("Enter")
     settled(visitor, "Math.abs(problem.launch.tilt - 0.2) < 1e-9")
     assert not said.is_visible()
-    spin = visitor.page.get_by_label("Spin ω₃ (rad/s)").and_(visitor.page.locator("input[type=text]"))
+    spin = visitor.page.get_by_label("Spin ω₃ (rad/s)").and_(
+        visitor.page.locator("input[type=text]")
+    )
     spin.fill("1e7")
     spin.press("Enter")
     visitor.page.get_by_text("Spin of 1.00e+7 rad/s means").wait_for()
@@ -260,7 +276,9 @@ def test_bounds_are_told_in_the_units_and_the_language_of_the_dial(
 
 def test_numbers_have_the_decimal_sign_of_the_language(lab: Lab) -> None:
     visitor = lab("tab=launch&lang=de&t=1.5")
-    number = visitor.page.get_by_label("Reibung μ (s/m)").and_(visitor.page.locator("input[type=text]"))
+    number = visitor.page.get_by_label("Reibung μ (s/m)").and_(
+        visitor.page.locator("input[type=text]")
+    )
     assert number.input_value() == "0,3"
     assert visitor.page.locator(".tt-time").inner_text() == "1,500 s"
     number.fill("0,25")
@@ -286,7 +304,9 @@ def link_of(body: tt.Body) -> str:
         (tt.presets.HURRICANE_BALLS, "launch.spin=60&launch.tilt=0.3", "Rises and settles at 90°"),
     ],
 )
-def test_the_headline_is_true_of_other_bodies(lab: Lab, body: tt.Body, launch: str, said: str) -> None:
+def test_the_headline_is_true_of_other_bodies(
+    lab: Lab, body: tt.Body, launch: str, said: str
+) -> None:
     assert headline(lab(f"tab=launch&duration=3&{launch}&{link_of(body)}")).startswith(said)
 
 
@@ -296,14 +316,20 @@ def test_the_headline_is_true_of_other_bodies(lab: Lab, body: tt.Body, launch: s
     ids=["one mark", "two marks", "the other mark", "an egg"],
 )
 def test_of_the_marks_no_more_is_said_than_holds(lab: Lab, body: tt.Body) -> None:
-    """Between two a sphere rises half-way, and beyond turns over; of one, or an egg, a change is known."""
+    """Between two a sphere rises half-way, and beyond turns over; of one, or an egg, a change is
+    known.
+    """
     visitor = lab(f"tab=launch&duration=1&{link_of(body)}")
     said = visitor.page.locator(".prospect", has_text=re.compile("ω. =")).inner_text()
     spins = tt.critical_spins(problem_of(visitor))
     marks = {"ω₁": spins.upright, "ω₂": spins.inverted}
     shown = [name for name, spin in marks.items() if math.isfinite(spin) and spin < 250.0]
     assert [name for name in marks if f"{name} =" in said] == shown
-    claims = len(shown) == 2 and spins.upright < spins.inverted and isinstance(body.shape, tt.EccentricSphere)
+    claims = (
+        len(shown) == 2
+        and spins.upright < spins.inverted
+        and isinstance(body.shape, tt.EccentricSphere)
+    )
     assert ("turns over completely" in said) is claims
     assert said.count("changes between stable and unstable") == (0 if claims else len(shown))
 
@@ -346,7 +372,9 @@ def test_a_map_leads_to_its_launches(lab: Lab) -> None:
         page.get_by_role("button", name="Stop").click()
 
 
-@pytest.mark.parametrize("launch", ["spin=20", "spin=50", "spin=155", "spin=90&launch.precession=12"])
+@pytest.mark.parametrize(
+    "launch", ["spin=20", "spin=50", "spin=155", "spin=90&launch.precession=12"]
+)
 def test_what_is_foreseen_is_what_the_theory_says(lab: Lab, launch: str) -> None:
     visitor = lab(f"tab=launch&duration=1&launch.{launch}")
     visitor.wait("() => tippetopLab.state.prospect")
@@ -365,11 +393,14 @@ def test_the_page_runs_where_no_code_may_be_made(
 ) -> None:
     """Under a policy of content security without unsafe-eval, as schools' servers send one."""
     policy = (
-        "default-src 'none'; script-src 'unsafe-inline'; worker-src blob:; style-src 'unsafe-inline'; "
-        "img-src data: blob:"
+        "default-src 'none'; script-src 'unsafe-inline'; worker-src blob:; style-src"
+        " 'unsafe-inline'; img-src data: blob:"
     )
     told = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
-    asked = "<script>try { new Function('')(); } catch (error) { globalThis.refused = error.name; }</script>"
+    asked = (
+        "<script>try { new Function('')(); } catch (error) { globalThis.refused = error.name;"
+        " }</script>"
+    )
     strict = tmp_path / "lab.html"
     text = page.read_text(encoding="utf-8")
     assert "<head>" in text

@@ -1,4 +1,6 @@
-"""What the scene shows and what is taken along: film, sheet, tone, repetition, a run stopped, the link."""
+"""What the scene shows and what is taken along: film, sheet, tone, repetition, a run stopped, the
+link.
+"""
 
 import math
 from collections.abc import Callable
@@ -29,7 +31,8 @@ def picture(visitor: Visit) -> np.ndarray:
 
 def settled(visitor: Visit, condition: str) -> None:
     visitor.wait(
-        f"() => ((problem) => {condition})(tippetopLab.track.header.problem) && !tippetopLab.engine.busy"
+        f"() => ((problem) => {condition})(tippetopLab.track.header.problem) &&"
+        " !tippetopLab.engine.busy"
     )
 
 
@@ -92,8 +95,9 @@ def test_a_run_is_repeated_on_request(lab: Lab) -> None:
 
 def test_time_goes_slower_while_the_top_turns_over(lab: Lab) -> None:
     visitor = lab("launch.spin=155&t=0")
-    passed = """(from) => { const { player } = tippetopLab; player.seek(from); player.playing = true;
-      player.last = 1000; player.advance(1010); player.playing = false; return player.time - from; }"""
+    passed = """(from) => { const { player } = tippetopLab; player.seek(from);
+      player.playing = true; player.last = 1000; player.advance(1010); player.playing = false;
+      return player.time - from; }"""
     turned = visitor.ask("() => tippetopLab.player.turnsOver")
     assert visitor.ask(passed, 1.0) == pytest.approx(0.01)
     assert visitor.ask(passed, turned) == pytest.approx(0.0015)
@@ -104,11 +108,10 @@ def test_time_goes_slower_while_the_top_turns_over(lab: Lab) -> None:
 def test_a_long_run_shows_how_far_it_is_and_can_be_stopped(lab: Lab) -> None:
     visitor = lab("tab=launch&launch.spin=60&duration=2")
     page = visitor.page
-    visitor.ask(
-        """() => { const { problem } = tippetopLab.state.setup;
-        tippetopLab.go({ duration: 120, problem: { ...problem, launch: { ...problem.launch, spin: 240 },
-          friction: { kind: "regularized_coulomb", mu: 0.3, eps: 1e-5 } } }); }"""
-    )
+    visitor.ask("""() => { const { problem } = tippetopLab.state.setup;
+        const launch = { ...problem.launch, spin: 240 };
+        const friction = { kind: "regularized_coulomb", mu: 0.3, eps: 1e-5 };
+        tippetopLab.go({ duration: 120, problem: { ...problem, launch, friction } }); }""")
     stop = page.locator(".busy").get_by_role("button", name="Stop")
     stop.wait_for()
     visitor.wait("() => tippetopLab.state.busy > 0")
@@ -125,7 +128,10 @@ def test_the_stem_is_dragged_to_its_length(lab: Lab) -> None:
     page = visitor.page
     grip = page.locator(".grip")
     facts, before = page.locator(".facts").inner_text(), float(grip.get_attribute("aria-valuenow"))
-    box, scale = grip.bounding_box(), visitor.ask("() => document.querySelector('.section').getScreenCTM().a")
+    box, scale = (
+        grip.bounding_box(),
+        visitor.ask("() => document.querySelector('.section').getScreenCTM().a"),
+    )
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
@@ -133,7 +139,9 @@ def test_the_stem_is_dragged_to_its_length(lab: Lab) -> None:
     page.mouse.move(x, y - 5 * scale)
     page.mouse.up()
     after = float(grip.get_attribute("aria-valuenow"))
-    assert after - before == pytest.approx(5.0, abs=0.6), "a millimetre of the drawing is one of the stem"
+    assert after - before == pytest.approx(5.0, abs=0.6), (
+        "a millimetre of the drawing is one of the stem"
+    )
     assert page.locator(".facts").inner_text() != facts
     page.mouse.move(x, y - 9 * scale)
     assert float(grip.get_attribute("aria-valuenow")) == after, "let go"
@@ -169,7 +177,9 @@ def test_the_link_carries_time_camera_units_arrows_and_pins(lab: Lab) -> None:
     page.get_by_label("turns/s").check()
     page.get_by_text("rad", exact=True).check()
     page.get_by_label("axis", exact=True).check()
-    visitor.ask("() => { tippetopLab.player.seek(2.5); tippetopLab.player.scene.eye.turn(0.7, 0.2); }")
+    visitor.ask(
+        "() => { tippetopLab.player.seek(2.5); tippetopLab.player.scene.eye.turn(0.7, 0.2); }"
+    )
     visitor.ask("() => tippetopLab.pin()")
     visitor.ask("() => tippetopLab.change({ 'friction.mu': 0.5 })")
     settled(visitor, "problem.friction.mu === 0.5")
@@ -223,7 +233,9 @@ def test_the_mark_on_every_plot_is_at_the_time_that_is_shown(lab: Lab) -> None:
     visitor.wait("() => document.querySelector('.tt-time').textContent === '15.000 s'")
     assert visitor.ask(shares) == pytest.approx([0.75] * 6, abs=0.01)
     visitor.page.set_viewport_size({"width": 800, "height": 700})
-    visitor.wait("(share) => Math.abs(share()[0] - 0.75) < 0.01".replace("share()", f"({shares})()"))
+    visitor.wait(
+        "(share) => Math.abs(share()[0] - 0.75) < 0.01".replace("share()", f"({shares})()")
+    )
 
 
 def test_flights_shade_what_they_fill_once(lab: Lab) -> None:
@@ -235,7 +247,8 @@ def test_flights_shade_what_they_fill_once(lab: Lab) -> None:
       const [{ chart }] = tippetopLab.plots.charts, { ctx, bbox } = chart;
       chart.redraw(false);
       return new Promise((done) => requestAnimationFrame(() => {
-        const { data } = ctx.getImageData(bbox.left + bbox.width / 2, bbox.top + bbox.height / 3, 1, 1);
+        const x = bbox.left + bbox.width / 2, y = bbox.top + bbox.height / 3;
+        const { data } = ctx.getImageData(x, y, 1, 1);
         done(data[3]);
       }));
     }"""

@@ -1,4 +1,6 @@
-"""The page for everyone: by keyboard, on phones, in another language, without motion, read aloud."""
+"""The page for everyone: by keyboard, on phones, in another language, without motion, read
+aloud.
+"""
 
 import json
 import re
@@ -33,7 +35,15 @@ def test_everything_is_within_reach_of_the_keyboard(lab: Lab) -> None:
                 e.labels?.[0]?.textContent || e.textContent.trim(); }"""
             )
         )
-    wanted = {"Play (space)", "Time", "Copy link", "What is what", "Launch", "Spin ω₃ (rad/s)", "Zoom in"}
+    wanted = {
+        "Play (space)",
+        "Time",
+        "Copy link",
+        "What is what",
+        "Launch",
+        "Spin ω₃ (rad/s)",
+        "Zoom in",
+    }
     assert wanted <= seen
 
 
@@ -81,14 +91,17 @@ def test_every_text_is_in_every_language() -> None:
 
     folder = Path(__file__).parents[2] / "web" / "texts"
     english, german = (
-        names(json.loads((folder / f"{one}.json").read_text(encoding="utf-8"))) for one in ("en", "de")
+        names(json.loads((folder / f"{one}.json").read_text(encoding="utf-8")))
+        for one in ("en", "de")
     )
     assert english == {name for name in german if not name.startswith("/patterns")}
 
 
 @pytest.mark.parametrize("tab", ["story", "launch", "own", "compare", "map", "keep"])
 def test_axe_finds_nothing_above_minor(lab: Lab, tab: str) -> None:
-    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe comes with the test extra")
+    axe = pytest.importorskip(
+        "axe_playwright_python.sync_playwright", reason="axe comes with the test extra"
+    )
     visitor = lab(f"tab={tab}", color_scheme="dark" if tab in ("own", "map") else "light")
     found = axe.Axe().run(visitor.page).response["violations"]
     assert [(one["id"], one["nodes"][0]["html"]) for one in found if one["impact"] != "minor"] == []
@@ -101,7 +114,9 @@ def test_where_motion_is_not_wanted_nothing_moves_by_itself(lab: Lab) -> None:
 
 
 def test_the_page_leads_to_figures_that_there_are() -> None:
-    code = (Path(__file__).parents[2] / "web" / "src" / "lab" / "presets.js").read_text(encoding="utf-8")
+    code = (Path(__file__).parents[2] / "web" / "src" / "lab" / "presets.js").read_text(
+        encoding="utf-8"
+    )
     led_to = re.findall(r'"(fig\w+)"', code)
     assert len(led_to) == 4
     assert set(led_to) <= set(PLATES)

@@ -58,7 +58,9 @@ def test_the_page_is_written_but_never_over_a_file(page: Path, tmp_path: Path) -
     assert runner.invoke(app, ["lab", "--out", str(path), "--force"]).exit_code == 0
 
 
-def test_where_it_is_not_built_one_is_told_how(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_where_it_is_not_built_one_is_told_how(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setattr(bundle, "BUILT", tmp_path)
     bundle.built.cache_clear()
     with pytest.raises(tt.TippetopError, match="make page"):

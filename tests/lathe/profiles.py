@@ -48,4 +48,6 @@ def brute_support(profile, tilts, steps=1000):
     """Height of the origin over the table, from many points of the profile: never too much."""
     shares = np.linspace(0.0, 1.0, steps + 1)
     points = np.concatenate([edge.points(shares) for edge in profile.edges])
-    return np.max(np.outer(points.real, np.sin(tilts)) - np.outer(points.imag, np.cos(tilts)), axis=0)
+    return np.max(
+        np.outer(points.real, np.sin(tilts)) - np.outer(points.imag, np.cos(tilts)), axis=0
+    )

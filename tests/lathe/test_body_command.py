@@ -43,8 +43,12 @@ def test_programs_are_told_what_the_theory_and_the_profile_say(files):
     assert [told["mass"], told["I1"], told["I3"]] == [body.mass, body.I1, body.I3]
     assert told["eccentricity"] == pytest.approx(body.shape.eccentricity, rel=1e-12)
     launch = tt.Launch(tilt=told["omega_c_tilt"], spin=1.0)
-    spins = tt.critical_spins(tt.Problem(body=body, friction=tt.ViscousFriction(mu=0.1), launch=launch))
-    assert told["omega_c1"] == (None if spins.upright == float("inf") else pytest.approx(spins.upright))
+    spins = tt.critical_spins(
+        tt.Problem(body=body, friction=tt.ViscousFriction(mu=0.1), launch=launch)
+    )
+    assert told["omega_c1"] == (
+        None if spins.upright == float("inf") else pytest.approx(spins.upright)
+    )
     assert told["omega_c2"] == pytest.approx(spins.inverted)
     assert told["trouble"] is None
     assert told["stem"] is None
@@ -68,7 +72,9 @@ def test_people_are_told_too(files):
     assert "Cannot be simulated: profile = 'a sphere cut off" in cut_off
     assert "lies flat" in cut_off
     assert "up to a tilt of 1.5708" in cut_off
-    assert "Cannot be simulated" not in said("bowl.csv", "--density", "700", "--unit", "mm", "--whole")
+    assert "Cannot be simulated" not in said(
+        "bowl.csv", "--density", "700", "--unit", "mm", "--whole"
+    )
 
 
 def test_the_problem_is_one_that_is_simulated(files):
@@ -79,7 +85,9 @@ def test_the_problem_is_one_that_is_simulated(files):
 
 
 def test_files_are_written_once(files):
-    pytest.importorskip("trimesh", reason="solids are written with trimesh; it comes with the lathe extra")
+    pytest.importorskip(
+        "trimesh", reason="solids are written with trimesh; it comes with the lathe extra"
+    )
     names = ["--plot", "a.png", "--stl", "a.stl", "--3mf", "a.3mf"]
     assert said("top.toml", *names).count("wrote ") == 3
     sizes = {path.name: path.stat().st_size for path in files.glob("a.*")}
@@ -120,7 +128,9 @@ def test_misuse_ends_with_exit_code_2(files):
 
 
 def test_a_section_shows_every_surface(files):
-    piece = tt.Workpiece(unit="mm", density=1.0, profile=[(0, 0), (18, 0), (20, 2, 2), (20, 10), (0, 10)])
+    piece = tt.Workpiece(
+        unit="mm", density=1.0, profile=[(0, 0), (18, 0), (20, 2, 2), (20, 10), (0, 10)]
+    )
     (legend,) = section(piece).legends
     assert [text.get_text().split(",")[0] for text in legend.get_texts()] == ["ring", "edge"]
     axes = section(piece).axes[0]

@@ -64,7 +64,9 @@ def test_the_range_that_a_refusal_names_is_the_one_there_is():
         assert refusal.field == "inertia_ratio"
         low, high = map(float, re.findall(r"0\.\d+", refusal.accepted))
         for inside in (low + 1e-4, (low + high) / 2, high - 1e-4):
-            assert proportions(tt.design_insert(BALL, 0.1, inside))[1] == pytest.approx(inside, rel=1e-9)
+            assert proportions(tt.design_insert(BALL, 0.1, inside))[1] == pytest.approx(
+                inside, rel=1e-9
+            )
         for outside in (low - 0.01, high + 0.01):
             assert refused(tt.design_insert, BALL, 0.1, outside).field == "inertia_ratio"
     refusal = refused(tt.design_insert, BALL, 0.3, 0.95)
@@ -73,7 +75,9 @@ def test_the_range_that_a_refusal_names_is_the_one_there_is():
 
 
 def test_a_ball_with_a_cavity_follows_the_formula_of_its_range():
-    """A cavity of radius c at the wall w of a ball of radius 1 shifts it by c^3 (1 - w - c) / (1 - c^3)."""
+    """A cavity of radius c at the wall w of a ball of radius 1 shifts it by c^3 (1 - w - c) / (1 -
+    c^3).
+    """
     best = max(c**3 * (0.95 - c) / (1 - c**3) for c in [k / 1000 for k in range(1, 950)])
     assert round(best, 3) == 0.160
     assert refused(tt.design_insert, BALL, best + 1e-3, 0.95).field == "eccentricity"

@@ -24,7 +24,9 @@ MASS = 700.0 * 4 / 3 * math.pi * 0.02**3
 )
 def test_a_ball_is_read(tmp_path, name, text):
     if name.endswith("svg"):
-        pytest.importorskip("svg.path", reason="SVG is read with svg.path; it comes with the lathe extra")
+        pytest.importorskip(
+            "svg.path", reason="SVG is read with svg.path; it comes with the lathe extra"
+        )
     (tmp_path / name).write_text(text)
     fields = {} if name.endswith("toml") else {"density": 700.0, "unit": "mm"}
     piece = read_workpiece(tmp_path / name, **fields)
@@ -34,21 +36,27 @@ def test_a_ball_is_read(tmp_path, name, text):
 
 
 def test_up_is_up_and_large_arcs_are_large(tmp_path):
-    pytest.importorskip("svg.path", reason="SVG is read with svg.path; it comes with the lathe extra")
+    pytest.importorskip(
+        "svg.path", reason="SVG is read with svg.path; it comes with the lathe extra"
+    )
     (tmp_path / "ring.svg").write_text(SVG.format("M 20 0 A 5 5 0 1 1 25 -5 L 20 -5 Z"))
     ring = read_workpiece(tmp_path / "ring.svg", density=1.0).mass_properties
-    # Three quarters of a disk: by Pappus, with the moment of the quarter below and outside that is missing.
+    # Three quarters of a disk: by Pappus, with the moment of the quarter below and outside that is
+    # missing.
     assert ring.mass == pytest.approx(2 * math.pi * (20 * 75 / 4 * math.pi - 5**3 / 3), rel=1e-12)
     assert ring.center > 5.0
     (tmp_path / "cone.svg").write_text(SVG.format("M 0 0 L 10 -10 H 0"))
-    assert read_workpiece(tmp_path / "cone.svg", density=1.0).mass_properties.center == pytest.approx(7.5)
+    assert read_workpiece(
+        tmp_path / "cone.svg", density=1.0
+    ).mass_properties.center == pytest.approx(7.5)
 
 
 def test_profiles_may_be_in_files_beside(tmp_path):
     (tmp_path / "ball.csv").write_text("0,-20\n0,20,20\n")
     (tmp_path / "hole.csv").write_text("0,-10\n0,10,10\n")
     (tmp_path / "mine.toml").write_text(
-        'density = 700\nunit = "mm"\nprofile = "ball.csv"\n[[inserts]]\nprofile = "hole.csv"\ndensity = 0\n'
+        'density = 700\nunit = "mm"\nprofile = "ball.csv"\n[[inserts]]\nprofile ='
+        ' "hole.csv"\ndensity = 0\n'
     )
     found = read_workpiece(tmp_path / "mine.toml", density=1400.0)
     assert found.mass_properties.mass == pytest.approx(2 * 7 / 8 * MASS, rel=1e-12)
@@ -96,7 +104,9 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
 )
 def test_what_cannot_be_read_is_refused(tmp_path, name, text, sentence):
     if name.endswith("svg"):
-        pytest.importorskip("svg.path", reason="SVG is read with svg.path; it comes with the lathe extra")
+        pytest.importorskip(
+            "svg.path", reason="SVG is read with svg.path; it comes with the lathe extra"
+        )
     (tmp_path / name).write_text(text)
     fields = {} if name.endswith("toml") else {"density": 700.0}
     with pytest.raises(tt.TippetopError) as refusal:

@@ -24,7 +24,8 @@ def test_the_hull_is_that_of_all_points_of_the_profile(profile):
     tilts = np.linspace(0.0, math.pi, 181)
     support = np.array([found.support(tilt) for tilt in tilts])
     missed = max(
-        (edge.radius * (edge.turn / 1000) ** 2 / 8 for edge in profile.edges if edge.turn), default=0
+        (edge.radius * (edge.turn / 1000) ** 2 / 8 for edge in profile.edges if edge.turn),
+        default=0,
     )
     within = 1e-12 * profile.size
     assert (support - brute_support(profile, tilts) >= -within).all()
@@ -39,7 +40,9 @@ def test_its_surfaces_follow_each_other_from_tilt_to_tilt(profile):
     assert (found.zones[0].low, found.zones[-1].high) == (0.0, math.pi)
     for low, high in zip(found.zones, found.zones[1:], strict=False):
         assert low.high == high.low
-        assert low.support(high.low) == pytest.approx(high.support(high.low), abs=1e-9 * profile.size)
+        assert low.support(high.low) == pytest.approx(
+            high.support(high.low), abs=1e-9 * profile.size
+        )
         assert low[:3] != high[:3]
 
 
@@ -53,7 +56,9 @@ def test_how_far_a_whole_surface_would_reach_out(profile):
         beyond = [zone.support(at) - found.support(at) for at in tilts]
         assert max(beyond) <= excess + 1e-9 * profile.size
         if excess > 0.0:
-            assert zone.support(tilt) - found.support(tilt) == pytest.approx(excess, abs=1e-9 * profile.size)
+            assert zone.support(tilt) - found.support(tilt) == pytest.approx(
+                excess, abs=1e-9 * profile.size
+            )
 
 
 def named(found):
@@ -81,7 +86,12 @@ def test_bodies_that_are_known():
 def test_points_along_straight_edges_are_no_surfaces():
     sides = [(R * k / 7, R * k / 21) for k in range(1, 8)]
     cone = hull((0, 0), *sides, *((R, R / 3 + 0.001 * k) for k in range(1, 5)), (0, R))
-    assert [zone[:2] for zone in cone.zones] == [(0.0, 0.0), (R, R / 3), (R, R / 3 + 0.004), (0.0, R)]
+    assert [zone[:2] for zone in cone.zones] == [
+        (0.0, 0.0),
+        (R, R / 3),
+        (R, R / 3 + 0.004),
+        (0.0, R),
+    ]
 
 
 def test_a_stem_takes_over_where_its_tip_and_the_sphere_touch_one_line():
@@ -89,7 +99,11 @@ def test_a_stem_takes_over_where_its_tip_and_the_sphere_touch_one_line():
     big, tip, apart = 0.015, 0.005, 0.013
     face = big * 0.8
     top = hull(
-        (0, -big), (math.sqrt(big**2 - face**2), face, big), (tip, face), (tip, apart), (0, apart + tip, tip)
+        (0, -big),
+        (math.sqrt(big**2 - face**2), face, big),
+        (tip, face),
+        (tip, apart),
+        (0, apart + tip, tip),
     )
     assert named(top) == ["sphere", "sphere"]
     assert top.zones[0].high == pytest.approx(math.acos(-(big - tip) / apart), abs=1e-9)

@@ -1,4 +1,6 @@
-"""What turned bodies weigh, against the formulas of the textbooks and against themselves cut in two."""
+"""What turned bodies weigh, against the formulas of the textbooks and against themselves cut in
+two.
+"""
 
 import math
 
@@ -69,7 +71,9 @@ def test_spherical_cap(cut):
 def test_cone():
     R, H = 0.02, 0.05
     mass = RHO * math.pi * R**2 * H / 3
-    expected = exactly(mass, 3 / 4 * H, 3 / 20 * mass * R**2 + 3 / 80 * mass * H**2, 3 / 10 * mass * R**2, H)
+    expected = exactly(
+        mass, 3 / 4 * H, 3 / 20 * mass * R**2 + 3 / 80 * mass * H**2, 3 / 10 * mass * R**2, H
+    )
     assert properties([(0, 0), (R, H), (0, H)]) == expected
 
 
@@ -92,7 +96,9 @@ def test_shell():
     R, r = 0.02, 0.013
     mass = RHO * 4 / 3 * math.pi * (R**3 - r**3)
     about = 2 / 5 * RHO * 4 / 3 * math.pi * (R**5 - r**5)
-    hollow = Workpiece(profile=BALL, density=RHO, inserts=[Insert(profile=[(0, -r), (0, r, r)], density=0)])
+    hollow = Workpiece(
+        profile=BALL, density=RHO, inserts=[Insert(profile=[(0, -r), (0, r, r)], density=0)]
+    )
     assert hollow.mass_properties == exactly(mass, 0.0, about, about, R)
 
 
@@ -126,7 +132,9 @@ def test_the_parts_of_a_body_cut_by_a_plane_add_up(points, density):
     assert whole == (
         pytest.approx(mass, rel=1e-12),
         pytest.approx(center, abs=1e-13),
-        pytest.approx(sum(part.I1 + part.mass * (part.center - center) ** 2 for part in parts), rel=1e-12),
+        pytest.approx(
+            sum(part.I1 + part.mass * (part.center - center) ** 2 for part in parts), rel=1e-12
+        ),
         pytest.approx(sum(part.I3 for part in parts), rel=1e-12),
     )
 
@@ -150,13 +158,19 @@ def test_a_body_moved_up_and_enlarged_keeps_its_proportions(profile, lift, facto
 
 
 def test_arcs_however_straight_lose_no_digits():
-    """A cylinder whose side bulges a little holds a little more: by the segment, and by its square."""
+    """A cylinder whose side bulges a little holds a little more: by the segment, and by its
+    square.
+    """
     R, H = 0.02, 0.05
     straight = properties([(0, 0), (R, 0), (R, H), (0, H)], 1.0).mass
     for radius in (10.0, 1e3, 1e5):
         bulging = properties([(0, 0), (R, 0), (R, H, radius), (0, H)], 1.0).mass
         segment = H**3 / (12 * radius)
-        assert bulging - straight == pytest.approx(2 * math.pi * R * segment, rel=1e-2, abs=1e-15 * straight)
+        assert bulging - straight == pytest.approx(
+            2 * math.pi * R * segment, rel=1e-2, abs=1e-15 * straight
+        )
         shortened = properties([(0, 0), (R, 0), (R, H, -radius), (0, H)], 1.0).mass
         square = 2 * math.pi * 8 / 15 * (H**2 / (8 * radius)) ** 2 * H
-        assert bulging + shortened - 2 * straight == pytest.approx(square, rel=1e-2, abs=3e-15 * straight)
+        assert bulging + shortened - 2 * straight == pytest.approx(
+            square, rel=1e-2, abs=3e-15 * straight
+        )

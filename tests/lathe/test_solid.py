@@ -27,7 +27,9 @@ CONE = tt.Workpiece(density=1.0, profile=[(0, 0), (0.01, 0.02), (0, 0.02)])
 
 def weighed(loaded, densities):
     """Mass, height of the centre of mass, I1 and I3 of meshes in millimetres."""
-    masses = np.array([rho * mesh.volume * 1e-9 for mesh, rho in zip(loaded, densities, strict=True)])
+    masses = np.array(
+        [rho * mesh.volume * 1e-9 for mesh, rho in zip(loaded, densities, strict=True)]
+    )
     heights = np.array([mesh.center_mass[2] * 1e-3 for mesh in loaded])
     center = (masses @ heights) / masses.sum()
     found = np.zeros(2)
@@ -68,7 +70,9 @@ def test_stl_is_the_body_alone(tmp_path):
 
 
 def test_what_cannot_be_printed_is_refused_and_nothing_is_left(tmp_path):
-    flush = TOP.model_copy(update={"inserts": [{"profile": [(0, -15), (15, 0, 15), (0, 0)], "density": 1e3}]})
+    flush = TOP.model_copy(
+        update={"inserts": [{"profile": [(0, -15), (15, 0, 15), (0, 0)], "density": 1e3}]}
+    )
     with pytest.raises(tt.InvalidInput, match="an insert that touches a surface"):
         tt.write_solid(flush, tmp_path / "a.stl")
     with pytest.raises(tt.InvalidInput, match=r"ends in \.stl or \.3mf"):

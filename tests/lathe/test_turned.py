@@ -16,7 +16,9 @@ R = 0.02
 def test_a_ball_with_a_cavity_is_an_eccentric_sphere():
     cavity, up = 0.008, 0.006
     body = tt.Body.turned(
-        BALL, 700.0, inserts=[{"profile": [(0, up - cavity), (0, up + cavity, cavity)], "density": 0}]
+        BALL,
+        700.0,
+        inserts=[{"profile": [(0, up - cavity), (0, up + cavity, cavity)], "density": 0}],
     )
     share = (cavity / R) ** 3
     below = up * share / (1 - share)
@@ -100,7 +102,9 @@ def test_a_top_with_a_stem_stands_on_two_spheres():
 @settings(max_examples=60)
 @given(points=lines(), low=numbers(0.005, 0.04), high=numbers(0.005, 0.04), straight=st.booleans())
 def test_the_body_is_as_high_over_the_table_as_its_hull(points, low, high, straight):
-    """What the mechanics makes of the surfaces, against the hull of the profile, between flat ends."""
+    """What the mechanics makes of the surfaces, against the hull of the profile, between flat
+    ends.
+    """
     side = [point[:2] if straight else point for point in points[1:-1]]
     try:
         piece = tt.Workpiece(
@@ -121,7 +125,9 @@ def test_a_turned_top_comes_to_lie_on_sphere_and_stem_where_the_hull_says():
     top = [(0, -15), (15, 0, 15), (9, 12, 15), (2.5, 12), (2.5, 16), (0, 18.5, 2.5)]
     piece = tt.Workpiece(profile=top, density=700.0, unit="mm", inserts=[weight])
     launch = tt.Launch(tilt=0.1, spin=120.0)
-    problem = tt.Problem(body=tt.Body.turned(piece), friction=tt.ViscousFriction(mu=0.3), launch=launch)
+    problem = tt.Problem(
+        body=tt.Body.turned(piece), friction=tt.ViscousFriction(mu=0.3), launch=launch
+    )
     run = tt.simulate(problem, 9.0)
     (both,) = (tilt for tilt in piece.hull.flats)
     assert run["theta"].values[-1] == pytest.approx(both, abs=1e-9)

@@ -33,7 +33,10 @@ def insert(*points, density=0.0):
         ([(1, 0), (2, 0, 1), (1, 0, -1)], "accepted: a line around some volume"),
         ([(0, 0), (2, 0), (0, 1), (2, 2), (0, 2)], "a line through the axis at a height of 1"),
         ([(0, 0), (1, 0), (1, 2), (0, 2, -1), (0, 3)], "a line through the axis at a height of 2"),
-        ([(0.5, 0), (0.5, 4, -2.01), (3, 2), (0.5, 0)], "accepted: an arc that stays beside the axis"),
+        (
+            [(0.5, 0), (0.5, 4, -2.01), (3, 2), (0.5, 0)],
+            "accepted: an arc that stays beside the axis",
+        ),
         ([(0, 0), (2, 0, 0.5), (0, 2)], "profile.1.2 = 0.5"),
         ([(0, 0), (2, 0), (2, 0), (0, 1)], "accepted: a point away from the one before"),
         ([(0, 0, 3), (2, 0), (0, 1)], "at the first point no arc ends"),
@@ -57,10 +60,16 @@ def test_what_is_no_body_is_refused(profile, sentence):
 @pytest.mark.parametrize(
     ("inserts", "sentence"),
     [
-        ([insert((0, 12), (3, 12), (3, 25), (0, 25))], "inserts.0.profile = 'a line that leaves the body'"),
+        (
+            [insert((0, 12), (3, 12), (3, 25), (0, 25))],
+            "inserts.0.profile = 'a line that leaves the body'",
+        ),
         ([insert((0, -R), (R, 0, R), (0, 0))], "inserts.0.profile = 'an open cavity'"),
         ([insert(*IN_MM)], "inserts.0.profile = 'an open cavity'"),
-        ([insert((0, 2), (3, 2), (3, 5), (0, 5)), insert((0, 3), (3, 3), (0, 7))], "inserts.1.profile"),
+        (
+            [insert((0, 2), (3, 2), (3, 5), (0, 5)), insert((0, 3), (3, 3), (0, 7))],
+            "inserts.1.profile",
+        ),
         ([insert((0, 2), (3, 2), (3, 5), (0, 5))] * 2, "inserts.1.profile"),
         ([insert((0, 2), (3, 2), (3, 5), (4, 5))], "inserts.0.profile = 'an open line"),
         ([insert((0, 2), (3, 2), (0, 3), density=-1.0)], "inserts.0.density = -1"),

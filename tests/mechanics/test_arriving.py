@@ -1,4 +1,6 @@
-"""Slip that ends on a small patch, where friction has long turned it into the direction in which it ends."""
+"""Slip that ends on a small patch, where friction has long turned it into the direction in which it
+ends.
+"""
 
 import math
 
@@ -48,16 +50,22 @@ def slipping(law, speed=1e-3):
 
 def spin_for(top, axis, momentum, rate):
     """The vertical angular momentum with which a top drills at this rate."""
-    excess = (top.transverse_inertia - top.axial_inertia) / (top.transverse_inertia * top.axial_inertia)
+    excess = (top.transverse_inertia - top.axial_inertia) / (
+        top.transverse_inertia * top.axial_inertia
+    )
     along = excess * axis[2]
     return (rate - along * dot(axis, momentum)) / (1.0 / top.transverse_inertia + along * axis[2])
 
 
 @pytest.mark.parametrize("law", [EllipsoidalLaw(0.4, 0.1), HertzDrillingLaw(0.4, 0.1)])
-@pytest.mark.parametrize("integrator", [make_integrator(), SciPy("dop853", 1e-12)], ids=["best", "dop853"])
+@pytest.mark.parametrize(
+    "integrator", [make_integrator(), SciPy("dop853", 1e-12)], ids=["best", "dop853"]
+)
 def test_its_end_by_power_series_is_where_an_implicit_method_comes_to(law, integrator):
     top, start = slipping(law)
-    assert arriving(closing_of(start, SLIP), SLIP, top, integrator) is None, "its direction is not at rest"
+    assert arriving(closing_of(start, SLIP), SLIP, top, integrator) is None, (
+        "its direction is not at rest"
+    )
     settled = in_its_clock(top, start, 1.0)
     found = arriving(closing_of(settled, SLIP), SLIP, top, integrator)
     assert found is not None
@@ -76,7 +84,9 @@ def test_its_end_by_power_series_is_where_an_implicit_method_comes_to(law, integ
 def test_series_whose_last_terms_are_not_small_do_not_serve(row, term):
     """Of which a solution has the coefficients up to one more than its direction."""
     left = 0.1
-    rows = [[0.5, 0.3, *[0.0] * DEGREE] for _ in range(6)] + [[0.0, -1.0, *[0.0] * DEGREE] for _ in range(3)]
+    rows = [[0.5, 0.3, *[0.0] * DEGREE] for _ in range(6)] + [
+        [0.0, -1.0, *[0.0] * DEGREE] for _ in range(3)
+    ]
     assert Arrival(left, rows).serves
     rows[row][term] = 1e-10 * left**-term
     assert not Arrival(left, rows).serves
@@ -100,7 +110,9 @@ def test_a_top_on_a_small_patch_sticks_when_it_does():
 
 
 @pytest.mark.parametrize("resists", [False, True], ids=["", "rolling"])
-@pytest.mark.parametrize("integrator", [make_integrator(), SciPy("dop853", 1e-12)], ids=["best", "dop853"])
+@pytest.mark.parametrize(
+    "integrator", [make_integrator(), SciPy("dop853", 1e-12)], ids=["best", "dop853"]
+)
 def test_friction_that_turns_slip_much_faster_than_it_ends_takes_few_steps(integrator, resists):
     """Its direction is at rest soon: explicit steps as short as it is turned then go no farther."""
     top, start = slipping(EllipsoidalLaw(0.4, 0.02), 5e-6)

@@ -1,8 +1,10 @@
-"""The equations of motion of the tippe top, derived once more by computer algebra, against the package's.
+"""The equations of motion of the tippe top, derived once more by computer algebra, against the
+package's.
 
-The derivation shares nothing with the package: Euler angles and sympy's vectors, the momentum balance and the
-angular momentum balance written down in space, and the height of the centre of mass kept on the sphere for
-good by differentiating it twice. The six balances are linear in the five accelerations and the normal force.
+The derivation shares nothing with the package: Euler angles and sympy's vectors, the momentum
+balance and the angular momentum balance written down in space, and the height of the centre of mass
+kept on the sphere for good by differentiating it twice. The six balances are linear in the five
+accelerations and the normal force.
 """
 
 import functools
@@ -23,7 +25,9 @@ from tippetop.mechanics.view import Angles, state_from_angles
 
 
 class Balances(NamedTuple):
-    """The balances as functions of (parameters, motion), and what follows from the accelerations."""
+    """The balances as functions of (parameters, motion), and what follows from the
+    accelerations.
+    """
 
     matrix: object
     right_hand_side: object
@@ -69,7 +73,9 @@ def derive(moment=moment_of_the_contact_force) -> Balances:
     height = R - alpha * R * sp.cos(theta)
     slip = slip_x * leaning.x + slip_y * leaning.y
     turning = omega.cross(arm)
-    horizontal_velocity = slip - turning.dot(leaning.x) * leaning.x - turning.dot(leaning.y) * leaning.y
+    horizontal_velocity = (
+        slip - turning.dot(leaning.x) * leaning.x - turning.dot(leaning.y) * leaning.y
+    )
     velocity = horizontal_velocity + height.diff(dynamicsymbols._t) * vertical
 
     contact_force = normal * vertical - mu * normal * slip
@@ -78,7 +84,9 @@ def derive(moment=moment_of_the_contact_force) -> Balances:
     euler = momentum.dt(space) - moment(arm, contact_force, weight)
     balances = [newton.dot(e) for e in (leaning.x, leaning.y, vertical)]
     balances += [euler.dot(e) for e in (principal.x, principal.y, axis)]
-    in_space = [v.dt(space).dot(e) for v in (axis, momentum, velocity) for e in (space.x, space.y, space.z)]
+    in_space = [
+        v.dt(space).dot(e) for v in (axis, momentum, velocity) for e in (space.x, space.y, space.z)
+    ]
 
     time = dynamicsymbols._t
     plain = dict(zip(coordinates, sp.symbols("theta_ phi_ omega3_ v_x_ v_y_"), strict=True))
@@ -92,7 +100,15 @@ def derive(moment=moment_of_the_contact_force) -> Balances:
         return expression.subs(names).subs(slower).subs(plain)
 
     system = sp.Matrix([rename(balance) for balance in balances])
-    motion = (plain[theta], rates[0], plain[phi], rates[1], plain[spin], plain[slip_x], plain[slip_y])
+    motion = (
+        plain[theta],
+        rates[0],
+        plain[phi],
+        rates[1],
+        plain[spin],
+        plain[slip_x],
+        plain[slip_y],
+    )
     known = (*parameters, *motion)
     return Balances(
         sp.lambdify(known, system.jacobian(unknowns), "numpy", cse=True),
@@ -170,7 +186,9 @@ def distance(actual, expected) -> float:
 
 
 def disagreement(actual, expected) -> float:
-    """Relative distance of rates of (theta, theta', phi, phi', omega3, v_x, v_y): the worst kind."""
+    """Relative distance of rates of (theta, theta', phi, phi', omega3, v_x, v_y): the worst
+    kind.
+    """
     kinds = ([0, 2], [1, 3, 4], [5, 6])
     return max(distance([actual[i] for i in kind], [expected[i] for i in kind]) for kind in kinds)
 
@@ -188,7 +206,10 @@ def test_rates_of_axis_momentum_and_velocity_follow_from_newton_and_euler(azimut
         rates = sliding_rates(state_from_angles(as_angles(turned), top, math), top)
         assert distance(rates.axis, expected[:3]) < 1e-11
         assert distance(rates.momentum, expected[3:6]) < 1e-11
-        assert np.abs(np.subtract(rates.velocity, expected[6:8])).max() < 1e-11 * np.abs(expected[6:]).max()
+        assert (
+            np.abs(np.subtract(rates.velocity, expected[6:8])).max()
+            < 1e-11 * np.abs(expected[6:]).max()
+        )
 
 
 def test_normal_force_keeps_the_sphere_on_the_table():
@@ -225,8 +246,12 @@ def test_moment_as_printed_in_equation_2_7_contradicts_the_equations_derived_fro
 @pytest.mark.parametrize(
     "reading",
     [
-        pytest.param(lambda I1, numerator, sine: I1 * numerator / (I1 * sine), id="I1 times the numerator"),
-        pytest.param(lambda I1, numerator, sine: (I1 / numerator) / (I1 * sine), id="I1 over the numerator"),
+        pytest.param(
+            lambda I1, numerator, sine: I1 * numerator / (I1 * sine), id="I1 times the numerator"
+        ),
+        pytest.param(
+            lambda I1, numerator, sine: (I1 / numerator) / (I1 * sine), id="I1 over the numerator"
+        ),
     ],
 )
 def test_precession_acceleration_as_printed_in_equation_2_9_is_not_the_derived_one(reading):

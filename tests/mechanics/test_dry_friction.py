@@ -69,7 +69,9 @@ def test_hertz_friction_is_that_of_its_pressure(kappa):
 
 @pytest.mark.parametrize("kappa", [1.5, 30.0, 1e3, 1e6])
 def test_hertz_friction_keeps_its_digits_in_fast_slip(kappa):
-    """F = 1 - 1/(10 kappa^2) - 3/(280 kappa^4), T = 1/(5 kappa) + 1/(70 kappa^3): the pressure's moments."""
+    """F = 1 - 1/(10 kappa^2) - 3/(280 kappa^4), T = 1/(5 kappa) + 1/(70 kappa^3): the pressure's
+    moments.
+    """
     force, torque = hertz(kappa)
     x = kappa**-2
     assert force == pytest.approx(1.0 - x / 10.0 - 3.0 * x**2 / 280.0, abs=1e-15 + 0.01 * x**3)
@@ -83,7 +85,10 @@ def test_friction_of_a_patch_depends_on_no_speed_alone(law, kappa, speed):
     """Slip and drilling are resisted as hard if both are as many times as fast."""
     force, torque = law(0.3, 1.0).traction((0.6 * kappa, -0.8 * kappa), (0.0, 0.0, -1.0))
     slip, turning = (0.6 * kappa * speed, -0.8 * kappa * speed), (0.0, 0.0, -speed)
-    assert law(0.3, 1.0).traction(slip, turning) == (pytest.approx(force, rel=4e-15), pytest.approx(torque))
+    assert law(0.3, 1.0).traction(slip, turning) == (
+        pytest.approx(force, rel=4e-15),
+        pytest.approx(torque),
+    )
 
 
 def test_hertz_friction_in_slow_slip_is_viscous_with_3_pi_mu_over_8_w_r():
@@ -99,7 +104,10 @@ def test_the_two_branches_join_with_two_derivatives():
     gaps = []
     for excess in (1e-2, 1e-3):
         args = ((1.0 + excess, 0.0), (0.0, 0.0, 1.0))
-        here, there = HertzSlidingLaw(1.0, 1.0).traction(*args), HertzDrillingLaw(1.0, 1.0).traction(*args)
+        here, there = (
+            HertzSlidingLaw(1.0, 1.0).traction(*args),
+            HertzDrillingLaw(1.0, 1.0).traction(*args),
+        )
         gaps.append((here.force[0] - there.force[0], here.torque[2] - there.torque[2]))
     (f1, t1), (f2, t2) = gaps
     assert f1 / f2 == pytest.approx(10**2.5, rel=0.03)
@@ -129,7 +137,9 @@ def at_list(law, z):
 
 @given(st.sampled_from([EllipsoidalLaw, HertzLaw]), MOTIONS, numbers(0.1, 2.0))
 def test_contensou_friction_derives_from_a_convex_potential(law, motion, radius):
-    """The derivative of the force is symmetric and not positive, and has no part along the motion."""
+    """The derivative of the force is symmetric and not positive, and has no part along the
+    motion.
+    """
     x, y, w = motion
     if math.hypot(x, y, w) < 0.01 or abs(math.hypot(x, y) - radius * abs(w)) < 1e-3:
         return
@@ -141,7 +151,9 @@ def test_contensou_friction_derives_from_a_convex_potential(law, motion, radius)
 
 
 @given(st.sampled_from([EllipsoidalLaw, HertzLaw]), MOTIONS, MOTIONS, numbers(0.1, 2.0))
-def test_contensou_friction_takes_the_most_power_its_limit_surface_allows(law, motion, other, radius):
+def test_contensou_friction_takes_the_most_power_its_limit_surface_allows(
+    law, motion, other, radius
+):
     law = law(0.4, radius)
     if min(math.hypot(*motion), math.hypot(*other)) < 0.01:
         return
@@ -203,7 +215,9 @@ def test_laws_are_the_same_in_any_units(law):
         tuple(v / units.speed for v in slip), tuple(w * units.time for w in turning)
     )
     assert scaled.force == pytest.approx(force, rel=1e-13)
-    assert tuple(t * units.length for t in scaled.torque) == pytest.approx(torque, rel=1e-13, abs=1e-20)
+    assert tuple(t * units.length for t in scaled.torque) == pytest.approx(
+        torque, rel=1e-13, abs=1e-20
+    )
 
 
 class Floats:
@@ -231,7 +245,8 @@ def test_laws_run_on_arrays_and_power_series(law):
     assert slope == pytest.approx(rates(later), rel=1e-11, abs=1e-13)
 
 
-# Hertz's patch ------------------------------------------------------------------------------------------
+# Hertz's patch
+# ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", sorted(MATERIALS))
@@ -248,5 +263,7 @@ def test_the_patch_carries_its_load_and_has_the_shape_of_the_sphere(name):
 
 def test_two_like_bodies_are_twice_as_compliant_as_one_on_a_rigid_table():
     material = Material(modulus=3e9, poisson=0.35)
-    ratio = hertz_patch_radius(0.1, 0.02, material, material) / hertz_patch_radius(0.1, 0.02, material)
+    ratio = hertz_patch_radius(0.1, 0.02, material, material) / hertz_patch_radius(
+        0.1, 0.02, material
+    )
     assert ratio == pytest.approx(2.0 ** (1.0 / 3.0), rel=1e-13)

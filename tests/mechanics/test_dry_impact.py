@@ -39,9 +39,9 @@ def test_slip_that_ends_in_compression_stays_ended(restitution):
     stuck = M[2, 2] - M[0, 2] ** 2 / M[0, 0]
     full = min(restitution * compression, math.sqrt(2.0 * returned / stuck))
     assert result.impulse == pytest.approx(compression + full, rel=1e-9)
-    assert slip_of(result.state.axis, result.state.momentum, result.state.velocity[:2], top) == pytest.approx(
-        (0.0, 0.0), abs=1e-15
-    )
+    assert slip_of(
+        result.state.axis, result.state.momentum, result.state.velocity[:2], top
+    ) == pytest.approx((0.0, 0.0), abs=1e-15)
 
 
 def test_slip_that_cannot_end_turns_back():
@@ -81,7 +81,9 @@ def test_viscous_impacts_with_rolling_resistance_are_those_of_slow_slip():
     found = []
     for law in (ViscousLaw(mu), RegularizedCoulombLaw(mu * far, far)):
         top = Top(1.0, 0.4, 0.3, SphereSurface(1.0, 0.2), law, 1.0, RollingResistance(0.05))
-        state = on_table(SlidingState((math.sin(1.0), 0.0, math.cos(1.0)), (0.3, 0.2, 0.1), (1.0, 0.3)), top)
+        state = on_table(
+            SlidingState((math.sin(1.0), 0.0, math.cos(1.0)), (0.3, 0.2, 0.1), (1.0, 0.3)), top
+        )
         found.append(impact(state._replace(velocity=(1.0, 0.3, state.velocity[2] - 2.0)), 0.3, top))
     viscous, slow = found
     assert viscous.state.momentum == pytest.approx(slow.state.momentum, abs=1e-7)
@@ -100,11 +102,18 @@ def test_regularized_friction_comes_to_it_as_its_speed_goes_to_zero(velocity):
 
 
 def test_drilling_alone_takes_no_steps():
-    """A body that falls spinning upright: the patch takes mu rho p from L, exactly, until none is left."""
+    """A body that falls spinning upright: the patch takes mu rho p from L, exactly, until none is
+    left.
+    """
     mu, rho, restitution = 0.4, 0.05, 0.5
     for spin, falling in ((3.0, 1.0), (1e-2, 1.0)):
         top = Top(
-            1.0, 0.4, 0.5, SpheroidSurface(1.0, 1.4), EllipsoidalLaw(mu, rho / (3.0 * math.pi / 16.0)), 1.0
+            1.0,
+            0.4,
+            0.5,
+            SpheroidSurface(1.0, 1.4),
+            EllipsoidalLaw(mu, rho / (3.0 * math.pi / 16.0)),
+            1.0,
         )
         state = on_table(SlidingState((0.0, 0.0, 1.0), (0.0, 0.0, 0.5 * spin), (0.0, 0.0)), top)
         result = impact(state._replace(velocity=(0.0, 0.0, -falling)), restitution, top)
@@ -116,7 +125,9 @@ def test_drilling_alone_takes_no_steps():
 
 @pytest.mark.parametrize("law", [EllipsoidalLaw, HertzLaw])
 def test_a_direction_that_slip_keeps_is_followed_in_one_step(law, monkeypatch):
-    """On a small patch sliding follows drilling, which lasts: the same as by many steps, and without them."""
+    """On a small patch sliding follows drilling, which lasts: the same as by many steps, and
+    without them.
+    """
 
     def struck(patch):
         top = Top(1.0, 0.4, 0.5, SpheroidSurface(1.0, 1.4), law(0.3, patch), 1.0)
@@ -146,7 +157,9 @@ DRY = {
 @settings(max_examples=25, deadline=None)
 @given(st.sampled_from(sorted(DRY)), slides(), numbers(0.05, 0.9), numbers(-3.0, 0.5), RESTITUTIONS)
 def test_dry_impacts_obey_the_laws_of_mechanics(name, slide, mu, fall, restitution):
-    """No energy is gained, momentum is balanced, and the friction impulse stays inside of the cone."""
+    """No energy is gained, momentum is balanced, and the friction impulse stays inside of the
+    cone.
+    """
     top, sliding = slide
     resistance = RollingResistance(0.01 * top.surface.size) if name == "rolling" else None
     top = top._replace(friction=DRY[name](mu, top.surface.size), rolling_resistance=resistance)
@@ -175,7 +188,15 @@ def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_
         law = CoulombLaw(mu) if patch is None else EllipsoidalLaw(mu, patch)
         inertia = random.uniform(0.2, 0.6)
         shape = SpheroidSurface(1.0, random.uniform(0.4, 1.8))
-        top = Top(1.0, inertia, random.uniform(0.5, 1.6) * inertia, shape, law, 1.0, RollingResistance(arm))
+        top = Top(
+            1.0,
+            inertia,
+            random.uniform(0.5, 1.6) * inertia,
+            shape,
+            law,
+            1.0,
+            RollingResistance(arm),
+        )
         tilt = random.uniform(0.1, 3.0)
         axis = (math.sin(tilt), 0.0, math.cos(tilt))
         state = on_table(SlidingState(axis, (0.0, 0.0, 0.0), (0.0, 0.0)), top)

@@ -1,4 +1,6 @@
-"""The published equations: a reference model for the singularity-free form, and where they are wrong."""
+"""The published equations: a reference model for the singularity-free form, and where they are
+wrong.
+"""
 
 import math
 
@@ -32,17 +34,40 @@ TIPPE_TOP = Top(
 )
 
 CONVERGED_TILTS = {
-    50.0: (0.044079719929, 0.038000728951, 0.128112074376, 0.457767096583, 1.243168192814, 1.503557333885),
-    155.0: (0.090203172662, 0.069549411907, 0.203285686736, 1.804652321102, 3.134116250457, 3.141443639505),
+    50.0: (
+        0.044079719929,
+        0.038000728951,
+        0.128112074376,
+        0.457767096583,
+        1.243168192814,
+        1.503557333885,
+    ),
+    155.0: (
+        0.090203172662,
+        0.069549411907,
+        0.203285686736,
+        1.804652321102,
+        3.134116250457,
+        3.141443639505,
+    ),
 }
-"""Tilt (rad) at 1, 2, 4, 6, 8 and 20 s after a launch at 0.1 rad with this spin (rad/s), to 12 digits."""
+"""Tilt (rad) at 1, 2, 4, 6, 8 and 20 s after a launch at 0.1 rad with this spin (rad/s), to 12
+digits.
+"""
 
 TIMES = (1.0, 2.0, 4.0, 6.0, 8.0, 20.0)
 
 
 def as_numbers(motion):
     """(theta, theta', phi, phi', omega3, v_x, v_y) of a motion."""
-    return (motion.tilt, motion.tilt_rate, motion.azimuth, motion.precession, motion.spin, *motion.slip)
+    return (
+        motion.tilt,
+        motion.tilt_rate,
+        motion.azimuth,
+        motion.precession,
+        motion.spin,
+        *motion.slip,
+    )
 
 
 def launch(spin):
@@ -71,7 +96,9 @@ def published_run(spin):
 
 @pytest.fixture(scope="module")
 def sliding_run(spin):
-    """Works and states at launch and at TIMES by the equations in axis, angular momentum and velocity."""
+    """Works and states at launch and at TIMES by the equations in axis, angular momentum and
+    velocity.
+    """
     start = state_from_angles(launch(spin), TIPPE_TOP, math)
     momentum = TIPPE_TOP.axial_inertia * spin
     size = np.array([1.0] * 3 + [momentum] * 3 + [0.1] * 2 + [0.01])
@@ -106,7 +133,9 @@ def test_both_give_the_converged_tilts(spin, published_run, sliding_run):
     assert tilts(sliding_run[1:]) == pytest.approx(CONVERGED_TILTS[spin], abs=1e-9)
 
 
-def test_the_whole_motion_keeps_jelletts_integral_and_loses_the_energy_that_friction_takes(sliding_run):
+def test_the_whole_motion_keeps_jelletts_integral_and_loses_the_energy_that_friction_takes(
+    sliding_run,
+):
     (_, start), *later = ((work, on_table(state, TIPPE_TOP)) for work, state in sliding_run)
     for work, state in later:
         assert jellett(state, TIPPE_TOP) == pytest.approx(jellett(start, TIPPE_TOP), rel=1e-10)
@@ -125,12 +154,16 @@ def test_the_published_energy_is_the_energy_without_slip(case):
     top, motion = case
     motion = motion._replace(slip=(0.0, 0.0))
     whole = on_table(state_from_angles(motion, top, math), top)
-    assert published_energy(as_numbers(motion), top, math) == pytest.approx(energy(whole, top), rel=1e-12)
+    assert published_energy(as_numbers(motion), top, math) == pytest.approx(
+        energy(whole, top), rel=1e-12
+    )
 
 
 @given(LAUNCHES)
 def test_the_published_energy_leaves_out_the_energy_of_slipping(case):
-    """What (4.1) lacks is m (v^2 / 2 + R theta' (1 - alpha c) v_x - R s (omega3 + phi' (alpha - c)) v_y)."""
+    """What (4.1) lacks is m (v^2 / 2 + R theta' (1 - alpha c) v_x - R s (omega3 + phi' (alpha - c))
+    v_y).
+    """
     top, motion = case
     radius, center = top.surface
     alpha = center / radius
@@ -142,7 +175,9 @@ def test_the_published_energy_leaves_out_the_energy_of_slipping(case):
         - radius * s * (motion.spin + motion.precession * (alpha - c)) * slip_y
     )
     true = energy(on_table(state_from_angles(motion, top, math), top), top)
-    assert true - published_energy(as_numbers(motion), top, math) == pytest.approx(lacking, abs=1e-12 * true)
+    assert true - published_energy(as_numbers(motion), top, math) == pytest.approx(
+        lacking, abs=1e-12 * true
+    )
 
 
 @given(LAUNCHES)
@@ -164,7 +199,9 @@ def test_a_sphere_that_nods_without_spin_or_friction_presses_by_weight_and_swing
 
 @given(VISCOUS_SPHERES, numbers(-1.0, 1.0))
 def test_taking_the_tilt_modulo_pi_makes_the_equations_jump_at_the_inverted_pole(top, slip_x):
-    """theta'' is m g R mu v_x (1 + alpha) / I1 before theta = pi, and that with 1 - alpha after it."""
+    """theta'' is m g R mu v_x (1 + alpha) / I1 before theta = pi, and that with 1 - alpha after
+    it.
+    """
     radius, center = top.surface
     alpha = center / radius
     lever = top.mass * top.gravity * radius * top.friction.mu * slip_x / top.transverse_inertia

@@ -15,7 +15,13 @@ from strategies import numbers, slides, spheres, spheroids, tops
 from tippetop.mechanics.flight import fly, gap, gap_rate
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import along_table, angular_velocity, axis_rate, on_table, point_velocity
+from tippetop.mechanics.motion import (
+    along_table,
+    angular_velocity,
+    axis_rate,
+    on_table,
+    point_velocity,
+)
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
@@ -76,12 +82,15 @@ def tipping(shape, tilt_rate, tilt=0.8, precession=150.0, spin=300.0):
     """A body of this shape on the table, at a tilt that changes at this rate."""
     top = Top(0.02, 3.0e-6, 3.3e-6, shape, ViscousLaw(0.3), 9.8)
     return top, on_table(
-        state_from_angles(Angles(tilt, tilt_rate, 0.3, precession, spin, (0.1, 0.2)), top, math), top
+        state_from_angles(Angles(tilt, tilt_rate, 0.3, precession, spin, (0.1, 0.2)), top, math),
+        top,
     )
 
 
 class ExactGap:
-    """The gap during a flight in many digits, from the tip of the axis: c = A + B cos(w t) + C sin(w t)."""
+    """The gap during a flight in many digits, from the tip of the axis: c = A + B cos(w t) + C
+    sin(w t).
+    """
 
     def __init__(self, state, top, start):
         n, momentum = ([mp.mpf(x) for x in v] for v in (state.axis, state.momentum))
@@ -106,15 +115,21 @@ class ExactGap:
 
     def derivative(self, order):
         """A derivative of the gap at the start."""
-        return math.factorial(order) * ((self.parabola[order] if order < 3 else 0) - self.support[order])
+        return math.factorial(order) * (
+            (self.parabola[order] if order < 3 else 0) - self.support[order]
+        )
 
 
 def check_touchdown(state, top, start, horizon, precision=1e-7):
-    """The answer is a root of the exact gap, the first one, and there is none if the answer is none."""
+    """The answer is a root of the exact gap, the first one, and there is none if the answer is
+    none.
+    """
     time = touchdown(state, top, horizon, start)
     with mp.workdps(DIGITS):
         exact = ExactGap(state, top, start)
-        leading = next(exact.derivative(order) for order in range(start, 5) if exact.derivative(order))
+        leading = next(
+            exact.derivative(order) for order in range(start, 5) if exact.derivative(order)
+        )
         if time == 0.0:
             assert leading <= 0 or (start == Start.AIRBORNE and leading <= 1e-15 * top.surface.size)
             return time
@@ -131,7 +146,8 @@ def check_touchdown(state, top, start, horizon, precision=1e-7):
     return time
 
 
-# Flight -----------------------------------------------------------------------------------------------
+# Flight
+# -----------------------------------------------------------------------------------------------
 
 
 @settings(max_examples=25)
@@ -146,7 +162,9 @@ def test_flight_solves_the_equations_of_free_motion(case, multiple):
         turning = axis_rate(now.axis, now.momentum, top)
         return State(turning, (0.0, 0.0, 0.0), falling, now.velocity[2]).pack()
 
-    solution = solve_ivp(rates, (0.0, elapsed), state.pack(), method="DOP853", rtol=1e-12, atol=1e-13)
+    solution = solve_ivp(
+        rates, (0.0, elapsed), state.pack(), method="DOP853", rtol=1e-12, atol=1e-13
+    )
     there, expected = fly(state, elapsed, top, math), State.unpack(solution.y[:, -1])
     assert there.momentum == state.momentum
     for name in ("axis", "velocity", "height"):
@@ -158,7 +176,9 @@ def test_flights_add_up_and_conserve(case, first, second):
     top, state = case
     t1, t2 = first * time_unit(top), second * time_unit(top)
     there, stopover = fly(state, t1 + t2, top, math), fly(fly(state, t1, top, math), t2, top, math)
-    scales = State(1.0, length(state.momentum) + 1e-300, 10 * speed_unit(top), 60 * top.surface.size)
+    scales = State(
+        1.0, length(state.momentum) + 1e-300, 10 * speed_unit(top), 60 * top.surface.size
+    )
     for name, size in zip(State._fields, scales, strict=True):
         here = getattr(there, name)
         assert here == pytest.approx(getattr(stopover, name), rel=1e-12, abs=1e-12 * max(1.0, size))
@@ -183,12 +203,16 @@ def test_a_body_without_momentum_falls_without_turning():
     top, state = tipping(SHAPES["egg"], 0.0)
     there = fly(state._replace(momentum=(0.0, 0.0, 0.0)), 0.5, top, math)
     assert there.axis == state.axis
-    assert there.height == pytest.approx(state.height + state.velocity[2] * 0.5 - 9.8 / 8, rel=1e-15)
+    assert there.height == pytest.approx(
+        state.height + state.velocity[2] * 0.5 - 9.8 / 8, rel=1e-15
+    )
 
 
 @pytest.mark.parametrize("tiny", [1e-20, 1e-100, 1e-300])
 def test_slow_turning_is_exact_to_the_last_digit(tiny):
-    """Rotation by a tiny angle is addition of the angle times the rate, whatever the size of the momentum."""
+    """Rotation by a tiny angle is addition of the angle times the rate, whatever the size of the
+    momentum.
+    """
     top, state = tipping(SHAPES["egg"], 0.0)
     slow = state._replace(momentum=scale(tiny, state.momentum), axis=(1.0, 0.0, 0.0))
     there = fly(slow, 0.5, top, math)
@@ -214,7 +238,8 @@ def test_a_body_on_the_table_has_no_gap_and_opens_none(slide):
     assert (gap(state, top), gap_rate(state, top)) == (0.0, 0.0)
 
 
-# Touchdown: exact answers ------------------------------------------------------------------------------
+# Touchdown: exact answers
+# ------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("spin", [0.0, 1e-8, 300.0])
@@ -264,9 +289,13 @@ def lifting_off(shape, tilt_rate):
 
 @pytest.mark.parametrize("tilt_rate", [1e-5, 1e-4, 1e-3, 1e-2, 1e-1])
 @pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("shape", [SHAPES["tippe top"], SHAPES["lentil"]], ids=["tippe top", "lentil"])
+@pytest.mark.parametrize(
+    "shape", [SHAPES["tippe top"], SHAPES["lentil"]], ids=["tippe top", "lentil"]
+)
 def test_a_short_hop_lasts_four_times_the_jerk_over_the_snap(shape, sign, tilt_rate):
-    """The gap is J t^3/6 + S t^4/24 near lift-off; with J < 0 the table would have to be penetrated."""
+    """The gap is J t^3/6 + S t^4/24 near lift-off; with J < 0 the table would have to be
+    penetrated.
+    """
     top, state, jerk, snap = lifting_off(shape, sign * tilt_rate)
     time = touchdown(state, top, 1.0, Start.LIFT_OFF)
     if jerk < 0.0:
@@ -277,11 +306,14 @@ def test_a_short_hop_lasts_four_times_the_jerk_over_the_snap(shape, sign, tilt_r
     assert (jerk < 0.0) != (lifting_off(shape, -sign * tilt_rate)[2] < 0.0)
 
 
-# Touchdown: many digits --------------------------------------------------------------------------------
+# Touchdown: many digits
+# --------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("tilt_rate", [0.3, 1.0, 3.0, 10.0, 30.0, 100.0])
-@pytest.mark.parametrize("shape", [SHAPES["tippe top"], SHAPES["lentil"]], ids=["tippe top", "lentil"])
+@pytest.mark.parametrize(
+    "shape", [SHAPES["tippe top"], SHAPES["lentil"]], ids=["tippe top", "lentil"]
+)
 def test_hops_of_all_lengths_after_lift_off(shape, tilt_rate):
     sign = 1.0 if lifting_off(shape, tilt_rate)[2] > 0.0 else -1.0
     top, state, _, _ = lifting_off(shape, sign * tilt_rate)
@@ -289,9 +321,13 @@ def test_hops_of_all_lengths_after_lift_off(shape, tilt_rate):
 
 
 @pytest.mark.parametrize("miss", [1e-3, 1e-6])
-@pytest.mark.parametrize("shape", [SHAPES["tippe top"], SHAPES["lentil"]], ids=["tippe top", "lentil"])
+@pytest.mark.parametrize(
+    "shape", [SHAPES["tippe top"], SHAPES["lentil"]], ids=["tippe top", "lentil"]
+)
 def test_a_rebound_that_just_clears_the_table_is_told_from_one_that_does_not(shape, miss):
-    """Under a bit more weight than lift-off allows, the gap is v t - a t^2/2 + J t^3/6: it dips at 3a/2J."""
+    """Under a bit more weight than lift-off allows, the gap is v t - a t^2/2 + J t^3/6: it dips at
+    3a/2J.
+    """
     sign = 1.0 if lifting_off(shape, 10.0)[2] > 0.0 else -1.0
     top, state, jerk, _ = lifting_off(shape, sign * 10.0)
     soon = 0.05 * top.transverse_inertia / length(state.momentum)
@@ -307,17 +343,25 @@ def test_a_rebound_that_just_clears_the_table_is_told_from_one_that_does_not(sha
         clears, touches = (float(sinking + (1 + m) * needed) for m in (miss, -miss))
     clear = state._replace(velocity=(0.0, 0.0, clears))
     touch = state._replace(velocity=(0.0, 0.0, touches))
-    assert check_touchdown(touch, top, Start.REBOUND, 1.0) == pytest.approx(float(dip), rel=3.0 * miss**0.5)
+    assert check_touchdown(touch, top, Start.REBOUND, 1.0) == pytest.approx(
+        float(dip), rel=3.0 * miss**0.5
+    )
     assert check_touchdown(clear, top, Start.REBOUND, 1.0) > 1.2 * dip
 
 
 @st.composite
 def lift_offs(draw):
-    """A body at lift-off, from the gravity that this takes; most flights are short, some very short."""
+    """A body at lift-off, from the gravity that this takes; most flights are short, some very
+    short.
+    """
     top = draw(tops(st.one_of(spheres(), spheroids())))
     unit = 1.0 / time_unit(top)
     tilt_rate = draw(st.sampled_from([-1.0, 1.0])) * 10.0 ** draw(numbers(-6.0, 0.7)) * unit
-    tilt, precession, spin = draw(numbers(0.05, 3.1)), draw(numbers(-8.0, 8.0)), draw(numbers(-15.0, 15.0))
+    tilt, precession, spin = (
+        draw(numbers(0.05, 3.1)),
+        draw(numbers(-8.0, 8.0)),
+        draw(numbers(-15.0, 15.0)),
+    )
     motion = Angles(tilt, tilt_rate, 0.3, precession * unit, spin * unit, (0.0, 0.0))
     state = on_table(state_from_angles(motion, top, math), top)
     with mp.workdps(DIGITS):
@@ -365,7 +409,9 @@ def test_hops_of_bodies_that_turn_many_times(shape, rising):
 @pytest.mark.parametrize("shape", [*SHAPES.values(), Bead(0.02, 2.0)], ids=[*SHAPES, "bead"])
 @pytest.mark.parametrize("miss", [1e-5, 1e-9, 1e-12])
 def test_a_graze_is_told_from_a_miss(shape, miss):
-    """A body thrown so that its gap has a minimum first: there it just touches the table, or just not."""
+    """A body thrown so that its gap has a minimum first: there it just touches the table, or just
+    not.
+    """
     top, state = tipping(shape, 100.0, precession=250.0)
     high = state._replace(height=state.height + shape.size, velocity=(0.0, 0.0, 0.3))
     looks = np.linspace(0.0, 0.2, 20001)
@@ -374,7 +420,9 @@ def test_a_graze_is_told_from_a_miss(shape, miss):
     k = next(k for k in dips if gaps[k] < min(gaps[:k]))
     with mp.workdps(DIGITS):
         exact = ExactGap(high, top, Start.AIRBORNE)
-        dip = mp.findroot(lambda t: mp.diff(exact, t), (looks[k - 1], looks[k + 1]), solver="anderson")
+        dip = mp.findroot(
+            lambda t: mp.diff(exact, t), (looks[k - 1], looks[k + 1]), solver="anderson"
+        )
         lowest = float(exact(dip))
     for sign in (1, -1):
         low = high._replace(height=high.height - lowest + sign * miss * shape.size)
@@ -400,7 +448,9 @@ def test_the_horizon_hides_what_lies_beyond_it_and_nothing_else(case, part):
 
 @given(slides(), numbers(-6.0, 0.5))
 def test_no_look_at_a_hop_is_higher_than_its_highest_gap(slide, decades):
-    """Flights of tops that are let go on the table, where gap and rate are zero at first, however short."""
+    """Flights of tops that are let go on the table, where gap and rate are zero at first, however
+    short.
+    """
     top, sliding = slide
     state = on_table(sliding, top)
     duration = 10.0**decades * math.sqrt(top.surface.size / top.gravity)
@@ -416,7 +466,8 @@ def test_no_look_at_a_hop_is_higher_than_its_highest_gap(slide, decades):
     assert highest <= max(gaps.max(), 0.0) + bend + fuzz
 
 
-# Through flat ------------------------------------------------------------------------------------------
+# Through flat
+# ------------------------------------------------------------------------------------------
 
 
 @st.composite
@@ -426,7 +477,12 @@ def tumbling(draw):
     azimuth = draw(st.sampled_from([0.0, 0.3, -2.0]))
     rate = draw(st.sampled_from([-1.0, 1.0])) * draw(numbers(1.0, 200.0))
     return Tumbling(
-        shape, draw(numbers(0.1, 3.0)), rate, draw(numbers(1e-3, 0.1)), draw(numbers(-1.0, 1.5)), azimuth
+        shape,
+        draw(numbers(0.1, 3.0)),
+        rate,
+        draw(numbers(1e-3, 0.1)),
+        draw(numbers(-1.0, 1.5)),
+        azimuth,
     )
 
 
@@ -440,7 +496,9 @@ def test_a_body_that_tumbles_through_flat_lands_when_its_lowest_point_does(fligh
     landing = flight.landing
     sinking = (flight.gap(landing) - flight.gap(landing - 1e-7)) / 1e-7
     assume(
-        landing > 1e-5 and abs(sinking) > 1e-2 and abs(math.sin(flight.tilt + flight.rate * landing)) > 1e-3
+        landing > 1e-5
+        and abs(sinking) > 1e-2
+        and abs(math.sin(flight.tilt + flight.rate * landing)) > 1e-3
     )
     assert touchdown(state, top, math.inf) == pytest.approx(landing, rel=1e-9)
     assert touchdown(state, top, 0.999 * landing) is None
@@ -461,7 +519,9 @@ def test_an_edge_that_rebounds_through_flat_lands_when_its_lowest_point_does(sha
 @pytest.mark.parametrize("miss", [1e-2, 1e-4, 1e-7, 1e-8, 1e-10, 1e-13])
 @pytest.mark.parametrize("shape", EDGES.values(), ids=EDGES)
 def test_an_edge_that_almost_turns_through_flat_lands_as_the_rotation_of_its_axis_says(shape, miss):
-    """The axis turns about a momentum off the horizontal by an angle: so near it comes to the pole."""
+    """The axis turns about a momentum off the horizontal by an angle: so near it comes to the
+    pole.
+    """
     top, state = Tumbling(shape, 1.2, -60.0, 0.02, 0.4, 0.0).thrown
     size = length(state.momentum)
     along = (0.0, -math.cos(miss), math.sin(miss))
@@ -491,15 +551,20 @@ def test_a_disk_that_falls_flat_all_the_way_lands_flat():
         assert touchdown(flat, top, math.inf) == pytest.approx(falls, rel=1e-6)
 
 
-# Many turns --------------------------------------------------------------------------------------------
+# Many turns
+# --------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("turns", [10.0, 1e3, 1e5, 1e7])
 @pytest.mark.parametrize("shape", [*SHAPES.values(), *EDGES.values()], ids=[*SHAPES, *EDGES])
 def test_flights_of_many_turns_end_at_their_first_touch(shape, turns):
-    """It is within the first turn of the axis in which the centre of mass is low enough: there by looks."""
+    """It is within the first turn of the axis in which the centre of mass is low enough: there by
+    looks.
+    """
     top, state = Tumbling(shape, 1.2, 2.0 * math.pi * turns, 0.3, 4.0, 0.0).thrown
-    spinning = state._replace(momentum=(state.momentum[0], state.momentum[1], 0.3 * state.momentum[1]))
+    spinning = state._replace(
+        momentum=(state.momentum[0], state.momentum[1], 0.3 * state.momentum[1])
+    )
     time = touchdown(spinning, top, math.inf)
     period = 2.0 * math.pi * top.transverse_inertia / length(spinning.momentum)
     gaps = gap(fly(spinning, np.linspace(time - 1.5 * period, time, 30_001)[:-1], top, np), top)

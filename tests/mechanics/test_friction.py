@@ -11,7 +11,9 @@ from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.units import Units
 
 COEFFICIENTS = numbers(0.01, 2.0)
-SLIPS = st.tuples(numbers(-2.0, 2.0), numbers(-2.0, 2.0)).filter(lambda slip: math.hypot(*slip) > 1e-3)
+SLIPS = st.tuples(numbers(-2.0, 2.0), numbers(-2.0, 2.0)).filter(
+    lambda slip: math.hypot(*slip) > 1e-3
+)
 ANY_LAW = st.one_of(
     st.builds(ViscousLaw, COEFFICIENTS),
     st.builds(RegularizedCoulombLaw, COEFFICIENTS, numbers(1e-3, 1.0)),
@@ -36,7 +38,9 @@ def test_there_is_no_friction_without_slip(law):
 
 @given(COEFFICIENTS, SLIPS)
 def test_viscous_friction_is_mu_times_the_slip_speed(mu, slip):
-    assert math.hypot(*ViscousLaw(mu).traction(slip, AT_REST).force) == pytest.approx(mu * math.hypot(*slip))
+    assert math.hypot(*ViscousLaw(mu).traction(slip, AT_REST).force) == pytest.approx(
+        mu * math.hypot(*slip)
+    )
 
 
 @given(COEFFICIENTS, SLIPS, numbers(1.0, 1e4))
@@ -50,7 +54,9 @@ def test_regularized_coulomb_friction_approaches_mu_for_fast_slip(mu, slip, rati
 
 @given(COEFFICIENTS, SLIPS, numbers(1.0, 1e4))
 def test_regularized_coulomb_friction_is_viscous_for_slow_slip(mu, slip, ratio):
-    """Its viscous coefficient there is mu / eps; it falls short of that by (v/eps)^2 / 2, and by less."""
+    """Its viscous coefficient there is mu / eps; it falls short of that by (v/eps)^2 / 2, and by
+    less.
+    """
     eps = math.hypot(*slip) * ratio
     size = math.hypot(*RegularizedCoulombLaw(mu, eps).traction(slip, AT_REST).force)
     viscous = math.hypot(*ViscousLaw(mu / eps).traction(slip, AT_REST).force)

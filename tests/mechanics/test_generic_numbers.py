@@ -1,7 +1,8 @@
-"""One set of equations for every kind of number: floats, arrays, compiled expressions and algebraic symbols.
+"""One set of equations for every kind of number: floats, arrays, compiled expressions and algebraic
+symbols.
 
-With symbols the conservation laws are theorems: what is asserted to be zero is zero identically, whatever the
-friction force.
+With symbols the conservation laws are theorems: what is asserted to be zero is zero identically,
+whatever the friction force.
 """
 
 import math
@@ -118,7 +119,9 @@ def as_compiled(heyoka, function, names, *arguments):
 
 @pytest.fixture(scope="module")
 def heyoka():
-    return pytest.importorskip("heyoka", reason="heyoka, which compiles expressions, is not installed here")
+    return pytest.importorskip(
+        "heyoka", reason="heyoka, which compiles expressions, is not installed here"
+    )
 
 
 def names_of(count):
@@ -179,7 +182,9 @@ def assert_angles_agree(function, top, other):
 
 @pytest.mark.parametrize("top", TOPS)
 def test_arrays_of_angles_describe_the_states_that_each_does(top):
-    columns = [np.broadcast_to(output, len(ANGLES)) for output in angle_outputs(tuple(ANGLES.T), top, np)]
+    columns = [
+        np.broadcast_to(output, len(ANGLES)) for output in angle_outputs(tuple(ANGLES.T), top, np)
+    ]
     for i, row in enumerate(ANGLES.tolist()):
         assert_same_numbers([column[i] for column in columns], angle_outputs(row, top, math))
 
@@ -187,12 +192,16 @@ def test_arrays_of_angles_describe_the_states_that_each_does(top):
 def test_arrays_of_angles_obey_the_published_equations_as_each_does():
     columns = published_outputs(tuple(ANGLES.T), PUBLISHED_TOP, np)
     for i, row in enumerate(ANGLES.tolist()):
-        assert_same_numbers([column[i] for column in columns], published_outputs(row, PUBLISHED_TOP, math))
+        assert_same_numbers(
+            [column[i] for column in columns], published_outputs(row, PUBLISHED_TOP, math)
+        )
 
 
 @pytest.mark.parametrize("top", TOPS)
 def test_compiled_angles_describe_the_states_that_floats_do(top, heyoka):
-    assert_angles_agree(angle_outputs, top, as_compiled(heyoka, angle_outputs, names_of(7), top, heyoka))
+    assert_angles_agree(
+        angle_outputs, top, as_compiled(heyoka, angle_outputs, names_of(7), top, heyoka)
+    )
 
 
 def test_compiled_published_equations_agree_with_floats(heyoka):
@@ -284,7 +293,9 @@ def test_jelletts_integral_changes_where_the_surface_is_not_a_sphere():
     c = SYMBOLS.axis[2]
     nodding = cross(SYMBOLS.momentum, SYMBOLS.axis)[2] / I1
     expected = (
-        ANY_SHAPE.curvature(c) * nodding * (dot(SYMBOLS.momentum, SYMBOLS.axis) - c * SYMBOLS.momentum[2])
+        ANY_SHAPE.curvature(c)
+        * nodding
+        * (dot(SYMBOLS.momentum, SYMBOLS.axis) - c * SYMBOLS.momentum[2])
     )
     change = along_motion(invariants.jellett(on_table(SYMBOLS, top), top), top)
     assert vanishes_identically((change - expected).doit())
@@ -293,7 +304,14 @@ def test_jelletts_integral_changes_where_the_surface_is_not_a_sphere():
 def test_jelletts_integral_of_a_spheroid_is_not_constant():
     top = symbolic_top(SpheroidSurface(sp.Integer(1), sp.Rational(3, 2)), ArbitraryFriction(FORCE))
     change = along_motion(invariants.jellett(on_table(SYMBOLS, top), top), top)
-    values = {MASS: 1, I1: sp.Rational(1, 2), I3: sp.Rational(1, 3), GRAVITY: 1, FORCE[0]: 0, FORCE[1]: 0}
+    values = {
+        MASS: 1,
+        I1: sp.Rational(1, 2),
+        I3: sp.Rational(1, 3),
+        GRAVITY: 1,
+        FORCE[0]: 0,
+        FORCE[1]: 0,
+    }
     values |= dict(zip(SYMBOLS.axis, (sp.Rational(3, 5), 0, sp.Rational(4, 5)), strict=True))
     values |= dict(zip(SYMBOLS.momentum, (1, 2, 3), strict=True))
     values |= dict(zip(SYMBOLS.velocity, (0, 0), strict=True))
@@ -317,7 +335,9 @@ def test_the_axis_keeps_its_length(shape):
 
 
 def test_the_contact_point_stays_on_the_table():
-    """The vertical velocity of the body's lowest point is zero, because the centre of mass sinks by h' c'."""
+    """The vertical velocity of the body's lowest point is zero, because the centre of mass sinks by
+    h' c'.
+    """
     top = symbolic_top(ANY_SHAPE, ArbitraryFriction(FORCE))
     whole = on_table(SYMBOLS, top)
     touch = contact(SYMBOLS.axis, SYMBOLS.momentum, SYMBOLS.velocity, top)

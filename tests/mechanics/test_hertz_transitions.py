@@ -1,4 +1,6 @@
-"""Hertz's law where slip ends and where it is held: on whichever of its two branches the direction is."""
+"""Hertz's law where slip ends and where it is held: on whichever of its two branches the direction
+is.
+"""
 
 import math
 
@@ -43,7 +45,9 @@ def about_to_stick(random):
 
 @pytest.mark.parametrize("seed", [1, 5, 8, 17, 35])
 def test_slip_ends_on_the_branch_its_direction_turns_to(seed):
-    """Against the whole law, which asks at every instant on which branch it is, and an implicit method."""
+    """Against the whole law, which asks at every instant on which branch it is, and an implicit
+    method.
+    """
     top, axis, momentum, slip = about_to_stick(np.random.default_rng(seed))
 
     def rates(_, y):
@@ -98,10 +102,14 @@ def test_a_patch_sticks_while_its_limit_surface_admits_it_on_either_piece(seed, 
         return top.friction.reserve(normal, (x, z), torque[2])
 
     reserve.terminal, reserve.direction = True, -1
-    whole = solve_ivp(rates, (0.0, 3.0), [*axis, *momentum], "DOP853", events=reserve, rtol=1e-12, atol=1e-13)
+    whole = solve_ivp(
+        rates, (0.0, 3.0), [*axis, *momentum], "DOP853", events=reserve, rtol=1e-12, atol=1e-13
+    )
     wrenches = [held(y)[1] for y in whole.y.T]
     law = top.friction
-    shares = [w.torque[2] / (law.mu * law.patch_radius * BRANCH_TORQUE * w.force[2]) for w in wrenches]
+    shares = [
+        w.torque[2] / (law.mu * law.patch_radius * BRANCH_TORQUE * w.force[2]) for w in wrenches
+    ]
     assert np.count_nonzero(np.diff(np.abs(shares) > 1.0)) == 2
     assert np.min(shares) < 0.0 < np.max(shares)
     velocity = velocity_without_slip(axis, momentum, top)

@@ -48,7 +48,9 @@ def coulomb():
 
 
 class Rigid:
-    """The body in an impact by matrices: its inertia, and what an impulse does to its contact point."""
+    """The body in an impact by matrices: its inertia, and what an impulse does to its contact
+    point.
+    """
 
     def __init__(self, state, top):
         n = np.array(state.axis)
@@ -61,10 +63,14 @@ class Rigid:
         self.delassus = np.eye(3) / top.mass - self.lever @ self.inverse_inertia @ self.lever
         self.omega = self.inverse_inertia @ self.momentum
         self.point = self.velocity_of_point(state)
-        self.speed = np.linalg.norm(state.velocity) + np.linalg.norm(self.omega) * np.linalg.norm(self.arm)
+        self.speed = np.linalg.norm(state.velocity) + np.linalg.norm(self.omega) * np.linalg.norm(
+            self.arm
+        )
 
     def velocity_of_point(self, state):
-        return np.array(state.velocity) + np.cross(self.inverse_inertia @ np.array(state.momentum), self.arm)
+        return np.array(state.velocity) + np.cross(
+            self.inverse_inertia @ np.array(state.momentum), self.arm
+        )
 
     def integrate(self, law, impulse, method, rtol):
         """Velocity of the contact point, impulses of friction and torque, and normal work, by p."""
@@ -78,26 +84,35 @@ class Rigid:
 
         self.angular_impulse = lambda y: np.cross(self.arm, y[3:6]) + y[6:9]
         # absolute tolerance far below the slip at which a steep law turns
-        atol = rtol * np.array([1e-3] * 3 + [impulse + 1e-300] * 6 + [impulse * self.speed + 1e-300])
+        atol = rtol * np.array(
+            [1e-3] * 3 + [impulse + 1e-300] * 6 + [impulse * self.speed + 1e-300]
+        )
         start = [*self.point, *[0.0] * 7]
-        return solve_ivp(rates, (0.0, impulse), start, method=method, rtol=rtol, atol=atol, dense_output=True)
+        return solve_ivp(
+            rates, (0.0, impulse), start, method=method, rtol=rtol, atol=atol, dense_output=True
+        )
 
 
 def lose(before, after, top):
     return energy(before, top) - energy(after, top)
 
 
-# What no impact can do ----------------------------------------------------------------------------------
+# What no impact can do
+# ----------------------------------------------------------------------------------
 
 
 def check_laws_of_impact(state, restitution, top):
-    """Energy is not gained, momentum is balanced, the body is not moved, and it does not go on sinking."""
+    """Energy is not gained, momentum is balanced, the body is not moved, and it does not go on
+    sinking.
+    """
     result = impact(state, restitution, top)
     after, rigid = result.state, Rigid(state, top)
     scale = rigid.mass * rigid.speed**2
 
     assert result.energy_lost >= 0.0
-    assert result.energy_lost == pytest.approx(lose(state, after, top), rel=1e-11, abs=1e-13 * scale)
+    assert result.energy_lost == pytest.approx(
+        lose(state, after, top), rel=1e-11, abs=1e-13 * scale
+    )
     assert (after.axis, after.height) == (state.axis, state.height)
     assert gap(after, top) == gap(state, top)
 
@@ -105,7 +120,9 @@ def check_laws_of_impact(state, restitution, top):
     fuzz = 1e-13 * (np.linalg.norm(impulse) + top.mass * rigid.speed)
     assert impulse[2] == pytest.approx(result.impulse, rel=1e-12, abs=fuzz)
     turned = np.array(after.momentum) - rigid.momentum
-    assert turned == pytest.approx(np.cross(rigid.arm, impulse), rel=1e-11, abs=fuzz * top.surface.size * 10)
+    assert turned == pytest.approx(
+        np.cross(rigid.arm, impulse), rel=1e-11, abs=fuzz * top.surface.size * 10
+    )
 
     sinking = gap_rate(after, top)
     assert sinking > -1e-13 * rigid.speed
@@ -149,15 +166,20 @@ def test_restitution_outside_of_zero_and_one_is_refused(restitution):
 def test_a_body_that_does_not_approach_is_not_struck(slide, rising):
     top, sliding = slide
     state = on_table(sliding, top)
-    rising = state._replace(velocity=(*state.velocity[:2], state.velocity[2] + rising * speed_unit(top)))
+    rising = state._replace(
+        velocity=(*state.velocity[:2], state.velocity[2] + rising * speed_unit(top))
+    )
     assert impact(rising, 0.5, top) == Impact(rising, 0.0, 0.0, 0.0)
 
 
-# Exact solutions ----------------------------------------------------------------------------------------
+# Exact solutions
+# ----------------------------------------------------------------------------------------
 
 
 ON_THE_POLE = (
-    State((5.66553889764798e-16, 0.0, -1.0), (0.0, 0.0, 0.0), (0.0, 0.0, -0.3535533905932738), 0.09375),
+    State(
+        (5.66553889764798e-16, 0.0, -1.0), (0.0, 0.0, 0.0), (0.0, 0.0, -0.3535533905932738), 0.09375
+    ),
     0.0,
     Top(1.0, 0.00390625, 0.00390625, SphereSurface(0.0625, 0.03125), ViscousLaw(0.0), 2.0),
 )
@@ -167,7 +189,9 @@ ON_THE_POLE = (
 @example(ON_THE_POLE, RegularizedCoulombLaw(0.0, 1e-3))
 @given(collisions(tops()), st.sampled_from([ViscousLaw(0.0), RegularizedCoulombLaw(0.0, 1e-3)]))
 def test_without_friction_the_normal_velocity_is_reversed_and_nothing_else_happens(collision, law):
-    """v_n+ = -e v_n-, p = -(1 + e) v_n- / M_nn, and the energy lost is (1 - e^2) v_n-^2 / (2 M_nn)."""
+    """v_n+ = -e v_n-, p = -(1 + e) v_n- / M_nn, and the energy lost is (1 - e^2) v_n-^2 / (2
+    M_nn).
+    """
     state, restitution, top = collision
     top = top._replace(friction=law)
     result, rigid = impact(state, restitution, top), Rigid(state, top)
@@ -178,12 +202,16 @@ def test_without_friction_the_normal_velocity_is_reversed_and_nothing_else_happe
         -restitution * falling, rel=1e-7, abs=1e-12 * rigid.speed
     )
     lost = 0.5 * (1 - restitution**2) * falling**2 / m_nn
-    assert result.energy_lost == pytest.approx(lost, rel=1e-7, abs=1e-13 * rigid.speed * result.impulse)
+    assert result.energy_lost == pytest.approx(
+        lost, rel=1e-7, abs=1e-13 * rigid.speed * result.impulse
+    )
 
 
 @given(collisions(viscous()))
 def test_very_rough_bodies_stick(collision):
-    """With mu -> infinity slip ends at once; what is left is a bounce of a body held at its contact point."""
+    """With mu -> infinity slip ends at once; what is left is a bounce of a body held at its contact
+    point.
+    """
     state, restitution, top = collision
     top = top._replace(friction=ViscousLaw(1e12 / speed_unit(top)))
     rigid = Rigid(state, top)
@@ -195,7 +223,9 @@ def test_very_rough_bodies_stick(collision):
     result = impact(state, restitution, top)
     point = rigid.velocity_of_point(result.state)
     assert result.impulse == pytest.approx(-(1 + restitution) * falling / held, rel=1e-6)
-    assert point == pytest.approx(np.array([0.0, 0.0, -restitution * falling]), abs=1e-6 * rigid.speed)
+    assert point == pytest.approx(
+        np.array([0.0, 0.0, -restitution * falling]), abs=1e-6 * rigid.speed
+    )
     if restitution == 0.0:
         impulse = -np.linalg.solve(rigid.delassus, rigid.point)
         lost = 0.5 * impulse @ rigid.delassus @ impulse
@@ -209,14 +239,18 @@ def planar(slip, falling, law, tilt=0.9):
     axis = (math.sin(tilt), 0.0, math.cos(tilt))
     momentum = (0.0, 2e-4, 0.0)
     arm = np.array(contact_vector(axis, shape))
-    velocity = np.array([slip, 0.0, falling]) - np.cross(np.array(momentum) / top.transverse_inertia, arm)
+    velocity = np.array([slip, 0.0, falling]) - np.cross(
+        np.array(momentum) / top.transverse_inertia, arm
+    )
     return State(axis, momentum, tuple(velocity.tolist()), 0.02), top
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
 @pytest.mark.parametrize("slip", [5.0, -5.0])
 def test_coulomb_friction_in_a_plane_slides_all_through_at_high_slip(slip, restitution):
-    """dP_t = -mu sign(slip) dp throughout (Whittaker), so that p_c = -v_n / (M_nn - mu sign(slip) M_tn)."""
+    """dP_t = -mu sign(slip) dp throughout (Whittaker), so that p_c = -v_n / (M_nn - mu sign(slip)
+    M_tn).
+    """
     mu = 0.2
     state, top = planar(slip, -0.3, RegularizedCoulombLaw(mu, 1e-6))
     delassus = Rigid(state, top).delassus
@@ -232,7 +266,9 @@ def test_coulomb_friction_in_a_plane_slides_all_through_at_high_slip(slip, resti
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
 @pytest.mark.parametrize("eps", [1e-3, 1e-4, 1e-5])
 def test_coulomb_friction_in_a_plane_sticks_once_slip_has_ended(eps, restitution):
-    """Slip ends at p_s = slip / (mu M_tt - M_tn); then f = -M_tn / M_tt, but for errors of order eps."""
+    """Slip ends at p_s = slip / (mu M_tt - M_tn); then f = -M_tn / M_tt, but for errors of order
+    eps.
+    """
     mu, slip, falling = 0.9, 0.3, -1.0
     state, top = planar(slip, falling, RegularizedCoulombLaw(mu, eps))
     delassus = Rigid(state, top).delassus
@@ -252,11 +288,14 @@ def test_coulomb_friction_in_a_plane_sticks_once_slip_has_ended(eps, restitution
     assert gained == pytest.approx(friction, abs=20.0 * eps * result.impulse)
 
 
-# Independent integration --------------------------------------------------------------------------------
+# Independent integration
+# --------------------------------------------------------------------------------
 
 
 def check_against_integration(state, restitution, top, method, rtol, tolerance):
-    """Velocity after, end of compression and work of the normal impulse, from equations in the impulse p."""
+    """Velocity after, end of compression and work of the normal impulse, from equations in the
+    impulse p.
+    """
     result, rigid = impact(state, restitution, top), Rigid(state, top)
     trajectory = rigid.integrate(top.friction, result.impulse, method, rtol)
     end = trajectory.y[:, -1]
@@ -314,7 +353,9 @@ def test_the_closed_form_and_the_general_way_agree(collision):
 
 
 class Drilling(NamedTuple):
-    """Friction with a torque against drilling, both of them smoothed: it depends on slip and on spin."""
+    """Friction with a torque against drilling, both of them smoothed: it depends on slip and on
+    spin.
+    """
 
     mu: float
     radius: float
@@ -323,7 +364,9 @@ class Drilling(NamedTuple):
     def traction(self, slip, angular_velocity):
         drill = self.radius * angular_velocity[2]
         factor = -self.mu * (slip[0] ** 2 + slip[1] ** 2 + drill**2 + self.eps**2) ** -0.5
-        return Traction((factor * slip[0], factor * slip[1]), (0.0, 0.0, factor * drill * self.radius))
+        return Traction(
+            (factor * slip[0], factor * slip[1]), (0.0, 0.0, factor * drill * self.radius)
+        )
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.7])
@@ -340,7 +383,9 @@ def test_a_law_with_torque_against_integration(spin, restitution):
 
 
 class SteadyDrilling(NamedTuple):
-    """Steep Coulomb friction and a torque against drilling whose size is given; it counts its evaluations."""
+    """Steep Coulomb friction and a torque against drilling whose size is given; it counts its
+    evaluations.
+    """
 
     mu: float
     eps: float
@@ -357,7 +402,8 @@ class SteadyDrilling(NamedTuple):
 def test_slip_that_is_held_against_a_torque_stays_held(restitution):
     """The body sticks early, with f = -M_tt^-1 (M_tn + what the torque does), and drilling goes on.
 
-    The straight rest of the trajectory costs next to nothing: in steps it would take some 50 000 evaluations.
+    The straight rest of the trajectory costs next to nothing: in steps it would take some 50 000
+    evaluations.
     """
     law = SteadyDrilling(0.9, 1e-4, 1e-4, [])
     top = Top(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), law, 9.8)
@@ -369,19 +415,26 @@ def test_slip_that_is_held_against_a_torque_stays_held(restitution):
     torque = rigid.inverse_inertia @ np.array([0.0, 0.0, -1e-4])
     pull = (rigid.delassus[:, 2] + np.cross(torque, rigid.arm))[:2]
     holding = -np.linalg.solve(rigid.delassus[:2, :2], pull)
-    assert top.friction.traction((end[0], end[1]), (0.0, 0.0, 1.0)).force == pytest.approx(holding, abs=1e-3)
+    assert top.friction.traction((end[0], end[1]), (0.0, 0.0, 1.0)).force == pytest.approx(
+        holding, abs=1e-3
+    )
     turned = np.array(result.state.momentum) - rigid.momentum
     impulse = top.mass * (np.array(result.state.velocity) - np.array(state.velocity))
     angular_impulse = np.array([0.0, 0.0, -1e-4 * result.impulse])
-    assert turned == pytest.approx(np.cross(rigid.arm, impulse) + angular_impulse, rel=1e-9, abs=1e-15)
+    assert turned == pytest.approx(
+        np.cross(rigid.arm, impulse) + angular_impulse, rel=1e-9, abs=1e-15
+    )
     assert result.energy_lost == pytest.approx(lose(state, result.state, top), rel=1e-10)
 
 
-# Painleve's paradox and Poisson's hypothesis ---------------------------------------------------------------
+# Painleve's paradox and Poisson's hypothesis
+# ---------------------------------------------------------------
 
 
 def jammed(law):
-    """A slender egg on its side edge that slides into its own lean: friction presses it onto the table."""
+    """A slender egg on its side edge that slides into its own lean: friction presses it onto the
+    table.
+    """
     shape = SpheroidSurface(0.01, 0.03)
     top = Top(0.02, 3.0e-7, 3.0e-7, shape, law, 9.8)
     axis = (math.sin(0.5), 0.0, math.cos(0.5))
@@ -393,7 +446,9 @@ def jammed(law):
 @pytest.mark.parametrize("law", [ViscousLaw(3.0), RegularizedCoulombLaw(2.0, 1e-4)])
 @pytest.mark.parametrize("approach", [0.0, 1e-17, -1e-17, -1e-3])
 def test_a_jam_is_an_impact_even_without_approach(law, approach):
-    """The normal velocity sinks before it rises; the impact ends when it is zero again, with energy lost."""
+    """The normal velocity sinks before it rises; the impact ends when it is zero again, with energy
+    lost.
+    """
     state, top = jammed(law)
     state = state._replace(velocity=(state.velocity[0], 0.0, approach))
     rigid = Rigid(state, top)
@@ -406,9 +461,11 @@ def test_a_jam_is_an_impact_even_without_approach(law, approach):
 
 
 def test_restitution_ends_before_it_gives_back_more_than_compression_took():
-    """Slip that ends with compression: from S to S' > S goes the slope of v_n, and Poisson would gain energy.
+    """Slip that ends with compression: from S to S' > S goes the slope of v_n, and Poisson would
+    gain energy.
 
-    Compression takes S p_c^2 / 2, restitution over q gives S' q^2 / 2: it must end at q = p_c (S / S')^1/2.
+    Compression takes S p_c^2 / 2, restitution over q gives S' q^2 / 2: it must end at q = p_c (S /
+    S')^1/2.
     """
     mu, slip = 0.9, 0.3
     law = RegularizedCoulombLaw(mu, 1e-6)
@@ -420,7 +477,9 @@ def test_restitution_ends_before_it_gives_back_more_than_compression_took():
     state, top = planar(slip, -sliding * compression, law)
     result, end = check_against_integration(state, 1.0, top, "Radau", 1e-9, 1e-6)
     assert result.compression == pytest.approx(compression, rel=1e-4)
-    assert result.impulse == pytest.approx(compression * (1.0 + math.sqrt(sliding / sticking)), rel=1e-4)
+    assert result.impulse == pytest.approx(
+        compression * (1.0 + math.sqrt(sliding / sticking)), rel=1e-4
+    )
     assert end[9] == pytest.approx(0.0, abs=1e-6 * result.impulse)
     sooner = impact(state, 0.5, top)
     assert sooner.impulse == pytest.approx(1.5 * sooner.compression, rel=1e-12)

@@ -1,4 +1,6 @@
-"""Impacts of one surface while another is pressed onto the table: closed and independent solutions."""
+"""Impacts of one surface while another is pressed onto the table: closed and independent
+solutions.
+"""
 
 import math
 
@@ -76,11 +78,16 @@ def test_without_friction_it_is_a_linear_complementarity_problem(collision, rest
 
 
 def test_slow_impact_of_a_fast_body_is_no_harder_than_a_quick_one():
-    """Its velocities have fewer digits left than its changes of velocity, which decide when it is over."""
+    """Its velocities have fewer digits left than its changes of velocity, which decide when it is
+    over.
+    """
     slow, turned = 1e-7, 0.3
     hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -3.0)))
     first, second = Top(1.0, 1.0, 0.5, hull, ViscousLaw(0.3), 1.0).each
-    axis, across = (math.cos(turned), math.sin(turned), 0.0), (-math.sin(turned), math.cos(turned), 0.0)
+    axis, across = (
+        (math.cos(turned), math.sin(turned), 0.0),
+        (-math.sin(turned), math.cos(turned), 0.0),
+    )
     # What lies across the axis tilts the rod, of which the second end sinks at 5 times its rate.
     parts = zip(axis, across, (0.0, 0.0, 30.0), strict=True)
     momentum = tuple(20.0 * along - slow / 5.0 * over + up for along, over, up in parts)
@@ -93,7 +100,9 @@ def test_slow_impact_of_a_fast_body_is_no_harder_than_a_quick_one():
 
 
 def test_a_contact_that_friction_all_but_jams_takes_over_without_a_jump():
-    """Its normal velocity responds to its own normal impulse by 1 + (x^2 - f x) / I1, which f makes zero."""
+    """Its normal velocity responds to its own normal impulse by 1 + (x^2 - f x) / I1, which f makes
+    zero.
+    """
     reach, inertia, speed, turning, eps = 2.0, 0.5, 1.0, 0.2, 0.1
     hull = Hull.of((SphereSurface(1.0, reach), SphereSurface(1.0, -3.0)))
     slip, found = speed + turning, []
@@ -116,12 +125,16 @@ def test_a_contact_that_friction_all_but_jams_takes_over_without_a_jump():
 
 
 def test_what_a_jammed_contact_stops_has_no_restitution():
-    """Of two ends in a plane: what jams has all of the normal impulse, and sinks while it lifts the other."""
+    """Of two ends in a plane: what jams has all of the normal impulse, and sinks while it lifts the
+    other.
+    """
     reach, inertia, speed, turning, eps = 2.0, 0.5, 5.0, 0.2, 1e-3
     hull = Hull.of((SphereSurface(1.0, reach), SphereSurface(1.0, -3.0)))
     mu = 1.1 * (reach + inertia / reach)
     first, second = Top(1.0, inertia, 0.5, hull, RegularizedCoulombLaw(mu, eps), 1.0).each
-    state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, -inertia * turning, 0.0), (speed, 0.0)), first)
+    state = on_table(
+        SlidingState((1.0, 0.0, 0.0), (0.0, -inertia * turning, 0.0), (speed, 0.0)), first
+    )
     for restitution in (0.0, 0.5):
         found = impact(state, restitution, second, first)
         assert found.compression == 0.0
@@ -133,7 +146,8 @@ def test_what_a_jammed_contact_stops_has_no_restitution():
 
 
 def test_a_contact_that_friction_jams_comes_back_and_stays_closed():
-    """In a plane both ends slip alike until they stick, and with both closed nothing moves any more.
+    """In a plane both ends slip alike until they stick, and with both closed nothing moves any
+    more.
 
     The balances of momentum and angular momentum then tell the impulses at both.
     """
@@ -141,19 +155,25 @@ def test_a_contact_that_friction_jams_comes_back_and_stays_closed():
     hull = Hull.of((SphereSurface(1.0, reach), SphereSurface(1.0, -3.0)))
     mu = 1.1 * (reach + inertia / reach)
     first, second = Top(1.0, inertia, 0.5, hull, RegularizedCoulombLaw(mu, eps), 1.0).each
-    state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, -inertia * turning, 0.0), (speed, 0.0)), first)
+    state = on_table(
+        SlidingState((1.0, 0.0, 0.0), (0.0, -inertia * turning, 0.0), (speed, 0.0)), first
+    )
     found = impact(state, 0.0, second, first)
     assert gap_rate(found.state, first) == pytest.approx(0.0, abs=1e-9)
     assert gap_rate(found.state, second) == pytest.approx(0.0, abs=1e-9)
     assert found.state.velocity == pytest.approx((0.0, 0.0, 0.0), abs=eps)
     assert found.impulse == pytest.approx(reach * turning, rel=eps)
-    assert found.compression == pytest.approx(((inertia + 2.0 * reach) * turning - speed) / 5.0, rel=eps)
+    assert found.compression == pytest.approx(
+        ((inertia + 2.0 * reach) * turning - speed) / 5.0, rel=eps
+    )
 
 
 def naive(state, tops, steps):
-    """The same impact by matrices, with Heun's method in the normal impulse, until what strikes stops.
+    """The same impact by matrices, with Heun's method in the normal impulse, until what strikes
+    stops.
 
-    Returns momentum and velocity then, and after each step the other contact's normal impulse and velocity.
+    Returns momentum and velocity then, and after each step the other contact's normal impulse and
+    velocity.
     """
     top = tops[0]
     axis = np.array(state.axis)
@@ -213,22 +233,33 @@ def test_with_friction_it_is_what_small_steps_find(law):
         change = energy(state, tops[0]) - energy(found.state, tops[0])
         assert found.energy_lost == pytest.approx(change, abs=1e-12)
         assert change > 0.0
-        assert axis_rate(state.axis, found.state.momentum, tops[0])[2] == pytest.approx(0.0, abs=1e-8)
+        assert axis_rate(state.axis, found.state.momentum, tops[0])[2] == pytest.approx(
+            0.0, abs=1e-8
+        )
 
     agree()
 
 
-@pytest.mark.parametrize(("law", "slip"), [(ViscousLaw(0.3), -8.0), (RegularizedCoulombLaw(1.1, 0.3), -2.0)])
+@pytest.mark.parametrize(
+    ("law", "slip"), [(ViscousLaw(0.3), -8.0), (RegularizedCoulombLaw(1.1, 0.3), -2.0)]
+)
 def test_an_end_that_opens_meanwhile_closes_again(law, slip):
-    """Friction at the end that strikes lifts the other one, until slip has fallen; then it is pressed."""
+    """Friction at the end that strikes lifts the other one, until slip has fallen; then it is
+    pressed.
+    """
     hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -2.0)))
     inertia, tilting, turned = 2.0, -8.0, 0.3
     first, second = Top(1.0, inertia, 0.5, hull, law, 1.0).each
-    along, across = (math.cos(turned), math.sin(turned), 0.0), (-math.sin(turned), math.cos(turned), 0.0)
+    along, across = (
+        (math.cos(turned), math.sin(turned), 0.0),
+        (-math.sin(turned), math.cos(turned), 0.0),
+    )
     # Tilting moves both ends along the axis too, as their surfaces have radii of 1.
     turning = zip(along, across, (0.0, 0.0, 0.4 * inertia), strict=True)
     momentum = tuple(0.05 * one + tilting * inertia * other + up for one, other, up in turning)
-    velocity = tuple((slip + tilting) * one + 0.3 * other for one, other in zip(along, across, strict=True))
+    velocity = tuple(
+        (slip + tilting) * one + 0.3 * other for one, other in zip(along, across, strict=True)
+    )
     state = on_table(SlidingState(along, momentum, (velocity[0], velocity[1])), first)
     assert gap_rate(state, second) == pytest.approx(4.0 * tilting)
     found = impact(state, 0.0, second, first)
@@ -301,20 +332,36 @@ def sliding_slowly(law):
 HELD = {
     "slowly": (sliding_slowly(RegularizedCoulombLaw(0.6, 1e-6)), 200),
     "firmly": (
-        rod((3.64, 3.92), (1.36, 0.46), RegularizedCoulombLaw(2.55, 9e-6), (-0.23, -1.0, 0.02), (-0.1, 0.38)),
+        rod(
+            (3.64, 3.92),
+            (1.36, 0.46),
+            RegularizedCoulombLaw(2.55, 9e-6),
+            (-0.23, -1.0, 0.02),
+            (-0.1, 0.38),
+        ),
         200,
     ),
     "one end after the other": (
-        rod((3.5, 4.0), (1.7, 0.8), RegularizedCoulombLaw(3.3, 3e-5), (-0.6, -0.6, -0.4), (-0.1, 1.1)),
+        rod(
+            (3.5, 4.0),
+            (1.7, 0.8),
+            RegularizedCoulombLaw(3.3, 3e-5),
+            (-0.6, -0.6, -0.4),
+            (-0.1, 1.1),
+        ),
         2000,
     ),
 }
-"""Rods that fall, and the steps their impacts may take: more where one end is held long before the other."""
+"""Rods that fall, and the steps their impacts may take: more where one end is held long before the
+other.
+"""
 
 
 @pytest.mark.parametrize(("falling", "most"), HELD.values(), ids=HELD)
 def test_a_steep_law_holds_both_ends_and_takes_few_steps(falling, most):
-    """What is left is the motion next to the one before, by kinetic energy, that moves neither end."""
+    """What is left is the motion next to the one before, by kinetic energy, that moves neither
+    end.
+    """
     state, tops = falling
     top = tops[0]
     assert gap_rate(state, top) < -1.0
@@ -322,7 +369,10 @@ def test_a_steep_law_holds_both_ends_and_takes_few_steps(falling, most):
     assert found.steps < most
     inertia = np.diag([top.axial_inertia, top.transverse_inertia, top.transverse_inertia])
     masses = np.block([[inertia, np.zeros((3, 3))], [np.zeros((3, 3)), np.eye(3)]])
-    rows = [np.hstack([-cross_matrix(contact_vector(state.axis, one.surface)), np.eye(3)]) for one in tops]
+    rows = [
+        np.hstack([-cross_matrix(contact_vector(state.axis, one.surface)), np.eye(3)])
+        for one in tops
+    ]
     held = np.vstack(rows)
     before = np.array([*np.linalg.solve(inertia, state.momentum), *state.velocity])
     inverse = np.linalg.inv(masses)
@@ -340,13 +390,18 @@ def cross_matrix(a):
 
 @pytest.mark.parametrize("number", [0, 1])
 def test_an_error_counts_at_either_end(number):
-    """A turn about one end moves the other alone: beside its slip, that is as wrong as a step can be."""
+    """A turn about one end moves the other alone: beside its slip, that is as wrong as a step can
+    be.
+    """
     state, tops = sliding_slowly(RegularizedCoulombLaw(0.6, 0.1))
     process = ProcessOnTwo.of(*(Striking.of(state, top) for top in tops))
     taken = step_from(process.begin, process.slope(process.begin), 1e-3, process.slope)
     arms, turn = [contact_vector(state.axis, top.surface) for top in tops], (0.0, 0.0, 1e-6)
     at_first = np.cross(turn, np.subtract(arms[0], arms[1 - number]))
-    ends = [(process.body.velocities(end), process.there(end))[number] for end in (taken.here, taken.there)]
+    ends = [
+        (process.body.velocities(end), process.there(end))[number]
+        for end in (taken.here, taken.there)
+    ]
     slip, moved = max(math.hypot(*end[:2]) for end in ends), 1e-6 * math.dist(*arms)
     assert process.wrong(taken, (*at_first, *turn)) == pytest.approx(moved / slip, rel=1e-9)
 

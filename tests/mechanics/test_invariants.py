@@ -1,4 +1,6 @@
-"""Energy, Jellett's integral and the power of friction: their meaning, and what cannot change them."""
+"""Energy, Jellett's integral and the power of friction: their meaning, and what cannot change
+them.
+"""
 
 import math
 from typing import NamedTuple
@@ -22,7 +24,9 @@ from tippetop.mechanics.view import Angles, state_from_angles
 def rate_along_motion(quantity, state, top):
     """Rate of a quantity of state and top, by a complex step along the motion."""
     rates = sliding_rates(state, top)
-    moved = SlidingState.unpack([y + 1e-30j * r for y, r in zip(state.pack(), rates.pack(), strict=True)])
+    moved = SlidingState.unpack(
+        [y + 1e-30j * r for y, r in zip(state.pack(), rates.pack(), strict=True)]
+    )
     return complex(quantity(on_table(moved, top), top)).imag / 1e-30
 
 
@@ -40,10 +44,14 @@ def test_friction_takes_energy_while_the_table_pushes_and_gives_it_while_the_tab
 
 @given(slides())
 def test_the_power_is_that_of_the_contact_force_and_the_change_of_energy(slide):
-    """dE/dt, E' by a complex step along the motion, and F.v + M.omega of the body's point of contact."""
+    """dE/dt, E' by a complex step along the motion, and F.v + M.omega of the body's point of
+    contact.
+    """
     top, state = slide
     touch = contact(state.axis, state.momentum, state.velocity, top)
-    unit = abs(touch.normal_force) * (length((*touch.slip, 0.0)) + top.surface.size * length(touch.spin))
+    unit = abs(touch.normal_force) * (
+        length((*touch.slip, 0.0)) + top.surface.size * length(touch.spin)
+    )
     force = dot(touch.force, (*touch.slip, 0.0)) + dot(touch.torque, touch.spin)
     assert touch.power == pytest.approx(force, abs=1e-13 * unit)
     unit += top.mass * top.gravity * top.surface.size * length(touch.spin)
@@ -108,7 +116,9 @@ class SteadyTorque(NamedTuple):
 
 
 @given(slides(), st.sampled_from([NO_TORQUE, (0.0, 0.0, 1e-3), (2e-3, -1e-3, 0.0)]), st.booleans())
-def test_a_top_conserves_jelletts_integral_where_its_body_and_its_friction_say_so(slide, torque, acts):
+def test_a_top_conserves_jelletts_integral_where_its_body_and_its_friction_say_so(
+    slide, torque, acts
+):
     top, state = slide
     top = top._replace(friction=SteadyTorque(torque)) if acts else top
     moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.surface.size
@@ -121,7 +131,9 @@ def test_a_top_conserves_jelletts_integral_where_its_body_and_its_friction_say_s
 
 
 def test_drilling_takes_from_jelletts_integral_at_the_rate_of_its_moment_times_the_height():
-    top = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), SteadyTorque((0.0, 0.0, -1e-3)), 9.8)
+    top = Top(
+        0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), SteadyTorque((0.0, 0.0, -1e-3)), 9.8
+    )
     state = state_from_angles(Angles(0.7, 0.0, 0.0, 5.0, 100.0, (0.0, 0.1)), top, math)
     moment = 1e-3 * normal_force(state, top)
     assert rate_along_motion(jellett, state, top) == pytest.approx(
@@ -137,4 +149,6 @@ def test_without_friction_the_vertical_and_the_axial_angular_momentum_are_consta
     axial = dot(rates.momentum, state.axis) + turning
     moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.surface.size
     assert rates.momentum[2] == pytest.approx(0.0, abs=1e-13 * moment)
-    assert axial == pytest.approx(0.0, abs=1e-12 * (moment + length(state.momentum) * length(rates.axis)))
+    assert axial == pytest.approx(
+        0.0, abs=1e-12 * (moment + length(state.momentum) * length(rates.axis))
+    )

@@ -1,4 +1,6 @@
-"""Runs with stick and slip against time-stepping, which shares no equation with them: first order."""
+"""Runs with stick and slip against time-stepping, which shares no equation with them: first
+order.
+"""
 
 import math
 
@@ -19,7 +21,13 @@ SECOND = math.sqrt(GRAVITY / RADIUS)
 CASES = {
     "slips, and sticks for good": (CoulombLaw(0.3), 0.0, 155.0, True, 0.1),
     "sticks, slips and sticks": (CoulombLaw(0.028), 0.0, 155.0, False, 0.04),
-    "slips and drills": (EllipsoidalLaw(0.3, 0.05 / ELLIPSOIDAL_RADIUS), 0.05 * RADIUS, 100.0, False, 0.05),
+    "slips and drills": (
+        EllipsoidalLaw(0.3, 0.05 / ELLIPSOIDAL_RADIUS),
+        0.05 * RADIUS,
+        100.0,
+        False,
+        0.05,
+    ),
 }
 
 
@@ -27,7 +35,9 @@ CASES = {
 def test_time_stepping_converges_to_our_runs_at_first_order(case):
     law, rho, spin, rests, end = CASES[case]
     top = Top(1.0, 131 / 350, 0.4, SphereSurface(1.0, 0.3), law, 1.0)
-    run = DryRun(*launched(top, 0.1, spin / SECOND, rests=rests), SciPy("dop853", 1e-12)).follow(end * SECOND)
+    run = DryRun(*launched(top, 0.1, spin / SECOND, rests=rests), SciPy("dop853", 1e-12)).follow(
+        end * SECOND
+    )
     tilt = math.acos(run.axis[2])
     errors = []
     for step in (2e-4, 1e-4):

@@ -29,7 +29,9 @@ def normal_force(state, top):
 
 def force_unit(state, top):
     """A force large enough to compare rounding with: weight, and what the spin can do."""
-    return top.mass * top.gravity + length(state.momentum) ** 2 / (top.transverse_inertia * top.surface.size)
+    return top.mass * top.gravity + length(state.momentum) ** 2 / (
+        top.transverse_inertia * top.surface.size
+    )
 
 
 def frictionless(top):
@@ -38,7 +40,9 @@ def frictionless(top):
 
 @st.composite
 def vertical_spins(draw):
-    """A top that spins about a vertical axis, upright or upside down, while it slides in any direction."""
+    """A top that spins about a vertical axis, upright or upside down, while it slides in any
+    direction.
+    """
     top = draw(tops())
     pole, spin = draw(st.sampled_from([1.0, -1.0])), draw(numbers(-500.0, 500.0))
     velocity = (draw(numbers(-1.0, 1.0)), draw(numbers(-1.0, 1.0)))
@@ -69,7 +73,9 @@ def test_friction_brakes_a_sliding_vertical_spin_and_tips_it_with_the_lever_of_i
     rates = sliding_rates(state, top)
     force = top.friction.traction(state.velocity, (0.0, 0.0, 0.0)).force
     height, weight = top.surface.height(state.axis[2]), top.mass * top.gravity
-    assert rates.velocity == pytest.approx((top.gravity * force[0], top.gravity * force[1]), rel=1e-12)
+    assert rates.velocity == pytest.approx(
+        (top.gravity * force[0], top.gravity * force[1]), rel=1e-12
+    )
     moment = (height * weight * force[1], -height * weight * force[0], 0.0)
     assert rates.momentum == pytest.approx(moment, rel=1e-12, abs=0.0)
 
@@ -102,7 +108,9 @@ def test_the_normal_force_is_what_accelerates_the_centre_of_mass_along_its_suppo
     rates = sliding_rates(state, top)
     omega = angular_velocity(state.axis, state.momentum, top)
     quickest = length(omega) + math.sqrt(top.gravity / top.surface.size)
-    quickest += length(rates.momentum) * quickest / (length(state.momentum) + top.axial_inertia * quickest)
+    quickest += (
+        length(rates.momentum) * quickest / (length(state.momentum) + top.axial_inertia * quickest)
+    )
     step = 1e-5 / quickest
 
     def sinking(side):
@@ -111,7 +119,9 @@ def test_the_normal_force_is_what_accelerates_the_centre_of_mass_along_its_suppo
 
     acceleration = (sinking(1.0) - sinking(-1.0)) / (2.0 * step)
     unit = force_unit(state, top) + abs(normal_force(state, top))
-    assert top.mass * (acceleration + top.gravity) == pytest.approx(normal_force(state, top), abs=1e-6 * unit)
+    assert top.mass * (acceleration + top.gravity) == pytest.approx(
+        normal_force(state, top), abs=1e-6 * unit
+    )
 
 
 @given(slides(), numbers(-math.pi, math.pi))
@@ -144,7 +154,9 @@ def test_motion_does_not_know_left_from_right(slide):
         x, y, z = a.momentum
         return SlidingState(polar(a.axis), (-x, y, -z), polar(a.velocity))
 
-    assert_same_rates(sliding_rates(mirrored(state), top), mirrored(sliding_rates(state, top)), state, top)
+    assert_same_rates(
+        sliding_rates(mirrored(state), top), mirrored(sliding_rates(state, top)), state, top
+    )
 
 
 def assert_same_rates(actual, expected, state, top):

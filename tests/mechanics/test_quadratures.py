@@ -1,4 +1,6 @@
-"""Orientation and place as quadratures: against the angular velocity, and a marker moved with the body."""
+"""Orientation and place as quadratures: against the angular velocity, and a marker moved with the
+body.
+"""
 
 import cmath
 import math
@@ -39,7 +41,9 @@ def least_rotation(pole, axis):
 
 
 @given(unit_vectors(), TURNS, POLES)
-def test_the_orientation_is_a_unit_quaternion_that_carries_the_vertical_to_the_axis(axis, turn, pole):
+def test_the_orientation_is_a_unit_quaternion_that_carries_the_vertical_to_the_axis(
+    axis, turn, pole
+):
     assume(1.0 + pole * axis[2] > NEAREST)
     # Near the other pole rounding of the axis is divided by the square root of 1 + pole n_z.
     fuzz = 4e-16 + 4e-16 / (1.0 + pole * axis[2])
@@ -48,7 +52,9 @@ def test_the_orientation_is_a_unit_quaternion_that_carries_the_vertical_to_the_a
 
 
 @given(unit_vectors(), TURNS, POLES)
-def test_the_orientation_is_a_turn_about_the_axis_and_the_least_rotation_from_the_pole(axis, turn, pole):
+def test_the_orientation_is_a_turn_about_the_axis_and_the_least_rotation_from_the_pole(
+    axis, turn, pole
+):
     assume(1.0 + pole * axis[2] > NEAREST)
     over = Rotation.identity() if pole > 0 else Rotation.from_rotvec([0.0, math.pi, 0.0])
     expected = least_rotation(pole, axis) * over * Rotation.from_rotvec([0.0, 0.0, turn])
@@ -88,7 +94,9 @@ def test_the_orientation_changes_by_the_angular_velocity(slide, turn, pole):
     twice = 2.0 * (w * v_rate - w_rate * v - np.cross(v_rate, v))
     omega = angular_velocity(state.axis, state.momentum, top)
     assert twice == pytest.approx(omega, abs=1e-13 * (length(omega) + abs(rate)) / near)
-    assert w * w_rate + v @ v_rate == pytest.approx(0.0, abs=1e-13 * (length(omega) + abs(rate)) / near)
+    assert w * w_rate + v @ v_rate == pytest.approx(
+        0.0, abs=1e-13 * (length(omega) + abs(rate)) / near
+    )
 
 
 SPHERE = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
@@ -105,7 +113,9 @@ EGG = Top(0.02, 3.0e-6, 2.5e-6, SpheroidSurface(0.02, 0.028), ViscousLaw(0.3), 9
     ids=["falling", "rising"],
 )
 def test_both_charts_follow_a_marker_that_moves_with_the_body(top, motion):
-    """Against k' = omega x k, through the equator and several turns; place and work are integrals too."""
+    """Against k' = omega x k, through the equator and several turns; place and work are integrals
+    too.
+    """
     start = state_from_angles(motion, top, math)
     poles = (1.0, -1.0)
 

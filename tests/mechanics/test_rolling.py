@@ -29,17 +29,21 @@ from tippetop.mechanics.top import Top
 from tippetop.theory.derivatives import derivative, jacobian
 
 M, R = 0.02, 0.02
-REPORT = Top(M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, SphereSurface(R, 0.3 * R), CoulombLaw(0.3), 9.8)
+REPORT = Top(
+    M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, SphereSurface(R, 0.3 * R), CoulombLaw(0.3), 9.8
+)
 
 
 def newton_euler(top, n, omega, wrench):
     """Rates of the contact point's velocity and of omega, omega' = I^-1 (M - omega x I omega)."""
     n, omega = np.array(n), np.array(omega)
-    inertia = top.transverse_inertia * np.eye(3) + (top.axial_inertia - top.transverse_inertia) * np.outer(
-        n, n
-    )
+    inertia = top.transverse_inertia * np.eye(3) + (
+        top.axial_inertia - top.transverse_inertia
+    ) * np.outer(n, n)
     arm = np.array(contact_vector(tuple(n), top.surface))
-    arm_rate = jacobian(lambda z: contact_vector(tuple(z), top.surface), tuple(n)) @ np.cross(omega, n)
+    arm_rate = jacobian(lambda z: contact_vector(tuple(z), top.surface), tuple(n)) @ np.cross(
+        omega, n
+    )
     force, torque = np.array(wrench.force), np.array(wrench.torque)
     moment = np.cross(arm, force) + torque
     turning = np.linalg.solve(inertia, moment - np.cross(omega, inertia @ omega))
@@ -105,7 +109,9 @@ def test_a_body_that_rolls_with_resistance_keeps_its_contact_point_at_rest(slide
     rate, _ = newton_euler(top, state.axis, point.turning, wrench)
     assert rate == pytest.approx(np.zeros(3), abs=1e-11 * scale_of(top, point))
     couple = -resistance.length * wrench.force[2]
-    assert wrench.torque == pytest.approx((couple * rolling[0], couple * rolling[1], 0.0), rel=1e-12)
+    assert wrench.torque == pytest.approx(
+        (couple * rolling[0], couple * rolling[1], 0.0), rel=1e-12
+    )
 
 
 @given(slides())
@@ -123,7 +129,9 @@ def test_velocities_without_slip_and_momenta_without_drilling(slide):
 
 
 def roll(top, tilt, spin, end):
-    """A launch at this tilt (rad) and spin (rad/s) that rolls without slipping: states at ten times."""
+    """A launch at this tilt (rad) and spin (rad/s) that rolls without slipping: states at ten
+    times.
+    """
     n = (math.sin(tilt), 0.0, math.cos(tilt))
     momentum = tuple(top.axial_inertia * spin * x for x in n)
 
@@ -135,7 +143,9 @@ def roll(top, tilt, spin, end):
     scales = [1.0] * 3 + [top.axial_inertia * spin] * 3
     times = np.linspace(0.0, end, 11)
     atol = 1e-14 * np.array(scales)
-    return solve_ivp(rates, (0.0, end), [*n, *momentum], "DOP853", times, rtol=1e-12, atol=atol).y.T.tolist()
+    return solve_ivp(
+        rates, (0.0, end), [*n, *momentum], "DOP853", times, rtol=1e-12, atol=atol
+    ).y.T.tolist()
 
 
 def energies(top, states):
@@ -156,10 +166,13 @@ def test_rolling_conserves_energy(top):
 
 
 def test_rolling_conserves_the_vertical_spin_of_the_report_s_body_but_not_of_others():
-    """It is for a sphere with (I3 - I1) (I3 + m r^2) = I3 m zeta^2, as the report's happens to be."""
+    """It is for a sphere with (I3 - I1) (I3 + m r^2) = I3 m zeta^2, as the report's happens to
+    be.
+    """
     for top, conserved in ((REPORT, True), (OTHER, False)):
         spins = [
-            ContactPoint.of(tuple(y[:3]), tuple(y[3:]), top).turning[2] for y in roll(top, 0.7, 60.0, 0.3)
+            ContactPoint.of(tuple(y[:3]), tuple(y[3:]), top).turning[2]
+            for y in roll(top, 0.7, 60.0, 0.3)
         ]
         assert (max(spins) - min(spins) < 1e-9) is conserved
 
@@ -174,7 +187,9 @@ def test_rolling_of_the_report_s_top_against_an_independent_solver():
 
 @given(slides())
 def test_rolling_is_watched_by_how_fast_it_falls_along_the_motion(slide):
-    """The guard is the square of the horizontal angular velocity, and half its rate times the horizon."""
+    """The guard is the square of the horizontal angular velocity, and half its rate times the
+    horizon.
+    """
     top, state = slide
     resistance = RollingResistance(0.01 * top.surface.size)
     top = top._replace(friction=ViscousLaw(0.3), rolling_resistance=resistance)
@@ -186,14 +201,18 @@ def test_rolling_is_watched_by_how_fast_it_falls_along_the_motion(slide):
         return x * x + y * y
 
     falls = float(derivative(square, 0.0))
-    size = sum(abs(w) for w in angular_velocity(state.axis, state.momentum, top)) + abs(falls) ** 0.5
+    size = (
+        sum(abs(w) for w in angular_velocity(state.axis, state.momentum, top)) + abs(falls) ** 0.5
+    )
     found = rolling_stopping_guard(state, rate, top)
     assert found == pytest.approx(square(0.0) + 0.5 * HORIZON * falls, abs=1e-12 * size * size)
 
 
 @given(slides(), st.sampled_from([CoulombLaw(0.3), EllipsoidalLaw(0.3, 0.01)]))
 def test_slip_is_watched_by_how_fast_it_falls_along_the_motion(slide, law):
-    """The guard is the square of slip (and drilling, if resisted), and half its rate times the horizon."""
+    """The guard is the square of slip (and drilling, if resisted), and half its rate times the
+    horizon.
+    """
     top, state = slide
     top = top._replace(friction=law)
     assume(size(slip_of(*state, top)) > 1e-3)

@@ -33,7 +33,9 @@ def followed(span, steps):
 def test_it_is_of_order_8_and_so_is_its_estimate_of_a_steps_error():
     exact = followed(12.0, 400)[0]
     (coarse, rough), (fine, smooth) = (followed(12.0, steps) for steps in (15, 30))
-    assert math.log2(math.dist(coarse, exact) / math.dist(fine, exact)) == pytest.approx(8.0, abs=1.0)
+    assert math.log2(math.dist(coarse, exact) / math.dist(fine, exact)) == pytest.approx(
+        8.0, abs=1.0
+    )
     assert math.log2(rough / smooth) == pytest.approx(-1.0 / POWER, abs=1.0)
 
 

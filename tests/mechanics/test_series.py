@@ -45,7 +45,11 @@ def test_powers_of_series_are_those_of_their_values():
 
 
 def test_solution_of_a_harmonic_oscillator_is_a_circle():
-    y = solved([Series(unknown, PLAIN) for _ in range(2)], [np.ones(1), np.zeros(1)], lambda y: (-y[1], y[0]))
+    y = solved(
+        [Series(unknown, PLAIN) for _ in range(2)],
+        [np.ones(1), np.zeros(1)],
+        lambda y: (-y[1], y[0]),
+    )
     for k in range(DEGREE):
         assert y[0][k] == pytest.approx((1, 0, -1, 0)[k % 4] / math.factorial(k), abs=1e-17)
         assert y[1][k] == pytest.approx((0, 1, 0, -1)[k % 4] / math.factorial(k), abs=1e-17)

@@ -1,4 +1,6 @@
-"""Slip by collocation from its beginning to its end, against series, clocks and Runge and Kutta's method."""
+"""Slip by collocation from its beginning to its end, against series, clocks and Runge and Kutta's
+method.
+"""
 
 import math
 
@@ -57,7 +59,9 @@ def test_a_phase_solves_the_equations_of_sliding(name):
     segments, _ = followed(name, 20.0)
     phases = [one for one in segments if isinstance(one.mode, Loosening)]
     assert max(one.steps for one in phases) > 1
-    assert any(isinstance(one.transition.then, Sticking) for one in phases), "it is followed to its end"
+    assert any(isinstance(one.transition.then, Sticking) for one in phases), (
+        "it is followed to its end"
+    )
     for segment in phases[:2]:
         top = segment.mode.top
         for begin, end in zip(segment.solution.knots[:-1], segment.solution.knots[1:], strict=True):

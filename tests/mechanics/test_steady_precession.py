@@ -1,4 +1,6 @@
-"""Steady precession: the relative equilibria of the eccentric sphere, which friction leaves alone."""
+"""Steady precession: the relative equilibria of the eccentric sphere, which friction leaves
+alone.
+"""
 
 import math
 
@@ -22,7 +24,9 @@ VISCOUS_SPHERES = tops(shapes=spheres(), friction_laws=(ViscousLaw,))
 
 
 def steady_precession(top, tilt):
-    """phi' = sqrt(m g R alpha / (I1 c + I3 (alpha - c))), where that is not too fast to be told from none."""
+    """phi' = sqrt(m g R alpha / (I1 c + I3 (alpha - c))), where that is not too fast to be told
+    from none.
+    """
     radius, center = top.surface
     alpha = center / radius
     cosine = math.cos(tilt)
@@ -59,17 +63,23 @@ def test_steady_precession_is_an_equilibrium_of_the_published_equations(case):
 
 @given(steady_precessions())
 def test_steady_precession_only_turns_about_the_vertical(case):
-    """n' = phi' z x n and L' = phi' z x L; the centre of mass stays where it is, and the table bears m g."""
+    """n' = phi' z x n and L' = phi' z x L; the centre of mass stays where it is, and the table
+    bears m g.
+    """
     top, motion = case
     state = state_from_angles(motion, top, math)
     turning = (0.0, 0.0, motion.precession)
     rates = sliding_rates(state, top)
     weight = top.mass * top.gravity
     momentum_rate = abs(motion.precession) * length(state.momentum)
-    assert state.velocity == pytest.approx(ORIGIN, abs=1e-13 * abs(motion.precession) * top.surface.radius)
+    assert state.velocity == pytest.approx(
+        ORIGIN, abs=1e-13 * abs(motion.precession) * top.surface.radius
+    )
     touch = contact(state.axis, state.momentum, state.velocity, top)
     assert touch.normal_force == pytest.approx(weight, rel=1e-11)
-    assert rates.axis == pytest.approx(cross(turning, state.axis), abs=1e-13 * abs(motion.precession))
+    assert rates.axis == pytest.approx(
+        cross(turning, state.axis), abs=1e-13 * abs(motion.precession)
+    )
     assert rates.momentum == pytest.approx(
         cross(turning, state.momentum), abs=1e-11 * (weight * top.surface.radius + momentum_rate)
     )
@@ -89,13 +99,19 @@ def test_jelletts_integral_of_a_steady_precession(case):
 
 
 def test_the_half_inverted_end_state_is_the_steady_precession_with_the_launchs_jellett_integral():
-    """The tippe top launched at rest in tilt at 0.1 rad with 50 rad/s; the converged end state is known."""
+    """The tippe top launched at rest in tilt at 0.1 rad with 50 rad/s; the converged end state is
+    known.
+    """
     mass, radius = 0.02, 0.02
     shape = SphereSurface(radius, 0.3 * radius)
-    top = Top(mass, 131 / 350 * mass * radius**2, 2 / 5 * mass * radius**2, shape, ViscousLaw(0.3), 9.8)
+    top = Top(
+        mass, 131 / 350 * mass * radius**2, 2 / 5 * mass * radius**2, shape, ViscousLaw(0.3), 9.8
+    )
     launch = Angles(0.1, 0.0, 0.0, 0.0, 50.0, (0.0, 0.0))
     kept = jellett(on_table(state_from_angles(launch, top, math), top), top)
-    assert kept == pytest.approx(radius * top.axial_inertia * 50.0 * (math.cos(0.1) - 0.3), rel=1e-13)
+    assert kept == pytest.approx(
+        radius * top.axial_inertia * 50.0 * (math.cos(0.1) - 0.3), rel=1e-13
+    )
 
     def steady(tilt):
         precession = steady_precession(top, tilt)

@@ -1,4 +1,6 @@
-"""Stick and slip against an independent solver, motions known exactly, and orders of convergence."""
+"""Stick and slip against an independent solver, motions known exactly, and orders of
+convergence.
+"""
 
 import math
 
@@ -68,7 +70,8 @@ def spin(run):
     return sum(a * b for a, b in zip(run.axis, run.momentum, strict=True)) / run.top.axial_inertia
 
 
-# Against an independent solver, to the 1e-9 s and 1e-8 rad that its authors vouch for ---------------------
+# Against an independent solver, to the 1e-9 s and 1e-8 rad that its authors vouch for
+# ---------------------
 
 
 @BOTH
@@ -82,12 +85,16 @@ def test_a_top_whose_centre_of_mass_rests_at_first_sticks(integrator):
     assert len(run.events) == 1
 
 
-SLIPS = np.array([0.009376570544231876, 0.04206575876996948, 0.07499098425096684, 0.10814670305977013])
+SLIPS = np.array(
+    [0.009376570544231876, 0.04206575876996948, 0.07499098425096684, 0.10814670305977013]
+)
 STICKS = np.array([0.0, 0.031285582730557274, 0.06521018588056923, 0.09932965633952427])
 
 
 def test_slips_and_sticks():
-    run = DryRun(*launched(report(CoulombLaw(0.028)), 0.1, 155.0 / SECOND), DOP853).follow(0.05 * SECOND)
+    run = DryRun(*launched(report(CoulombLaw(0.028)), 0.1, 155.0 / SECOND), DOP853).follow(
+        0.05 * SECOND
+    )
     assert np.array(run.times("slip")) / SECOND == pytest.approx(SLIPS[:2], abs=1e-11)
     assert np.array(run.times("stick")) / SECOND == pytest.approx(STICKS[:2], abs=1e-11)
 
@@ -112,13 +119,18 @@ def test_slip_and_drilling_end_together_with_contensou_friction():
     assert angular_velocity(run.axis, run.momentum, run.top)[2] == pytest.approx(0.0, abs=1e-13)
 
 
-# Known exactly ------------------------------------------------------------------------------------------
+# Known exactly
+# ------------------------------------------------------------------------------------------
 
 
 @BOTH
-@pytest.mark.parametrize("slip", [(0.8, 0.3), (0.008, 0.003)], ids=["far from its end", "near its end"])
+@pytest.mark.parametrize(
+    "slip", [(0.8, 0.3), (0.008, 0.003)], ids=["far from its end", "near its end"]
+)
 @pytest.mark.parametrize("turning", [(0.0, 0.0, 0.0), (3.0, -2.0, 5.0)])
-def test_a_uniform_ball_stops_slipping_after_two_sevenths_of_its_slip_over_mu_g(turning, slip, integrator):
+def test_a_uniform_ball_stops_slipping_after_two_sevenths_of_its_slip_over_mu_g(
+    turning, slip, integrator
+):
     """Its slip keeps its direction, v' = -(7/2) mu g; it sticks for good."""
     mu = 0.25
     ball = Top(1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), CoulombLaw(mu), 1.0)
@@ -140,7 +152,9 @@ class OneWay(CoulombLaw):
 
 @BOTH
 def test_slip_passes_through_zero_in_a_plane_where_it_cannot_stick(integrator):
-    """The body falls over in the plane x z while it slips forward, stops, and slips back at once."""
+    """The body falls over in the plane x z while it slips forward, stops, and slips back at
+    once.
+    """
     mu = 0.05
     top = report(CoulombLaw(mu))
     axis, momentum = (math.sin(1.2), 0.0, math.cos(1.2)), (0.0, 0.1, 0.0)
@@ -156,7 +170,8 @@ def test_slip_passes_through_zero_in_a_plane_where_it_cannot_stick(integrator):
 
             def slip(_, y):
                 s = SlidingState.unpack(y.tolist())
-                return slip_of(s.axis, s.momentum, s.velocity, top)[0] + (1e-14 * way if turns else 0.0)  # noqa: B023
+                offset = 1e-14 * way if turns else 0.0  # noqa: B023
+                return slip_of(s.axis, s.momentum, s.velocity, top)[0] + offset
 
             slip.terminal, slip.direction = True, -way
 
@@ -171,11 +186,14 @@ def test_slip_passes_through_zero_in_a_plane_where_it_cannot_stick(integrator):
         passed += turns
         assert run.axis == pytest.approx(tuple(y[:3]), abs=1e-9)
         assert run.momentum == pytest.approx(tuple(y[3:6]), abs=1e-9)
-        assert velocity_of(run.axis, run.momentum, run.slip, top) == pytest.approx(tuple(y[6:8]), abs=1e-9)
+        assert velocity_of(run.axis, run.momentum, run.slip, top) == pytest.approx(
+            tuple(y[6:8]), abs=1e-9
+        )
     assert passed == 2
 
 
-# Where slip goes on -------------------------------------------------------------------------------------
+# Where slip goes on
+# -------------------------------------------------------------------------------------
 
 
 def swinging(top):
@@ -214,7 +232,9 @@ def test_what_cannot_stick_slips_the_way_it_is_accelerated(top):
 
 
 def at_the_limit(family, shape=SPHERE):
-    """That body, with as much friction as it needs to stick at this instant, and less than it needs later."""
+    """That body, with as much friction as it needs to stick at this instant, and less than it needs
+    later.
+    """
     for sign in (1.0, -1.0):
         axis, momentum = swinging(family(1.0, shape))
         momentum = scaled(sign, momentum)
@@ -257,7 +277,9 @@ FAMILIES = {
 }
 
 
-@pytest.mark.parametrize("shape", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 1.4)], ids=["sphere", "egg"])
+@pytest.mark.parametrize(
+    "shape", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 1.4)], ids=["sphere", "egg"]
+)
 @pytest.mark.parametrize("power", [1, 2])
 @pytest.mark.parametrize("family", FAMILIES)
 def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, shape):
@@ -291,7 +313,9 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
 @pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
 @pytest.mark.parametrize("mode", [Stopping, Loosening], ids=["clock", "phase"])
 def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
-    """Beyond the end of the clock too: the slip goes to zero in a straight line, and what goes with it."""
+    """Beyond the end of the clock too: the slip goes to zero in a straight line, and what goes with
+    it.
+    """
     if mode is Stopping:
         monkeypatch.setattr(Loosening, "slips", lambda *_: None)
     top, axis, momentum, velocity = launched(report(CoulombLaw(0.2)), 1.0, 50.0 / SECOND)
@@ -306,7 +330,9 @@ def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
     times = solution.end - np.append(solution.end - left, solution.end)
     near = times < 1e-8
     assert near.sum() > 5
-    rate = size(creep_rates(*split(numbers[-1]), tuple(numbers[near][0, 6:] / slip[near][0]), top).slip)
+    rate = size(
+        creep_rates(*split(numbers[-1]), tuple(numbers[near][0, 6:] / slip[near][0]), top).slip
+    )
     assert slip[near] == pytest.approx(rate * times[near], rel=1e-6, abs=1e-15)
     last = segment.end_state
     np.testing.assert_allclose(numbers[-1, :6], (*last.axis, *last.momentum), rtol=0, atol=1e-15)
@@ -316,7 +342,9 @@ def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
 @pytest.mark.parametrize("power", [1, 2])
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_driven_motion_gives_the_same_beginning(family, power):
-    """Expanded by an integrator, with the direction given order by order, instead of in plain operators."""
+    """Expanded by an integrator, with the direction given order by order, instead of in plain
+    operators.
+    """
     order = 10
     top, axis, momentum = starting(family, power)
     start = axis, momentum, direction_of_slip(axis, momentum, top)[0]
@@ -337,7 +365,9 @@ def test_the_table_pulls_from_the_first_instant_on_as_it_does_where_slip_begins(
     velocity = velocity_without_slip(axis, momentum, top)
     state = on_table(SlidingState(axis, momentum, velocity), top)
     rules = Bilateral(top)
-    (segment,) = Loosening(top, rules, Vanishing(slip=True), 1).segments(0.0, state, 1.0, make_integrator())
+    (segment,) = Loosening(top, rules, Vanishing(slip=True), 1).segments(
+        0.0, state, 1.0, make_integrator()
+    )
     point = ContactPoint.of(axis, momentum, top)
     true = beginning(point, None, point.turning[:2], (True, False)).wrench
     y = segment.solution(np.array([0.0, 1e-14, 1e-11, 1e-9]))
@@ -379,6 +409,10 @@ def test_where_the_series_is_left_does_not_matter():
             r = creep_rates(tuple(y[:3]), tuple(y[3:6]), tuple(y[6:]), top)
             return [*r.axis, *r.momentum, *r.slip]
 
-        ends.append(solve_ivp(rates, (time, 0.2), [*n, *L, *zeta], "DOP853", rtol=1e-12, atol=1e-15).y[:, -1])
+        ends.append(
+            solve_ivp(rates, (time, 0.2), [*n, *L, *zeta], "DOP853", rtol=1e-12, atol=1e-15).y[
+                :, -1
+            ]
+        )
     assert ends[1] == pytest.approx(ends[0], abs=1e-11)
     assert ends[2] == pytest.approx(ends[0], abs=1e-11)

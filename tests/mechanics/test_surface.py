@@ -65,7 +65,9 @@ def implicit_surface(shape, axis, point):
 
 @given(RINGS, numbers(-0.99, 0.99))
 def test_so_are_those_of_a_ring_on_its_edge(ring, c):
-    assert ring.slope(c) == pytest.approx(derivative(ring.height, c), rel=1e-12, abs=1e-14 * ring.size)
+    assert ring.slope(c) == pytest.approx(
+        derivative(ring.height, c), rel=1e-12, abs=1e-14 * ring.size
+    )
     assert ring.curvature(c) == pytest.approx(derivative(ring.slope, c), rel=1e-12)
 
 
@@ -80,8 +82,12 @@ def test_a_ring_touches_at_the_lowest_point_of_its_tube(ring, axis):
 
 @given(SHAPES, numbers(-1.0, 1.0))
 def test_slope_and_curvature_are_the_derivatives_of_the_support_function(shape, c):
-    assert shape.slope(c) == pytest.approx(derivative(shape.height, c), rel=1e-12, abs=1e-14 * shape.size)
-    assert shape.curvature(c) == pytest.approx(derivative(shape.slope, c), rel=1e-12, abs=1e-14 * shape.size)
+    assert shape.slope(c) == pytest.approx(
+        derivative(shape.height, c), rel=1e-12, abs=1e-14 * shape.size
+    )
+    assert shape.curvature(c) == pytest.approx(
+        derivative(shape.slope, c), rel=1e-12, abs=1e-14 * shape.size
+    )
 
 
 @given(SHAPES, unit_vectors())

@@ -26,7 +26,9 @@ def in_natural_units(state, units):
 
 def in_natural_time(rates, units):
     """The same rates of change of a sliding state, measured in these units."""
-    return SlidingState.unpack([rate * units.time for rate in in_natural_units(rates, units).pack()])
+    return SlidingState.unpack(
+        [rate * units.time for rate in in_natural_units(rates, units).pack()]
+    )
 
 
 @given(tops())
@@ -69,7 +71,9 @@ def test_a_top_moves_the_same_in_its_natural_units(slide):
         contact(s.axis, s.momentum, s.velocity, t) for s, t in ((scaled, small), (state, top))
     )
     weight = units.energy / units.length
-    assert touch.normal_force == pytest.approx(touch_there.normal_force / weight, rel=1e-10, abs=1e-10)
+    assert touch.normal_force == pytest.approx(
+        touch_there.normal_force / weight, rel=1e-10, abs=1e-10
+    )
     assert touch.delassus == pytest.approx(touch_there.delassus * units.mass, rel=1e-10)
     power = touch_there.power * units.time / units.energy
     assert touch.power == pytest.approx(power, rel=1e-10, abs=1e-12)
@@ -87,17 +91,23 @@ def test_energy_and_jellett_scale_with_their_units(slide):
 
 
 @given(
-    tops().flatmap(lambda top: st.tuples(st.just(top), angles(top))), numbers(0.1, 10.0), numbers(0.1, 10.0)
+    tops().flatmap(lambda top: st.tuples(st.just(top), angles(top))),
+    numbers(0.1, 10.0),
+    numbers(0.1, 10.0),
 )
 def test_a_larger_top_under_other_gravity_moves_alike_in_slower_time(launch, larger, stronger):
-    """Lengths times k, gravity times g: times sqrt(k/g), with the friction law's numbers scaled along."""
+    """Lengths times k, gravity times g: times sqrt(k/g), with the friction law's numbers scaled
+    along.
+    """
     top, motion = launch
     slower = math.sqrt(larger / stronger)
     giant = top._replace(
         transverse_inertia=top.transverse_inertia * larger**2,
         axial_inertia=top.axial_inertia * larger**2,
         surface=type(top.surface)(*(length * larger for length in top.surface)),
-        friction=type(top.friction)(*top.friction.coefficients(Units(1.0, 1.0 / larger, 1.0 / slower))),
+        friction=type(top.friction)(
+            *top.friction.coefficients(Units(1.0, 1.0 / larger, 1.0 / slower))
+        ),
         gravity=top.gravity * stronger,
     )
     far = motion._replace(

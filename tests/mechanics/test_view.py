@@ -1,4 +1,6 @@
-"""Euler angles as a view of the state: what they mean, and that nothing is lost on the way there and back."""
+"""Euler angles as a view of the state: what they mean, and that nothing is lost on the way there
+and back.
+"""
 
 import math
 
@@ -47,24 +49,36 @@ POLES = (1e-9, 1e-5, 0.01, math.pi - 0.01, math.pi - 1e-5, math.pi - 1e-9)
 
 @given(launches(st.one_of(st.sampled_from(POLES), numbers(0.01, math.pi - 0.01))))
 def test_angles_survive_the_way_to_the_state_and_back(launch):
-    """Rates at rounding of the fastest of them; what rounding does to a precession grows as 1/sin(theta)."""
+    """Rates at rounding of the fastest of them; what rounding does to a precession grows as
+    1/sin(theta).
+    """
     top, given_angles = launch
     back = angles_of(state_from_angles(given_angles, top, math), top)
     sine = math.sin(given_angles.tilt)
     fastest = max(map(abs, (given_angles.tilt_rate, given_angles.precession, given_angles.spin)))
-    swing = abs(given_angles.tilt_rate) + (abs(given_angles.precession) + abs(given_angles.spin)) * sine
+    swing = (
+        abs(given_angles.tilt_rate) + (abs(given_angles.precession) + abs(given_angles.spin)) * sine
+    )
     reach = 2.0 * max(map(top.surface.height, (-1.0, 0.0, 1.0)))
     assert back.tilt == pytest.approx(given_angles.tilt, rel=1e-14)
     assert close(back.azimuth, given_angles.azimuth, 1e-14)
     assert close(
-        back.tilt_rate, given_angles.tilt_rate, 1e-14 * (fastest * sine + abs(given_angles.tilt_rate))
+        back.tilt_rate,
+        given_angles.tilt_rate,
+        1e-14 * (fastest * sine + abs(given_angles.tilt_rate)),
     )
     assert close(
-        back.precession, given_angles.precession, 1e-14 * (fastest + abs(given_angles.tilt_rate) / sine)
+        back.precession,
+        given_angles.precession,
+        1e-14 * (fastest + abs(given_angles.tilt_rate) / sine),
     )
     assert close(back.spin, given_angles.spin, 1e-14 * fastest)
-    assert close(back.slip[0], given_angles.slip[0], 1e-13 * (reach * swing + math.hypot(*given_angles.slip)))
-    assert close(back.slip[1], given_angles.slip[1], 1e-13 * (reach * swing + math.hypot(*given_angles.slip)))
+    assert close(
+        back.slip[0], given_angles.slip[0], 1e-13 * (reach * swing + math.hypot(*given_angles.slip))
+    )
+    assert close(
+        back.slip[1], given_angles.slip[1], 1e-13 * (reach * swing + math.hypot(*given_angles.slip))
+    )
 
 
 @pytest.mark.parametrize("tilt", POLES)
@@ -73,7 +87,9 @@ def test_precession_close_to_the_vertical_is_as_precise_as_the_spin(tilt):
     for azimuth in (-2.0, 0.3, 1.0):
         launch = Angles(tilt, 0.0, azimuth, precession=3.0, spin=155.0, slip=(0.0, 0.0))
         state = state_from_angles(launch, SMALL_TOP, math)
-        assert view.precession_rate(state.axis, state.momentum, SMALL_TOP) == pytest.approx(3.0, abs=1e-12)
+        assert view.precession_rate(state.axis, state.momentum, SMALL_TOP) == pytest.approx(
+            3.0, abs=1e-12
+        )
 
 
 @given(launches(numbers(0.01, math.pi - 0.01)))
@@ -90,7 +106,9 @@ def test_angles_are_what_they_say(launch):
     around = np.array([-math.sin(azimuth), math.cos(azimuth), 0.0])
     expected = given_angles.tilt_rate * towards + given_angles.precession * math.sin(tilt) * around
     fastest = max(map(abs, (given_angles.tilt_rate, given_angles.precession, given_angles.spin)))
-    assert axis_rate(state.axis, state.momentum, top) == pytest.approx(expected, abs=1e-13 * fastest)
+    assert axis_rate(state.axis, state.momentum, top) == pytest.approx(
+        expected, abs=1e-13 * fastest
+    )
     omega = angular_velocity(state.axis, state.momentum, top)
     assert dot(omega, state.axis) == pytest.approx(given_angles.spin, abs=1e-13 * fastest)
     inclined = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
@@ -108,9 +126,13 @@ def test_momentum_is_inertia_times_angular_velocity(slide):
     omega = angular_velocity(state.axis, state.momentum, top)
     along = dot(omega, state.axis)
     difference = (top.axial_inertia - top.transverse_inertia) * along
-    momentum = [top.transverse_inertia * w + difference * n for w, n in zip(omega, state.axis, strict=True)]
+    momentum = [
+        top.transverse_inertia * w + difference * n for w, n in zip(omega, state.axis, strict=True)
+    ]
     assert momentum == pytest.approx(state.momentum, rel=1e-12, abs=1e-13 * length(state.momentum))
-    assert axial_spin(state.axis, state.momentum, top) == pytest.approx(along, abs=1e-13 * length(omega))
+    assert axial_spin(state.axis, state.momentum, top) == pytest.approx(
+        along, abs=1e-13 * length(omega)
+    )
 
 
 @given(unit_vectors(shortest_sine=1e-9), numbers(-1.0, 1.0), numbers(-1.0, 1.0))

@@ -29,11 +29,24 @@ from tippetop.report.gallery import DRAWN, PLATES
 from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of
 from tippetop.report.tolerance import Tolerance, half_last_digit
 
-IN_WORDS = {"eq-2.7-mu-unit", "table-1-mu-unit", "eq-b.1", "section-5-small-mu", "dry-viscous-limit"}
+IN_WORDS = {
+    "eq-2.7-mu-unit",
+    "table-1-mu-unit",
+    "eq-b.1",
+    "section-5-small-mu",
+    "dry-viscous-limit",
+}
 """Claims whose number the sentence does not print: powers, and a ratio of one."""
 
 BY_OTHER_RUNS = {
-    *("sec3-no-nutation", "sec3-friction", "fig08-settles", "fig08-block", "eq-2.16", "eq-2.16-third"),
+    *(
+        "sec3-no-nutation",
+        "sec3-friction",
+        "fig08-settles",
+        "fig08-block",
+        "eq-2.16",
+        "eq-2.16-third",
+    ),
     "why-flip-law",
 }
 """Claims that are decided by other runs than those of the figure that they stand beside."""
@@ -41,7 +54,17 @@ BY_OTHER_RUNS = {
 BESIDE_ANOTHER = {"sec3-no-nutation", "table-1-inertia", "summary-large-mu", "sec4-may-fly"}
 """Claims beside another figure than the one that the report makes them of."""
 
-FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit", "verdict", "note"}
+FIELDS = {
+    "id",
+    "source",
+    "statement",
+    "reported",
+    "listing",
+    "converged",
+    "unit",
+    "verdict",
+    "note",
+}
 
 
 def judged(finding: Finding, printed: str = "", tolerance: Tolerance | None = None) -> Judgement:
@@ -53,7 +76,8 @@ def judged(finding: Finding, printed: str = "", tolerance: Tolerance | None = No
 
 
 @pytest.mark.parametrize(
-    ("printed", "half"), [("7.4", 0.05), ("170", 0.5), ("-0.985", 0.0005), ("5.62", 0.005), ("0", 0.5)]
+    ("printed", "half"),
+    [("7.4", 0.05), ("170", 0.5), ("-0.985", 0.0005), ("5.62", 0.005), ("0", 0.5)],
 )
 def test_tolerance_is_half_of_the_last_printed_digit(printed: str, half: float) -> None:
     assert half_last_digit(printed).value == pytest.approx(half)
@@ -91,7 +115,9 @@ def test_rule_for_numbers(
         (False, False, Verdict.CORRECTED),
     ],
 )
-def test_rule_for_what_is_true_or_false(listing: bool | None, converged: bool, verdict: Verdict) -> None:
+def test_rule_for_what_is_true_or_false(
+    listing: bool | None, converged: bool, verdict: Verdict
+) -> None:
     assert judged(Finding(listing, converged, "")).verdict is verdict
 
 
@@ -140,9 +166,13 @@ def test_claims_are_complete(claim: Claim) -> None:
 
 @pytest.mark.parametrize("claim", CLAIMS.values(), ids=CLAIMS)
 def test_a_printed_number_stands_in_the_sentence(claim: Claim) -> None:
-    """But for what the sentence says in words: that it is nothing, or that the axis is turned over."""
+    """But for what the sentence says in words: that it is nothing, or that the axis is turned
+    over.
+    """
     if claim.number not in ("", "0", "pi") and claim.id not in IN_WORDS:
-        assert re.search(rf"(?<![\d.]){re.escape(claim.number)}(?![\d.]*\d)", claim.quote or claim.text)
+        assert re.search(
+            rf"(?<![\d.]){re.escape(claim.number)}(?![\d.]*\d)", claim.quote or claim.text
+        )
 
 
 @pytest.mark.parametrize(
@@ -192,13 +222,17 @@ def test_every_figure_tells_that_it_is_drawn_from_data_and_not_into_panels() -> 
 def test_what_draws_into_other_panels_than_there_are_is_refused(rows: int, columns: int) -> None:
     def two(left: Axes, right: Axes, data: xr.Dataset) -> None: ...
 
-    with pytest.raises(TypeError, match=f"two draws into 2 panels, and the figure has {rows * columns}"):
+    with pytest.raises(
+        TypeError, match=f"two draws into 2 panels, and the figure has {rows * columns}"
+    ):
         drawn(3.0, rows, columns)(two)
 
 
 def test_words_have_no_unit() -> None:
     found = dataset(
-        {"top": ["a", "b"]}, group=(["I", "II"], None, "group", "top"), size=([1.0, 2.0], "m", "size", "top")
+        {"top": ["a", "b"]},
+        group=(["I", "II"], None, "group", "top"),
+        size=([1.0, 2.0], "m", "size", "top"),
     )
     assert found["group"].attrs == {"long_name": "group"}
     assert found["size"].attrs["units"] == "m"

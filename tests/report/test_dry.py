@@ -1,4 +1,6 @@
-"""The section "Friction": its numbers against others and limits, and verdicts that follow the data."""
+"""The section "Friction": its numbers against others and limits, and verdicts that follow the
+data.
+"""
 
 import math
 
@@ -56,7 +58,9 @@ def test_cohens_steps_follow_the_slide_to_fourth_order() -> None:
     assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx([4.0, 4.0], abs=0.4)
 
 
-def test_cohens_centre_of_mass_rests_at_launch_and_its_slip_ends(computed: dict[str, xr.Dataset]) -> None:
+def test_cohens_centre_of_mass_rests_at_launch_and_its_slip_ends(
+    computed: dict[str, xr.Dataset],
+) -> None:
     start, data = COHEN.start(), computed["dry-cohen"]
     assert np.abs(start.velocity).max() < 1e-15 * natural_units(COHEN.top).speed
     turning = angular_velocity(start.axis, start.momentum, COHEN.top)
@@ -75,7 +79,9 @@ def test_smoothed_friction_takes_for_ever_in_the_limit(computed: dict[str, xr.Da
     assert np.isnan(data["exact_turns"])
 
 
-def test_patches_turn_tops_over_if_they_are_neither_small_nor_large(computed: dict[str, xr.Dataset]) -> None:
+def test_patches_turn_tops_over_if_they_are_neither_small_nor_large(
+    computed: dict[str, xr.Dataset],
+) -> None:
     data = computed["dry-patch"]
     fast = data["turning_time"].isel(spin=-1)
     assert 3e-4 < float(fast["radius"][int(np.nanargmin(fast))]) < 2e-3
@@ -97,7 +103,9 @@ def test_the_coefficient_of_a_patch_is_the_slope_of_its_law(pressure: str) -> No
         assert viscous_coefficient(0.3, 5e-4, spin) == pytest.approx(slope, rel=1e-12)
 
 
-def test_a_patch_creeps_as_viscous_friction_and_turns_over_nearly_so(computed: dict[str, xr.Dataset]) -> None:
+def test_a_patch_creeps_as_viscous_friction_and_turns_over_nearly_so(
+    computed: dict[str, xr.Dataset],
+) -> None:
     data = computed["dry-viscous"]
     assert data["growth_ratio"].values == pytest.approx(1.0, rel=1e-9)
     misses = abs(np.log(data["patch_time"] / data["viscous_time"])).mean("coefficient")
@@ -137,7 +145,11 @@ def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) 
     ],
 )
 def test_verdicts_follow_the_data(
-    computed: dict[str, xr.Dataset], name: str, experiment: str, change: dict[str, float], verdict: Verdict
+    computed: dict[str, xr.Dataset],
+    name: str,
+    experiment: str,
+    change: dict[str, float],
+    verdict: Verdict,
 ) -> None:
     assert_judged_otherwise(computed, name, experiment, change, verdict)
 
@@ -146,7 +158,9 @@ FRICTION = [plate for plate in PLATES.values() if plate.section == "Friction"]
 
 
 @pytest.mark.parametrize("plate", FRICTION, ids=lambda plate: plate.id)
-def test_every_figure_is_drawn_from_quick_data(computed: dict[str, xr.Dataset], plate: Plate) -> None:
+def test_every_figure_is_drawn_from_quick_data(
+    computed: dict[str, xr.Dataset], plate: Plate
+) -> None:
     assert_drawn(computed, plate)
 
 

@@ -37,15 +37,24 @@ def verdict(computed: dict[str, xr.Dataset], name: str) -> Verdict:
     return CLAIMS[name].judge(computed, quick=True).verdict
 
 
-def test_torque_of_2_7_has_the_wrong_sign_and_counts_the_weight(computed: dict[str, xr.Dataset]) -> None:
+def test_torque_of_2_7_has_the_wrong_sign_and_counts_the_weight(
+    computed: dict[str, xr.Dataset],
+) -> None:
     check = computed["printed-equations"]
     assert float(check["torque"]) == pytest.approx(float(check["torque_corrected"]), rel=1e-6)
-    assert float(check["torque_listing"]) == pytest.approx(float(check["torque_corrected"]), rel=1e-9)
-    assert float(check["torque_printed"]) == pytest.approx(-float(check["torque_turned"]), rel=1e-12)
-    # The weight alone parts the second component of a x F from the torque: its arm is alpha R sin(theta).
+    assert float(check["torque_listing"]) == pytest.approx(
+        float(check["torque_corrected"]), rel=1e-9
+    )
+    assert float(check["torque_printed"]) == pytest.approx(
+        -float(check["torque_turned"]), rel=1e-12
+    )
+    # The weight alone parts the second component of a x F from the torque: its arm is alpha R
+    # sin(theta).
     state = simulate(report_problem(), 5.0, samples=2).isel(time=-1)
     moment = 0.02 * 9.8 * 0.3 * 0.02 * math.sin(float(state["theta"]))
-    assert abs(float(check["torque_turned"] - check["torque_corrected"])) == pytest.approx(moment, rel=1e-6)
+    assert abs(float(check["torque_turned"] - check["torque_corrected"])) == pytest.approx(
+        moment, rel=1e-6
+    )
     assert float(check["power"]) < 0 < float(check["power_printed"])
     assert verdict(computed, "eq-2.7") is Verdict.CORRECTED
 
@@ -63,7 +72,11 @@ def test_steady_states_obey_2_16_and_2_17_for_every_body(computed: dict[str, xr.
     everything = computed | {"run-155": computed["run-50"]}
     for name in ("eq-2.16", "eq-2.17-any-body", "eq-2.17", "sec2-no-slip"):
         assert verdict(everything, name) is Verdict.REPRODUCED
-    for left, name in (("phi_ddot", "eq-2.16"), ("residual_216", "eq-2.16"), ("slip_rate", "sec2-no-slip")):
+    for left, name in (
+        ("phi_ddot", "eq-2.16"),
+        ("residual_216", "eq-2.16"),
+        ("slip_rate", "sec2-no-slip"),
+    ):
         spoilt = everything | {"steady-bodies": steady.assign({left: steady[left] + 1e-4})}
         assert verdict(spoilt, name) is Verdict.CORRECTED
     assert verdict(computed, "eq-2.16-third") is Verdict.CORRECTED
@@ -72,7 +85,8 @@ def test_steady_states_obey_2_16_and_2_17_for_every_body(computed: dict[str, xr.
 
 
 @pytest.mark.parametrize(
-    ("name", "experiment"), [("eq-2.1", "rotation"), ("eq-2.6", "rotation"), ("eq-2.8", "printed-equations")]
+    ("name", "experiment"),
+    [("eq-2.1", "rotation"), ("eq-2.6", "rotation"), ("eq-2.8", "printed-equations")],
 )
 def test_equations_that_hold_are_told_from_those_that_do_not(
     computed: dict[str, xr.Dataset], name: str, experiment: str
@@ -91,7 +105,9 @@ def test_only_s_per_m_keeps_the_motion_when_metres_become_centimetres(
     assert float(misses.sel(power_of_length=1)) > 1e-3
 
 
-def test_only_s_to_the_minus_2_keeps_it_when_seconds_become_tenths(computed: dict[str, xr.Dataset]) -> None:
+def test_only_s_to_the_minus_2_keeps_it_when_seconds_become_tenths(
+    computed: dict[str, xr.Dataset],
+) -> None:
     check = computed["units"]
     misses = abs(check["theta_in_tenths"] - check["theta"])
     assert float(misses.sel(power_of_time=-2)) < 1e-12
@@ -112,7 +128,9 @@ def test_orders_are_those_of_the_textbooks(computed: dict[str, xr.Dataset]) -> N
     assert float(order["order_ode45_in_all"]) == pytest.approx(5.0, abs=0.4)
 
 
-def test_b1_as_printed_is_of_first_order_and_mended_of_fourth(computed: dict[str, xr.Dataset]) -> None:
+def test_b1_as_printed_is_of_first_order_and_mended_of_fourth(
+    computed: dict[str, xr.Dataset],
+) -> None:
     order = computed["order"]
     assert float(order["order_printed_in_all"]) == pytest.approx(1.0, abs=0.1)
     assert float(order["order_printed_in_a_step"]) == pytest.approx(2.0, abs=0.1)
@@ -131,7 +149,9 @@ def test_ode45_is_a_pair_of_orders_4_and_5(computed: dict[str, xr.Dataset]) -> N
     assert verdict(computed | {"order": alone}, "section-3-method") is Verdict.CORRECTED
 
 
-def test_only_the_inertias_of_the_listing_give_the_end_of_fig_5(computed: dict[str, xr.Dataset]) -> None:
+def test_only_the_inertias_of_the_listing_give_the_end_of_fig_5(
+    computed: dict[str, xr.Dataset],
+) -> None:
     assert verdict(computed, "table-1-inertia") is Verdict.CORRECTED
     run, other = computed["run-50"], computed["run-50-table-1"]
     assert abs(float(run["end_omega3"] - other["end_omega3"])) > 1.0
@@ -146,7 +166,8 @@ def test_both_methods_are_in_a_comparison(computed: dict[str, xr.Dataset]) -> No
 
 
 def test_evaluations_count_those_for_jacobians() -> None:
-    # 7 variables: every Jacobian by differences costs 7 evaluations more than the solver itself reports.
+    # 7 variables: every Jacobian by differences costs 7 evaluations more than the solver itself
+    # reports.
     problem = report_problem(10.0, mu=100.0)
     made = {method: effort(problem, method, 0.05) for method in ("radau", "bdf", "ode45")}
     assert made["radau"].evaluations > 0
@@ -166,7 +187,9 @@ def test_the_end_of_fig_5_is_one_of_a_run_cut_short(computed: dict[str, xr.Datas
     assert verdict(computed | {"run-50-windows": never}, "fig05-end") is Verdict.CORRECTED
 
 
-def test_what_the_report_calls_nutation_is_the_growth_of_the_tilt(computed: dict[str, xr.Dataset]) -> None:
+def test_what_the_report_calls_nutation_is_the_growth_of_the_tilt(
+    computed: dict[str, xr.Dataset],
+) -> None:
     assert verdict(computed, "sec3-no-nutation") is Verdict.REPRODUCED
     slow = computed["slow-spins"]
     assert (slow["swings"] > 1).all(), "in the usual sense it nutates"
@@ -175,7 +198,9 @@ def test_what_the_report_calls_nutation_is_the_growth_of_the_tilt(computed: dict
         assert verdict(computed | {"slow-spins": grown}, "sec3-no-nutation") is Verdict.EXPLAINED
 
 
-def test_the_axis_goes_round_the_pole_before_it_passes_beside_it(computed: dict[str, xr.Dataset]) -> None:
+def test_the_axis_goes_round_the_pole_before_it_passes_beside_it(
+    computed: dict[str, xr.Dataset],
+) -> None:
     for name in ("fig08-around-pi", "fig08-rapid"):
         assert verdict(computed, name) is Verdict.REPRODUCED
     run = computed["run-mu-100"]
@@ -260,7 +285,9 @@ def test_a_law_is_judged_at_the_main_spin_and_proportion_where_the_top_stays(
 def test_one_threshold_serves_for_both_times_of_turning_over() -> None:
     def run(name: str, times: list[float]) -> xr.Dataset:
         both = {f"arrival_time{suffix}": ("within", times) for suffix in ("", "_listing")}
-        return xr.Dataset({**both, "arrives": times[0]}, {"within": [0.01, 0.05]}, {"experiment": name})
+        return xr.Dataset(
+            {**both, "arrives": times[0]}, {"within": [0.01, 0.05]}, {"experiment": name}
+        )
 
     data = {"run-155": run("run-155", [7.6, 7.2]), "run-50": run("run-50", [9.8, 9.0])}
     for name in ("fig04-flip-time", "fig05-flip-time"):

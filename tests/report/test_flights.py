@@ -1,4 +1,6 @@
-"""Launches that leave the table: the onset, what is read off the flights, and what is said of them."""
+"""Launches that leave the table: the onset, what is read off the flights, and what is said of
+them.
+"""
 
 import math
 
@@ -67,7 +69,8 @@ def judge(data: dict[str, xr.Dataset], name: str) -> Judgement:
 
 
 def test_onset_is_where_the_first_scanned_spin_that_lifts_says() -> None:
-    # Lift-off at 37 and more, except from 52 to 78: the scan sees 40, 50 and 80, and takes the first.
+    # Lift-off at 37 and more, except from 52 to 78: the scan sees 40, 50 and 80, and takes the
+    # first.
     def times(spin: float) -> float:
         return 1.0 if spin >= 37.0 and not 52.0 < spin < 78.0 else math.nan
 
@@ -103,11 +106,18 @@ def test_readings_are_those_of_the_flights(computed: dict[str, xr.Dataset]) -> N
 def test_a_launch_below_the_onset_has_no_flights(computed: dict[str, xr.Dataset]) -> None:
     slow = computed["flights"].sel(restitution=0.0, spin=160.0)
     assert int(slow["flights"]) == 0
-    assert float(slow["airborne_time"]) == float(slow["last_touchdown"]) == float(slow["highest_gap"]) == 0.0
+    assert (
+        float(slow["airborne_time"])
+        == float(slow["last_touchdown"])
+        == float(slow["highest_gap"])
+        == 0.0
+    )
     assert math.isnan(float(slow["first_lift_off"]))
 
 
-def test_comparison_goes_on_in_flight_only_where_there_is_one(computed: dict[str, xr.Dataset]) -> None:
+def test_comparison_goes_on_in_flight_only_where_there_is_one(
+    computed: dict[str, xr.Dataset],
+) -> None:
     run = computed["run-175"]
     before = run.sel(time=slice(None, float(run["lift_off_time"])))
     for name in ("theta", "normal_force", "energy"):
@@ -152,7 +162,9 @@ def test_one_launch_that_does_not_turn_over_would_be_seen(
     assert "still" in judged.finding.note
 
 
-def test_what_the_listing_leaves_out_is_told_as_news_if_it_cures(computed: dict[str, xr.Dataset]) -> None:
+def test_what_the_listing_leaves_out_is_told_as_news_if_it_cures(
+    computed: dict[str, xr.Dataset],
+) -> None:
     assert "commented out" in judge(computed, "sum-abnormal").finding.news
     lines = computed["listing-capped"]
     useless = computed | {"listing-capped": lines.assign(final_theta_capped=lines["final_theta"])}
@@ -170,7 +182,9 @@ def test_a_rise_of_the_energy_would_be_seen(computed: dict[str, xr.Dataset]) -> 
 
 def test_a_top_that_falls_keeps_its_energy(computed: dict[str, xr.Dataset]) -> None:
     run = computed["run-175"]
-    assert judge(computed, "fig10-gain").finding.converged == 0.0, "a table that only pushes adds nothing"
+    assert judge(computed, "fig10-gain").finding.converged == 0.0, (
+        "a table that only pushes adds nothing"
+    )
     assert "changes the energy by nothing" in judge(computed, "fig10-by-falling").finding.right
     weightless = run.assign(energy_flight=run["energy_flight"] + 1e-6 * run["time"])
     judged = judge(computed | {"run-175": weightless}, "fig10-by-falling")
@@ -203,10 +217,15 @@ def test_huge_spins_are_judged_at_the_reports_own_launch(
         assert words in judged.finding.note
     scan = onsets["onset-tilt"].copy(deep=True)
     scan["first_lift_off"][0, 1] = math.nan
-    assert judge(computed | onsets | {"onset-tilt": scan}, "sec4-huge-spin").verdict is Verdict.EXPLAINED
+    assert (
+        judge(computed | onsets | {"onset-tilt": scan}, "sec4-huge-spin").verdict
+        is Verdict.EXPLAINED
+    )
 
 
-@pytest.mark.parametrize("name", ["fig09", "fig10", "fig11", "fig12", "onset-mu", "onset-tilt", "flights"])
+@pytest.mark.parametrize(
+    "name", ["fig09", "fig10", "fig11", "fig12", "onset-mu", "onset-tilt", "flights"]
+)
 def test_figures_can_be_drawn(
     computed: dict[str, xr.Dataset], onsets: dict[str, xr.Dataset], name: str
 ) -> None:

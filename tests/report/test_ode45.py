@@ -25,7 +25,10 @@ def test_meets_its_tolerance_on_a_circle() -> None:
 
 def test_error_follows_the_tolerance() -> None:
     errors = [
-        abs(ode45(circle, 10.0, np.array([1.0, 0.0]), tolerance, 1e-12).states[-1, 1] - math.sin(10.0))
+        abs(
+            ode45(circle, 10.0, np.array([1.0, 0.0]), tolerance, 1e-12).states[-1, 1]
+            - math.sin(10.0)
+        )
         for tolerance in (1e-3, 1e-6, 1e-9)
     ]
     assert errors[0] > 10 * errors[1] > 100 * errors[2]
@@ -69,14 +72,16 @@ def test_lines_that_are_commented_out_keep_the_table_from_pulling() -> None:
     problem = report_problem()
     assert published_normal_force(state, problem.top, math) < 0
     pulled, pushed = (
-        listing_rates(problem, unilateral=unilateral).rates(state, ()) for unilateral in (False, True)
+        listing_rates(problem, unilateral=unilateral).rates(state, ())
+        for unilateral in (False, True)
     )
     assert pulled[4] != pytest.approx(0.0, abs=1e-6)
     assert pushed[4] == 0.0
     gentle = (0.7, 0.0, 0.0, 2.0, 3.0, 0.1, 0.1)
     assert published_normal_force(gentle, problem.top, math) > 0
     pulled, pushed = (
-        listing_rates(problem, unilateral=unilateral).rates(gentle, ()) for unilateral in (False, True)
+        listing_rates(problem, unilateral=unilateral).rates(gentle, ())
+        for unilateral in (False, True)
     )
     assert pulled == pushed
 
@@ -94,5 +99,7 @@ def test_listing_follows_the_true_motion_roughly() -> None:
 
 
 def test_launch_state_is_the_launch() -> None:
-    problem = report_problem(120.0, tilt=0.3).replace({"launch.slip": (0.1, -0.2), "launch.precession": 4.0})
+    problem = report_problem(120.0, tilt=0.3).replace(
+        {"launch.slip": (0.1, -0.2), "launch.precession": 4.0}
+    )
     assert launch_state(problem).tolist() == [0.3, 0.0, 0.0, 4.0, 120.0, 0.1, -0.2]

@@ -14,7 +14,9 @@ TIMES = np.linspace(0.0, 10.0, 100_001)
 @pytest.mark.parametrize("within", [0.1, 0.01])
 def test_flip_time_of_an_exponential(within: float) -> None:
     theta = math.pi * (1.0 - np.exp(-3.0 * TIMES))
-    assert flip_time(TIMES, theta, within) == pytest.approx(math.log(math.pi / within) / 3.0, abs=1e-3)
+    assert flip_time(TIMES, theta, within) == pytest.approx(
+        math.log(math.pi / within) / 3.0, abs=1e-3
+    )
 
 
 def test_flip_time_is_the_first_even_if_the_tilt_leaves_again() -> None:
@@ -55,7 +57,11 @@ def test_power_law_is_found_again() -> None:
 
 @pytest.mark.parametrize(
     ("mu", "times"),
-    [([0.1, 0.2], [2.0, 1.0]), ([0.2, 0.2, 0.2], [1.0, 1.0, 1.1]), ([0.1, 0.2, 0.3], [1.0, 0.0, 0.5])],
+    [
+        ([0.1, 0.2], [2.0, 1.0]),
+        ([0.2, 0.2, 0.2], [1.0, 1.0, 1.1]),
+        ([0.1, 0.2, 0.3], [1.0, 0.0, 0.5]),
+    ],
 )
 def test_no_power_law_is_fitted_where_there_is_none(mu: list[float], times: list[float]) -> None:
     assert np.isnan(power_law(np.array(mu), np.array(times))).all()

@@ -1,4 +1,6 @@
-"""The section "Real tops": its numbers against other solvers and closed forms, and verdicts that follow."""
+"""The section "Real tops": its numbers against other solvers and closed forms, and verdicts that
+follow.
+"""
 
 import math
 
@@ -28,7 +30,9 @@ def computed() -> dict[str, xr.Dataset]:
     return {f"real-{name}": EXPERIMENTS[f"real-{name}"].run(quick=True) for name in NAMES}
 
 
-def test_the_top_with_a_stem_does_what_an_independent_solver_finds(computed: dict[str, xr.Dataset]) -> None:
+def test_the_top_with_a_stem_does_what_an_independent_solver_finds(
+    computed: dict[str, xr.Dataset],
+) -> None:
     data = computed["real-leine"].isel(pressure=0)
     assert float(data["stem"]) == pytest.approx(1.37104325139, abs=1e-8)
     assert float(data["back"]) == pytest.approx(4.55045294, abs=1e-8)
@@ -38,7 +42,9 @@ def test_the_top_with_a_stem_does_what_an_independent_solver_finds(computed: dic
 
 
 def test_time_stepping_comes_to_our_run_at_first_order(computed: dict[str, xr.Dataset]) -> None:
-    """It shares no equation with the runs; before the rocking its errors are as long as its steps."""
+    """It shares no equation with the runs; before the rocking its errors are as long as its
+    steps.
+    """
     data = computed["real-stepping"]
     for name, most in (("stem", 15.0), ("back", 300.0)):
         off = np.abs(data[name].values - float(data[f"exact_{name}"]))[1:]
@@ -71,7 +77,9 @@ def test_rolling_around_the_centre_is_known_for_disks_and_balls() -> None:
     balls = disk.replace({"body": HURRICANE_BALLS}).top
     for tilt in (1.2, 1.5, 1.57):
         rate = math.sqrt(9.81 / (0.01 * (2 / 5 - math.cos(tilt))))
-        assert resting_center(tilt, balls) == pytest.approx((rate, rate * (1 + math.cos(tilt))), rel=1e-11)
+        assert resting_center(tilt, balls) == pytest.approx(
+            (rate, rate * (1 + math.cos(tilt))), rel=1e-11
+        )
     assert resting_center(1.0, balls) is None, "their tilt is never as small"
 
 
@@ -137,7 +145,9 @@ REAL = [plate for plate in PLATES.values() if plate.section == "Real tops"]
 
 
 @pytest.mark.parametrize("plate", REAL, ids=lambda plate: plate.id)
-def test_every_figure_is_drawn_from_quick_data(computed: dict[str, xr.Dataset], plate: Plate) -> None:
+def test_every_figure_is_drawn_from_quick_data(
+    computed: dict[str, xr.Dataset], plate: Plate
+) -> None:
     assert_drawn(computed, plate)
 
 

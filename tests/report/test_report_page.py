@@ -13,7 +13,8 @@ from tippetop.report.selection import select
 pytestmark = pytest.mark.browser
 
 SHOWN = (
-    "() => [...document.querySelectorAll('.claim')].filter((one) => one.offsetParent).map((one) => one.id)"
+    "() => [...document.querySelectorAll('.claim')].filter((one) => one.offsetParent).map((one) =>"
+    " one.id)"
 )
 READY = "document.querySelector('#filter') !== null"
 
@@ -26,13 +27,19 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("page") / "out"
     done = reproduce(folder, only="fig13", quick=True, workers=1)
     text = render(
-        select("fig13").plates, done.judgements, folder / "figures", player=playable(True), quick=True
+        select("fig13").plates,
+        done.judgements,
+        folder / "figures",
+        player=playable(True),
+        quick=True,
     )
     (folder / "index.html").write_text(text, encoding="utf-8")
     return Path(folder / "index.html").as_uri()
 
 
-def test_statements_are_filtered_by_verdict_from_the_keyboard(address: str, visit: Callable) -> None:
+def test_statements_are_filtered_by_verdict_from_the_keyboard(
+    address: str, visit: Callable
+) -> None:
     visitor = visit().open(address, READY)
     everything = visitor.ask(SHOWN)
     assert everything == ["claim-eq-2.17-exception", "claim-fig13-upright"]
@@ -62,8 +69,12 @@ def test_the_run_plays_where_it_stands_once_it_is_asked_to(address: str, visit: 
     ("width", "scheme"), [(1280, "light"), (1280, "dark"), (390, "light"), (390, "dark")]
 )
 def test_everyone_can_read_it(address: str, visit: Callable, width: int, scheme: str) -> None:
-    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe comes with the test extra")
-    visitor = visit(viewport={"width": width, "height": 800}, color_scheme=scheme).open(address, READY)
+    axe = pytest.importorskip(
+        "axe_playwright_python.sync_playwright", reason="axe comes with the test extra"
+    )
+    visitor = visit(viewport={"width": width, "height": 800}, color_scheme=scheme).open(
+        address, READY
+    )
     assert visitor.ask("document.documentElement.scrollWidth") <= width
     visitor.page.locator("#stage").scroll_into_view_if_needed()
     visitor.wait("() => globalThis.tippetopPlayer?.frames > 0")

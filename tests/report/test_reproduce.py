@@ -18,7 +18,18 @@ from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.reproduce import reproduce
 
-FIELDS = {"id", "source", "statement", "reported", "listing", "converged", "unit", "verdict", "note", "quick"}
+FIELDS = {
+    "id",
+    "source",
+    "statement",
+    "reported",
+    "listing",
+    "converged",
+    "unit",
+    "verdict",
+    "note",
+    "quick",
+}
 
 
 class Links(HTMLParser):
@@ -39,7 +50,9 @@ class Links(HTMLParser):
         self.loaded += [values["src"]] if values.get("src") else []
         self.links += [values["href"]] if values.get("href") else []
         self.names += [values["id"]] if values.get("id") else []
-        if (tag == "img" and values.get("alt") is None) or (tag == "svg" and not values.get("aria-label")):
+        if (tag == "img" and values.get("alt") is None) or (
+            tag == "svg" and not values.get("aria-label")
+        ):
             self.silent.append(str(values))
 
 
@@ -47,7 +60,9 @@ def check_page(folder: Path) -> Links:
     """The page is whole by itself, and none of its links leads nowhere."""
     text = (folder / "index.html").read_text(encoding="utf-8")
     page = Links(text)
-    assert all(source.startswith(("data:image/svg+xml;", "data:image/webp;")) for source in page.loaded)
+    assert all(
+        source.startswith(("data:image/svg+xml;", "data:image/webp;")) for source in page.loaded
+    )
     assert not page.tags & {"link", "iframe"}
     assert "@import" not in text
     assert "url(" not in text
@@ -79,7 +94,9 @@ def fig13(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The whole report in its quick version: that which REPORT names, of this code, or a new one."""
+    """The whole report in its quick version: that which REPORT names, of this code, or a new
+    one.
+    """
     if made := os.environ.get("REPORT"):
         return Path(made)
     folder = tmp_path_factory.mktemp("whole") / "out"
@@ -89,7 +106,13 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_one_figure_with_its_data_and_claims(fig13: Path) -> None:
     files = sorted(str(path.relative_to(fig13)) for path in fig13.rglob("*") if path.is_file())
-    assert files == ["claims.json", "data/fig13.nc", "figures/fig13.png", "figures/fig13.svg", "index.html"]
+    assert files == [
+        "claims.json",
+        "data/fig13.nc",
+        "figures/fig13.png",
+        "figures/fig13.svg",
+        "index.html",
+    ]
     records = json.loads((fig13 / "claims.json").read_text(encoding="utf-8"))
     assert [record["id"] for record in records] == ["fig13-upright", "eq-2.17-exception"]
     assert (fig13 / "figures/fig13.png").read_bytes().startswith(b"\x89PNG")
@@ -104,7 +127,9 @@ def test_page_stands_alone(fig13: Path) -> None:
 
 def test_page_opens_with_what_is_wrong_and_what_is_right(fig13: Path) -> None:
     text = (fig13 / "index.html").read_text(encoding="utf-8")
-    wrong, right, rest = (text.index(f'<h2 id="{name}"') for name in ("errors", "sound", "section-2.3"))
+    wrong, right, rest = (
+        text.index(f'<h2 id="{name}"') for name in ("errors", "sound", "section-2.3")
+    )
     assert wrong < right < rest
     assert "0\\neq\\theta\\neq\\pi" in text[wrong:right]
     assert 'href="#claim-fig13-upright"' in text[right:rest]
@@ -139,7 +164,10 @@ def test_every_verdict_has_a_filter(fig13: Path) -> None:
 
 def test_quick_run_says_so(fig13: Path) -> None:
     assert "Quick run" in (fig13 / "index.html").read_text(encoding="utf-8")
-    assert all(record["quick"] for record in json.loads((fig13 / "claims.json").read_text(encoding="utf-8")))
+    assert all(
+        record["quick"]
+        for record in json.loads((fig13 / "claims.json").read_text(encoding="utf-8"))
+    )
 
 
 def test_results_are_not_overwritten_unasked(tmp_path: Path) -> None:

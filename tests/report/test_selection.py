@@ -36,7 +36,9 @@ def test_figures_have_many_names(given: str) -> None:
     assert select(given).plates[0].id == "fig06"
 
 
-@pytest.mark.parametrize(("given", "meant"), [("fig05-fliptime", "fig05-flip-time"), ("eq-2-7", "eq-2.7")])
+@pytest.mark.parametrize(
+    ("given", "meant"), [("fig05-fliptime", "fig05-flip-time"), ("eq-2-7", "eq-2.7")]
+)
 def test_unknown_name_is_refused_with_the_likeliest_one(given: str, meant: str) -> None:
     with pytest.raises(InvalidInput, match=f"such as {meant}") as refused:
         select(given)

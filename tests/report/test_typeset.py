@@ -30,7 +30,9 @@ SET_APART = {name: claim for name, claim in CLAIMS.items() if claim.formula}
 
 
 @pytest.mark.parametrize("claim", SET_APART.values(), ids=SET_APART)
-def test_formulas_are_drawn_in_the_color_of_the_text_with_their_source_as_words(claim: Claim) -> None:
+def test_formulas_are_drawn_in_the_color_of_the_text_with_their_source_as_words(
+    claim: Claim,
+) -> None:
     lines = claim.formula + claim.formula_right
     drawn = formula(lines)
     assert drawn.count("<svg") == drawn.count('role="img"') == len(lines)

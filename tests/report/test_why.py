@@ -27,7 +27,9 @@ def computed() -> dict[str, xr.Dataset]:
         {"final_theta_listing": ("spin_listing", [0.0, 0.5, 2.5, math.pi, 0.7])},
         {"spin_listing": [20.0, 40.0, 70.0, 100.0, 175.0]},
     )
-    data["flip-times-wide"] = xr.Dataset({"small_exponent": ("spin_wide", [-0.999])}, {"spin_wide": [100.0]})
+    data["flip-times-wide"] = xr.Dataset(
+        {"small_exponent": ("spin_wide", [-0.999])}, {"spin_wide": [100.0]}
+    )
     return data
 
 
@@ -70,9 +72,13 @@ def test_growth_rates_alone_give_what_runs_of_20_s_show(computed: dict[str, xr.D
     for least in (0.001, 0.01):
         seen = theory.sel(visible=least)
         read = runs.sel(margin=least)
-        assert float(seen["apparent_upright"]) == pytest.approx(float(read["upright_by_margin"]), abs=0.03)
+        assert float(seen["apparent_upright"]) == pytest.approx(
+            float(read["upright_by_margin"]), abs=0.03
+        )
         assert float(seen["apparent_inverted"]) <= float(read["inverted_by_margin"])
-    assert float(seen["apparent_inverted"]) == pytest.approx(float(read["inverted_by_margin"]), abs=0.2)
+    assert float(seen["apparent_inverted"]) == pytest.approx(
+        float(read["inverted_by_margin"]), abs=0.2
+    )
 
 
 def test_two_launches_of_one_spin_end_apart_beyond_a_fold(computed: dict[str, xr.Dataset]) -> None:
@@ -148,8 +154,13 @@ def test_claims_follow_the_data(computed: dict[str, xr.Dataset]) -> None:
     states["run_end"] = states["run_end"] + 0.02
     spoilt = computed | {"why-bifurcation": states}
     assert CLAIMS["why-final-tilt"].judge(spoilt, quick=True).verdict is Verdict.CORRECTED
-    off = computed["why-bifurcation"].assign(run_left=computed["why-bifurcation"]["run_left"] + 1e-4)
-    assert CLAIMS["eq-2.17-range"].judge({"why-bifurcation": off}, quick=True).verdict is Verdict.CORRECTED
+    off = computed["why-bifurcation"].assign(
+        run_left=computed["why-bifurcation"]["run_left"] + 1e-4
+    )
+    assert (
+        CLAIMS["eq-2.17-range"].judge({"why-bifurcation": off}, quick=True).verdict
+        is Verdict.CORRECTED
+    )
     assert CLAIMS["why-regimes"].judge(spoilt, quick=True).verdict is Verdict.EXPLAINED
     other = computed["final-tilt-listing"].copy(deep=True)
     other["final_theta_listing"][0] = 0.5
@@ -161,7 +172,9 @@ WHY = [plate for plate in PLATES.values() if plate.section == "Why"]
 
 
 @pytest.mark.parametrize("plate", WHY, ids=lambda plate: plate.id)
-def test_every_figure_is_drawn_from_quick_data(computed: dict[str, xr.Dataset], plate: Plate) -> None:
+def test_every_figure_is_drawn_from_quick_data(
+    computed: dict[str, xr.Dataset], plate: Plate
+) -> None:
     assert_drawn(computed, plate)
 
 

@@ -8,13 +8,25 @@ from tippetop.run import simulate
 from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.axes import Spaced
 
-FIELDS = ("final_theta", "final_omega3", "energy_lost", "airborne_time", "first_lift_off", "end_time")
+FIELDS = (
+    "final_theta",
+    "final_omega3",
+    "energy_lost",
+    "airborne_time",
+    "first_lift_off",
+    "end_time",
+)
 
 
 def lively(liftoff="fly", spins=5, mus=3, duration=1.4, tolerance=1e-12, tilt=1.0):
-    """Launches of which some lift off, over spin and friction; tilted, so that things happen early."""
+    """Launches of which some lift off, over spin and friction; tilted, so that things happen
+    early.
+    """
     problem = report_problem(tilt=tilt).replace({"contact.liftoff": liftoff})
-    axes = Spaced("launch.spin", 40.0, 240.0, spins), Spaced("friction.mu", 0.2, 1.0, mus, "geometric")
+    axes = (
+        Spaced("launch.spin", 40.0, 240.0, spins),
+        Spaced("friction.mu", 0.2, 1.0, mus, "geometric"),
+    )
     return Sweep(problem, Product(axes), duration, tolerance)
 
 
@@ -45,4 +57,7 @@ def truth(problem, duration, samples=2001, **options):
 
 def same(one, other):
     """Whether two results are equal, number by number."""
-    return all(np.array_equal(one[name], other[name], equal_nan=one[name].dtype.kind == "f") for name in one)
+    return all(
+        np.array_equal(one[name], other[name], equal_nan=one[name].dtype.kind == "f")
+        for name in one
+    )

@@ -42,7 +42,10 @@ def as_problem(problem, field, value):
 
 
 @settings(max_examples=40)
-@given(problems(), st.sampled_from(["body.mass", "body.I1", "launch.tilt", "launch.spin", "friction.mu"]))
+@given(
+    problems(),
+    st.sampled_from(["body.mass", "body.I1", "launch.tilt", "launch.spin", "friction.mu"]),
+)
 def test_cells_start_as_their_problems_do(problem, field):
     value = float(dict(_flat(problem.model_dump()))[field])
     values = np.array([value, 0.5 * value, value])
@@ -83,7 +86,9 @@ def test_cells_whose_patch_does_not_fit_the_body_are_refused():
     patch = {"friction.kind": "contensou", "friction.mu": 0.3, "friction.patch_radius": 1e-3}
     problem = report_problem(tilt=1.0).replace(patch)
     wanted = [Fault.NONE, Fault.VALUE_OUT_OF_RANGE]
-    assert list(cells_of(problem, {"friction.patch_radius": np.array([1e-4, 1e-12])}).fault) == wanted
+    assert (
+        list(cells_of(problem, {"friction.patch_radius": np.array([1e-4, 1e-12])}).fault) == wanted
+    )
     radius = {"body.shape.radius": np.array([0.02, 1e-4])}
     assert list(cells_of(problem, radius).fault) == wanted
     arms = {"rolling_resistance": np.array([0.02, 1e200])}
@@ -98,7 +103,9 @@ def test_cells_compare_a_patch_with_the_largest_surface():
     for body in (problem, problem.replace({"body.shape": [stem, *others]})):
         refused = [as_problem(body, "friction.patch_radius", radius) is None for radius in radii]
         assert refused == [True, False, True]
-        assert (cells_of(body, {"friction.patch_radius": radii}).fault != Fault.NONE).tolist() == refused
+        assert (
+            cells_of(body, {"friction.patch_radius": radii}).fault != Fault.NONE
+        ).tolist() == refused
 
 
 def test_a_cell_is_labelled_with_what_is_wrong_with_it():
@@ -110,9 +117,13 @@ def test_a_cell_is_labelled_with_what_is_wrong_with_it():
 
 def test_every_number_of_a_problem_can_be_swept():
     fields = [name for name, _ in numeric_fields(report_problem())]
-    assert {"launch.spin", "friction.mu", "body.shape.eccentricity", "launch.slip.1", "gravity"} <= set(
-        fields
-    )
+    assert {
+        "launch.spin",
+        "friction.mu",
+        "body.shape.eccentricity",
+        "launch.slip.1",
+        "gravity",
+    } <= set(fields)
     problem = report_problem()
     for field in fields:
         assert cells_of(problem, {field: np.array([0.3, 0.4])}).fault.shape == (2,)
@@ -138,7 +149,10 @@ def test_a_field_that_is_none_is_refused_with_the_likeliest_meant():
     ],
 )
 def test_numbers_that_are_too_large_are_outcomes_and_no_warnings(axes):
-    assert compute(Sweep(report_problem(tilt=1.0), Product.of(axes), 0.1))["outcome"].shape == (3, 3)
+    assert compute(Sweep(report_problem(tilt=1.0), Product.of(axes), 0.1))["outcome"].shape == (
+        3,
+        3,
+    )
 
 
 def test_rolling_that_overflows_is_an_outcome():

@@ -51,7 +51,14 @@ def test_a_sweep_writes_a_store_and_maps_beside_it(tmp_path):
 
 
 def test_the_first_launch_that_cannot_be_is_told(tmp_path):
-    options = ["--axis", "launch.tilt=0.1,45,90", *SHORT[2:], "--no-maps", "--out", tmp_path / "a.zarr"]
+    options = [
+        "--axis",
+        "launch.tilt=0.1,45,90",
+        *SHORT[2:],
+        "--no-maps",
+        "--out",
+        tmp_path / "a.zarr",
+    ]
     assert "The first that is bad: launch.tilt = 45 is not possible" in run(*options)
     assert "bad" not in run("--axis", "launch.tilt=0.1,0.2", *options[2:], "--force")
 
@@ -71,7 +78,16 @@ def test_programs_get_json(tmp_path):
 
 def test_draws_and_settings_reach_the_sweep(tmp_path):
     out = tmp_path / "a.zarr"
-    draws = ["--draw", "launch.spin=10:20", "--draw", "friction.mu=0.1:1:log", "--count", 5, "--seed", 3]
+    draws = [
+        "--draw",
+        "launch.spin=10:20",
+        "--draw",
+        "friction.mu=0.1:1:log",
+        "--count",
+        5,
+        "--seed",
+        3,
+    ]
     options = [
         "--set",
         "gravity=3.7",
@@ -97,7 +113,16 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
     (tmp_path / "sweep.toml").write_text(
         'problem = "top.toml"\nduration = 0.1\n[axes]\nlaunch.tilt = [0.2, 0.3]\n'
     )
-    run(tmp_path / "sweep.toml", "--mu", 0.7, "--workers", 1, "--out", tmp_path / "b.zarr", "--no-maps")
+    run(
+        tmp_path / "sweep.toml",
+        "--mu",
+        0.7,
+        "--workers",
+        1,
+        "--out",
+        tmp_path / "b.zarr",
+        "--no-maps",
+    )
     sweep = Store.resume(tmp_path / "b.zarr").sweep
     assert sweep.grid.dimensions == ("launch.tilt",)
     assert sweep.problem.friction.mu == 0.7
@@ -114,7 +139,16 @@ def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path)
     (tmp_path / "stem.toml").write_text(problem.to_toml())
     written = ["body.shape.1.center=0.016:0.02:3", "launch.spin=40,100"]
     options = [part for text in written for part in ("--axis", text)]
-    run(tmp_path / "stem.toml", *options, "--duration", 0.3, "--workers", 1, "--out", tmp_path / "a.zarr")
+    run(
+        tmp_path / "stem.toml",
+        *options,
+        "--duration",
+        0.3,
+        "--workers",
+        1,
+        "--out",
+        tmp_path / "a.zarr",
+    )
     (tmp_path / "sweep.toml").write_text(
         'problem = "stem.toml"\nduration = 0.3\n[axes]\n'
         '"body.shape.1.center" = { from = 0.016, to = 0.02, count = 3 }\n'
@@ -126,7 +160,10 @@ def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path)
         assert found["body.shape.1.center"].values == pytest.approx(lengths)
         assert found["body.shape.1.center"].attrs["units"] == "m"
         for metric in ("final_theta", "final_omega3", "energy_lost"):
-            assert found[metric].values == pytest.approx(expected[metric].values, rel=1e-10), (name, metric)
+            assert found[metric].values == pytest.approx(expected[metric].values, rel=1e-10), (
+                name,
+                metric,
+            )
     assert (tmp_path / "a.final_theta.png").exists()
 
 
@@ -138,7 +175,13 @@ def test_stores_are_called_so(tmp_path, name):
 
 
 UNREADABLE = {
-    "--axis": ["launch.spin", "launch.spin=", "launch.spin=1:2", "launch.spin=1:2:x", "launch.spin=1,b"],
+    "--axis": [
+        "launch.spin",
+        "launch.spin=",
+        "launch.spin=1:2",
+        "launch.spin=1:2:x",
+        "launch.spin=1,b",
+    ],
     "--draw": ["launch.spin", "launch.spin=1", "launch.spin=1:2:lin", "launch.spin=1:x"],
 }
 
@@ -186,7 +229,9 @@ def test_a_picture_of_somebody_else_is_not_overwritten(tmp_path):
 def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):
     out = tmp_path / "a.zarr"
     run(*AXES, *SHORT, "--out", out)
-    with pytest.raises(FileTrouble, match=r"a\.zarr exists; it is finished with .*, and overwritten only"):
+    with pytest.raises(
+        FileTrouble, match=r"a\.zarr exists; it is finished with .*, and overwritten only"
+    ):
         run(*AXES, *SHORT, "--out", out)
     with pytest.raises(FileTrouble, match=r"problem\.friction\.mu is 0\.3 in it, and 0\.9 here"):
         run("--mu", 0.9, "--resume", "--out", out)
@@ -207,9 +252,13 @@ def test_sentences_name_options_here_and_arguments_in_python(tmp_path, monkeypat
         assert ended.value.code == 2
         assert wanted in capsys.readouterr().err
     over = {"launch.spin": [1.0]}
-    with pytest.raises(FileTrouble, match="with resume=True, and overwritten only with overwrite=True"):
+    with pytest.raises(
+        FileTrouble, match="with resume=True, and overwritten only with overwrite=True"
+    ):
         tt.sweep(problem, over, out=out)
-    with pytest.raises(FileTrouble, match="choose another out, or start afresh with overwrite=True"):
+    with pytest.raises(
+        FileTrouble, match="choose another out, or start afresh with overwrite=True"
+    ):
         tt.sweep(problem, over, out=out, resume=True)
     package = Path(tt.__file__).parent
     for file in package.rglob("*.py"):

@@ -46,7 +46,9 @@ EGG = Body(mass=0.05, shape=Spheroid(across=0.02, along=0.03), I1=9e-6, I3=5e-6)
 
 
 def check_against_runs(sweep, cells=None, closeness=1e-7, **options):
-    """Every observable of cells against a single run of the problem each; return the cells' values."""
+    """Every observable of cells against a single run of the problem each; return the cells'
+    values.
+    """
     found = follow_cells(sweep, np.arange(sweep.cells))
     for cell in range(sweep.cells) if cells is None else cells:
         samples = 4001 if options else int(5000 * sweep.duration) + 1
@@ -56,9 +58,13 @@ def check_against_runs(sweep, cells=None, closeness=1e-7, **options):
         step = sweep.duration / (samples - 1)
         lifts = [event["time"] for event in summary["events"] if event["kind"] == "lift-off"]
         assert here["final_theta"] == pytest.approx(summary["final"]["theta"], abs=closeness)
-        assert here["final_omega3"] == pytest.approx(summary["final"]["omega3"], rel=closeness, abs=closeness)
+        assert here["final_omega3"] == pytest.approx(
+            summary["final"]["omega3"], rel=closeness, abs=closeness
+        )
         if summary["final"]["phi_dot"] is not None and abs(math.sin(here["final_theta"])) > 1e-2:
-            assert here["final_phi_dot"] == pytest.approx(summary["final"]["phi_dot"], rel=10 * closeness)
+            assert here["final_phi_dot"] == pytest.approx(
+                summary["final"]["phi_dot"], rel=10 * closeness
+            )
         assert here["end_time"] == pytest.approx(summary["duration"], rel=closeness)
         assert here["energy_lost"] == pytest.approx(
             summary["energy_lost"], abs=closeness * summary["energy_start"]
@@ -100,13 +106,20 @@ def test_cells_are_single_runs(liftoff):
 def test_a_top_that_turns_over_is_a_single_run():
     axes = Axis.of("launch.spin", [20.0, 50.0, 155.0, 180.0]), Axis.of("friction.mu", [0.3])
     found = check_against_runs(Sweep(report_problem(), Product(axes), 12.0, 1e-12))
-    assert found["outcome"].tolist() == [Ending.UPRIGHT, Ending.TILTED, Ending.INVERTED, Ending.INVERTED]
+    assert found["outcome"].tolist() == [
+        Ending.UPRIGHT,
+        Ending.TILTED,
+        Ending.INVERTED,
+        Ending.INVERTED,
+    ]
     assert found["flights"][3] > 0
 
 
 def test_other_shapes_and_friction_laws_are_single_runs():
     egg = Problem(
-        body=EGG, friction=RegularizedCoulombFriction(mu=0.3, eps=0.01), launch={"tilt": 1.5, "spin": 0.0}
+        body=EGG,
+        friction=RegularizedCoulombFriction(mu=0.3, eps=0.01),
+        launch={"tilt": 1.5, "spin": 0.0},
     )
     egg = egg.replace({"launch.precession": 150.0, "contact.liftoff": "ignore"})
     axis = Axis.of("launch.precession", [60.0, 150.0])
@@ -135,10 +148,14 @@ def test_a_cell_does_not_depend_on_its_neighbours():
     alone = [follow_cells(sweep, cells[k : k + 1]) for k in (0, 7, 14)]
     for k, one in zip((0, 7, 14), alone, strict=True):
         for name, values in one.items():
-            assert values[0] == pytest.approx(together[name][k], rel=1e-11, abs=1e-12, nan_ok=True), name
+            assert values[0] == pytest.approx(
+                together[name][k], rel=1e-11, abs=1e-12, nan_ok=True
+            ), name
     backwards = follow_cells(sweep, cells[::-1])
     for name, values in backwards.items():
-        assert values[::-1] == pytest.approx(together[name], rel=1e-11, abs=1e-12, nan_ok=True), name
+        assert values[::-1] == pytest.approx(together[name], rel=1e-11, abs=1e-12, nan_ok=True), (
+            name
+        )
 
 
 def test_a_cell_does_not_depend_on_lanes_waits_and_windows(monkeypatch):
@@ -186,7 +203,8 @@ def test_a_step_of_a_fast_top_leaves_little_out_of_its_axis(field):
     tolerance, count = 1e-9, 16
     friction = RegularizedCoulombFriction(mu=0.3, eps=0.1)
     cells = cells_of(
-        report_problem(spin=100.0).replace({"friction": friction}), {field: np.geomspace(1e2, 1e6, count)}
+        report_problem(spin=100.0).replace({"friction": friction}),
+        {field: np.geomspace(1e2, 1e6, count)},
     )
     launches = cells.launches(np.arange(count), 1.0)
     motion = sliding_motion(launches.kind, guarded=True)
@@ -195,9 +213,13 @@ def test_a_step_of_a_fast_top_leaves_little_out_of_its_axis(field):
     for row, number in enumerate(along_table(launches.state).pack()):
         before[row] = number
     before[usual.layout.left] = np.inf
-    numbers = np.concatenate((launches.numbers, np.tile([[0.0], [0.0], [np.inf], [-np.inf]], count)))
+    numbers = np.concatenate(
+        (launches.numbers, np.tile([[0.0], [0.0], [np.inf], [-np.inf]], count))
+    )
     usual.step(before, after, numbers)
-    exact = [horner(terms, after[usual.layout.taken]) for terms in finer.jet(before, numbers).state[:3]]
+    exact = [
+        horner(terms, after[usual.layout.taken]) for terms in finer.jet(before, numbers).state[:3]
+    ]
     off = np.linalg.norm(after[:3] - exact, axis=0)
     assert off.max() <= striding.FAST * tolerance
     assert off.max() > 1e-16
@@ -205,9 +227,13 @@ def test_a_step_of_a_fast_top_leaves_little_out_of_its_axis(field):
 
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-12])
 def test_weaker_gravity_is_no_singular_motion(tolerance):
-    """Where there is hardly any, the motion does not depend on it: only how short its steps are beside 1."""
+    """Where there is hardly any, the motion does not depend on it: only how short its steps are
+    beside 1.
+    """
     problem = report_problem(spin=155.0, tilt=1.0)
-    problem = problem.replace({"contact.liftoff": "ignore", "launch.precession": -20.0, "gravity": 1e-10})
+    problem = problem.replace(
+        {"contact.liftoff": "ignore", "launch.precession": -20.0, "gravity": 1e-10}
+    )
     run = truth(problem, 0.3, 2)
     axis = Axis.of("gravity", [1e-10, 1e-20, 1e-26, 1e-30])
     found = follow_cells(Sweep(problem, Product((axis,)), 0.3, tolerance), np.arange(4))
@@ -228,7 +254,9 @@ def test_weaker_gravity_is_no_singular_motion(tolerance):
     ],
 )
 def test_what_is_no_number_is_not_followed(changes):
-    """The rest of a run is no step, and of a launch that breaks down at once the launch is the result."""
+    """The rest of a run is no step, and of a launch that breaks down at once the launch is the
+    result.
+    """
     problem = report_problem(spin=155.0).replace(changes)
     alone = simulate(problem, 0.5, samples=2)
     found = follow_cells(Sweep(problem, Product((Axis.of("gravity", [9.81]),)), 0.5), np.arange(1))
@@ -239,7 +267,9 @@ def test_what_is_no_number_is_not_followed(changes):
 
 
 def test_lift_off_is_not_left_to_looks(monkeypatch):
-    """Seen at its ends only, a step in which the force dips below zero often shows nothing of it."""
+    """Seen at its ends only, a step in which the force dips below zero often shows nothing of
+    it.
+    """
     sweep = lively("stop", 8, 4, tolerance=1e-9)
     usual = follow_cells(sweep, np.arange(32))
     monkeypatch.setattr(striding, "LOOKS", 1)
@@ -252,8 +282,12 @@ def test_lift_off_is_not_left_to_looks(monkeypatch):
 
 @pytest.mark.parametrize("liftoff", ["fly", "ignore"])
 def test_launches_that_begin_beyond_a_right_angle_are_single_runs(liftoff):
-    """Some fall back upright, some swing, some are thrown; none turns over merely because it is there."""
-    problem = report_problem(spin=155.0).replace({"contact.liftoff": liftoff, "launch.precession": -40.0})
+    """Some fall back upright, some swing, some are thrown; none turns over merely because it is
+    there.
+    """
+    problem = report_problem(spin=155.0).replace(
+        {"contact.liftoff": liftoff, "launch.precession": -40.0}
+    )
     # With the faster spin a table that pulls drives the top until its motion is singular.
     spins = Axis.of("launch.spin", [5.0, 155.0] if liftoff == "fly" else [5.0])
     axes = Axis.of("launch.tilt", [1.6, 2.0, 2.5]), spins
@@ -282,7 +316,9 @@ def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
 
 
 def settling(settled):
-    """Launches that end upright, inverted and between, some of them after flights, over a long time."""
+    """Launches that end upright, inverted and between, some of them after flights, over a long
+    time.
+    """
     axes = (
         Axis.of("launch.spin", [15.0, 45.0, 60.0, 120.0, 190.0]),
         Axis.of("friction.mu", [0.3, 0.8]),
@@ -325,7 +361,9 @@ def test_launches_followed_one_by_one_end_too_when_they_have_settled():
 
 
 def test_a_launch_that_swings_has_not_settled():
-    """Without friction nothing settles, and a top that stands where it is unstable does not count as held."""
+    """Without friction nothing settles, and a top that stands where it is unstable does not count
+    as held.
+    """
     axes = Axis.of("launch.tilt", [0.0, 0.3]), Axis.of("friction.mu", [0.0, 0.01])
     found = follow_cells(Sweep(report_problem(), Product(axes), 1.0, 1e-9, 1e-2), np.arange(4))
     assert np.all(found["end_time"] == 1.0)
@@ -368,13 +406,19 @@ def test_bad_cells_are_labelled_and_harm_no_other():
     problem = report_problem(spin=200.0)
     sweep = Sweep(problem, Product(axes), 0.2, 1e-9)
     dataset = compute(sweep)
-    assert (dataset["outcome"] == Ending.BAD).values.tolist() == [[False, True], [True, True], [True, True]]
+    assert (dataset["outcome"] == Ending.BAD).values.tolist() == [
+        [False, True],
+        [True, True],
+        [True, True],
+    ]
     assert dataset["fault"].values.tolist() == [
         [Fault.NONE, Fault.VALUE_OUT_OF_RANGE],
         [Fault.NO_SUCH_BODY, Fault.VALUE_OUT_OF_RANGE],
         [Fault.VALUE_OUT_OF_RANGE, Fault.VALUE_OUT_OF_RANGE],
     ]
-    one = Sweep(problem.replace({"body.I3": 3.2e-6}), Product((Axis.of("launch.tilt", [1.0]),)), 0.2, 1e-9)
+    one = Sweep(
+        problem.replace({"body.I3": 3.2e-6}), Product((Axis.of("launch.tilt", [1.0]),)), 0.2, 1e-9
+    )
     good, alone = follow_cells(sweep, np.array([0])), follow_cells(one, np.array([0]))
     assert same(good, alone)
     bad = follow_cells(sweep, np.array([1, 2]))
@@ -385,7 +429,9 @@ def test_bad_cells_are_labelled_and_harm_no_other():
 
 
 def test_a_motion_that_becomes_singular_is_labelled():
-    """With a table that may pull, much friction leads to Painleve's paradox: no bound on the force."""
+    """With a table that may pull, much friction leads to Painleve's paradox: no bound on the
+    force.
+    """
     problem = report_problem(spin=200.0, tilt=1.0).replace(
         {"contact.liftoff": "ignore", "launch.slip": (-0.3, 0.0)}
     )
@@ -436,7 +482,9 @@ def test_every_variable_is_described():
         assert "units" in variable.attrs or "flag_meanings" in variable.attrs
         assert variable.dtype == kind.dtype
         if "flag_meanings" in variable.attrs:
-            assert len(variable.attrs["flag_meanings"].split()) == len(variable.attrs["flag_values"])
+            assert len(variable.attrs["flag_meanings"].split()) == len(
+                variable.attrs["flag_values"]
+            )
 
 
 @pytest.mark.parametrize("spin", [1e6, 1e7, 1e8])

@@ -1,4 +1,6 @@
-"""Stores that are damaged, fought over or torn away: nothing is read wrong, and what can be is mended."""
+"""Stores that are damaged, fought over or torn away: nothing is read wrong, and what can be is
+mended.
+"""
 
 import errno
 import json
@@ -88,7 +90,8 @@ def test_nothing_damaged_is_read_and_what_can_be_mended_is(tmp_path, monkeypatch
         except FileTrouble:
             refused += 1
         else:
-            # Metadata that are repeated elsewhere, spaces between words, or a task that counts as pending.
+            # Metadata that are repeated elsewhere, spaces between words, or a task that counts as
+            # pending.
             done = found["status"] == 1
             assert found.where(done).identical(truth[names].where(done)), where
             assert bool(done.all()) or file.parts[-4:-2] == ("status", "c"), where
@@ -101,7 +104,9 @@ def test_nothing_damaged_is_read_and_what_can_be_mended_is(tmp_path, monkeypatch
             fill(store, workers=1)
             mended += 1
             xr.testing.assert_identical(read_sweep(path)[names], truth[names])
-            assert json.loads(file.read_text()) == json.loads(data) if file.suffix else file.is_file()
+            assert (
+                json.loads(file.read_text()) == json.loads(data) if file.suffix else file.is_file()
+            )
     assert refused > DAMAGES // 4
     assert mended > DAMAGES // 4
 
@@ -148,7 +153,9 @@ def test_resuming_does_again_what_is_missing_and_no_more(tmp_path, small_tasks):
 
 def test_draws_are_mended_too(tmp_path):
     sweep = Sweep(
-        report_problem(), Draws((Range("launch.spin", 10, 200), Range("friction.mu", 0, 1)), 5), 0.05
+        report_problem(),
+        Draws((Range("launch.spin", 10, 200), Range("friction.mu", 0, 1)), 5),
+        0.05,
     )
     stored(sweep, tmp_path / "a.zarr", workers=1)
     shutil.rmtree(tmp_path / "a.zarr" / "friction.mu")
@@ -160,7 +167,9 @@ def test_draws_are_mended_too(tmp_path):
 
 
 def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, monkeypatch):
-    """What would be left if the power were cut after any step: files whose content was brought to disk."""
+    """What would be left if the power were cut after any step: files whose content was brought to
+    disk.
+    """
     store = Store.create(tmp_path / "a.zarr", quick())
     synced, task = set(), quick().tasks[0]
     chunks = {store.path.joinpath(name, "c", *map(str, task)) for name in ("status", *SWEPT)}
@@ -185,7 +194,9 @@ def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, m
 
     monkeypatch.setattr(zarr.storage.LocalStore, "set", after_the_others)
     numbers = store.sweep.numbers(store.sweep.region(task))
-    store.write(task, {name: np.zeros(numbers.size, dtype=kind.dtype) for name, kind in SWEPT.items()})
+    store.write(
+        task, {name: np.zeros(numbers.size, dtype=kind.dtype) for name, kind in SWEPT.items()}
+    )
     assert chunks <= synced
 
 
@@ -224,7 +235,9 @@ def test_a_sweep_that_is_being_filled_is_not_replaced(tmp_path, small_tasks):
         time.sleep(0.05)
     other = lively("stop", 7, 3, 0.05, 1e-9)
     for overwrite in (True, False):
-        with pytest.raises(FileTrouble, match="being filled by another process" if overwrite else "exists"):
+        with pytest.raises(
+            FileTrouble, match="being filled by another process" if overwrite else "exists"
+        ):
             stored(other, path, overwrite=overwrite, workers=1)
     process.kill()
     process.wait()
@@ -302,7 +315,9 @@ def test_what_a_killed_program_left_is_cleared_away_by_the_next(tmp_path):
     assert sorted(item.name for item in tmp_path.iterdir()) == [".a.zarr.theirs12", "a.zarr"]
 
 
-@pytest.mark.parametrize("text", ["[]", "3", "null", "{", "", '{"attributes": []}', "[" * 9999, "\ud800"])
+@pytest.mark.parametrize(
+    "text", ["[]", "3", "null", "{", "", '{"attributes": []}', "[" * 9999, "\ud800"]
+)
 def test_metadata_that_are_none_are_no_sweep(tmp_path, text):
     path = tmp_path / "a.zarr"
     path.mkdir()

@@ -44,7 +44,12 @@ def flown(kind, numbers, state, vanishing, horizon=50.0):
     tip = TipMotion.of(2)
     here = np.arange(2)
     return fly_all(
-        many(state), kind, column, np.full(2, horizon), np.full(2, vanishing), (tip, here, np.zeros(2))
+        many(state),
+        kind,
+        column,
+        np.full(2, horizon),
+        np.full(2, vanishing),
+        (tip, here, np.zeros(2)),
     ), tip
 
 
@@ -60,7 +65,8 @@ def test_a_throw_lands_when_a_single_one_does(slide, gap, rise):
     landing = touchdown(state, top, 50.0, Start.AIRBORNE)
     assert found.landed.all()
     assert found.duration[0] == found.duration[1]
-    # A body that sinks in again at once touches at one of several times, which rounding tells apart.
+    # A body that sinks in again at once touches at one of several times, which rounding tells
+    # apart.
     last = fly(state, landing, top, math)
     assume(abs(gap_rate(last, top)) > 1e-4)
     assert found.duration[0] == pytest.approx(landing, rel=1e-10)
@@ -106,7 +112,8 @@ def test_pieces_of_flights_are_what_a_closer_look_finds_and_rarely_need_it(surfa
     axis /= np.linalg.norm(axis, axis=0)
     sliding = State(tuple(axis), tuple(3.0 * random.normal(size=(3, count))), (0.0, 0.0, 0.0), 0.0)
     state = on_table(along_table(sliding), kind.top(tuple(numbers)))
-    # Thrown up, rebounding, let go, and lifted off with something that is left of the gap's acceleration.
+    # Thrown up, rebounding, let go, and lifted off with something that is left of the gap's
+    # acceleration.
     vanishing = random.integers(0, 4, count).astype(float)
     rise = np.where(vanishing < 2, 0.2 * random.exponential(size=count), 0.0)
     thrown = state._replace(
@@ -201,7 +208,9 @@ def test_impacts_of_patches_go_on_where_another_branch_takes_over(monkeypatch) -
     law = HertzLaw(np.full(count, 0.3), random.uniform(0.02, 0.6, count))
     top = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0)
     velocity = random.normal(size=(3, count))
-    state = State(tuple(axis), tuple(random.normal(size=(3, count))), tuple(velocity), 1.0 - 0.3 * axis[2])
+    state = State(
+        tuple(axis), tuple(random.normal(size=(3, count))), tuple(velocity), 1.0 - 0.3 * axis[2]
+    )
     after, struck = collide(state, branched(top, state))
     changed = 0
     for i in np.flatnonzero(struck).tolist():

@@ -84,7 +84,9 @@ UNITS = {
 def test_coordinates_carry_their_units(tmp_path, where):
     problem = report_problem(tilt=1.0)
     at_base = {field: [number_of(problem, field)] for field in UNITS}
-    found = sweep(problem, at_base, duration=0.01, out=tmp_path / "a.zarr" if where == "store" else None)
+    found = sweep(
+        problem, at_base, duration=0.01, out=tmp_path / "a.zarr" if where == "store" else None
+    )
     assert {name: found[name].attrs["units"] for name in found.coords} == UNITS
     assert found["launch.spin"].attrs["long_name"] == "axial spin at launch"
     assert len({found[name].attrs["long_name"] for name in UNITS}) == len(UNITS)

@@ -124,7 +124,9 @@ def test_draws_that_cannot_be_are_refused_by_what_is_wrong(entry, field):
 @pytest.mark.parametrize(
     "grid",
     [
-        Product((Spaced("friction.mu", 0.1, 1, 5, "geometric"), Axis.of("launch.tilt", [0.1, 0.2]))),
+        Product(
+            (Spaced("friction.mu", 0.1, 1, 5, "geometric"), Axis.of("launch.tilt", [0.1, 0.2]))
+        ),
         Draws((Range("launch.spin", 0, 1),), 5, 3),
     ],
 )
@@ -183,14 +185,19 @@ def test_a_sweep_is_read_from_one_file(tmp_path):
             Axis.of("body.shape.eccentricity", [0.2, 0.3]),
         )
     )
-    assert Sweep.read(tmp_path / "sweep.toml") == Sweep(report_problem(mu=0.2), grid, 2.5, 1e-8, 1e-3)
+    assert Sweep.read(tmp_path / "sweep.toml") == Sweep(
+        report_problem(mu=0.2), grid, 2.5, 1e-8, 1e-3
+    )
 
 
 def test_draws_are_read_from_a_file(tmp_path):
     text = f"[problem]\n{report_problem().to_toml()}"
     problem = text.replace("[body", "[problem.body").replace("[friction", "[problem.friction")
     problem = problem.replace("[launch", "[problem.launch").replace("[contact", "[problem.contact")
-    draws = '\n[draws]\ncount = 4\nseed = 9\nfields.launch.spin = { from = 1, to = 2, law = "log-uniform" }\n'
+    draws = (
+        "\n[draws]\ncount = 4\nseed = 9\nfields.launch.spin = { from = 1, to = 2, law ="
+        ' "log-uniform" }\n'
+    )
     (tmp_path / "sweep.toml").write_text(problem + draws)
     wanted = Sweep(report_problem(), Draws((Range("launch.spin", 1, 2, "log-uniform"),), 4, 9))
     assert Sweep.read(tmp_path / "sweep.toml") == wanted
@@ -230,7 +237,9 @@ def test_files_that_cannot_be_are_refused_by_the_field(tmp_path, change, field):
     (tmp_path / "sweep.toml").write_text(SWEEP.replace(*change))
     with pytest.raises(InvalidInput if field else FileTrouble) as refusal:
         Sweep.read(tmp_path / "sweep.toml")
-    assert field is None or (refusal.value.field.startswith(field) and "sweep.toml" in str(refusal.value))
+    assert field is None or (
+        refusal.value.field.startswith(field) and "sweep.toml" in str(refusal.value)
+    )
     assert len(str(refusal.value)) < 1000
 
 
@@ -241,7 +250,9 @@ def test_values_of_some_cells_are_made_without_the_others():
     assert some["launch.tilt"].tolist() == [0.1, 0.1, 7.0]
     assert axes[0].values == pytest.approx(np.linspace(0.1, 7, 10**4), rel=1e-15)
     assert axes[1].values == pytest.approx(np.geomspace(0.1, 7, 10**4), rel=1e-13)
-    draws = Draws((Range("launch.spin", 10, 20), Range("launch.tilt", 1, 2, "log-uniform")), 10**6, 4)
+    draws = Draws(
+        (Range("launch.spin", 10, 20), Range("launch.tilt", 1, 2, "log-uniform")), 10**6, 4
+    )
     everything = draws.coordinates()
     for name, values in draws.values(np.array([999_999, 999_990])).items():
         assert values.tolist() == everything[name][1][[999_999, 999_990]].tolist()

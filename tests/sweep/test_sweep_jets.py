@@ -23,7 +23,9 @@ COUNT = 2000
 
 
 def anywhere():
-    """Taylor's method for tops with a patch, and lanes on which they are anywhere, with all to pause for."""
+    """Taylor's method for tops with a patch, and lanes on which they are anywhere, with all to
+    pause for.
+    """
     problem = report_problem().replace({"friction": ContensouFriction(mu=0.3, patch_radius=1e-3)})
     sweep = Sweep(problem, Product((Axis.of("friction.mu", np.linspace(0.1, 0.5, COUNT)),)), 1.0)
     cells = cells_of(sweep.problem, sweep.grid.values(np.arange(COUNT)))
@@ -78,12 +80,16 @@ def test_where_polynomials_end_is_where_single_launches_are():
     found = arcs(jet, none, none + np.inf, pauses)
     found.look_closer(jet, slots.numbers[method.layout.counts])
     unguarded, moves = replace(method.motion, guards=()), found.span > 0.0
-    lanes = np.concatenate([np.flatnonzero(moves & (found.fallen == guard))[:8] for guard in (-1.0, 0.0)])
+    lanes = np.concatenate(
+        [np.flatnonzero(moves & (found.fallen == guard))[:8] for guard in (-1.0, 0.0)]
+    )
     assert len(lanes) == 16, "nothing falls, or the force does"
     for lane in lanes.tolist():
         numbers = slots.numbers[: method.layout.parameters, lane].tolist()
         start, span = slots.rows[: len(jet.state), lane], float(found.span[lane])
-        *_, last = make_integrator("dop853", 1e-12).integrate(unguarded, numbers, (0.0, start), span)
+        *_, last = make_integrator("dop853", 1e-12).integrate(
+            unguarded, numbers, (0.0, start), span
+        )
         assert last.solution.end == span
         size = np.abs(start).max()
         assert found.after[:, lane] == pytest.approx(last.end_state, abs=1e-7 * size), lane
@@ -95,7 +101,9 @@ def test_guards_that_are_no_numbers_end_nothing_as_in_single_launches():
     quarter = Guard("quarter", lambda y, _: y[0])
     for guards, ends in ((none, 3.0), ([*none, quarter], 0.5 * np.pi)):
         motion = Motion(lambda y, _: (-y[1], y[0], 0.1 * y[0], y[2]), 4, 1, tuple(guards))
-        *_, arc = make_integrator(None).integrate(motion, [0.0], (0.0, np.array([1.0, 0.0, 0.5, 0.0])), 3.0)
+        *_, arc = make_integrator(None).integrate(
+            motion, [0.0], (0.0, np.array([1.0, 0.0, 0.5, 0.0])), 3.0
+        )
         method, pauses = stepper(motion, 1e-12), [1.0] * len(guards) + [0.0, np.inf, -np.inf]
         layout, numbers = method.layout, np.tile(np.array([[0.0, *pauses]]).T, 16)
         before, after = np.zeros((2, layout.rows, 16))

@@ -42,13 +42,17 @@ def test_a_map_holds_every_cell(plane, name, tmp_path):
 def test_what_is_not_computed_is_not_shown(plane):
     partly = plane.copy(deep=True)
     partly["status"][0, :] = 0
-    mesh = next(child for child in phase_map(partly).axes[0].get_children() if isinstance(child, QuadMesh))
+    mesh = next(
+        child for child in phase_map(partly).axes[0].get_children() if isinstance(child, QuadMesh)
+    )
     assert mesh.get_array().mask[:, 0].all()
     assert not mesh.get_array().mask[:, 1:].any()
 
 
 def test_cells_are_drawn_where_their_values_are(plane):
-    mesh = next(child for child in phase_map(plane).axes[0].get_children() if isinstance(child, QuadMesh))
+    mesh = next(
+        child for child in phase_map(plane).axes[0].get_children() if isinstance(child, QuadMesh)
+    )
     corners = mesh.get_coordinates()
     spins, mus = plane["launch.spin"].values, plane["friction.mu"].values
     assert np.all((corners[:, :-1, 0] < spins) & (spins < corners[:, 1:, 0]))
@@ -68,7 +72,9 @@ def test_one_axis_is_a_curve_and_draws_are_points():
     assert np.asarray(points.get_offsets())[:, 0] == pytest.approx(draws["launch.spin"].values)
     assert np.asarray(points.get_array()) == pytest.approx(draws["final_theta"].values)
     single = compute(Sweep(report_problem(), Draws(ranges[:1], 6), 0.1))
-    assert phase_map(single).axes[0].lines[0].get_xdata() == pytest.approx(single["launch.spin"].values)
+    assert phase_map(single).axes[0].lines[0].get_xdata() == pytest.approx(
+        single["launch.spin"].values
+    )
 
 
 @pytest.mark.parametrize(("count", "drawn"), [(2, [0, 1]), (17, [0, 2, 4, 6, 8, 10, 12, 14, 16])])
@@ -81,7 +87,12 @@ def test_more_axes_go_from_panel_to_panel(plane, count, drawn, tmp_path):
     )
     cube["gravity"].attrs["units"] = "m s-2"
     figure = phase_map(cube)
-    meshes = [child for axes in figure.axes for child in axes.get_children() if isinstance(child, QuadMesh)]
+    meshes = [
+        child
+        for axes in figure.axes
+        for child in axes.get_children()
+        if isinstance(child, QuadMesh)
+    ]
     maps = [mesh for mesh in meshes if mesh.get_array().shape == (4, 3)]
     assert len(maps) == len(drawn)
     for mesh, place in zip(maps, drawn, strict=True):
@@ -138,7 +149,9 @@ def test_axes_have_the_units_of_the_problem():
 def test_an_axis_that_is_too_long_to_be_drawn_is_refused(plane, values):
     far = plane.copy(deep=True)
     name = str(far["final_theta"].dims[0])
-    far = far.assign_coords({name: values(1e-3, 1e299 if values is np.geomspace else 1e308, far.sizes[name])})
+    far = far.assign_coords(
+        {name: values(1e-3, 1e299 if values is np.geomspace else 1e308, far.sizes[name])}
+    )
     with pytest.raises(InvalidInput, match=f"{name} = .* an axis with cells over at most 1e.300"):
         phase_map(far)
 

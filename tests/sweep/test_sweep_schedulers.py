@@ -1,4 +1,6 @@
-"""The same sweep by one process, by several, and by a Dask cluster some of whose workers are killed."""
+"""The same sweep by one process, by several, and by a Dask cluster some of whose workers are
+killed.
+"""
 
 import json
 import os
@@ -38,7 +40,11 @@ def test_processes_that_are_killed_are_started_again(small_tasks):
     for task, found in scheduling.results(sweep, sweep.tasks, workers=2):
         kept[task] = found
         if not killed:
-            workers = [child for child in psutil.Process().children() if "spawn" in " ".join(child.cmdline())]
+            workers = [
+                child
+                for child in psutil.Process().children()
+                if "spawn" in " ".join(child.cmdline())
+            ]
             os.kill(workers[-1].pid, signal.SIGKILL)
             killed = True
     assert sorted(kept) == sweep.tasks
@@ -127,7 +133,9 @@ def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks, mo
 def test_a_sweep_that_is_kept_connects_once(monkeypatch, tmp_path):
     distributed = pytest.importorskip("distributed")
     made, client = [], distributed.Client
-    monkeypatch.setattr(distributed, "Client", lambda *at, **how: made.append(at) or client(*at, **how))
+    monkeypatch.setattr(
+        distributed, "Client", lambda *at, **how: made.append(at) or client(*at, **how)
+    )
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, protocol="tcp", dashboard_address=None, silence_logs=50
     ) as cluster:
@@ -172,9 +180,12 @@ def test_a_cluster_without_workers_is_refused_and_one_that_is_lost_is_told_of(sm
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize(
-    ("raised_in", "expected"), [("distributed.cfexecutor", Unavailable), ("tippetop.sweeps", ValueError)]
+    ("raised_in", "expected"),
+    [("distributed.cfexecutor", Unavailable), ("tippetop.sweeps", ValueError)],
 )
-def test_the_library_that_stumbles_over_a_lost_result_means_a_lost_cluster(monkeypatch, raised_in, expected):
+def test_the_library_that_stumbles_over_a_lost_result_means_a_lost_cluster(
+    monkeypatch, raised_in, expected
+):
     """Dask takes a result whose worker is lost for an error, and unpacks it as one."""
     distributed = pytest.importorskip("distributed")
     names = {"__name__": raised_in}
@@ -253,10 +264,12 @@ def test_a_cluster_that_is_gone_is_told_of_in_a_sentence_and_what_is_done_is_kep
         [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True
     )
     assert (
-        ran.stdout == f"the cluster at {address} {sentence}; what is done is kept, and resume=True goes on\n"
+        ran.stdout
+        == f"the cluster at {address} {sentence}; what is done is kept, and resume=True goes on\n"
     )
     assert (
-        ran.stderr == warnings * f"the cluster at {address} has no workers; the sweep waits for some, 2 s\n"
+        ran.stderr
+        == warnings * f"the cluster at {address} has no workers; the sweep waits for some, 2 s\n"
     )
     progress = fill(Store.resume(out), workers=1)
     assert 8 <= progress.before < progress.done == 24

@@ -46,7 +46,9 @@ def quick(cells=24, **options):
     [
         quick(),
         Sweep(
-            report_problem(), Draws((Range("launch.spin", 10, 200), Range("launch.tilt", 0, 4)), 9, 5), 0.1
+            report_problem(),
+            Draws((Range("launch.spin", 10, 200), Range("launch.tilt", 0, 4)), 9, 5),
+            0.1,
         ),
     ],
 )
@@ -136,7 +138,9 @@ def test_a_store_that_knows_fewer_endings_is_refused(tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr(layout, "CONTENTS", {**layout.CONTENTS, "outcome": fewer})
         Store.create(tmp_path / "a.zarr", quick())
-    with pytest.raises(FileTrouble, match=r"tells outcome by other words .*another out, .* overwrite=True"):
+    with pytest.raises(
+        FileTrouble, match=r"tells outcome by other words .*another out, .* overwrite=True"
+    ):
         Store.resume(tmp_path / "a.zarr", quick())
     assert set(read_sweep(tmp_path / "a.zarr")) == set(layout.CONTENTS)
 
@@ -202,7 +206,9 @@ def test_a_store_is_filled_by_one_process_at_a_time(tmp_path, small_tasks):
 
 def test_a_damaged_chunk_is_told_in_a_sentence(tmp_path, small_tasks):
     stored(quick(), tmp_path / "a.zarr", workers=1)
-    chunk = next(path for path in (tmp_path / "a.zarr" / "flights" / "c").rglob("*") if path.is_file())
+    chunk = next(
+        path for path in (tmp_path / "a.zarr" / "flights" / "c").rglob("*") if path.is_file()
+    )
     chunk.write_bytes(chunk.read_bytes()[:5])
     store = Store.resume(tmp_path / "a.zarr")
     assert store.load(["outcome"])["outcome"].shape == quick().grid.shape
@@ -236,14 +242,18 @@ def test_a_full_disk_leaves_a_store_that_resumes(tmp_path, small_tasks, monkeypa
     store = Store.create(path, sweep)
     with monkeypatch.context() as patch:
         patch.setattr(zarr.storage.LocalStore, "set", set_until_full)
-        with pytest.raises(FileTrouble, match=r"a\.zarr cannot be written: No space left on device"):
+        with pytest.raises(
+            FileTrouble, match=r"a\.zarr cannot be written: No space left on device"
+        ):
             fill(store, workers=1)
     left = len(Store.resume(path).remaining())
     assert 0 < left < len(sweep.tasks)
     xr.testing.assert_identical(stored(sweep, path, resume=True, workers=1).load(), compute(sweep))
 
 
-@pytest.mark.skipif(not Path("/sys/kernel").is_dir(), reason="a folder in which not even root may write")
+@pytest.mark.skipif(
+    not Path("/sys/kernel").is_dir(), reason="a folder in which not even root may write"
+)
 def test_a_folder_in_which_nothing_can_be_written_is_said_to_be(tmp_path):
     with pytest.raises(FileTrouble, match="cannot be written"):
         Store.create("/sys/kernel/a.zarr", quick())
@@ -286,7 +296,9 @@ def test_a_sweep_killed_at_random_moments_loses_nothing(tmp_path, small_tasks):
     found, whole = read_sweep(path), compute(quick(80))
     xr.testing.assert_identical(found, whole)
     assert not list(path.rglob("*.partial"))
-    assert same({name: found[name].values for name in SWEPT}, {name: whole[name].values for name in SWEPT})
+    assert same(
+        {name: found[name].values for name in SWEPT}, {name: whole[name].values for name in SWEPT}
+    )
 
 
 def test_progress_is_told_and_counts_what_was_there(tmp_path, small_tasks):

@@ -31,7 +31,9 @@ def full_run(problem, times, smooth=False):
         begin[6:8] = 0.0
     natural = np.asarray(times, dtype=float) / units.time
     arcs = list(
-        make_integrator().integrate(sliding_motion(top.kind, False), top.numbers, (0.0, begin), natural[-1])
+        make_integrator().integrate(
+            sliding_motion(top.kind, False), top.numbers, (0.0, begin), natural[-1]
+        )
     )
     assert arcs[-1].failure is None
     states = DenseSolution.joined([arc.solution for arc in arcs])(natural)

@@ -12,7 +12,12 @@ from tippetop.errors import InvalidInput
 from tippetop.integrators import has_taylor
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import natural_units
-from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent, nutation_of_launch
+from tippetop.theory.averaging import (
+    averaged_flow,
+    flip_time_limit,
+    local_exponent,
+    nutation_of_launch,
+)
 from tippetop.theory.dissipation import amplitude_rates, mean_dissipation
 from tippetop.theory.nutation import (
     Amplitudes,
@@ -44,9 +49,13 @@ LAUNCHES = [
 SUBTLE = [
     sphere_problem(1.551, 0.277, 1.84, 48.7),
     sphere_problem(1.477, 0.372, 1.98, -48.7),
-    sphere_problem(1.474, 0.06, 2.23, -8.5).replace({"launch.tilt_rate": -3.7, "launch.precession": 15.4}),
+    sphere_problem(1.474, 0.06, 2.23, -8.5).replace(
+        {"launch.tilt_rate": -3.7, "launch.precession": 15.4}
+    ),
 ]
-"""Launches whose nutation is still there at the end, and whose third root meets the other choice of it."""
+"""Launches whose nutation is still there at the end, and whose third root meets the other choice of
+it.
+"""
 
 
 def flip_time(problem, window, count):
@@ -69,7 +78,8 @@ def test_the_limit_of_the_flip_time_of_the_report():
 def test_full_runs_approach_the_limit_quadratically():
     limit = flip_time_limit(REPORT)
     excess = [
-        mu * flip_time(REPORT.replace({"friction.mu": mu}), (2.33 / mu, 2.37 / mu), 4001) / limit - 1.0
+        mu * flip_time(REPORT.replace({"friction.mu": mu}), (2.33 / mu, 2.37 / mu), 4001) / limit
+        - 1.0
         for mu in (0.04, 0.02, 0.005)
     ]
     assert excess[2] == pytest.approx(0.0, abs=1e-5)
@@ -95,7 +105,9 @@ def test_the_tilt_of_a_full_run_with_little_friction_is_in_the_envelope_of_the_f
 def test_the_tilt_as_a_function_of_mu_t_comes_closer_as_mu_falls(mu):
     flow = averaged_flow(REPORT)
     mu_times = np.linspace(0.6, 2.4, 50)
-    axis, _, _ = full_run(REPORT.replace({"friction.mu": mu}), np.concatenate([[0.0], mu_times / mu]))
+    axis, _, _ = full_run(
+        REPORT.replace({"friction.mu": mu}), np.concatenate([[0.0], mu_times / mu])
+    )
     error = np.abs(tilts_of(axis)[1:] - flow.tilts(mu_times)[0]).max()
     assert error < {0.3: 0.3, 0.03: 4e-3, 0.003: 1e-3}[mu]
 
@@ -136,7 +148,9 @@ def test_the_flow_is_that_of_the_constants_of_the_smooth_table(problem):
     flow = averaged_flow(problem, samples=4000)
     low, high = flow.tilts(mu_times)
     assert low + high == pytest.approx(exact[0] + exact[1], abs=1e-5)
-    assert high - low == pytest.approx(exact[1] - exact[0], abs=1e-4)  # a small one is lost in rounding here
+    assert high - low == pytest.approx(
+        exact[1] - exact[0], abs=1e-4
+    )  # a small one is lost in rounding here
     final = predict(problem).final.tilt
     assert min(abs(exact[:, -1] - final)) == pytest.approx(0.01, abs=2e-4)
 
@@ -145,23 +159,34 @@ def test_a_launch_that_a_table_cannot_hold_is_refused():
     """Where it pulls it gives energy, and the nutation grows beyond all bounds."""
     problem = sphere_problem(0.6266, 0.558, 1.9427, 106.7)
     problem = problem.replace({"launch.tilt_rate": 5.0, "launch.precession": 11.2})
-    for liftoff, told in {"ignore": "is not seen to die away", "fly": "needs a pull of the table"}.items():
+    for liftoff, told in {
+        "ignore": "is not seen to die away",
+        "fly": "needs a pull of the table",
+    }.items():
         with pytest.raises(InvalidInput, match=f"{told}.*without a pull"):
             flip_time_limit(problem.replace({"contact.liftoff": liftoff}))
 
 
 def test_a_launch_so_near_an_unstable_vertical_that_rounding_decides_is_refused_with_the_reason():
-    """The third turning point is at the pole itself, and which side of it is told by the last digit."""
-    launches = [REPORT.replace({"launch.tilt": math.pi - off, "launch.spin": 1.0}) for off in (1e-6, 1e-7)]
+    """The third turning point is at the pole itself, and which side of it is told by the last
+    digit.
+    """
+    launches = [
+        REPORT.replace({"launch.tilt": math.pi - off, "launch.spin": 1.0}) for off in (1e-6, 1e-7)
+    ]
     for launch in launches:
-        with pytest.raises(InvalidInput, match=r"launch\.tilt.*unstable vertical.*rounding decides"):
+        with pytest.raises(
+            InvalidInput, match=r"launch\.tilt.*unstable vertical.*rounding decides"
+        ):
             flip_time_limit(launch)
 
 
 def test_the_size_of_the_friction_and_the_sense_of_the_spin_do_not_matter():
     limit = flip_time_limit(REPORT)
     assert flip_time_limit(REPORT.replace({"friction.mu": 7.0})) == limit
-    assert flip_time_limit(REPORT.replace({"launch.spin": -100.0})) == pytest.approx(limit, rel=1e-12)
+    assert flip_time_limit(REPORT.replace({"launch.spin": -100.0})) == pytest.approx(
+        limit, rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("problem", [*LAUNCHES, *SUBTLE])
@@ -176,7 +201,11 @@ def test_with_its_axis_drawn_the_other_way_a_top_does_the_same(problem):
     flow, same = (averaged_flow(each, samples=2000) for each in (problem, other))
     assert same.final_tilt == pytest.approx(math.pi - flow.final_tilt, abs=1e-9)
     # Where it passes a vertical its least tilt has a corner, between samples.
-    both = (flow.mu_time < same.mu_time[-1]) & (flow.tilt_low > 0.01) & (flow.tilt_high < math.pi - 0.01)
+    both = (
+        (flow.mu_time < same.mu_time[-1])
+        & (flow.tilt_low > 0.01)
+        & (flow.tilt_high < math.pi - 0.01)
+    )
     low, high = same.tilts(flow.mu_time[both])
     assert math.pi - high == pytest.approx(flow.tilt_low[both], abs=1e-4)
     assert math.pi - low == pytest.approx(flow.tilt_high[both], abs=1e-4)
@@ -213,7 +242,11 @@ def launched(spin, tilt, tilt_rate=0.0):
     [
         (launched(50.0, 1.0), 1e-4),
         (launched(192.767, 1.8668, 8.508), 1e-3),
-        *((launched(spin, tilt, 15.0), 1e-3) for spin in (15.0, 60.0, 180.0) for tilt in (0.2, 1.5, 2.9)),
+        *(
+            (launched(spin, tilt, 15.0), 1e-3)
+            for spin in (15.0, 60.0, 180.0)
+            for tilt in (0.2, 1.5, 2.9)
+        ),
     ],
 )
 def test_the_limit_is_the_first_time_near_the_end_however_short(problem, distance):
@@ -235,7 +268,9 @@ def test_a_nutation_that_dies_on_the_way_to_an_unstable_state_grows_again():
 @pytest.mark.parametrize("tilt", [0.3, 1.0, 1.7, 2.6])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_nutation_of_no_width_drifts_along_the_precessions_of_a_smooth_table(tilt, sign):
-    """The amplitudes' rates against d L3 / d(mu t) of a precession that slips, fast or slow, at this tilt."""
+    """The amplitudes' rates against d L3 / d(mu t) of a precession that slips, fast or slow, at
+    this tilt.
+    """
     top = REPORT.top
     numbers = numbers_of(top)
     across, along, alpha = numbers
@@ -253,7 +288,9 @@ def test_a_nutation_of_no_width_drifts_along_the_precessions_of_a_smooth_table(t
     speed = math.sin(tilt) * (momentum / along - rate * (c - alpha)) / slope
 
     amplitude = math.sin(tilt / 2.0) ** 2
-    excess = kept + (alpha - 1.0) * momentum  # the fast one has L_z > L3, the slow one not necessarily
+    excess = (
+        kept + (alpha - 1.0) * momentum
+    )  # the fast one has L_z > L3, the slow one not necessarily
     tiny = 1e-9 * amplitude
     pair = Amplitudes(amplitude, tiny) if excess > 0.0 else Amplitudes(tiny, amplitude)
     root = abs(excess) / (2.0 * math.sqrt(2.0 * across * alpha) * amplitude)
@@ -290,7 +327,11 @@ def test_launches_without_a_slow_flow_are_refused(changes):
     ("field", "value"),
     [
         *(("samples", samples) for samples in (0, -3, 1, 3.5, True, "many")),
-        *((field, value) for field in ("distance", "tolerance") for value in (0.0, -1e-3, math.nan)),
+        *(
+            (field, value)
+            for field in ("distance", "tolerance")
+            for value in (0.0, -1e-3, math.nan)
+        ),
     ],
 )
 def test_settings_that_cannot_be_are_refused(field, value):
@@ -299,7 +340,9 @@ def test_settings_that_cannot_be_are_refused(field, value):
 
 
 def test_the_flow_needs_no_units():
-    """Twice the radius, mass times 3: time goes as sqrt(R/g), mu as 1/sqrt(g R), so that mu t goes as 1/g."""
+    """Twice the radius, mass times 3: time goes as sqrt(R/g), mu as 1/sqrt(g R), so that mu t goes
+    as 1/g.
+    """
     body = REPORT.body
     larger = REPORT.replace(
         {

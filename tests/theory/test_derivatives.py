@@ -34,7 +34,9 @@ def test_every_operation_differentiates_as_the_rules_say(x):
     ]
     for function, slope in cases:
         assert derivative(function, x) == pytest.approx(slope, rel=1e-14, abs=1e-15)
-        assert derivative(function, np.array([x, 1.0]))[0] == pytest.approx(slope, rel=1e-14, abs=1e-15)
+        assert derivative(function, np.array([x, 1.0]))[0] == pytest.approx(
+            slope, rel=1e-14, abs=1e-15
+        )
 
 
 @pytest.mark.parametrize("at", [-2.0, np.array([-2.0, 3.0])], ids=["number", "array"])
@@ -70,13 +72,17 @@ def test_many_points_give_the_matrices_of_each():
 @settings(max_examples=10)
 @given(slides(), st.lists(numbers(-1.0, 1.0), min_size=8, max_size=8))
 def test_the_jacobian_of_the_mechanics_is_that_of_computer_algebra(case, direction):
-    """Along a direction, sliding_rates(y + s v) is a function of s alone, which SymPy differentiates."""
+    """Along a direction, sliding_rates(y + s v) is a function of s alone, which SymPy
+    differentiates.
+    """
     top, state = case
     y = state.pack()
     along = [number * max(abs(entry), 1e-6) for number, entry in zip(direction, y, strict=True)]
     s = sympy.Symbol("s")
     moved = [entry + s * step for entry, step in zip(y, along, strict=True)]
-    slopes = [float(sympy.diff(sympy.sympify(rate), s).subs(s, 0)) for rate in rates_of_eight(moved, top)]
+    slopes = [
+        float(sympy.diff(sympy.sympify(rate), s).subs(s, 0)) for rate in rates_of_eight(moved, top)
+    ]
     matrix = jacobian(lambda t: rates_of_eight(t, top), y)
     scale = np.abs(matrix) @ np.abs(along) + 1e-300
     assert np.abs(matrix @ along - slopes) / scale == pytest.approx(0.0, abs=1e-11)

@@ -11,7 +11,12 @@ from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.mechanics.view import Angles, state_from_angles
-from tippetop.theory.diagnostics import gyroscopic_balance, nutation_envelope, potential_at, smooth_constants
+from tippetop.theory.diagnostics import (
+    gyroscopic_balance,
+    nutation_envelope,
+    potential_at,
+    smooth_constants,
+)
 from tippetop.theory.steady import precession_branch
 
 PROBLEM = presets.report_problem(spin=100.0)
@@ -67,7 +72,9 @@ def test_a_steady_precession_has_no_nutation_and_is_the_bottom_of_its_potential(
     tilts = np.linspace(0.2, 3.0, 2801)
     potential = potential_at(0, axis, momentum, top, tilts)
     assert tilts[np.argmin(potential)] == pytest.approx(1.2, abs=1e-3)
-    assert potential.min() == pytest.approx(smooth_constants(axis, momentum, top).energy[0], rel=1e-6)
+    assert potential.min() == pytest.approx(
+        smooth_constants(axis, momentum, top).energy[0], rel=1e-6
+    )
 
 
 def test_other_shapes_have_no_envelope():

@@ -1,4 +1,6 @@
-"""What drilling does to vertical spins: creep, a slow clock, and how long a top stands, against runs."""
+"""What drilling does to vertical spins: creep, a slow clock, and how long a top stands, against
+runs.
+"""
 
 import math
 
@@ -72,7 +74,9 @@ def test_about_a_vertical_spin_drilling_makes_dry_friction_viscous(pressure, kin
 @pytest.mark.parametrize("kind", VERTICAL_SPINS)
 def test_the_spectrum_changes_sign_where_jelletts_integral_says(pressure, kind):
     top = patch(pressure).top
-    assert critical_spin_from_spectrum(kind, top) == pytest.approx(critical_spin(kind, top), rel=1e-9)
+    assert critical_spin_from_spectrum(kind, top) == pytest.approx(
+        critical_spin(kind, top), rel=1e-9
+    )
     viscous = critical_spins(presets.report_problem(tilt=0.0))
     found = critical_spins(patch(pressure, tilt=0.1))
     assert found.upright == pytest.approx(viscous.upright, rel=1e-12)
@@ -81,7 +85,9 @@ def test_the_spectrum_changes_sign_where_jelletts_integral_says(pressure, kind):
 
 @pytest.mark.parametrize("pressure", PRESSURES)
 def test_a_small_tilt_grows_as_the_spectrum_says(pressure):
-    """With so small a patch and so little friction that drilling takes next to no spin meanwhile."""
+    """With so small a patch and so little friction that drilling takes next to no spin
+    meanwhile.
+    """
     problem = patch(pressure, mu=1e-5, radius=1e-6, tilt=1e-9)
     top, times = problem.top, np.linspace(0.0, 10.0, 2001)
     steady = vertical_spin(SteadyKind.UPRIGHT, top, 100.0)
@@ -139,7 +145,8 @@ def test_a_vertical_spin_loses_spin_at_a_constant_rate_until_it_stops(pressure, 
 
 @pytest.mark.parametrize("pressure", PRESSURES)
 def test_a_top_stands_until_it_has_too_little_spin(pressure):
-    """Launched beside it in the motion that is to grow, it comes closer until then, and leaves from then on.
+    """Launched beside it in the motion that is to grow, it comes closer until then, and leaves from
+    then on.
 
     The patch is so small that the spin changes by little while that motion decays or grows.
     """
@@ -220,7 +227,9 @@ def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
 
 @pytest.mark.parametrize("pressure", PRESSURES)
 def test_one_ball_on_top_of_the_other_stands_no_time(pressure):
-    """Inverted on one ball the centre of mass is on the table, and no spin has the lambda of a launch."""
+    """Inverted on one ball the centre of mass is on the table, and no spin has the lambda of a
+    launch.
+    """
     balls = patch(pressure).replace({"contact.liftoff": "fly", "body": presets.HURRICANE_BALLS})
     for problem in (balls, balls.replace({"launch.tilt": 0.5})):
         with pytest.raises(tt.InvalidInput, match="several surfaces"):
@@ -238,7 +247,12 @@ def test_the_outlook_of_a_top_that_drills_ends_nowhere_and_stands_a_while():
     for tilt in (0.0, 0.1, math.pi):
         found = outlook(patch(tilt=tilt))
         assert not found.conserved
-        assert (found.stays, found.prediction, found.flip_time, found.group) == (None, None, None, None)
+        assert (found.stays, found.prediction, found.flip_time, found.group) == (
+            None,
+            None,
+            None,
+            None,
+        )
         assert found.standing_time == standing_time(patch(tilt=tilt))
         assert [judged.state.kind for judged in found.steady] == list(VERTICAL_SPINS)
     assert outlook(presets.report_problem()).conserved
@@ -257,7 +271,9 @@ def test_the_command_line_says_how_long_it_stands():
 
 @pytest.mark.parametrize("pressure", PRESSURES)
 def test_while_drilling_takes_the_spin_a_small_tilt_grows_as_one_over_it(pressure):
-    """Times its decay by the spectrum: the vertical torque leaves the horizontal angular momentum alone."""
+    """Times its decay by the spectrum: the vertical torque leaves the horizontal angular momentum
+    alone.
+    """
     body = {"mass": 0.02, "shape": {"kind": "spheroid", "across": 0.02, "along": 0.0232}}
     problem = tt.Problem(
         body={**body, "I1": 2.88e-6, "I3": 3.2e-6},

@@ -35,7 +35,9 @@ JELLETTS = np.geomspace(0.02, 100.0, 600)
 
 
 def energy_minima(top):
-    """For Jellett's integrals from small to large: tilts of the minima of the least energy, by looking."""
+    """For Jellett's integrals from small to large: tilts of the minima of the least energy, by
+    looking.
+    """
     rows = []
     for size in JELLETTS:
         energies = least_energy(TILTS, size * jellett_unit(top), top, np)
@@ -110,9 +112,17 @@ def test_the_boundaries_are_where_something_happens_to_the_branch(alpha):
     just = 1e-9
     far = 1e3 * (1.0 - alpha) ** 2 * jellett_unit(sphere(1.0, alpha))
     assert critical_jellett(SteadyKind.UPRIGHT, sphere(upright_boundary(alpha) + just, alpha)) > far
-    assert critical_jellett(SteadyKind.UPRIGHT, sphere(upright_boundary(alpha) - just, alpha)) == math.inf
-    assert critical_jellett(SteadyKind.INVERTED, sphere(inverted_boundary(alpha) - just, alpha)) > far
-    assert critical_jellett(SteadyKind.INVERTED, sphere(inverted_boundary(alpha) + just, alpha)) == math.inf
+    assert (
+        critical_jellett(SteadyKind.UPRIGHT, sphere(upright_boundary(alpha) - just, alpha))
+        == math.inf
+    )
+    assert (
+        critical_jellett(SteadyKind.INVERTED, sphere(inverted_boundary(alpha) - just, alpha)) > far
+    )
+    assert (
+        critical_jellett(SteadyKind.INVERTED, sphere(inverted_boundary(alpha) + just, alpha))
+        == math.inf
+    )
     equal = sphere(equal_thresholds(alpha), alpha)
     assert critical_jellett(SteadyKind.UPRIGHT, equal) == pytest.approx(
         critical_jellett(SteadyKind.INVERTED, equal), rel=1e-11
@@ -136,7 +146,9 @@ def test_between_two_gammas_no_precession_is_stable(alpha):
 
 
 def test_above_the_last_eccentricity_some_precession_is_stable_for_every_gamma():
-    assert all(math.isnan(gamma) for gamma in precession_boundaries(7.0 - 4.0 * math.sqrt(3.0) + 1e-6))
+    assert all(
+        math.isnan(gamma) for gamma in precession_boundaries(7.0 - 4.0 * math.sqrt(3.0) + 1e-6)
+    )
 
 
 @given(numbers(0.05, 0.49), numbers(0.0, 1.0))
@@ -148,7 +160,10 @@ def test_jelletts_integral_turns_back_at_the_fold(alpha, share):
     around = precession_branch(top, turning.tilt + np.array([-near, 0.0, near])).jellett
     assert around[1] == pytest.approx(turning.jellett, rel=1e-12)
     assert around[0] > around[1] < around[2]
-    assert abs(around[2] - around[0]) < 1e-2 * (around[0] + around[2] - 2.0 * around[1]) + 1e-12 * around[1]
+    assert (
+        abs(around[2] - around[0])
+        < 1e-2 * (around[0] + around[2] - 2.0 * around[1]) + 1e-12 * around[1]
+    )
 
 
 @given(gammas, alphas, numbers(-3.0, 3.0))

@@ -1,4 +1,6 @@
-"""The nutation of a smooth table and what friction takes from it, against runs and the mechanics itself."""
+"""The nutation of a smooth table and what friction takes from it, against runs and the mechanics
+itself.
+"""
 
 import math
 
@@ -70,12 +72,16 @@ def test_at_the_turning_tilts_the_effective_potential_is_the_energy(problem):
     start = problem.start()
     values = constants(start.axis, start.momentum, problem.top)
     for tilt in turning_tilts(amplitudes(path_of(problem)[0])):
-        assert effective_potential(tilt, values, problem.top, math) == pytest.approx(values.energy, rel=1e-9)
+        assert effective_potential(tilt, values, problem.top, math) == pytest.approx(
+            values.energy, rel=1e-9
+        )
 
 
 @pytest.mark.parametrize("problem", LAUNCHES)
 def test_friction_takes_from_a_nutation_what_the_mechanics_says_on_average(problem):
-    """Averaged over a run on a smooth table: the derivative of the mechanics' rates by mu, at mu = 0."""
+    """Averaged over a run on a smooth table: the derivative of the mechanics' rates by mu, at mu =
+    0.
+    """
     top = problem.top
     # A window that is smooth at its ends averages a periodic function fast, whatever its period.
     times = np.linspace(0.0, 12.0, 60001)

@@ -1,4 +1,6 @@
-"""What the theory says of a launch: of every launch something, and of the special ones the truth."""
+"""What the theory says of a launch: of every launch something, and of the special ones the
+truth.
+"""
 
 import itertools
 import json
@@ -55,7 +57,9 @@ BODIES = {
     "ball": spheroid(0.02, 0.02),
 }
 FRICTION = [
-    {"kind": kind, "mu": mu} for kind in ("viscous", "regularized_coulomb") for mu in (0.3, 1e-12, 0.0)
+    {"kind": kind, "mu": mu}
+    for kind in ("viscous", "regularized_coulomb")
+    for mu in (0.3, 1e-12, 0.0)
 ]
 NEAR = [0.0, 1e-300, 1e-160, 1e-12, 1e-8, 1e-4]
 TILTS = [
@@ -100,7 +104,9 @@ def said(problem):
         warnings.simplefilter("error")
         if fastest <= FASTEST * (1.0 + 1e-12):
             return outlook(problem)
-        with pytest.raises(InvalidInput, match=r"launch\.(spin|tilt_rate|precession) = .* accepted: at most"):
+        with pytest.raises(
+            InvalidInput, match=r"launch\.(spin|tilt_rate|precession) = .* accepted: at most"
+        ):
             outlook(problem)
         return None
 
@@ -132,10 +138,14 @@ ALL = list(itertools.product(BODIES, FRICTION, TILTS, SPINS, RATES))
 
 @pytest.mark.parametrize("body", BODIES)
 def test_every_launch_gets_an_answer_or_a_sentence(body):
-    """A part of all combinations, the same in every run, and all that are set down without rates."""
+    """A part of all combinations, the same in every run, and all that are set down without
+    rates.
+    """
     combinations = [some for some in ALL if some[0] == body]
     plain = [some for some in combinations if some[-1] == RATES[0] and some[1]["mu"] != 1e-12]
-    for some in random.Random(body).sample(combinations, 30) + random.Random(body).sample(plain, 30):
+    for some in random.Random(body).sample(combinations, 30) + random.Random(body).sample(
+        plain, 30
+    ):
         problem = launch_of(*some)
         if problem is not None:
             check_what_is_said(problem)
@@ -155,13 +165,17 @@ def test_any_launch_gets_an_answer_or_a_sentence(body, friction, tilt, spin, rat
         check_what_is_said(problem)
 
 
-@pytest.mark.parametrize(("group", "body"), [(Group(name), name) for name in BODIES if name in tuple(Group)])
+@pytest.mark.parametrize(
+    ("group", "body"), [(Group(name), name) for name in BODIES if name in tuple(Group)]
+)
 def test_there_is_a_body_of_every_group(group, body):
     assert outlook(launch_of(body, FRICTION[0], 0.1, 100.0, (0.0, 0.0))).group is group
 
 
 @pytest.mark.parametrize("body", ["report", "III"])
-@pytest.mark.parametrize(("pole", "kind"), [(0.0, SteadyKind.UPRIGHT), (math.pi, SteadyKind.INVERTED)])
+@pytest.mark.parametrize(
+    ("pole", "kind"), [(0.0, SteadyKind.UPRIGHT), (math.pi, SteadyKind.INVERTED)]
+)
 def test_the_time_to_leave_a_pole_grows_as_the_logarithm_of_the_distance(body, pole, kind):
     """By a growth rate that is the one of the spectrum, and proportional to little friction."""
     spin, mu = 60.0, 1e-6
@@ -171,7 +185,8 @@ def test_the_time_to_leave_a_pole_grows_as_the_logarithm_of_the_distance(body, p
         pytest.skip("there it does not leave")
     distances = [1e-5, 1e-7, 1e-9, 1e-12] + ([1e-100, 1e-300] if pole == 0.0 else [])
     times = [
-        flip_time_limit(launch_of(body, FRICTION[0], abs(pole - d), spin, (0.0, 0.0))) for d in distances
+        flip_time_limit(launch_of(body, FRICTION[0], abs(pole - d), spin, (0.0, 0.0)))
+        for d in distances
     ]
     logs = -np.log([abs(pole - abs(pole - d)) for d in distances])
     assert np.diff(times) / np.diff(logs) == pytest.approx(1.0 / rate, rel=1e-3)
@@ -186,12 +201,16 @@ def test_at_a_pole_the_theory_says_what_it_says_beside_it(body, spin):
         )
         assert there.prediction.final.tilt == pytest.approx(near.prediction.final.tilt, abs=1e-5)
         assert there.critical_spins.upright == pytest.approx(near.critical_spins.upright, rel=1e-9)
-        assert there.critical_spins.inverted == pytest.approx(near.critical_spins.inverted, rel=1e-9)
+        assert there.critical_spins.inverted == pytest.approx(
+            near.critical_spins.inverted, rel=1e-9
+        )
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.3])
 @pytest.mark.parametrize("body", ["report", "egg"])
-@pytest.mark.parametrize(("tilt", "kind"), [(0.0, SteadyKind.UPRIGHT), (math.pi, SteadyKind.INVERTED)])
+@pytest.mark.parametrize(
+    ("tilt", "kind"), [(0.0, SteadyKind.UPRIGHT), (math.pi, SteadyKind.INVERTED)]
+)
 def test_a_launch_exactly_on_a_vertical_spin_stays_there(mu, body, tilt, kind):
     problem = launch_of(body, {"kind": "viscous", "mu": mu}, tilt, 100.0, (0.0, 20.0))
     found = outlook(problem)
@@ -235,7 +254,10 @@ def test_without_friction_nothing_ends_and_the_tilt_swings(kind):
     assert found.flip_time is None
     problem = launch_of("report", FRICTION[0], 0.3, 40.0, (0.0, 5.0))
     assert found.swings == nutation_of_launch(problem).tilts
-    assert 0.3 in (pytest.approx(found.swings[0], abs=1e-9), pytest.approx(found.swings[1], abs=1e-9))
+    assert 0.3 in (
+        pytest.approx(found.swings[0], abs=1e-9),
+        pytest.approx(found.swings[1], abs=1e-9),
+    )
     assert outlook(problem).swings is None
 
 
@@ -264,7 +286,9 @@ SEVERAL = ("--set", "body.I1=2e-6", "--set", "launch.tilt_rate=1")
 @pytest.mark.parametrize("options", [(), ("--tilt", "0"), SEVERAL], ids=str)
 def test_no_row_is_broken_on_a_terminal_of_80_columns(options):
     found = [critical(*options, columns=columns).splitlines() for columns in (80, 200)]
-    narrow, wide = ([line.split() for line in lines if re.search(r"\S {2,}\S", line)] for lines in found)
+    narrow, wide = (
+        [line.split() for line in lines if re.search(r"\S {2,}\S", line)] for lines in found
+    )
     assert narrow == wide
     assert ("of several" in str(found)) is (options == SEVERAL)
 

@@ -48,7 +48,9 @@ def test_the_prediction_has_the_lambda_of_the_launch():
 
 
 def test_where_two_states_are_stable_energy_bars_one_from_a_gentle_launch():
-    """Group Ia: the upright spin and a tilted state. Set down upright, the top cannot climb the barrier."""
+    """Group Ia: the upright spin and a tilted state. Set down upright, the top cannot climb the
+    barrier.
+    """
     upright = predict(sphere_problem(0.6, 0.3, 0.05, 60.0))
     assert len(upright.stable) == 2
     assert upright.certain
@@ -94,7 +96,9 @@ def test_a_stem_out_of_reach_changes_nothing(spin):
         shapes = STEMMED.body.shapes[::order]
         prediction = predict(STEMMED.replace({"launch.spin": spin, "body.shape": shapes}))
         assert prediction.final.tilt == pytest.approx(alone.final.tilt, abs=1e-9)
-        assert prediction.stable == prediction.reachable, "what lies beyond the stem's touch is no end"
+        assert prediction.stable == prediction.reachable, (
+            "what lies beyond the stem's touch is no end"
+        )
     run = simulate(STEMMED.replace({"launch.spin": spin}), 30.0, samples=2)
     assert set(run["event_kind"].values) == set()
     assert float(run["theta"][-1]) == pytest.approx(alone.final.tilt, abs=1e-4)
@@ -104,12 +108,16 @@ def test_what_may_touch_with_its_stem_is_refused_where_the_stem_touches():
     """Both spheres, 0.02 and 0.004 across their radii, are as low where 0.016 = 0.02 |cos|."""
     tilt = math.acos(-0.016 / 0.02)
     assert list(touching_tilts(STEMMED.top.surface, 0.1)) == pytest.approx([tilt], abs=1e-12)
-    with pytest.raises(InvalidInput, match=rf"surface 1 can touch, at a tilt of {tilt:.4g} rad.*run it"):
+    with pytest.raises(
+        InvalidInput, match=rf"surface 1 can touch, at a tilt of {tilt:.4g} rad.*run it"
+    ):
         predict(STEMMED)
 
 
 def test_a_rim_that_hardly_reaches_out_of_the_ball_is_not_overlooked():
-    """A sharp rim 1e-6 radii outside of the ball, in the direction psi from its middle, touches near psi."""
+    """A sharp rim 1e-6 radii outside of the ball, in the direction psi from its middle, touches
+    near psi.
+    """
     radius, center, psi, reach = 0.02, 0.006, 1.5, 1.0 + 1e-6
     shapes = [
         {"kind": "sphere", "radius": radius, "center": center},
@@ -168,7 +176,12 @@ def test_the_energy_that_is_named_is_what_decides():
     ],
 )
 def test_runs_end_on_the_predicted_surface(name, tilt, spin, surface):
-    launch = {"launch.tilt": tilt, "launch.spin": spin, "friction.mu": 1.0, "body": presets.body(name)}
+    launch = {
+        "launch.tilt": tilt,
+        "launch.spin": spin,
+        "friction.mu": 1.0,
+        "body": presets.body(name),
+    }
     problem = presets.report_problem().replace(launch)
     prediction = predict(problem)
     assert prediction.certain
@@ -181,7 +194,9 @@ def test_runs_end_on_the_predicted_surface(name, tilt, spin, surface):
 
 @pytest.mark.parametrize(("tilt", "precession"), [(0.1, 0.0), (1.3, 60.0), (1.9, -60.0)])
 def test_balls_whose_other_one_may_touch_are_refused_in_a_sentence(tilt, precession):
-    """Inverted on one ball alone the centre of mass would be on the table, and no spin has any lambda."""
+    """Inverted on one ball alone the centre of mass would be on the table, and no spin has any
+    lambda.
+    """
     launch = {"launch.tilt": tilt, "launch.precession": precession, "body": presets.HURRICANE_BALLS}
     problem = presets.report_problem().replace(launch)
     with pytest.raises(InvalidInput, match=r"can touch, at a tilt of 1\.571 rad"):

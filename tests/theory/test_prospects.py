@@ -49,11 +49,15 @@ def test_who_lies_on_no_sphere_has_no_group():
 
 
 def end_of(problem, spin, duration):
-    return float(tt.simulate(problem.replace({"launch.spin": spin}), duration, samples=11)["theta"][-1])
+    return float(
+        tt.simulate(problem.replace({"launch.spin": spin}), duration, samples=11)["theta"][-1]
+    )
 
 
 def test_a_stem_touches_and_is_stood_upon_from_the_spins_foreseen():
-    """Runs of a whole top: below one spin its stem stays up, above it touches; so for standing on it."""
+    """Runs of a whole top: below one spin its stem stays up, above it touches; so for standing on
+    it.
+    """
     body = tt.presets.BODIES["report-stem"]
     found = prospects(body, list(body.shapes))
     launch = tt.Launch(tilt=found.tilt, spin=0.0)
@@ -61,7 +65,9 @@ def test_a_stem_touches_and_is_stood_upon_from_the_spins_foreseen():
     gap = [shape.surface.height(math.cos(found.touch.tilt)) for shape in body.shapes]
     assert gap[0] == pytest.approx(gap[1], rel=1e-12)
     for factor, touches in ((0.97, False), (1.05, True)):
-        run = tt.simulate(problem.replace({"launch.spin": factor * found.touch.spin}), 9.0, samples=11)
+        run = tt.simulate(
+            problem.replace({"launch.spin": factor * found.touch.spin}), 9.0, samples=11
+        )
         assert (run.sizes["event"] > 0) is touches
     assert found.touch.spin < 0.9 * found.stem.launch
     assert end_of(problem, 0.9 * found.stem.launch, 9.0) < found.touch.tilt + 0.2

@@ -52,7 +52,9 @@ def test_the_upright_spin_at_100_rad_per_s():
 
 @given(all_spheres, numbers(0.1, 3.0))
 def test_the_spectrum_of_a_precession_is_that_of_the_published_equations(top, tilt):
-    """In Euler angles the azimuth drops out by itself, and a precession is an equilibrium of the rest."""
+    """In Euler angles the azimuth drops out by itself, and a precession is an equilibrium of the
+    rest.
+    """
     branch = precession_branch(top, np.array([tilt]))
     assume(np.isfinite(branch.precession[0]) and branch.precession[0] < 300.0)
     ours = eigenvalues(branch, top)[0]
@@ -72,7 +74,9 @@ def test_the_spectrum_of_a_precession_is_that_of_the_published_equations(top, ti
 
 @given(all_spheres, numbers(0.2, 8.0))
 def test_stable_is_what_has_least_energy(top, size):
-    """Friction takes energy and leaves lambda: minima are stable, whatever mu, and nothing else is."""
+    """Friction takes energy and leaves lambda: minima are stable, whatever mu, and nothing else
+    is.
+    """
     states = steady_states(top, size * jellett_unit(top))
     minima = stable_by_energy(states)
     for steady in states:
@@ -97,7 +101,10 @@ def test_a_turning_frame_shifts_the_frequencies_of_a_vertical_spin(top, spin, fr
     shift = 1j * frame * unit
     scale = np.abs(still).max() + abs(shift)
     for number in turning.eigenvalues:
-        assert min(np.abs(still - shift - number).min(), np.abs(still + shift - number).min()) < 1e-4 * scale
+        assert (
+            min(np.abs(still - shift - number).min(), np.abs(still + shift - number).min())
+            < 1e-4 * scale
+        )
     assert turning.frame_rate == frame * unit
 
 

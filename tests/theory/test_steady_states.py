@@ -143,7 +143,9 @@ def test_steady_states_are_where_the_least_energy_is_stationary(top, size):
         assert slope == pytest.approx(0.0, abs=1e-8 * steady.energy)
 
 
-@given(all_spheres, numbers(0.1, 3.0), numbers(-30.0, 30.0), numbers(-30.0, 30.0), numbers(-30.0, 30.0))
+@given(
+    all_spheres, numbers(0.1, 3.0), numbers(-30.0, 30.0), numbers(-30.0, 30.0), numbers(-30.0, 30.0)
+)
 def test_no_motion_has_less_than_the_least_energy(top, tilt, tilt_rate, precession, spin):
     state = state_from_angles(Angles(tilt, tilt_rate, 0.0, precession, spin, (0.0, 0.0)), top, math)
     whole = on_table(state._replace(velocity=(0.0, 0.0)), top)

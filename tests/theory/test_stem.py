@@ -1,4 +1,6 @@
-"""Which stems a top stands up on: the theory against whole runs, and against numbers of another solver."""
+"""Which stems a top stands up on: the theory against whole runs, and against numbers of another
+solver.
+"""
 
 import math
 
@@ -13,11 +15,15 @@ from tippetop.theory.stem import jellett_about
 def test_the_least_jellett_to_stand_is_what_another_solver_states() -> None:
     found = tt.least_jellett_to_stand(tt.presets.LEINE_GLOCKER_STEM, gravity=9.81)
     assert found == pytest.approx(1.29518e-06, rel=1e-5)
-    assert tt.least_jellett_to_stand(tt.presets.REPORT_THIN_STEM) == pytest.approx(1.12145e-05, rel=1e-5)
+    assert tt.least_jellett_to_stand(tt.presets.REPORT_THIN_STEM) == pytest.approx(
+        1.12145e-05, rel=1e-5
+    )
 
 
 def run_of(radius: float, center: float) -> tuple[float, float, float]:
-    """Jellett's integral about the stem when it touches first, the least, and the tilt at the end."""
+    """Jellett's integral about the stem when it touches first, the least, and the tilt at the
+    end.
+    """
     stem = {"kind": "sphere", "radius": radius, "center": center}
     sphere = tt.presets.REPORT_STEM.shapes[0].model_dump()
     problem = tt.presets.report_problem().replace({"body.shape": [sphere, stem]})
@@ -31,7 +37,9 @@ def run_of(radius: float, center: float) -> tuple[float, float, float]:
 
 @pytest.mark.parametrize("radius", [0.004, 0.008, 0.0115, 0.012])
 def test_a_top_stands_up_on_its_stem_where_the_theory_says(radius: float) -> None:
-    """The report's top, launched as in its Fig. 4, with stems that all reach 3 to 4 mm beyond the sphere."""
+    """The report's top, launched as in its Fig. 4, with stems that all reach 3 to 4 mm beyond the
+    sphere.
+    """
     about, least, tilt = run_of(radius, 0.0295 - radius)
     assert abs(about / least - 1.0) > 0.005, "not on the edge, where more than one touch decides"
     assert (tilt > math.pi - 1e-3) == (about > least)
@@ -67,7 +75,9 @@ def test_critical_spins_are_of_one_surface_and_not_told_of_several() -> None:
 
 @pytest.mark.parametrize(("tilt", "spin"), [(0.1, 30.0), (0.1, 155.0), (3.0, 40.0), (3.0, 250.0)])
 def test_steady_states_are_told_of_the_surface_that_touches(tilt: float, spin: float) -> None:
-    """Those of its sphere below, and of its tip beyond, the tilt at which both touch: 8 = 11 |cos|, mm."""
+    """Those of its sphere below, and of its tip beyond, the tilt at which both touch: 8 = 11 |cos|,
+    mm.
+    """
     both = math.acos(-8 / 11)
     problem = STEMMED.replace({"launch.tilt": tilt, "launch.spin": spin})
     number = int(tilt > both)
@@ -79,6 +89,10 @@ def test_steady_states_are_told_of_the_surface_that_touches(tilt: float, spin: f
     assert [judged.state for judged in found.steady] == inside
     assert found.surface == number
     assert found.tilts == pytest.approx((both, math.pi) if number else (0.0, both), abs=1e-12)
-    assert (found.prediction is None) == (spin in (155.0, 40.0)), "energy lets the other surface touch"
+    assert (found.prediction is None) == (spin in (155.0, 40.0)), (
+        "energy lets the other surface touch"
+    )
     if number:
-        assert found.lambda_down == pytest.approx(tt.least_jellett_to_stand(problem.body), rel=1e-12)
+        assert found.lambda_down == pytest.approx(
+            tt.least_jellett_to_stand(problem.body), rel=1e-12
+        )

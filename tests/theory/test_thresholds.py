@@ -51,7 +51,9 @@ def test_the_spectrum_of_a_sphere_changes_sign_at_the_threshold_whatever_the_fri
 ):
     top = sphere(gamma, alpha, mu=10.0**logarithm)
     assume(min(abs(alpha + gamma - 1.0), abs(1.0 + alpha - gamma)) > 1e-3)
-    assert critical_spin_from_spectrum(kind, top) == pytest.approx(critical_spin(kind, top), rel=1e-9)
+    assert critical_spin_from_spectrum(kind, top) == pytest.approx(
+        critical_spin(kind, top), rel=1e-9
+    )
 
 
 @given(tops(shapes=spheroids(), friction_laws=(ViscousLaw,)))
@@ -61,11 +63,15 @@ def test_the_spectrum_of_a_spheroid_changes_sign_at_the_threshold(top):
     assume(top.friction.mu * unit * top.surface.size > 1e-3)
     by_formula = critical_spin(SteadyKind.UPRIGHT, top)
     assume(by_formula == math.inf or by_formula < 1e3 * unit)
-    assert critical_spin_from_spectrum(SteadyKind.UPRIGHT, top) == pytest.approx(by_formula, rel=1e-7)
+    assert critical_spin_from_spectrum(SteadyKind.UPRIGHT, top) == pytest.approx(
+        by_formula, rel=1e-7
+    )
 
 
 def test_a_launch_with_a_precession_has_its_own_critical_spins():
-    problem = presets.report_problem(tilt=0.4).replace({"launch.precession": 12.0, "launch.tilt_rate": 3.0})
+    problem = presets.report_problem(tilt=0.4).replace(
+        {"launch.precession": 12.0, "launch.tilt_rate": 3.0}
+    )
     spins = critical_spins(problem)
     for spin, kind in ((spins.upright, SteadyKind.UPRIGHT), (spins.inverted, SteadyKind.INVERTED)):
         launched = jellett_of_launch(problem.replace({"launch.spin": spin}))
@@ -83,7 +89,9 @@ def test_growth_rates_of_launches_vanish_at_their_critical_spins():
     problem = presets.report_problem()
     spins = critical_spins(problem)
     for kind, spin in zip(VERTICAL, (spins.upright, spins.inverted), strict=True):
-        below, at, above = growth_rates_of_launches(kind, problem, spin * np.array([0.99, 1.0, 1.01]))
+        below, at, above = growth_rates_of_launches(
+            kind, problem, spin * np.array([0.99, 1.0, 1.01])
+        )
         assert abs(at) < 1e-10
         assert below * above < 0.0
         assert (below < 0.0) == (kind is SteadyKind.UPRIGHT)
@@ -119,7 +127,9 @@ def test_impossible_windows_are_refused(window, visible):
 @pytest.mark.parametrize(
     "friction", [tt.ViscousFriction(mu=0.3), tt.ContensouFriction(mu=0.3, patch_radius=1e-4)]
 )
-def test_one_of_two_balls_on_top_of_the_other_never_stands_on_the_table(friction: tt.Friction) -> None:
+def test_one_of_two_balls_on_top_of_the_other_never_stands_on_the_table(
+    friction: tt.Friction,
+) -> None:
     """Where they touch one another is the centre of mass: for the upper one, in the table."""
     balls = tt.presets.HURRICANE_BALLS
     for center in (balls.shapes[0].center, -balls.shapes[0].radius):

@@ -28,8 +28,12 @@ def body(
     ] = False,
     plot: Annotated[Path | None, typer.Option(help="Draw the section: .png, .svg or .pdf.")] = None,
     stl: Annotated[Path | None, typer.Option(help="Write the solid for printing, mm.")] = None,
-    three_mf: Annotated[Path | None, typer.Option("--3mf", help="Write all parts for printing, mm.")] = None,
-    as_toml: Annotated[bool, typer.Option("--toml", help="Print a problem with this body as TOML.")] = False,
+    three_mf: Annotated[
+        Path | None, typer.Option("--3mf", help="Write all parts for printing, mm.")
+    ] = None,
+    as_toml: Annotated[
+        bool, typer.Option("--toml", help="Print a problem with this body as TOML.")
+    ] = False,
     as_json: Json = False,
     force: Force = False,
 ) -> None:
@@ -42,7 +46,9 @@ def body(
         require_ending(f"--{kind}", path, ENDINGS[kind])
         place_for(path, force)
     given = {"density": density, "unit": unit}
-    piece = read_workpiece(file, **{name: value for name, value in given.items() if value is not None})
+    piece = read_workpiece(
+        file, **{name: value for name, value in given.items() if value is not None}
+    )
     if as_toml and as_json:
         raise InvalidInput("--toml", "with --json", "one of the two")
     if as_toml:
@@ -105,7 +111,14 @@ def _expected(piece: "tt.Workpiece") -> dict[str, Any]:
         shapes = touching(piece, whole=True)
         found = prospects(tt.Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
     if found is None:
-        sphere = ("eccentricity", "group", "group_description", "omega_c1", "omega_c2", "omega_c_tilt")
+        sphere = (
+            "eccentricity",
+            "group",
+            "group_description",
+            "omega_c1",
+            "omega_c2",
+            "omega_c_tilt",
+        )
         return dict.fromkeys((*sphere, "touch", "stem"))
     spins, touch, stem = found.critical_spins, found.touch, found.stem
     # Where something else touches before the stem, nothing is known of launches that reach it.
@@ -117,7 +130,8 @@ def _expected(piece: "tt.Workpiece") -> dict[str, Any]:
         "omega_c1": spins.upright,
         "omega_c2": spins.inverted,
         "omega_c_tilt": found.tilt,
-        "touch": touch and {"surface": touch.surface, "tilt": touch.tilt, "least_launch_spin": touch.spin},
+        "touch": touch
+        and {"surface": touch.surface, "tilt": touch.tilt, "least_launch_spin": touch.spin},
         "stem": stem and {"least_jellett": stem.jellett, "least_spin": stem.spin, **reached},
     }
 
@@ -136,7 +150,9 @@ def _sentences(told: dict[str, Any]) -> Iterator[Any]:
 
     if told["group"]:
         upto = told["surfaces"][0]["to_tilt"]
-        within = f" That is on its sphere, up to a tilt of {upto:.6g} rad." if upto < math.pi else ""
+        within = (
+            f" That is on its sphere, up to a tilt of {upto:.6g} rad." if upto < math.pi else ""
+        )
         yield f"[bold]Group {told['group']}[/]: {told['group_description']}.{within}"
     yield facts(_rows(told))
     headings = ("surface", "radius", "tube", "height of its centre", "from tilt", "to tilt")
@@ -148,7 +164,10 @@ def _sentences(told: dict[str, Any]) -> Iterator[Any]:
 
 
 def _surface_row(one: dict[str, Any]) -> tuple[str, ...]:
-    lengths = ("" if one[name] is None else f"{1e3 * one[name]:.6g}" for name in ("radius", "tube", "center"))
+    lengths = (
+        "" if one[name] is None else f"{1e3 * one[name]:.6g}"
+        for name in ("radius", "tube", "center")
+    )
     return (one["kind"], *lengths, f"{one['from_tilt']:.6g}", f"{one['to_tilt']:.6g}")
 
 
@@ -162,19 +181,29 @@ def _rows(told: dict[str, Any]) -> list[tuple[str, str, str]]:
     ]
     if told["group"]:
         rows += [
-            ("α, the centre of mass below the sphere's centre", f"{told['eccentricity']:.7g}", "radii"),
+            (
+                "α, the centre of mass below the sphere's centre",
+                f"{told['eccentricity']:.7g}",
+                "radii",
+            ),
             ("upright spin is left above ω_c1", spelled(told["omega_c1"], 7), "rad/s"),
             ("inverted spin holds above ω_c2", spelled(told["omega_c2"], 7), "rad/s"),
         ]
     if told["touch"]:
         spin = spelled(told["touch"]["least_launch_spin"], 7)
         rows.append(
-            (f"surface {told['touch']['surface']} comes down to the table, launched above", spin, "rad/s")
+            (
+                f"surface {told['touch']['surface']} comes down to the table, launched above",
+                spin,
+                "rad/s",
+            )
         )
     if told["stem"]:
         rows.append(("stands on its stem above", spelled(told["stem"]["least_spin"], 7), "rad/s"))
         if "least_launch_spin" in told["stem"]:
-            rows.append(("that is, launched above", spelled(told["stem"]["least_launch_spin"], 7), "rad/s"))
+            rows.append(
+                ("that is, launched above", spelled(told["stem"]["least_launch_spin"], 7), "rad/s")
+            )
     between = [tilt for tilt in told["lies_on_lines_at_tilts"] if 0.0 < tilt < math.pi]
     rows += [("touches in two points or a line at tilt", f"{tilt:.7g}", "rad") for tilt in between]
     ends = {0.0: "below", math.pi: "above"}

@@ -1,4 +1,6 @@
-"""The command line: collects the commands and turns what goes wrong into one sentence and an exit code."""
+"""The command line: collects the commands and turns what goes wrong into one sentence and an exit
+code.
+"""
 
 import sys
 from typing import Annotated, Any
@@ -47,7 +49,9 @@ class Commands(TyperGroup):
         except UsageError as error:
             raise _in_a_sentence(error) from None
         except (KeyboardInterrupt, Exception) as error:
-            if not (isinstance(error, KeyboardInterrupt) or asked_to_end()) or isinstance(error, typer.Exit):
+            if not (isinstance(error, KeyboardInterrupt) or asked_to_end()) or isinstance(
+                error, typer.Exit
+            ):
                 raise
             typer.echo("tippetop: interrupted", err=True)
             raise typer.Exit(INTERRUPTED) from None
@@ -56,7 +60,9 @@ class Commands(TyperGroup):
 
 
 def _in_a_sentence(error: Any) -> Exception:
-    """What typer says of a command line, in the words of all other sentences; help that it shows as it is."""
+    """What typer says of a command line, in the words of all other sentences; help that it shows as
+    it is.
+    """
     cause = error.__cause__
     if isinstance(cause, ValidationError):
         detail, option = cause.errors()[0], error.param
@@ -86,7 +92,8 @@ def _print_version(asked: bool) -> None:
 @app.callback()
 def tippetop(
     _version: Annotated[
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version.")
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
     """A laboratory for the tippe top, the toy that turns itself upside down."""

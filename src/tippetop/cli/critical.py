@@ -46,7 +46,9 @@ def _plain(found: "Outlook") -> dict[str, Any]:
         "omega_c1": found.critical_spins.upright,
         "omega_c2": found.critical_spins.inverted,
         "omega_c_tilt": found.tilt,
-        "stays": None if stays is None else "stable" if stays.spectrum.stable else "until disturbed",
+        "stays": (
+            None if stays is None else "stable" if stays.spectrum.stable else "until disturbed"
+        ),
         "final": final,
         "final_certain": possible and len(possible) == 1,
         "final_possible": possible,
@@ -56,7 +58,9 @@ def _plain(found: "Outlook") -> dict[str, Any]:
                 "stable": judged.spectrum.stable,
                 "growth_rate": judged.spectrum.growth_rate,
                 "frame_rate": judged.spectrum.frame_rate,
-                "eigenvalues": [[value.real, value.imag] for value in judged.spectrum.eigenvalues.tolist()],
+                "eigenvalues": [
+                    [value.real, value.imag] for value in judged.spectrum.eigenvalues.tolist()
+                ],
                 "neutral": judged.spectrum.neutral,
             }
             for judged in found.steady
@@ -73,15 +77,18 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
     if found.tilts != (0.0, math.pi):
         low, high = found.tilts
         yield (
-            f"Of its surface {found.surface} alone, from θ = {low:.6g} to {high:.6g} rad: beyond, another "
-            "touches."
+            f"Of its surface {found.surface} alone, from θ = {low:.6g} to {high:.6g} rad: beyond,"
+            " another touches."
         )
     if found.group is not None:
-        yield f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and rates.[/]"
+        yield (
+            f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and"
+            " rates.[/]"
+        )
     if found.flip_time is not None:
         yield (
-            "[dim]The last is the limit over μ: far off where friction is strong, or where a nutation brings "
-            "the axis round the vertical just once.[/]"
+            "[dim]The last is the limit over μ: far off where friction is strong, or where a"
+            " nutation brings the axis round the vertical just once.[/]"
         )
     if found.flip_time_needs is not None:
         yield f"[dim]Of launches, the flip time is known only of {found.flip_time_needs}.[/]"
@@ -91,8 +98,8 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
     for judged in found.steady:
         yield f"[dim]{judged.state.kind.value}:[/] {_eigenvalues(judged)}"
     yield (
-        "[dim]rad, rad/s, J; eigenvalues in 1/s, in the frame that turns with the precession (for vertical "
-        "spins, a frame at rest), without the zeros of symmetry.[/]"
+        "[dim]rad, rad/s, J; eigenvalues in 1/s, in the frame that turns with the precession (for"
+        " vertical spins, a frame at rest), without the zeros of symmetry.[/]"
     )
 
 
@@ -100,8 +107,16 @@ def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
     upright, inverted = found.critical_spins.upright, found.critical_spins.inverted
     sphere, kept = found.group is not None, "" if found.conserved else ", not conserved"
     rows = [
-        ("upright spin is left above ω_c1" if sphere else "upright changes at", spelled(upright), "rad/s"),
-        ("inverted spin holds above ω_c2" if sphere else "inverted changes at", spelled(inverted), "rad/s"),
+        (
+            "upright spin is left above ω_c1" if sphere else "upright changes at",
+            spelled(upright),
+            "rad/s",
+        ),
+        (
+            "inverted spin holds above ω_c2" if sphere else "inverted changes at",
+            spelled(inverted),
+            "rad/s",
+        ),
         ("λ_up", spelled(found.lambda_up), "kg m³/s"),
         ("λ_down", spelled(found.lambda_down), "kg m³/s"),
         ("λ of this launch", spelled(found.jellett), "kg m³/s" + kept),
@@ -131,7 +146,9 @@ def _end_rows(found: "Outlook") -> list[tuple[str, str, str]]:
         until = "" if stable else " until disturbed"
         rows.append(("stays exactly on", _told(state), f"rad{until}"))
     if found.prediction is not None and not (found.stays and found.stays.spectrum.stable):
-        rows.append(("and then ends as" if found.stays else "ends as", _told(found.prediction.final), "rad"))
+        rows.append(
+            ("and then ends as" if found.stays else "ends as", _told(found.prediction.final), "rad")
+        )
         if not found.prediction.certain:
             rows.append(("", "of several, by least energy", ""))
     return rows
@@ -145,7 +162,13 @@ def _state_row(judged: "Judged") -> tuple[str, ...]:
     state, spectrum = judged.state, judged.spectrum
     verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "neutral"
     motion = (spelled(value, 6) for value in (state.tilt, state.precession, state.spin))
-    return (state.kind.value, *motion, f"{state.energy:.5g}", verdict, f"{spectrum.growth_rate:.5g}")
+    return (
+        state.kind.value,
+        *motion,
+        f"{state.energy:.5g}",
+        verdict,
+        f"{spectrum.growth_rate:.5g}",
+    )
 
 
 def _eigenvalues(judged: "Judged") -> str:

@@ -10,14 +10,16 @@ from tippetop.cli.options import Force
 
 def lab(
     host: Annotated[
-        str | None, typer.Option(help="Serve the page at this address; 0.0.0.0 lets other devices in.")
+        str | None,
+        typer.Option(help="Serve the page at this address; 0.0.0.0 lets other devices in."),
     ] = None,
     port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port to serve it at; 0 for a free one.")
     ] = 8421,
     out: Annotated[Path | None, typer.Option(help="Write the page into this file instead.")] = None,
     browser: Annotated[
-        bool, typer.Option(show_default=False, help="Open the page in a browser; opened if left out.")
+        bool,
+        typer.Option(show_default=False, help="Open the page in a browser; opened if left out."),
     ] = True,
     force: Force = False,
 ) -> None:

@@ -8,14 +8,18 @@ from contextlib import suppress
 from tippetop.interrupts import INTERRUPTED, let_end
 
 GARBAGE = 50_000
-"""Objects made between two looks for garbage: importing the libraries makes many, and drops hardly one."""
+"""Objects made between two looks for garbage: importing the libraries makes many, and drops hardly
+one.
+"""
 
 UNUSED = ("dask", "sympy")
 """What xarray and heyoka load wherever it is installed, and no command but `sweep` uses."""
 
 
 def main() -> None:
-    """Run the command line; misuse ends with one sentence and exit code 2, Ctrl-C and its like with 130."""
+    """Run the command line; misuse ends with one sentence and exit code 2, Ctrl-C and its like with
+    130.
+    """
     let_end(at_first=True)
     gc.set_threshold(GARBAGE)
     if sys.argv[1:2] != ["sweep"]:
@@ -27,7 +31,8 @@ def main() -> None:
         run()
     except SystemExit as ending:
         if ending.code == INTERRUPTED:
-            # All is undone that was begun: nobody needs to wait for the compiler, or for libraries to go.
+            # All is undone that was begun: nobody needs to wait for the compiler, or for libraries
+            # to go.
             with suppress(OSError, ValueError):
                 sys.stdout.flush()
                 sys.stderr.flush()

@@ -17,17 +17,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ProblemFile = Annotated[
-    Path | None, typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out.")
+    Path | None,
+    typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out."),
 ]
 ASKED = {
     "preset": Annotated[
         str | None,
         typer.Option(
-            help="Body by name, such as report, leine-glocker-stem, egg, coin; a wrong one lists all."
+            help=(
+                "Body by name, such as report, leine-glocker-stem, egg, coin; a wrong one lists"
+                " all."
+            )
         ),
     ],
     "spin": Annotated[float | None, typer.Option(help="Axial spin at launch, rad/s.")],
-    "tilt": Annotated[float | None, typer.Option(help="Tilt of the axis at launch, rad, from 0 to pi.")],
+    "tilt": Annotated[
+        float | None, typer.Option(help="Tilt of the axis at launch, rad, from 0 to pi.")
+    ],
     "mu": Annotated[
         float | None, typer.Option(help="Friction coefficient: s/m if viscous, else dimensionless.")
     ],
@@ -37,13 +43,20 @@ ASKED = {
     "changes": Annotated[
         list[str] | None,
         typer.Option(
-            "--set", metavar="FIELD=VALUE", help="Any other field, e.g. body.shape.eccentricity=0.2."
+            "--set",
+            metavar="FIELD=VALUE",
+            help="Any other field, e.g. body.shape.eccentricity=0.2.",
         ),
     ],
 }
 """The options beside a file that say which problem a command is for."""
 
-FIELDS = {"spin": "launch.spin", "tilt": "launch.tilt", "mu": "friction.mu", "liftoff": "contact.liftoff"}
+FIELDS = {
+    "spin": "launch.spin",
+    "tilt": "launch.tilt",
+    "mu": "friction.mu",
+    "liftoff": "contact.liftoff",
+}
 """The fields of a problem that have an option of their own."""
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for programs.")]
@@ -63,8 +76,12 @@ class Choice(NamedTuple):
     changes: Sequence[str] = ()
 
     def problem(self) -> "tt.Problem":
-        """The problem of the file, or the report's, with what is other; sentences for what cannot be."""
-        return self.changed(tt.presets.report_problem() if self.file is None else tt.Problem.read(self.file))
+        """The problem of the file, or the report's, with what is other; sentences for what cannot
+        be.
+        """
+        return self.changed(
+            tt.presets.report_problem() if self.file is None else tt.Problem.read(self.file)
+        )
 
     def changed(self, problem: "tt.Problem") -> "tt.Problem":
         """Another problem with what is other."""
@@ -73,7 +90,9 @@ class Choice(NamedTuple):
         changes = dict(self.settings)
         for field, value in map(_parsed, self.changes):
             if field in changes:
-                raise InvalidInput(field, value, f"one value, and {short(changes[field])} is given, too")
+                raise InvalidInput(
+                    field, value, f"one value, and {short(changes[field])} is given, too"
+                )
             changes[field] = value
         return problem.replace(changes)
 
@@ -81,7 +100,9 @@ class Choice(NamedTuple):
 def of_a_problem(
     command: Callable[Concatenate[Choice, ...], None], file: Any = ProblemFile
 ) -> Callable[..., None]:
-    """The command with the options that say which problem it is for, as its first argument then tells."""
+    """The command with the options that say which problem it is for, as its first argument then
+    tells.
+    """
 
     @wraps(command)
     def asked(**given: Any) -> None:
@@ -92,7 +113,8 @@ def of_a_problem(
     _, *own = signature(command).parameters.values()
     options = {"file": file, **ASKED}.items()
     asking = [
-        Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind) for name, kind in options
+        Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind)
+        for name, kind in options
     ]
     whole = Signature([*asking, *(one.replace(kind=Parameter.KEYWORD_ONLY) for one in own)])
     asked.__signature__ = whole  # type: ignore[attr-defined]

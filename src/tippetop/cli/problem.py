@@ -19,7 +19,9 @@ TABLE, FIELD, ITEM = re.compile(r"\[(.+)]"), re.compile(r"([\w-]+) = "), re.comp
 def problem(
     choice: Choice,
     as_json: Json = False,
-    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of problems.")] = False,
+    schema: Annotated[
+        bool, typer.Option("--schema", help="Print the JSON Schema of problems.")
+    ] = False,
 ) -> None:
     """Print a problem as TOML with its units, to be edited and given to the other commands."""
     if schema:

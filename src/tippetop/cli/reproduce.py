@@ -20,7 +20,9 @@ def reproduce(
         str | None,
         typer.Option(metavar="ID", help="Redo one figure (fig06) or claim (fig05-flip-time) only."),
     ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="Coarser sweeps: a check, not for quoting.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Coarser sweeps: a check, not for quoting.")
+    ] = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:

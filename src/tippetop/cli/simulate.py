@@ -36,7 +36,9 @@ ROWS = (
     ("error of the energy balance", "energy_error", "relative", ".1e", "undefined"),
     ("leaves the table first at", "first_lift_off", "s", ".7g", ""),
 )
-"""What is printed of a run: text, key of the summary, unit, format, and what stands for what there is not."""
+"""What is printed of a run: text, key of the summary, unit, format, and what stands for what there
+is not.
+"""
 
 LOSS_ROWS = (
     ("of it to sliding", "energy_lost_sliding", "J", ".7g", ""),
@@ -63,7 +65,10 @@ def simulate(
     integrator: Annotated[
         str | None,
         typer.Option(
-            help="taylor, collocation, compiled, dop853, rk45, radau, bdf, lsoda, rk4; the best installed."
+            help=(
+                "taylor, collocation, compiled, dop853, rk45, radau, bdf, lsoda, rk4; the best"
+                " installed."
+            )
         ),
     ] = None,
     tolerance: Annotated[float | None, typer.Option(help="Relative error per step.")] = None,
@@ -71,8 +76,12 @@ def simulate(
     out: Annotated[Path | None, typer.Option(help="Write the run as NetCDF.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the run as .png, .svg or .pdf.")] = None,
     csv: Annotated[Path | None, typer.Option(help="Write every variable as CSV.")] = None,
-    glb: Annotated[Path | None, typer.Option(help="Write the moving top as an animated .glb.")] = None,
-    html: Annotated[Path | None, typer.Option(help="Write a page that plays the run offline.")] = None,
+    glb: Annotated[
+        Path | None, typer.Option(help="Write the moving top as an animated .glb.")
+    ] = None,
+    html: Annotated[
+        Path | None, typer.Option(help="Write a page that plays the run offline.")
+    ] = None,
     mp4: Annotated[Path | None, typer.Option(help="Write a film; needs ffmpeg.")] = None,
     gif: Annotated[Path | None, typer.Option(help="Write a film as an animated picture.")] = None,
     as_json: Json = False,
@@ -140,7 +149,9 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
 
 
 def _check_files(wanted: dict[str, Path], force: bool, duration: float) -> None:
-    """Refuse names that promise another kind of file or are taken, and films that cannot be made."""
+    """Refuse names that promise another kind of file or are taken, and films that cannot be
+    made.
+    """
     for kind, path in wanted.items():
         if kind != "out":
             require_ending(f"--{kind}", path, ENDINGS.get(kind, (f".{kind}",)))

@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 SweepFile = Annotated[
     Path | None,
-    typer.Argument(help="Sweep (.toml with axes or draws), or problem to start from; else the report's top."),
+    typer.Argument(
+        help="Sweep (.toml with axes or draws), or problem to start from; else the report's top."
+    ),
 ]
 Axes = Annotated[
     list[str] | None,
@@ -36,7 +38,9 @@ Axes = Annotated[
 ]
 Ranges = Annotated[
     list[str] | None,
-    typer.Option(metavar="FIELD=LOW:HIGH", help="Draw a field at random instead; append :log for its log."),
+    typer.Option(
+        metavar="FIELD=LOW:HIGH", help="Draw a field at random instead; append :log for its log."
+    ),
 ]
 Count = Annotated[int | None, typer.Option(help="Number of draws.")]
 Seed = Annotated[int | None, typer.Option(help="What the draws follow from; 0 if left out.")]
@@ -44,11 +48,16 @@ Duration = Annotated[float | None, typer.Option(help="Length of every run, s; 20
 Tolerance = Annotated[float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")]
 Settled = Annotated[
     float | None,
-    typer.Option(help="End a run once its tilt is held within this for good, rad; else all run on."),
+    typer.Option(
+        help="End a run once its tilt is held within this for good, rad; else all run on."
+    ),
 ]
-Processes = Annotated[int | None, typer.Option(help="Number of processes; all processors if left out.")]
+Processes = Annotated[
+    int | None, typer.Option(help="Number of processes; all processors if left out.")
+]
 Scheduler = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Compute on a running dask.distributed cluster.")
+    str | None,
+    typer.Option(metavar="ADDRESS", help="Compute on a running dask.distributed cluster."),
 ]
 Out = Annotated[Path, typer.Option(help="Zarr store to write: .zarr.")]
 Resume = Annotated[bool, typer.Option("--resume", help="Finish a store that is there.")]
@@ -104,13 +113,20 @@ def sweep(
                     tell(now.done, now.cells, f"{now.done:,} of {now.cells:,}{rate}")
 
                 fill(store, workers=workers, scheduler=cluster, callback=callback)
-            dataset = store.load(["status", "outcome", "fault", *dict.fromkeys(["flights", *pictures])])
+            dataset = store.load(
+                ["status", "outcome", "fault", *dict.fromkeys(["flights", *pictures])]
+            )
             _draw_maps(dataset, pictures, force or resume)
         except KeyboardInterrupt:
             done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
-            typer.echo(f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True)
+            typer.echo(
+                f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True
+            )
             raise typer.Exit(INTERRUPTED) from None
-    summary = {**_summary(dataset, progress[-1]), "refusal": _refusal(store.sweep, dataset["fault"].values)}
+    summary = {
+        **_summary(dataset, progress[-1]),
+        "refusal": _refusal(store.sweep, dataset["fault"].values),
+    }
     if as_json:
         files = {"out": str(out), "maps": [str(path) for path in pictures.values()]}
         show_json({**summary, **files, "sweep": store.sweep.describe()})
@@ -119,7 +135,10 @@ def sweep(
 
 
 def _chosen_sweep(
-    choice: Choice, kept: "Sweep | None", grid: "Product | tt.Draws | None", limits: dict[str, float | None]
+    choice: Choice,
+    kept: "Sweep | None",
+    grid: "Product | tt.Draws | None",
+    limits: dict[str, float | None],
 ) -> "Sweep":
     """The sweep that the file, or the store to be resumed, and the options ask for."""
     from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
@@ -152,7 +171,9 @@ def _chosen_grid(
     if draw:
         if count is None:
             raise InvalidInput("--count", MISSING, "the number of draws")
-        return tt.Draws(**{"fields": [_range(text) for text in draw], "count": count, "seed": seed or 0})
+        return tt.Draws(
+            **{"fields": [_range(text) for text in draw], "count": count, "seed": seed or 0}
+        )
     return None
 
 
@@ -168,7 +189,9 @@ def _axis(text: str) -> tuple[str, Any]:
                 return field.strip(), ends | ({"spacing": rest[0].strip()} if rest else {})
     except ValueError:
         pass
-    raise InvalidInput("--axis", text, "FIELD=FIRST:LAST:COUNT, FIELD=FIRST:LAST:COUNT:geo, or FIELD=A,B,C")
+    raise InvalidInput(
+        "--axis", text, "FIELD=FIRST:LAST:COUNT, FIELD=FIRST:LAST:COUNT:geo, or FIELD=A,B,C"
+    )
 
 
 def _range(text: str) -> tuple[str, Any]:
@@ -190,7 +213,9 @@ def _holds_sweep(file: Path) -> bool:
     from tippetop.sweeps.definition import is_sweep  # noqa: PLC0415 - slow to import
 
     try:
-        return file.suffix != ".json" and is_sweep(parse_toml(read_text(file, "a sweep or a problem"), ""))
+        return file.suffix != ".json" and is_sweep(
+            parse_toml(read_text(file, "a sweep or a problem"), "")
+        )
     except (FileTrouble, ValueError):
         return False
 

@@ -70,7 +70,8 @@ def show_json(told: Any) -> None:
 def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
     """Show on a terminal how far something is, how long it still takes, and how long it has taken.
 
-    Given is what is to be told of it: how much is done, of how much, and, if that changes, what it is at.
+    Given is what is to be told of it: how much is done, of how much, and, if that changes, what it
+    is at.
     """
     if not sys.stderr.isatty():
         yield lambda *_: hear()

@@ -1,14 +1,15 @@
-"""How slip ends on a patch once its direction has come to rest: at once, by power series about the end.
+"""How slip ends on a patch once its direction has come to rest: at once, by power series about the
+end.
 
-On a small patch drilling ends much more slowly than friction turns the direction of slip, which soon is the
-one in which all of it ends. With t the time since the end, less than zero, it then is, in the words of
-`slip_onset`,
+On a small patch drilling ends much more slowly than friction turns the direction of slip, which
+soon is the one in which all of it ends. With t the time since the end, less than zero, it then is,
+in the words of `slip_onset`,
 
     zeta = t (s_0 + s_1 t + ...) e(t),        A(e_0) = s_0 e_0,        s_0 < 0,
 
-slip that begins with the time reversed. Its state at the end is not known: from a guess, the series tell how
-far off they are now, and moving the guess by that makes it as much better as little time is left. Early
-series need no more terms than they have digits.
+slip that begins with the time reversed. Its state at the end is not known: from a guess, the series
+tell how far off they are now, and moving the guess by that makes it as much better as little time
+is left. Early series need no more terms than they have digits.
 """
 
 import math
@@ -27,8 +28,9 @@ from tippetop.mechanics.vectors import Scalar, Vector, solve
 from tippetop.mechanics.wrench import Slip
 
 DEGREE, ACCURACY = 12, 1e-13
-"""Degree of the series of speed and direction, one less than of the others, and the size of the last terms in
-natural units, or relative to zeta's."""
+"""Degree of the series of speed and direction, one less than of the others, and the size of the
+last terms in natural units, or relative to zeta's.
+"""
 
 FIRST, MORE = 3, 2
 """Degree of the first series, and by how much that of the next is higher."""
@@ -37,12 +39,15 @@ MOST, TURNS = 16, 8
 """Improvements of the state at the end, and of the direction there, at most."""
 
 SETTLED, CLOSE = 1e-14, 1e-7
-"""Error of the state, in natural units, that counts as none, and that of a direction which Newton's method
-makes none, since it squares it."""
+"""Error of the state, in natural units, that counts as none, and that of a direction which Newton's
+method makes none, since it squares it.
+"""
 
 AT_REST, UNSEEN = 1e-12, 1e-15
-"""How far the direction may be from the series' at most, times the time that is left, in natural units; or
-times the speed, which is rounding of the state. An integrator leaves it no nearer than its tolerance."""
+"""How far the direction may be from the series' at most, times the time that is left, in natural
+units; or times the speed, which is rounding of the state. An integrator leaves it no nearer than
+its tolerance.
+"""
 
 TURNING = 1.0
 """How far it may be, over that time, in any of the series: there is no hope beyond."""
@@ -131,7 +136,8 @@ def arriving(here: Closing, ending: Vanishing, top: Top, integrator: Integrator)
 def resting_way(
     axis: Vector, momentum: Vector, way: Slip, ending: Vanishing, top: Top, integrator: Integrator
 ) -> Growth:
-    """The series at the end, in the direction in which slip ends there, by Newton's method from another one.
+    """The series at the end, in the direction in which slip ends there, by Newton's method from
+    another one.
 
     Raises
     ------

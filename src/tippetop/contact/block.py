@@ -20,7 +20,9 @@ NODES, WEIGHTS = (
     0.5 * (1.0 + np.polynomial.legendre.leggauss(8)[0]),
     0.5 * np.polynomial.legendre.leggauss(8)[1],
 )
-"""Gauss's points and weights in [0, 1]. A step is short beside the radius of convergence: eight are exact."""
+"""Gauss's points and weights in [0, 1]. A step is short beside the radius of convergence: eight are
+exact.
+"""
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,9 @@ class ModeSteps:
 
 
 def nearer_pole(axis: Array) -> Array:
-    """The pole from whose other one the axis stays farther in steps, shape (k,), by n_z, shape (m, k)."""
+    """The pole from whose other one the axis stays farther in steps, shape (k,), by n_z, shape (m,
+    k).
+    """
     return np.where(axis.min(axis=0) + axis.max(axis=0) >= 0.0, 1.0, -1.0)
 
 

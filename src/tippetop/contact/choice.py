@@ -34,7 +34,9 @@ def rules_for(top: Top, liftoff: str, restitution: float) -> Rules:
 
 
 def rules_of(way: Contact, top: Top, units: Units) -> Rules:
-    """The rules of a top in natural units: those that its problem's contact brings, or the usual."""
+    """The rules of a top in natural units: those that its problem's contact brings, or the
+    usual.
+    """
     own: Rules | None = way.rules(top, units)
     return rules_for(top, way.liftoff, way.restitution) if own is None else own
 
@@ -48,6 +50,8 @@ def as_begun(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
     sliding, numbers = Sliding(lowest, Bilateral(lowest)), along_table(state).pack()
     try:
         presses = sliding.reaction(numbers).force[2] > 0.0
-    except ZeroDivisionError:  # Without slip dry friction says nothing, and the table lets go at once.
+    except (
+        ZeroDivisionError
+    ):  # Without slip dry friction says nothing, and the table lets go at once.
         presses = False
     return (sliding, numbers) if presses else (Flight(top, Bilateral(top)), state.pack())

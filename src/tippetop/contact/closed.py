@@ -1,4 +1,6 @@
-"""Modes in which one contact is closed: what all have in common, whether it slips or sticks, and rolls."""
+"""Modes in which one contact is closed: what all have in common, whether it slips or sticks, and
+rolls.
+"""
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
@@ -26,7 +28,13 @@ from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 from tippetop.mechanics.wrench import Slip, Wrench
 
-LIFT_OFF, STOPPING, SLIP, BRANCH, LIMIT_BRANCH = "lift-off", "stopping", "slip", "branch", "limit branch"
+LIFT_OFF, STOPPING, SLIP, BRANCH, LIMIT_BRANCH = (
+    "lift-off",
+    "stopping",
+    "slip",
+    "branch",
+    "limit branch",
+)
 ROLLING, ROLLING_STOPPING = "rolling", "rolling stopping"
 
 GuardValue: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
@@ -35,7 +43,9 @@ GuardValue: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
 
 @dataclass(frozen=True)
 class StatedMode(IntegratedMode):
-    """A mode that states its rates and guards for its own tops: others of their kinds have them too."""
+    """A mode that states its rates and guards for its own tops: others of their kinds have them
+    too.
+    """
 
     size: ClassVar[int] = 8
     """How many numbers the mode has."""
@@ -103,7 +113,9 @@ class ClosedMode(StatedMode):
     """Whether slip is held, and whether rolling is."""
 
     def found(self, y: Row) -> tuple[ContactPoint, Slip | None, Wrench, Acceleration]:
-        """The contact point, its slip, what the table does, and the acceleration, from the numbers."""
+        """The contact point, its slip, what the table does, and the acceleration, from the
+        numbers.
+        """
         point = ContactPoint.of(*split(y), self.top)
         slip = None if self.sticks else slip_of(*split(y), (y[6], y[7]), self.top)[:2]
         return point, slip, *contact_motion(point, slip, None if self.held else point.turning[:2])

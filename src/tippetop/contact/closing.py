@@ -35,8 +35,9 @@ LONGEST = 100.0
 """More of the clock than any velocity takes to end, but one that turns for ever."""
 
 SOON = (0.3, 2.0)
-"""Parts of the clock after which friction that takes thousands of steps to slip's end may have turned it as
-far as it does: what it turns so fast is then told by power series (see `arriving`)."""
+"""Parts of the clock after which friction that takes thousands of steps to slip's end may have
+turned it as far as it does: what it turns so fast is then told by power series (see `arriving`).
+"""
 
 FEW = 16
 """Steps in such a part from which that may be."""
@@ -45,7 +46,9 @@ MOST = 16
 """Arcs after which such an end is given up, within seconds; most take two."""
 
 STALLED = 1e-9
-"""Part of the clock that an arc of thousands of steps goes, if it goes no farther, from which none ends."""
+"""Part of the clock that an arc of thousands of steps goes, if it goes no farther, from which none
+ends.
+"""
 
 
 def followed(
@@ -58,7 +61,11 @@ def followed(
             arcs += 1
             stalled = arc.solution.end - start[0] < STALLED * start[0]
             many = arc.guard is None and arc.failure is None and (arcs == MOST or stalled)
-            yield replace(arc, failure="slip, or rolling, takes too many steps to end") if many else arc
+            yield (
+                replace(arc, failure="slip, or rolling, takes too many steps to end")
+                if many
+                else arc
+            )
             if many or arc.guard is not None or arc.failure is not None:
                 return
             start = arc.solution.end, arc.end_state
@@ -66,9 +73,11 @@ def followed(
 
 @lru_cache
 def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
-    """Equations of motion in the clock of `ending` where a velocity is about to end; time is the last number.
+    """Equations of motion in the clock of `ending` where a velocity is about to end; time is the
+    last number.
 
-    The last parameters are when the run ends, and how long before its end the velocity is left to `landed`.
+    The last parameters are when the run ends, and how long before its end the velocity is left to
+    `landed`.
     """
 
     def top_of(numbers: Sequence[Scalar]) -> Top:
@@ -79,7 +88,9 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
         return (*rate.axis, *rate.momentum, *rate.velocity, *rate.direction, rate.speed, rate.time)
 
     def guard(name: str, value: Callable[[Closing, Top, Sequence[Scalar]], Scalar]) -> Guard:
-        return Guard(name, lambda y, numbers: value(closing_of(y, ending), top_of(numbers), numbers))
+        return Guard(
+            name, lambda y, numbers: value(closing_of(y, ending), top_of(numbers), numbers)
+        )
 
     def held_by(state: Closing, top: Top) -> Wrench:
         return rates_in_time(state, ending, top).wrench
@@ -106,7 +117,9 @@ def closing_motion(kind: Kind, ending: Vanishing, guarded: bool) -> Motion:
     if (ending.slip or ending.moves) and hasattr(law, "branch_guard"):
         guards.append(guard(BRANCH, on_branch_still))
     if stuck and has_limit_branches(law):
-        guards.append(guard(LIMIT_BRANCH, lambda state, top, _: limit_guard(top, held_by(state, top))))
+        guards.append(
+            guard(LIMIT_BRANCH, lambda state, top, _: limit_guard(top, held_by(state, top)))
+        )
     guards += [guard(name, _of_axis(value)) for name, value in surface_guards(top)]
     size = (10 if ending.moves else 8) + len(ending.wrenches(top))
     return Motion(rates, size, kind.numbers + 2, tuple(guards), lasting=False)
@@ -128,4 +141,6 @@ def spared(state: Closing, ending: Vanishing, top: Top) -> Scalar:
 def closing_of(y: Row, ending: Vanishing) -> Closing:
     """The state of a velocity that is about to end, from its numbers."""
     count, free = len(y), 8 if ending.moves else 6
-    return Closing(*split(y), tuple(y[6:free]), tuple(y[free : count - 2]), y[count - 2], y[count - 1])
+    return Closing(
+        *split(y), tuple(y[6:free]), tuple(y[free : count - 2]), y[count - 2], y[count - 1]
+    )

@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 OPENING, ENDING, BRANCHING = "opening ", "ending ", "branching "
 
 SLOWEST_SLIP = 1e-9
-"""Slip in natural units at which it ends on one of two contacts, or on both where drilling is resisted too,
-and is not followed further."""
+"""Slip in natural units at which it ends on one of two contacts, or on both where drilling is
+resisted too, and is not followed further.
+"""
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,9 @@ class OnTwo(StatedMode):
     other: Top
     """The top with the second surface active."""
     rolls: float = 0.0
-    """Sign of omega_e (see `tippetop.mechanics.contact_pair`); 0 where rolling is held, or not resisted."""
+    """Sign of omega_e (see `tippetop.mechanics.contact_pair`); 0 where rolling is held, or not
+    resisted.
+    """
 
     size: ClassVar[int] = 6
 
@@ -84,13 +87,16 @@ class OnTwo(StatedMode):
         return (*axis_rate(*split(y), self.top), *now.moment, *self.slipping(now))
 
     def slipping(self, now: PairMotion) -> Slip:
-        """Those of the numbers after axis and angular momentum: none, where a mode does not say otherwise."""
+        """Those of the numbers after axis and angular momentum: none, where a mode does not say
+        otherwise.
+        """
         return ()
 
     def guard_values(self) -> list[GuardValue]:
         """The guards of normal forces, and of rolling.
 
-        While both contacts stay closed the tilt does not change, and no further surface comes to the table.
+        While both contacts stay closed the tilt does not change, and no further surface comes to
+        the table.
         """
         found = [(f"{OPENING}{number}", _normal(number)) for number in (0, 1)]
         if self.stopped:
@@ -117,12 +123,16 @@ class OnTwo(StatedMode):
 
     def settled(self, time: float, state: State, rolls: float) -> Transition:
         """What the resolver finds where slip, or rolling, has ended, or begins as signed."""
-        return self.rules.settled_on_two(time, state, self.tops, Before(self.stuck, bool(self.rolls)), rolls)
+        return self.rules.settled_on_two(
+            time, state, self.tops, Before(self.stuck, bool(self.rolls)), rolls
+        )
 
     def follow_rolling(self, guard: str, time: float, state: State) -> Transition:
         """What follows where rolling ends, or can be held no longer: there are no other guards."""
         ends = guard == ROLLING_STOPPING
-        return self.settled(time, state, 0.0 if ends else rolling_way(self.found(self.numbers(state))[0]))
+        return self.settled(
+            time, state, 0.0 if ends else rolling_way(self.found(self.numbers(state))[0])
+        )
 
     @property
     def tops(self) -> Tops:
@@ -134,7 +144,9 @@ class OnTwo(StatedMode):
         left, kept = (self.tops, self.tops[::-1])[number]
         event = Event(EventKind.OPENING, time, surface=number_of(left))
         state = state._replace(momentum=self.stilled(state.axis, state.momentum))
-        return Transition((event,), self.rules.on(number_of(kept)).going_on(state, slips=slips), state)
+        return Transition(
+            (event,), self.rules.on(number_of(kept)).going_on(state, slips=slips), state
+        )
 
 
 @dataclass(frozen=True)
@@ -175,7 +187,11 @@ class SlidingOnTwo(OnTwo):
         law = self.top.friction
         if slip_length(law) is not None:
             return [(f"{ENDING}both", lambda mode, y: _left(*mode.found(y)[1]))]
-        return [(f"{ENDING}{number}", _slip(number)) for number in (0, 1)] if is_set_valued(law) else []
+        return (
+            [(f"{ENDING}{number}", _slip(number)) for number in (0, 1)]
+            if is_set_valued(law)
+            else []
+        )
 
     def follow(self, guard: str, time: float, state: State) -> Transition:
         """One surface opens, while the other goes on; or slip or rolling ends."""
@@ -214,7 +230,7 @@ def _branch(number: int) -> Callable[[Any, Row], Scalar]:
 def _left(*slips: Slip) -> Scalar:
     """Falls through zero where so little is left of all these that they are followed no further.
 
-    A length: it falls straight through, where its square would only touch zero. In straight motion steps may
-    lead beyond the end of slip, and rounding hides so slight a touch.
+    A length: it falls straight through, where its square would only touch zero. In straight motion
+    steps may lead beyond the end of slip, and rounding hides so slight a touch.
     """
     return sum(inner(slip, slip) for slip in slips) ** 0.5 - SLOWEST_SLIP

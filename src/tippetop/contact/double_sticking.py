@@ -1,4 +1,6 @@
-"""Two surfaces touch the table at once, and one does not slip, or both; and how slip begins there."""
+"""Two surfaces touch the table at once, and one does not slip, or both; and how slip begins
+there.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -27,7 +29,9 @@ SLIP, ENDING = "slip ", "ending"
 
 @dataclass(frozen=True)
 class HeldOnTwo(OnTwo):
-    """The first contact sticks, if not both: axis and angular momentum say how the body rolls on it."""
+    """The first contact sticks, if not both: axis and angular momentum say how the body rolls on
+    it.
+    """
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """Axis and angular momentum."""
@@ -69,7 +73,9 @@ class StickingAndSliding(HeldOnTwo):
         """What the table does, and how both contacts slip."""
         pair = ContactPair.of(*split(y), self.tops)
         zeta, way = slip_apart(pair), scaled(self.sign, directions_of(pair.first.axis)[1][:2])
-        return pair_motion(pair, (None, way), self.rolls), slips_of(pair, (0.0 * zeta, 0.0 * zeta, zeta))
+        return pair_motion(pair, (None, way), self.rolls), slips_of(
+            pair, (0.0 * zeta, 0.0 * zeta, zeta)
+        )
 
     def guard_values(self) -> list[GuardValue]:
         """The guards of what holds the first, and of slip on the second, too."""
@@ -135,7 +141,9 @@ class StickingOnTwo(HeldOnTwo):
                 (f"{SLIP}both", lambda mode, y: mode.found(y)[0].both_reserve),
             ]
         elif self.rolls:
-            found.append((f"{SLIP}both", lambda mode, y: mode.rolls * mode.found(y)[0].rolling - mode.least))
+            found.append(
+                (f"{SLIP}both", lambda mode, y: mode.rolls * mode.found(y)[0].rolling - mode.least)
+            )
         return found
 
     def state(self, y: Row) -> State:
@@ -163,7 +171,9 @@ class SlipBeginningOnTwo(SlidingOnTwo):
     """
 
     begin: tuple[float, ...] = ()
-    """Its numbers at the start: axis, angular momentum, and xi (see `tippetop.mechanics.contact_pair`)."""
+    """Its numbers at the start: axis, angular momentum, and xi (see
+    `tippetop.mechanics.contact_pair`).
+    """
     direction: Slip = ()
     """Direction of what begins: of the slip of the first contact, or of xi."""
     growing: int = 1
@@ -189,7 +199,9 @@ class SlipBeginningOnTwo(SlidingOnTwo):
         """How its numbers, and what begins, change where that goes this way."""
         axis, momentum = split(y)
         pair = ContactPair.of(axis, momentum, self.tops)
-        slips = slips_of(pair, way) if len(way) == 3 else (way, slips_of(pair, (y[6], y[7], y[8]))[1])
+        slips = (
+            slips_of(pair, way) if len(way) == 3 else (way, slips_of(pair, (y[6], y[7], y[8]))[1])
+        )
         now = pair_motion(pair, slips, self.rolls)
         return (*axis_rate(axis, momentum, self.top), *now.moment, *now.rate), now.rate[: len(way)]
 
@@ -206,7 +218,9 @@ class SlipBeginningOnTwo(SlidingOnTwo):
         """Sliding on two."""
         return on_two(last, self.rules, self.other, self.rolls)
 
-    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
         """Evaluate the series."""
         try:
             begun = onset(Growing(self.begin, self.direction, self.growth), self.growing, ORDER)

@@ -29,7 +29,8 @@ MOST_STEPS = 4096
 """Polynomials in a segment at most."""
 
 TOUCHING = 1e-12
-"""Gap, and gap rate, in natural units, up to which a surface touches, and neither opens nor closes."""
+"""Gap, and gap rate, in natural units, up to which a surface touches, and neither opens nor closes.
+"""
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,9 @@ class Flight(Mode):
         """The numbers of a flight are those of the state."""
         return State.unpack(y)
 
-    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
         """Evaluate the flight, which needs no integrator: the impact at its end may."""
         try:
             landing, lowest = self._landing(state, end - time)

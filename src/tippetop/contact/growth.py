@@ -1,4 +1,6 @@
-"""Series of what begins to slip, or to roll, by an integrator that expands solutions in powers of time."""
+"""Series of what begins to slip, or to roll, by an integrator that expands solutions in powers of
+time.
+"""
 
 import math
 from collections.abc import Callable, Sequence
@@ -16,8 +18,9 @@ from tippetop.mechanics.vectors import Scalar, Vector
 from tippetop.mechanics.wrench import Slip
 
 FEW = 11
-"""Degree up to which the first coefficients of the direction are expanded: half the others', for a third of
-the price."""
+"""Degree up to which the first coefficients of the direction are expanded: half the others', for a
+third of the price.
+"""
 
 
 class Driven:
@@ -30,7 +33,11 @@ class Driven:
     """
 
     def __init__(
-        self, start: tuple[Vector, Vector, Slip], velocity: Slip, degree: int, expand: Sequence[Expansion]
+        self,
+        start: tuple[Vector, Vector, Slip],
+        velocity: Slip,
+        degree: int,
+        expand: Sequence[Expansion],
     ):
         self.first, self._expand, self._chain = start[2], expand, degree + 1
         self._free = len(velocity) + 6
@@ -42,7 +49,9 @@ class Driven:
     @property
     def state(self) -> Sequence[Sequence[float]]:
         """Coefficients of n, L, and u where that is free."""
-        rows = [[float(term) for term in row] for row in self._expand[-1](self._arguments)[: self._free]]
+        rows = [
+            [float(term) for term in row] for row in self._expand[-1](self._arguments)[: self._free]
+        ]
         if not math.isfinite(sum(sum(row) for row in rows)):
             raise Unsolved(NOT_FINITE)
         return rows
@@ -54,7 +63,9 @@ class Driven:
             self._arguments[self._given + i * self._chain + j] = number * factor
 
     def accelerations(self, j: int) -> Slip:
-        """Coefficient of order j of A, expanded no further than to the first of the degrees that has it."""
+        """Coefficient of order j of A, expanded no further than to the first of the degrees that
+        has it.
+        """
         rows = self._expand[0 if j < FEW else -1](self._arguments)[self._free :]
         return tuple([(j + 1) * float(row[j + 1]) for row in rows])
 
@@ -67,7 +78,8 @@ def growth(
     degree: int,
     integrator: Integrator,
 ) -> Growth:
-    """The series where slip, or rolling, begins, by an integrator that expands solutions, or without.
+    """The series where slip, or rolling, begins, by an integrator that expands solutions, or
+    without.
 
     Parameters
     ----------
@@ -97,7 +109,8 @@ def growth(
 
 @lru_cache
 def driven_motion(kind: Kind, ending: Vanishing, components: int, degree: int) -> Motion:
-    """Equations of motion in which a direction is given: it, and its derivatives, are the last numbers.
+    """Equations of motion in which a direction is given: it, and its derivatives, are the last
+    numbers.
 
     The velocity that begins comes before them: it is what the acceleration adds up to.
     """

@@ -18,10 +18,11 @@ from tippetop.mechanics.stick_slip import inner, slip_of
 from tippetop.mechanics.touchdown import Start
 
 SLOWEST_REBOUND = 1e-6
-"""Rebound velocity, in units of sqrt(g R), below which a rebound is none and the top stays on the table.
+"""Rebound velocity, in units of sqrt(g R), below which a rebound is none and the top stays on the
+table.
 
-A rebound of this speed rises by half its square, 5e-13 radii. Without such an end, the bounces of a top with
-restitution between 0 and 1 would be infinitely many in a finite time.
+A rebound of this speed rises by half its square, 5e-13 radii. Without such an end, the bounces of a
+top with restitution between 0 and 1 would be infinitely many in a finite time.
 """
 
 
@@ -43,13 +44,17 @@ class StopAtLiftOff(Rules):
 
 @dataclass(frozen=True)
 class FreeToFly(Rules):
-    """The top leaves the table where that would have to pull, flies, and comes back with an impact."""
+    """The top leaves the table where that would have to pull, flies, and comes back with an
+    impact.
+    """
 
     restitution: float
     """Ratio of the normal impulses of restitution and compression."""
 
     def launch(self, state: State) -> Transition:
-        """Fly from above the table or if thrown up, collide if thrown down, and else go on from contact."""
+        """Fly from above the table or if thrown up, collide if thrown down, and else go on from
+        contact.
+        """
         if gap(state, self.top) > TOUCHING:
             return Transition((), self._flight(Start.AIRBORNE), state)
         rate = gap_rate(state, self.top)
@@ -61,9 +66,13 @@ class FreeToFly(Rules):
 
     def _leaving(self, time: float, state: State) -> Transition:
         """Fly from where the normal force reached zero."""
-        return Transition((self.event(EventKind.LIFT_OFF, time),), self._flight(Start.LIFT_OFF), state)
+        return Transition(
+            (self.event(EventKind.LIFT_OFF, time),), self._flight(Start.LIFT_OFF), state
+        )
 
-    def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
+    def touchdown(
+        self, time: float, state: State, integrator: Integrator | None = None
+    ) -> Transition:
         """Collide, unless with a face, and go on as the impact leaves the top."""
         told = (self.event(EventKind.TOUCHDOWN, time),)
         if lies_flat(self.top, state.axis):
@@ -75,7 +84,9 @@ class FreeToFly(Rules):
         return replace(super()._let_go(time, state, events), then=self._flight(Start.RELEASE))
 
     def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
-        """Collide without approach, unless that has just left it so: then rounding decides, not friction."""
+        """Collide without approach, unless that has just left it so: then rounding decides, not
+        friction.
+        """
         if sum(event.kind is EventKind.IMPACT for event in events) > 1:
             return super().inconsistent(time, state, events)
         return self._collide(time, state, events, 0.0)
@@ -98,7 +109,9 @@ class FreeToFly(Rules):
         except ArithmeticError as error:
             return failed("The impulse of the impact", error, state, events)
         hit = replace(
-            self.event(EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost)),
+            self.event(
+                EventKind.IMPACT, time, float(collision.impulse), float(collision.energy_lost)
+            ),
             steps=collision.steps,
         )
         after = collision.state

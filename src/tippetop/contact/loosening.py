@@ -26,13 +26,19 @@ PRESSED = 5
 """Which of the looks along a beginning look at the normal force, too."""
 
 ORDER, ACCURACY = 20, 1e-13
-"""Degree of the series with which slip begins, and the size of its last terms relative to the first."""
+"""Degree of the series with which slip begins, and the size of its last terms relative to the
+first.
+"""
 
 INSTANT = 1e-9
-"""How long slip and rolling that begin at once go on at their first rates, in natural units of time."""
+"""How long slip and rolling that begin at once go on at their first rates, in natural units of
+time.
+"""
 
 PART = 0.25
-"""Part of the time in which another velocity could end at its first rate that such a beginning lasts."""
+"""Part of the time in which another velocity could end at its first rate that such a beginning
+lasts.
+"""
 
 TINY = 1e-100
 """What begins at zero, and has no direction there, in natural units: nothing, but for that."""
@@ -50,7 +56,9 @@ class Loosening(Passing):
     wrench: Wrench | None = None
     """What has held it until now, if that is known."""
 
-    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
         """Evaluate the series."""
         try:
             passing, direction, longest = self._directed(state)
@@ -75,9 +83,13 @@ class Loosening(Passing):
         yield piece(passing, begin.rows, direction, (time, duration, end))
 
     def slips(self, time: float, state: State, direction: Slip, end: float) -> Segment | None:
-        """Slip to its end, or as far as it follows what drives it; None if it does not from the beginning."""
+        """Slip to its end, or as far as it follows what drives it; None if it does not from the
+        beginning.
+        """
         begin = (*state.axis, *state.momentum)
-        phase = slip_phase(begin, direction, self.top, self.ending, end - time, pulls=self.rules.pulls)
+        phase = slip_phase(
+            begin, direction, self.top, self.ending, end - time, pulls=self.rules.pulls
+        )
         if not phase.rows:
             return None
         start = [*begin, *scaled(TINY, direction)]
@@ -86,14 +98,17 @@ class Loosening(Passing):
         reach = end if duration >= end - time else time + duration
         solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach)
         if phase.ended:
-            then = self.rules.beside_others(reach, self.rules.settled(reach, last, new=(True, False)))
+            then = self.rules.beside_others(
+                reach, self.rules.settled(reach, last, new=(True, False))
+            )
         else:
             mode = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=True)
             then = Transition((), mode, last)
         return Segment(self, solution, last, then, len(phase.knots) - 1, phase.sweeps)
 
     def _directed(self, state: State) -> "tuple[Loosening, tuple[float, ...], float]":
-        """The mode on its law's branch, the direction of what begins, and how long it lasts at most.
+        """The mode on its law's branch, the direction of what begins, and how long it lasts at
+        most.
 
         In planar motion what ends meanwhile passes through zero, which series do not see.
         """
@@ -128,11 +143,15 @@ class Loosening(Passing):
 
 @dataclass(frozen=True)
 class BothLoosening(Loosening):
-    """Slip and rolling begin at once: an instant at their first rates, to which what follows settles."""
+    """Slip and rolling begin at once: an instant at their first rates, to which what follows
+    settles.
+    """
 
     ending: Vanishing = Vanishing(slip=True)  # noqa: RUF009
 
-    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
         """Go on at the first rates."""
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         try:
@@ -142,8 +161,14 @@ class BothLoosening(Loosening):
             yield nothing(self.told, time, unknown)
             return
         assert found.slip is not None
-        passing, pace = replace(self, top=on_branch(self.top, found.slip)), scaled(found.rates[0], found.slip)
-        still, growing = (*state.axis, *state.momentum), (0.0, 0.0, 0.0, *point.moment(found.wrench))
+        passing, pace = (
+            replace(self, top=on_branch(self.top, found.slip)),
+            scaled(found.rates[0], found.slip),
+        )
+        still, growing = (
+            (*state.axis, *state.momentum),
+            (0.0, 0.0, 0.0, *point.moment(found.wrench)),
+        )
         rows = [[number, rate] for number, rate in zip(still, growing, strict=True)]
         rows += [[0.0, rate] for rate in pace]
         yield piece(passing, rows, found.slip, (time, min(INSTANT, end - time), end))
@@ -177,9 +202,9 @@ def piece(
     past = first + len(direction)
     apart = [[TINY * e, *row[1:]] for e, row in zip(direction, rows[first:past], strict=True)]
     reach = min(time + duration, end)
-    solution = DenseSolution.in_time([0.0, duration], [[*rows[:first], *apart, *rows[past:]]]).moved(
-        time, reach
-    )
+    solution = DenseSolution.in_time(
+        [0.0, duration], [[*rows[:first], *apart, *rows[past:]]]
+    ).moved(time, reach)
     last = mode.state([horner(row, duration) for row in rows])
     try:
         then = Transition((), Outcome.COMPLETED if reach >= end else mode.onwards(last), last)

@@ -1,8 +1,8 @@
 """Contact modes as data: what a mode of motion states, and what runs it.
 
-All is in natural units (see `tippetop.mechanics.top`). A mode states how its numbers change, the guards that
-end it by name, and what follows each. `tippetop.contact.trajectory` follows one launch from mode to mode, and
-the engine of sweeps many; neither knows mechanics.
+All is in natural units (see `tippetop.mechanics.top`). A mode states how its numbers change, the
+guards that end it by name, and what follows each. `tippetop.contact.trajectory` follows one launch
+from mode to mode, and the engine of sweeps many; neither knows mechanics.
 """
 
 from abc import ABC, abstractmethod
@@ -47,25 +47,26 @@ class Outcome(Enum):
     )
     AT_REST = "The top came to rest, and the table holds it so: nothing happens any more."
     LYING_FLAT = (
-        "The body came to lie flat: there it touches the table all around, which is not followed further; "
-        "this is the end of its motion, but for what the impact of its face would add."
+        "The body came to lie flat: there it touches the table all around, which is not followed"
+        " further; this is the end of its motion, but for what the impact of its face would add."
     )
     TOO_MANY_PHASES = (
         "The top bounced and slid more often than the run allows; "
         "shorten the duration, lower the restitution, or raise the limit on phases."
     )
     TOO_MANY_STEPS = (
-        "The motion took more steps than the run allows: it is very fast, or stiff; shorten the duration, "
-        "lessen the friction, try the integrator collocation, which is made for stiff friction, or raise the "
-        "limit on steps."
+        "The motion took more steps than the run allows: it is very fast, or stiff; shorten the"
+        " duration, lessen the friction, try the integrator collocation, which is made for stiff"
+        " friction, or raise the limit on steps."
     )
     INACCURATE = (
-        "The numbers do not keep what the motion keeps: do not trust them; "
-        "try another integrator or shorter steps, which a smaller tolerance makes where a method takes one."
+        "The numbers do not keep what the motion keeps: do not trust them; try another integrator"
+        " or shorter steps, which a smaller tolerance makes where a method takes one."
     )
     FAILED = (
-        "The run could not go on: it is not known what the table does from here on, or the integrator finds "
-        "no step; try less friction, or, where the reason is the integrator's, another one."
+        "The run could not go on: it is not known what the table does from here on, or the"
+        " integrator finds no step; try less friction, or, where the reason is the integrator's,"
+        " another one."
     )
 
 
@@ -119,8 +120,12 @@ class Transition:
         return sum([event.energy_lost for event in self.events])
 
 
-def failed(what: str, error: ArithmeticError, state: State, events: tuple[Event, ...] = ()) -> Transition:
-    """The end of a run where something cannot be found; arithmetic's own words say nothing of the motion."""
+def failed(
+    what: str, error: ArithmeticError, state: State, events: tuple[Event, ...] = ()
+) -> Transition:
+    """The end of a run where something cannot be found; arithmetic's own words say nothing of the
+    motion.
+    """
     why = str(error) if isinstance(error, Unsolved) else BROKEN
     return Transition(events, Outcome.FAILED, state, f"{what} cannot be found: {why}.")
 
@@ -197,7 +202,9 @@ class Mode(ABC):
 
     @property
     def tops(self) -> tuple[Top, ...]:
-        """The top with each surface active that touches: one, where a mode does not say otherwise."""
+        """The top with each surface active that touches: one, where a mode does not say
+        otherwise.
+        """
         return (self.top,)
 
     @property
@@ -214,15 +221,21 @@ class Mode(ABC):
         return f"{self.name}_on_{'_and_'.join(map(str, touching))}"
 
     @abstractmethod
-    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
-        """Move from a time and state until a guard ends the mode, or until `end`, piece by piece."""
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
+        """Move from a time and state until a guard ends the mode, or until `end`, piece by
+        piece.
+        """
 
     @abstractmethod
     def state(self, y: Row) -> State:
         """The state from the numbers of the mode, in plain operators."""
 
     def reaction(self, y: Row) -> Reaction:
-        """What the table does, from the numbers of the mode, in plain operators; nothing by default."""
+        """What the table does, from the numbers of the mode, in plain operators; nothing by
+        default.
+        """
         return NO_REACTION
 
 
@@ -236,7 +249,9 @@ class IntegratedMode(Mode):
         return True
 
     def without_tops(self) -> Self:
-        """What remains of it when its tops are taken away, and what follows it: what it is among its like."""
+        """What remains of it when its tops are taken away, and what follows it: what it is among
+        its like.
+        """
         nothing: Any = None
         return replace(self, top=nothing, rules=nothing)
 
@@ -259,10 +274,14 @@ class IntegratedMode(Mode):
         """What follows when a guard falls through zero."""
 
     def unable(self, failure: str, time: float, state: State) -> Transition:
-        """What follows when the integrator cannot go on: nothing, where a mode does not say otherwise."""
+        """What follows when the integrator cannot go on: nothing, where a mode does not say
+        otherwise.
+        """
         return Transition((), Outcome.FAILED, state, failure)
 
-    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
         """Integrate the equations of motion."""
         begin = time, as_array(self.numbers(state))
         for arc in integrator.integrate(self.motion, self.parameters, begin, end):
@@ -274,4 +293,6 @@ class IntegratedMode(Mode):
                 transition = self.follow(arc.guard, arc.solution.end, last)
             elif arc.solution.end >= end:
                 transition = Transition((), Outcome.COMPLETED, last)
-            yield Segment(self, arc.solution, last, transition, arc.steps, arc.evaluations, method=arc.method)
+            yield Segment(
+                self, arc.solution, last, transition, arc.steps, arc.evaluations, method=arc.method
+            )

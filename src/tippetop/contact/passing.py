@@ -24,8 +24,9 @@ SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
 
 LOOKS = 16
-"""Looks along a moment at whether another surface touches, or the table would have to pull: else a mode with
-a guard takes over sooner."""
+"""Looks along a moment at whether another surface touches, or the table would have to pull: else a
+mode with a guard takes over sooner.
+"""
 
 SHORT = 1e-14
 """How long a top at rest is followed, in natural units of time or relative to the time."""
@@ -71,7 +72,9 @@ class Passing(Mode):
         return on_table(SlidingState(axis, momentum, (velocity[0], velocity[1])), self.top)
 
     def reaction(self, y: Row) -> Reaction:
-        """The contact force and torque, from what ends or begins itself: a state has but few digits of it."""
+        """The contact force and torque, from what ends or begins itself: a state has but few digits
+        of it.
+        """
         axis, momentum, velocity, xi = self._parts(y)
         here = Closing(axis, momentum, velocity, xi, 0.0, 0.0)
         force, torque = rates_in_time(here, self.ending, self.top).wrench
@@ -87,7 +90,9 @@ class Passing(Mode):
         Whether it pulls is told at some of the looks.
         """
         looks = range(1, LOOKS + 1)
-        if isinstance(self.top.surface, Hull) and not all(stays_open(self.top, at(look)) for look in looks):
+        if isinstance(self.top.surface, Hull) and not all(
+            stays_open(self.top, at(look)) for look in looks
+        ):
             return False
         if passes_flat(self.top, [at(look) for look in range(LOOKS + 1)]):
             return False
@@ -115,14 +120,18 @@ class Resting(Mode):
         """As in the mode as which it is told."""
         return self.told.state(y)
 
-    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
         """Stay as it is."""
         numbers = self.told.numbers(state)
         still = straight(numbers, numbers, time, time + SHORT * max(1.0, time))
         yield Segment(self.told, still, state, Transition((), Outcome.AT_REST, state))
 
 
-def straight(begin: Sequence[float], last: Sequence[float], start: float, end: float) -> DenseSolution:
+def straight(
+    begin: Sequence[float], last: Sequence[float], start: float, end: float
+) -> DenseSolution:
     """Numbers that go from some to others in a straight line."""
     rows = [[a, b - a] for a, b in zip(begin, last, strict=True)]
     return in_one_step(rows, 0.0, 1.0).moved(start, end)

@@ -21,7 +21,9 @@ from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector, dot
 from tippetop.mechanics.view import precession_rate, slip_along_tilt, tilt_rate
 
 WORTH = 1000
-"""Instants from which on a compiled function is asked for, which takes hundredths of a second to load."""
+"""Instants from which on a compiled function is asked for, which takes hundredths of a second to
+load.
+"""
 
 
 class Rates(NamedTuple):
@@ -42,7 +44,9 @@ class Rates(NamedTuple):
 
     @classmethod
     def of(cls, mode: Mode, y: Row, pole: Scalar) -> "Rates":
-        """Read them off the numbers of a mode, with the angle about the axis in the chart of a pole."""
+        """Read them off the numbers of a mode, with the angle about the axis in the chart of a
+        pole.
+        """
         state, reaction = mode.state(y), mode.reaction(y)
         east, north, turn, work = quadrature_rates(state, reaction.power, pole, mode.top)
         drilling = rolling = 0.0
@@ -69,7 +73,9 @@ class Instants(NamedTuple):
     tilting: Scalar
     """phi' and theta', which are not numbers where the axis is vertical."""
     slip: Horizontal
-    """Slip velocity along the direction into which the axis leans, and across; there not a number either."""
+    """Slip velocity along the direction into which the axis leans, and across; there not a number
+    either.
+    """
     point: Horizontal
     """Horizontal velocity of the lowest point along the space axes."""
 
@@ -134,7 +140,8 @@ def read(reading: Reading, mode: Mode, y: Array, *others: Scalar, total: int = 0
     others
         Further numbers that the reading takes, each of a shape that becomes that of the instants.
     total
-        How many instants are read in all, of which these may be a part: of many by a compiled function.
+        How many instants are read in all, of which these may be a part: of many by a compiled
+        function.
 
     Returns
     -------
@@ -159,7 +166,9 @@ def _compiled(reading: Reading, mode: Mode, size: int, others: int) -> Evaluatio
     if len(mode.tops) > 1 or isinstance(mode.top.surface, Hull):
         return None
     kind = mode.top.kind
-    return compiled_evaluation(_of_kind(reading, mode.without_tops(), kind), size, kind.numbers + others)
+    return compiled_evaluation(
+        _of_kind(reading, mode.without_tops(), kind), size, kind.numbers + others
+    )
 
 
 @lru_cache

@@ -4,7 +4,15 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from tippetop.contact.loosening import BothLoosening, Loosening
-from tippetop.contact.mode import Event, EventKind, IntegratedMode, Mode, Outcome, Transition, failed
+from tippetop.contact.mode import (
+    Event,
+    EventKind,
+    IntegratedMode,
+    Mode,
+    Outcome,
+    Transition,
+    failed,
+)
 from tippetop.contact.passing import Resting
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
@@ -38,7 +46,9 @@ REST = 1e-13
 
 @dataclass(frozen=True)
 class Rules:
-    """What all rules have in common: the resolver of a contact that is closed and has no normal velocity."""
+    """What all rules have in common: the resolver of a contact that is closed and has no normal
+    velocity.
+    """
 
     top: Top
     """The top in natural units."""
@@ -71,7 +81,9 @@ class Rules:
         return (Sticking if rolls else StickingWithoutRolling)(self._branched(state, slips), self)
 
     def stopping(self, state: State, *, slips: bool) -> Transition:
-        """Follow what ends first to its end; where a guard was touched by rounding, nothing does."""
+        """Follow what ends first to its end; where a guard was touched by rounding, nothing
+        does.
+        """
         ending, _ = self._next_to_end(state, slips)
         if ending is None:
             return Transition((), self.going_on(state, slips=slips), state)
@@ -86,7 +98,8 @@ class Rules:
         held: bool = False,
         events: tuple[Event, ...] = (),
     ) -> Transition:
-        """Hold what has ended, slip or rolling (new) or what was held already, if the table can; or let go.
+        """Hold what has ended, slip or rolling (new) or what was held already, if the table can; or
+        let go.
 
         What is tried first is to hold everything, then to let slip begin, rolling, and both.
         """
@@ -103,11 +116,17 @@ class Rules:
         return self._settle(time, state, found, begins, ended, events)
 
     def beside_others(self, time: float, found: Transition) -> Transition:
-        """What follows on this contact, of which else touches: it alone, where no rules say otherwise."""
+        """What follows on this contact, of which else touches: it alone, where no rules say
+        otherwise.
+        """
         return found
 
     def giving_way(
-        self, state: State, events: tuple[Event, ...], beginning: Vanishing, wrench: Wrench | None = None
+        self,
+        state: State,
+        events: tuple[Event, ...],
+        beginning: Vanishing,
+        wrench: Wrench | None = None,
     ) -> Transition:
         """Slip, or rolling, begins from the limit of what the table can hold, which is a wrench."""
         return Transition(events, Loosening(self.top, self, beginning, 2, wrench), state)
@@ -137,7 +156,9 @@ class Rules:
 
     def _rolls(self, state: State) -> bool:
         """Whether nothing holds rolling."""
-        return not self.top.resists_rolling or bool(is_rolling(state.axis, state.momentum, self.top))
+        return not self.top.resists_rolling or bool(
+            is_rolling(state.axis, state.momentum, self.top)
+        )
 
     def _branched(self, state: State, slips: bool) -> Top:
         """The top with the branch of its law that holds."""
@@ -150,10 +171,14 @@ class Rules:
         return on_limit_branch(self.top, contact_motion(point, None, rolling)[0])
 
     def _next_to_end(self, state: State, slips: bool) -> tuple[Vanishing | None, float]:
-        """Which velocity ends first at present rates, and the time left; none if all grow or none can end."""
+        """Which velocity ends first at present rates, and the time left; none if all grow or none
+        can end.
+        """
         rolls, ends = self._rolls(state), slips and is_set_valued(self.top.friction)
         possible = [Vanishing(slip=True, held=not rolls)] if ends else []
-        possible += [Vanishing(slip=False, held=not slips)] if rolls and self.top.resists_rolling else []
+        possible += (
+            [Vanishing(slip=False, held=not slips)] if rolls and self.top.resists_rolling else []
+        )
         if not possible:
             return None, float("inf")
         sliding, top = along_table(state), self._branched(state, slips)
@@ -170,10 +195,11 @@ class Rules:
         return found, least
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
-        """Go on from contact without normal velocity: slide, stick, or leave a table that would have to pull.
+        """Go on from contact without normal velocity: slide, stick, or leave a table that would
+        have to pull.
 
-        Where no normal force is consistent with the friction (Painleve's paradox), an impact without approach
-        takes as much slip away as it needs to: Darboux's and Keller's way out.
+        Where no normal force is consistent with the friction (Painleve's paradox), an impact
+        without approach takes as much slip away as it needs to: Darboux's and Keller's way out.
         """
         sliding = along_table(state)
         stuck = is_set_valued(self.top.friction) and not is_slipping(*sliding, self.top)
@@ -190,15 +216,17 @@ class Rules:
     def lift_off(self, time: float, state: State) -> Transition:
         """Leave the table, unless the normal force changed its sign by way of infinity.
 
-        Then it is decided anew how contact goes on: Painleve's paradox begins, or the motion is so stiff that
-        errors of an explicit method look like that.
+        Then it is decided anew how contact goes on: Painleve's paradox begins, or the motion is so
+        stiff that errors of an explicit method look like that.
         """
         if presses(state.axis, state.momentum, self.top):
             return self.resting(time, state)
         return self._leaving(time, state)
 
     def jammed(self, time: float, state: State) -> Transition | None:
-        """What follows where friction that turns made the normal force grow beyond all bounds, if it did."""
+        """What follows where friction that turns made the normal force grow beyond all bounds, if
+        it did.
+        """
         try:
             past = past_jamming(state, self.top)
         except ArithmeticError as error:
@@ -209,7 +237,8 @@ class Rules:
         beyond, *taken = past
         found = self.inconsistent(time, beyond, ())
         if not found.events and isinstance(found.then, Mode):
-            # Slip is so little that by rounding nothing strikes, and slipping on it would jam at once.
+            # Slip is so little that by rounding nothing strikes, and slipping on it would jam at
+            # once.
             found = self.settled(time, stuck_at_once(beyond, self.top), (True, False))
         return begun_with(found, state, *taken)
 
@@ -217,7 +246,9 @@ class Rules:
         """What follows when the normal force falls to zero."""
         raise NotImplementedError
 
-    def touchdown(self, time: float, state: State, integrator: Integrator | None = None) -> Transition:
+    def touchdown(
+        self, time: float, state: State, integrator: Integrator | None = None
+    ) -> Transition:
         """What follows when the top reaches the table; the integrator may follow the impact too."""
         raise NotImplementedError
 
@@ -234,14 +265,22 @@ class Rules:
 
     def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """What follows where no contact force is consistent with the friction."""
-        return Transition(events, Outcome.FAILED, state, "no contact force is consistent with the friction")
+        return Transition(
+            events, Outcome.FAILED, state, "no contact force is consistent with the friction"
+        )
 
 
-def _marks(rules: Rules, time: float, new: tuple[bool, bool], begins: tuple[bool, bool]) -> tuple[Event, ...]:
+def _marks(
+    rules: Rules, time: float, new: tuple[bool, bool], begins: tuple[bool, bool]
+) -> tuple[Event, ...]:
     """What is told where slip, or rolling, has newly ended and is held, or was held and begins."""
     told = []
     for ended, starts, stop, start in zip(
-        new, begins, (EventKind.STICK, EventKind.HALT), (EventKind.SLIP, EventKind.ROLL), strict=True
+        new,
+        begins,
+        (EventKind.STICK, EventKind.HALT),
+        (EventKind.SLIP, EventKind.ROLL),
+        strict=True,
     ):
         if ended and not starts:
             told.append(rules.event(stop, time))

@@ -27,8 +27,9 @@ from tippetop.mechanics.wrench import Wrench
 SLOWEST_ROCKING = 1e-7
 """Velocity, in units of sqrt(g R), below which rocking between two surfaces has come to its end.
 
-Infinitely many impacts, now of one and now of the other, bring both to touch at once in a finite time. Where
-a gap falls back with more than g, this is faster as the square root: rebounds stay out of reach of rounding.
+Infinitely many impacts, now of one and now of the other, bring both to touch at once in a finite
+time. Where a gap falls back with more than g, this is faster as the square root: rebounds stay out
+of reach of rounding.
 """
 
 MOST_IN_TURNS = 200
@@ -52,7 +53,9 @@ class OnSeveral(FreeToFly):
 
     def _beside(self, state: State) -> list[Top]:
         """The top with each of the other surfaces active that touch, what sinks fastest first."""
-        others = [other for other in self.top.each if other != self.top and gap(state, other) <= TOUCHING]
+        others = [
+            other for other in self.top.each if other != self.top and gap(state, other) <= TOUCHING
+        ]
         return sorted(others, key=lambda other: float(gap_rate(state, other)))
 
     def touch(
@@ -60,7 +63,8 @@ class OnSeveral(FreeToFly):
     ) -> Transition:
         """Collide with another surface, and go on as the impact leaves the top.
 
-        Where more come to the table at once, the outermost strikes: what lies between sinks more slowly.
+        Where more come to the table at once, the outermost strikes: what lies between sinks more
+        slowly.
         """
         striking = self.on(surface)
         faster = [
@@ -71,16 +75,20 @@ class OnSeveral(FreeToFly):
         return (self._of(faster[0]) if faster else striking).touchdown(time, state, integrator)
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
-        """As for one surface, unless others touch too, and open no faster than rocking that has ended.
+        """As for one surface, unless others touch too, and open no faster than rocking that has
+        ended.
 
-        Where one of them stays, the tilt does, and all do that touch: the body rests on the outermost.
+        Where one of them stays, the tilt does, and all do that touch: the body rests on the
+        outermost.
         """
         closed, told, beside = False, events, self._beside(state)
         for other in beside:
             rate = gap_rate(state, other)
             if rate < -SLOWEST_ROCKING:
                 if sum(event.kind is EventKind.IMPACT for event in events) >= MOST_IN_TURNS:
-                    return Transition(events, Outcome.FAILED, state, "surfaces strike in turns for ever")
+                    return Transition(
+                        events, Outcome.FAILED, state, "surfaces strike in turns for ever"
+                    )
                 return self._of(other)._collide(time, state, told, 0.0)
             if self._stays(other, state):
                 closed = True
@@ -94,7 +102,9 @@ class OnSeveral(FreeToFly):
         return settled(self._of(tops[0]), time, state, tops, before, rolls, events, arrived=True)
 
     def beside_others(self, time: float, found: Transition) -> Transition:
-        """As it is, unless it presses another surface that touches onto the table: then both are resolved."""
+        """As it is, unless it presses another surface that touches onto the table: then both are
+        resolved.
+        """
         mode = found.then
         if isinstance(mode, IntegratedMode) and self._presses(mode, found.state):
             # What sticks is told anew.
@@ -103,19 +113,25 @@ class OnSeveral(FreeToFly):
         return found
 
     def _presses(self, mode: IntegratedMode, state: State) -> bool:
-        """Whether one of the others that touch, and open no faster than what stays, is drawn to the table."""
+        """Whether one of the others that touch, and open no faster than what stays, is drawn to the
+        table.
+        """
         reaction = mode.reaction(mode.numbers(state))
         wrench = Wrench(reaction.force, reaction.torque)
         return any(
             self._stays(other, state)
-            and ContactPair.of(state.axis, state.momentum, (self.top, other)).under([(0, wrench)])[1][2] < 0.0
+            and ContactPair.of(state.axis, state.momentum, (self.top, other)).under([(0, wrench)])[
+                1
+            ][2]
+            < 0.0
             for other in self._beside(state)
         )
 
     def _impact(self, state: State, restitution: float, integrator: Integrator | None) -> Impact:
         """That of the active surface alone, unless it presses another that touches onto the table.
 
-        Where slip ends meanwhile, under a law that leaves the force open then, the surfaces strike in turns.
+        Where slip ends meanwhile, under a law that leaves the force open then, the surfaces strike
+        in turns.
         """
         alone = super()._impact(state, restitution, integrator)
         for other in self._beside(alone.state):
@@ -134,7 +150,8 @@ class OnSeveral(FreeToFly):
     def _stays(self, other: Top, state: State) -> bool:
         """Whether another surface that touches too stays, or comes back at once.
 
-        Or does not come out of the table, in which it is by no more than what is taken for touching.
+        Or does not come out of the table, in which it is by no more than what is taken for
+        touching.
         """
         back, depth = 1.0, max(0.0, float(gap(state, self.top) - gap(state, other)))
         if self._slips(other, state):
@@ -146,10 +163,14 @@ class OnSeveral(FreeToFly):
         return bool(gap_rate(state, other) <= slowest)
 
     def _slips(self, other: Top, state: State) -> bool:
-        """Whether both contacts slip, faster than where slip on two contacts ends, if it can end at all."""
+        """Whether both contacts slip, faster than where slip on two contacts ends, if it can end at
+        all.
+        """
         if not is_set_valued(self.top.friction):
             return True
-        return all(size(slip_of(*along_table(state), top)) > SLOWEST_SLIP for top in (self.top, other))
+        return all(
+            size(slip_of(*along_table(state), top)) > SLOWEST_SLIP for top in (self.top, other)
+        )
 
     def resting_alone(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """As for one surface, whatever else touches."""
@@ -161,17 +182,20 @@ class OnSeveral(FreeToFly):
         """As the resolver of two contacts finds."""
         return settled(self, time, state, tops, before, rolls)
 
-    def slipping_on_two(self, time: float, state: State, tops: Tops, which: str, rolls: float) -> Transition:
+    def slipping_on_two(
+        self, time: float, state: State, tops: Tops, which: str, rolls: float
+    ) -> Transition:
         """Slip begins at the limit of what the table can hold."""
         return slipping(self, time, state, tops, which, rolls)
 
 
 def outermost(touching: Sequence[Top], c: float) -> Tops:
-    """The two of some tops that touch farthest apart, in their order: a surface touches at -h' s along e.
+    """The two of some tops that touch farthest apart, in their order: a surface touches at -h' s
+    along e.
 
-    What lies between them touches without force: all contact points are in a line, on which a rigid body
-    rests on two. How three would share its weight is not told by what they do to it, but where it slides and
-    turns at once.
+    What lies between them touches without force: all contact points are in a line, on which a rigid
+    body rests on two. How three would share its weight is not told by what they do to it, but where
+    it slides and turns at once.
     """
     places = [float(top.surface.slope(c)) for top in touching]
     first, second = sorted((places.index(min(places)), places.index(max(places))))

@@ -26,7 +26,9 @@ NEARING, PARTING = "nearing", "parting"
 
 @dataclass(frozen=True)
 class SlidingMode(ClosedMode):
-    """Sliding, as long as the normal force is positive or the table may pull, and slip does not end."""
+    """Sliding, as long as the normal force is positive or the table may pull, and slip does not
+    end.
+    """
 
     near: bool = False
     """Whether slip is so small that it may be about to end, which then is guarded."""
@@ -69,7 +71,9 @@ class SlidingMode(ClosedMode):
 
 @dataclass(frozen=True)
 class SlidingWithoutRolling(SlidingMode):
-    """Sliding while rolling resistance holds the top: it turns about the vertical, or not at all."""
+    """Sliding while rolling resistance holds the top: it turns about the vertical, or not at
+    all.
+    """
 
     name: ClassVar[str] = "sliding_without_rolling"
     held: ClassVar[bool] = True
@@ -96,13 +100,16 @@ class Sliding(SlidingMode):
 
     def rolling_left(self, y: Row) -> Scalar:
         """Positive while rolling goes on for a while."""
-        return rolling_stopping_guard(SlidingState.unpack(y), SlidingState.unpack(self.rates(y)), self.top)
+        return rolling_stopping_guard(
+            SlidingState.unpack(y), SlidingState.unpack(self.rates(y)), self.top
+        )
 
 
 def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
     """Equations of motion of a sliding top of this kind, whose rolling may be held.
 
-    If `guarded`, the first guard is of lift-off. Where slip can end, another tells whether it may be soon.
+    If `guarded`, the first guard is of lift-off. Where slip can end, another tells whether it may
+    be soon.
     """
     nothing: Any = None
     form = (SlidingWithoutRolling if held else Sliding)(nothing, nothing, False, guarded)

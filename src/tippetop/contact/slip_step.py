@@ -9,7 +9,15 @@ import numpy as np
 
 from tippetop.contact.surfaces import clearance, passes_flat
 from tippetop.integrators.base import Array
-from tippetop.integrators.iteration import Iteration, copied, first_of, iterated, put_from, put_rows, room
+from tippetop.integrators.iteration import (
+    Iteration,
+    copied,
+    first_of,
+    iterated,
+    put_from,
+    put_rows,
+    room,
+)
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.roots import crossing
@@ -34,8 +42,9 @@ ENOUGH, MOST = 1e-28, 50
 """Sum of the squares of changes that are rounding, and sweeps of a step at most."""
 
 PRESSED, CLEAR = 0.1, 1e-2
-"""Normal force, and gap of another surface, in natural units, at points of a step, which neither falls to
-zero between."""
+"""Normal force, and gap of another surface, in natural units, at points of a step, which neither
+falls to zero between.
+"""
 
 
 class _Machinery(NamedTuple):
@@ -128,10 +137,14 @@ class SlipStep:
         return [row_of(self.rows, row)[0] for row in range(PARTS * size, (PARTS + 1) * size)]
 
     def pieces(self, parts: float) -> Array:
-        """Coefficients of y and xi in so many of its parts, of the last of which it may be a share."""
+        """Coefficients of y and xi in so many of its parts, of the last of which it may be a
+        share.
+        """
         return pieces_of(self.rows, self.layout.size, parts)
 
-    def goes_on(self, top: Top, ends: tuple[Sequence[float], Sequence[float]], *, pulls: bool) -> bool:
+    def goes_on(
+        self, top: Top, ends: tuple[Sequence[float], Sequence[float]], *, pulls: bool
+    ) -> bool:
         """Whether nothing else comes near the table, and that is far from pulling if it may not.
 
         By its points, and the numbers at its ends.
@@ -145,13 +158,17 @@ class SlipStep:
         return pulls or bool(min(row_of(self.found, self.layout.normal)) > PRESSED)
 
     def speed(self, number: int, begin: float, way: Slip) -> list[float]:
-        """Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than zero."""
+        """Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than
+        zero.
+        """
         first = number * self.layout.size + self.layout.free
         x, y = row_of(self.rows, first), row_of(self.rows, first + 1)
         return [begin, *[way[0] * a + way[1] * b for a, b in zip(x, y, strict=True)]]
 
     def end_of_slip(self, xi: Slip, speeds: Sequence[float]) -> float | None:
-        """After how many parts of it slip ends, that is xi at its start; None if that is not told."""
+        """After how many parts of it slip ends, that is xi at its start; None if that is not
+        told.
+        """
         below = [number for number, speed in enumerate(speeds) if speed <= 0.0]
         point = below[0] if below else STAGES
         if point == 0:
@@ -171,7 +188,8 @@ class SlipStep:
 
 
 def pieces_of(rows: Any, size: int, parts: float) -> Array:
-    """Polynomials of so many numbers in the first parts of a step, of the last of which it may be a share.
+    """Polynomials of so many numbers in the first parts of a step, of the last of which it may be a
+    share.
 
     Part after part, and one number after the other: coefficients from the first power on.
     """
@@ -179,5 +197,8 @@ def pieces_of(rows: Any, size: int, parts: float) -> Array:
     if parts == whole:
         return first_of(rows, whole * count)
     before, shares = (whole - 1) * count, [(parts - whole + 1) ** (k + 1) for k in range(STAGES)]
-    last = [term * share for term, share in zip(rows[before : before + count], shares * size, strict=True)]
+    last = [
+        term * share
+        for term, share in zip(rows[before : before + count], shares * size, strict=True)
+    ]
     return np.array([*first_of(rows, before), *last])

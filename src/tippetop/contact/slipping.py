@@ -1,4 +1,6 @@
-"""Slip from its beginning to its end, step by step of collocation (see `tippetop.mechanics.slip_phase`)."""
+"""Slip from its beginning to its end, step by step of collocation (see
+`tippetop.mechanics.slip_phase`).
+"""
 
 import math
 from collections.abc import Sequence
@@ -13,24 +15,28 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.wrench import Slip
 
 FIRST, LEAST = 0.5, 0.005
-"""The first step, in natural units of time, and the least that a step is shortened to: where shorter ones are
-asked for, slip does not follow what drives it, and other methods are quicker."""
+"""The first step, in natural units of time, and the least that a step is shortened to: where
+shorter ones are asked for, slip does not follow what drives it, and other methods are quicker.
+"""
 
 ACCURACY = 1e-22
-"""Sum of the squares of the last coefficients of a step, in natural units, that is small: in the solution
-they are divided by thirty and more, and the error of what a step ends with is of the order of their product.
+"""Sum of the squares of the last coefficients of a step, in natural units, that is small: in the
+solution they are divided by thirty and more, and the error of what a step ends with is of the order
+of their product.
 """
 
 BEYOND = 1.05
 """How much longer a step is than slip seems to last, so that its end lies within."""
 
 DIP, NONE = 0.1, 1e-11
-"""Slip within a step, as part of the most in it, that may be none between two points; and slip, in natural
-units, that is none where it ends."""
+"""Slip within a step, as part of the most in it, that may be none between two points; and slip, in
+natural units, that is none where it ends.
+"""
 
 LONGER, SHORTER, SHORTEST, SAFETY = 1.5, 0.8, 0.3, 0.9
-"""How much longer the next step may be; how much shorter one is at most, and at least, that is tried again;
-and how much shorter than it should."""
+"""How much longer the next step may be; how much shorter one is at most, and at least, that is
+tried again; and how much shorter than it should.
+"""
 
 TINY = 1e-300
 """Added to an error that may be zero."""
@@ -42,8 +48,9 @@ class SlipPhase(NamedTuple):
     knots: list[float]
     """Ends of pieces since then."""
     rows: list[Array]
-    """Of the pieces of every step the coefficients of y and xi in powers of what has passed of each, from the
-    first on, in a row."""
+    """Of the pieces of every step the coefficients of y and xi in powers of what has passed of
+    each, from the first on, in a row.
+    """
     last: list[float]
     """y and xi where that ends."""
     ended: bool
@@ -83,7 +90,11 @@ def slip_phase(
         after = [a + b for a, b in zip(now, step.changes, strict=True)]
         last, speeds = step.last_way, step.speeds
         lasts = min(speeds) > 0.0 and after[free] * last[0] + after[free + 1] * last[1] > 0.0
-        part = float(PARTS) if lasts or factor < SAFETY else step.end_of_slip(tuple(now[free:]), speeds)
+        part = (
+            float(PARTS)
+            if lasts or factor < SAFETY
+            else step.end_of_slip(tuple(now[free:]), speeds)
+        )
         if factor < SAFETY or part is None or dips(speeds):
             length *= max(min(factor, SHORTER), SHORTEST)
             if length < LEAST:

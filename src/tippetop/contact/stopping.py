@@ -19,38 +19,53 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 
 LANDING = (3e-8, 1e-16)
-"""How long before its end the rest of a velocity may be taken in one step, in natural units of time: if its
-direction has come to rest by then, and in any case."""
+"""How long before its end the rest of a velocity may be taken in one step, in natural units of
+time: if its direction has come to rest by then, and in any case.
+"""
 
 SLOWEST = 1e-12
 """A velocity, in natural units, that has ended where it cannot be followed further."""
 
 ALMOST = 1e-6
-"""Part of the time to the end that is left at the last look at what else may happen: slip has a direction."""
+"""Part of the time to the end that is left at the last look at what else may happen: slip has a
+direction.
+"""
 
 SHARE = 0.01
-"""Part of the time to the end that a polynomial of `DEGREE` leaves: friction after it ends smoothly."""
+"""Part of the time to the end that a polynomial of `DEGREE` leaves: friction after it ends
+smoothly.
+"""
 
 NEARER, NEAREST = 0.6, 1e-13
-"""Part of the time to a jam that a polynomial leaves to the next one, and part of all that is the last's."""
+"""Part of the time to a jam that a polynomial leaves to the next one, and part of all that is the
+last's.
+"""
 
 RESOLVED = 1e-15
-"""Last term of such polynomials, in natural units, that is small: else they are made for shorter times."""
+"""Last term of such polynomials, in natural units, that is small: else they are made for shorter
+times.
+"""
 
 
 @dataclass(frozen=True)
 class Stopping(Passing):
-    """The last moments of slip, or of rolling, in a clock of their own (see `tippetop.mechanics.ending`)."""
+    """The last moments of slip, or of rolling, in a clock of their own (see
+    `tippetop.mechanics.ending`).
+    """
 
     begin: tuple[float, ...] = ()
-    """The numbers of the clock where another branch of the law has left off; else they are the state's."""
+    """The numbers of the clock where another branch of the law has left off; else they are the
+    state's.
+    """
 
     @property
     def motion(self) -> Motion:
         """Its equations in the clock."""
         return closing_motion(self.top.kind, self.ending, not self.rules.pulls)
 
-    def segments(self, time: float, state: State, end: float, integrator: Integrator) -> Iterator[Segment]:
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
         """Follow it to its end, or to where it is no longer about to end."""
         begin = self.begin or self._clock(state)
         arcs, rest, arrival = self._followed(begin, end - time, integrator)
@@ -60,9 +75,15 @@ class Stopping(Passing):
             # It passes zero by so little that no step is short enough to see it turn round.
             rest, arc = here._replace(speed=0.0), None
         if arrival is None:
-            last, onwards = self.state(shown(rest)), straight(shown(here), shown(rest), until, rest.time)
+            last, onwards = (
+                self.state(shown(rest)),
+                straight(shown(here), shown(rest), until, rest.time),
+            )
         else:
-            last, onwards = self.state(arrival.at(0.0)), in_one_step(arrival.onwards, until, arrival.left)
+            last, onwards = (
+                self.state(arrival.at(0.0)),
+                in_one_step(arrival.onwards, until, arrival.left),
+            )
         solution = self._in_time(arcs, until, onwards).moved(time, time + onwards.end)
         then, steps = self._next(arc, solution.end, last), sum(one.steps for one in arcs)
         steps += arrival is not None
@@ -78,7 +99,9 @@ class Stopping(Passing):
         for horizon in LANDING:
             if arrival is not None or landing_guard(here, self.ending, self.top, horizon) <= 0.0:
                 continue
-            for arc in followed(integrator, self.motion, (*self.top.numbers, longest, horizon), start):
+            for arc in followed(
+                integrator, self.motion, (*self.top.numbers, longest, horizon), start
+            ):
                 arcs.append(arc)
                 start = arc.solution.end, arc.end_state
                 here = closing_of(arc.end_state.tolist(), self.ending)
@@ -91,10 +114,16 @@ class Stopping(Passing):
             rest, doubt = landed(here, self.ending, self.top)
             if doubt < SETTLED:
                 break
-        return arcs, rest if arcs or arrival is not None else landed(here, self.ending, self.top)[0], arrival
+        return (
+            arcs,
+            rest if arcs or arrival is not None else landed(here, self.ending, self.top)[0],
+            arrival,
+        )
 
     def _arrival(self, here: Closing, longest: float, integrator: Integrator) -> Arrival | None:
-        """The end of slip by power series, if its direction has come to rest and nothing else happens."""
+        """The end of slip by power series, if its direction has come to rest and nothing else
+        happens.
+        """
         if not self.ending.slip or slip_length(self.top.friction) is None:
             return None
         found = arriving(here, self.ending, self.top, integrator)
@@ -105,7 +134,9 @@ class Stopping(Passing):
             then = found.at(look / LOOKS or ALMOST)
             xi = tuple(then[6:])
             clock = (*then[:6], *scaled(1.0 / size(xi), xi), size(xi), here.time)
-            if not all(one.value(clock, numbers) > 0.0 for one in self.motion.guards if one.name not in OWN):
+            if not all(
+                one.value(clock, numbers) > 0.0 for one in self.motion.guards if one.name not in OWN
+            ):
                 return None
         way = [found.at(look / LOOKS) for look in range(LOOKS + 1)]
         return None if passes_flat(self.top, way) else found
@@ -121,9 +152,13 @@ class Stopping(Passing):
         ending, stuck = self.ending, not self.ending.slip and self.ending.held
         if arc is None or arc.guard == LANDED:
             new = ending.slip, not ending.slip
-            return self.rules.beside_others(time, self.rules.settled(time, state, new, held=ending.held))
+            return self.rules.beside_others(
+                time, self.rules.settled(time, state, new, held=ending.held)
+            )
         if arc.failure is not None or arc.guard is None:
-            return Transition((), Outcome.FAILED, state, arc.failure or "the slip neither ends nor goes on")
+            return Transition(
+                (), Outcome.FAILED, state, arc.failure or "the slip neither ends nor goes on"
+            )
         found = follow_surface(self, arc.guard, time, state)
         if found is not None:
             return found
@@ -150,7 +185,9 @@ class Stopping(Passing):
         return replace(self, top=top, begin=(*arc.end_state.tolist()[:-1], 0.0))
 
     def _in_time(self, arcs: Sequence[Arc], until: float, rest: DenseSolution) -> DenseSolution:
-        """The numbers of the mode as polynomials in time: up to some time from the clock's, and the rest."""
+        """The numbers of the mode as polynomials in time: up to some time from the clock's, and the
+        rest.
+        """
         parts = [arc.solution for arc in arcs if len(arc.solution.terms)]
         if not parts:
             return rest
@@ -177,7 +214,9 @@ def thinned(knots: Sequence[float]) -> list[float]:
 
 
 def graded(knots: Sequence[float]) -> list[float]:
-    """Ends of steps that grow as short as what is left to the last, where the normal force has no bound."""
+    """Ends of steps that grow as short as what is left to the last, where the normal force has no
+    bound.
+    """
     end, found = knots[-1], [knots[0]]
     for knot in knots[1:]:
         while NEARER * (end - found[-1]) > max(end - knot, NEAREST * (end - knots[0])):

@@ -1,7 +1,8 @@
 """An impact without restitution as a motion, in which the normal impulse plays the part of time.
 
-It ends where the contact point stops sinking (see `tippetop.mechanics.impact`). What follows motions of one
-launch, and of many, follows it too, unless slip ends on the way, which that module knows.
+It ends where the contact point stops sinking (see `tippetop.mechanics.impact`). What follows
+motions of one launch, and of many, follows it too, unless slip ends on the way, which that module
+knows.
 """
 
 from collections.abc import Callable, Sequence
@@ -34,14 +35,18 @@ MOST_PIECES = 50
 def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Impact | None:
     """What an impact without restitution does to a body that touches the table.
 
-    None where this is no way to find it: there is no integrator that compiles motions, drilling is not
-    resisted or rolling is, the contact point does not sink, or slip is about to end.
+    None where this is no way to find it: there is no integrator that compiles motions, drilling is
+    not resisted or rolling is, the contact point does not sink, or slip is about to end.
     """
     law = top.friction
     if top.resists_rolling or not is_set_valued(law) or slip_length(law) is None:
         return None
     body = Striking.of(state, top)
-    if integrator is None or getattr(integrator, "expansion", None) is None or body.before[2] >= 0.0:
+    if (
+        integrator is None
+        or getattr(integrator, "expansion", None) is None
+        or body.before[2] >= 0.0
+    ):
         return None
     if is_near(along_table(state), top):
         return None
@@ -56,7 +61,9 @@ def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Im
             return None
         impulse, moving, steps = arc.solution.end, arc.end_state, steps + arc.steps
         if arc.guard == SINKING:
-            return impact_between(state, after(state, moving.tolist()), impulse, body)._replace(steps=steps)
+            return impact_between(state, after(state, moving.tolist()), impulse, body)._replace(
+                steps=steps
+            )
         if arc.guard != BRANCH:
             return None
         top = on_other_branch(top)
@@ -80,8 +87,8 @@ def impact_between(before: State, then: State, normal: float, body: Striking) ->
 def impact_motion(kind: Kind, *, ending: bool = False) -> Motion:
     """How angular momentum and velocity of a struck top change with the normal impulse.
 
-    The parameters are its numbers and its axis, which does not move. If `ending`, slip that is about to end
-    ends the motion.
+    The parameters are its numbers and its axis, which does not move. If `ending`, slip that is
+    about to end ends the motion.
     """
 
     def read(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[State, Top]:
@@ -98,7 +105,10 @@ def impact_motion(kind: Kind, *, ending: bool = False) -> Motion:
         point = contact_velocity(state, arm, top)
         turning = angular_velocity(state.axis, state.momentum, top)
         traction = top.traction((point[0], point[1]), turning)
-        return (*moment_per_normal_force(arm, traction), *scale(1.0 / top.mass, (*traction.force, 1.0)))
+        return (
+            *moment_per_normal_force(arm, traction),
+            *scale(1.0 / top.mass, (*traction.force, 1.0)),
+        )
 
     def sinking(state: State, top: Top) -> Scalar:
         return -contact_velocity(state, contact_vector(state.axis, top.surface), top)[2]

@@ -1,4 +1,6 @@
-"""Guards of what a body's shape makes happen: another surface touches the table, or its face lies on it."""
+"""Guards of what a body's shape makes happen: another surface touches the table, or its face lies
+on it.
+"""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -12,7 +14,8 @@ from tippetop.mechanics.vectors import Row, Scalar, Vector
 FACE, TOUCH = "face", "touch "
 
 MARGIN = 1e-15
-"""Gap, in sizes, below zero at which a surface touches: one that just let go is there by rounding."""
+"""Gap, in sizes, below zero at which a surface touches: one that just let go is there by rounding.
+"""
 
 
 def number_of(top: Top) -> int:
@@ -28,20 +31,26 @@ def surface_guards(top: Top) -> list[tuple[str, Callable[[Top, Vector], Scalar]]
     found: list[tuple[str, Callable[[Top, Vector], Scalar]]] = []
     if is_edge(top.surface):
         found.append((FACE, _face))
-    open_ones = [number for number in range(len(each_surface(top.surface))) if number != number_of(top)]
+    open_ones = [
+        number for number in range(len(each_surface(top.surface))) if number != number_of(top)
+    ]
     return found + [(f"{TOUCH}{number}", _gap_of(number)) for number in open_ones]
 
 
 def lies_flat(top: Top, axis: Vector) -> Scalar:
-    """Whether a body whose active surface touches the table lies on the face that this is the edge of."""
+    """Whether a body whose active surface touches the table lies on the face that this is the edge
+    of.
+    """
     return is_edge(top.surface) and _face(top, axis) <= 0.0
 
 
 def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
-    """Whether a body may come to lie flat between looks at its axis, the first of the numbers, floats.
+    """Whether a body may come to lie flat between looks at its axis, the first of the numbers,
+    floats.
 
-    In one plane its tip passes the pole within so little that no look tells: the straight line between two
-    does, by its place nearest the pole, from which the tip strays by less than a quarter of the line.
+    In one plane its tip passes the pole within so little that no look tells: the straight line
+    between two does, by its place nearest the pole, from which the tip strays by less than a
+    quarter of the line.
     """
     if not is_edge(top.surface):
         return False
@@ -76,7 +85,9 @@ def stays_open(top: Top, y: Row) -> bool:
 
 
 def clearance(top: Top, c: float) -> float:
-    """The least gap of the other surfaces while the active one touches, at a cosine of the tilt, floats."""
+    """The least gap of the other surfaces while the active one touches, at a cosine of the tilt,
+    floats.
+    """
     height = top.surface.height(c)
     gaps = [
         height - other.height(c)

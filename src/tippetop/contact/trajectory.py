@@ -12,10 +12,13 @@ PHASE_LIMIT = 100_000
 """How many modes a run goes through at most unless told otherwise."""
 
 LONGEST = 1e300
-"""Seconds, and natural units of time, that a run may last at most, so that it is a number in both."""
+"""Seconds, and natural units of time, that a run may last at most, so that it is a number in both.
+"""
 
 STEP_LIMIT = 500_000
-"""How many steps a run takes at most unless told otherwise: more than an hour of a tippe top's spinning."""
+"""How many steps a run takes at most unless told otherwise: more than an hour of a tippe top's
+spinning.
+"""
 
 
 class Trajectory:
@@ -30,8 +33,8 @@ class Trajectory:
     integrator
         The method for modes that need one.
     limit, step_limit
-        How many modes to go through, and how many steps to take, at most: those of the integrator and of
-        impacts, and the pieces of flights.
+        How many modes to go through, and how many steps to take, at most: those of the integrator
+        and of impacts, and the pieces of flights.
     time, state
         Where it is.
     outcome, detail
@@ -60,10 +63,14 @@ class Trajectory:
         transition, modes, steps = self._enter(self.start), 0, 0
         while isinstance(transition.then, Mode):
             if self.time >= self.end or modes == self.limit:
-                self.outcome = Outcome.COMPLETED if self.time >= self.end else Outcome.TOO_MANY_PHASES
+                self.outcome = (
+                    Outcome.COMPLETED if self.time >= self.end else Outcome.TOO_MANY_PHASES
+                )
                 return
             modes += 1
-            for segment in transition.then.segments(self.time, self.state, self.end, self.integrator):
+            for segment in transition.then.segments(
+                self.time, self.state, self.end, self.integrator
+            ):
                 self.time, self.state = segment.end_time, segment.end_state
                 steps += max(segment.steps, len(segment.solution.knots) - 1)
                 if segment.transition is not None:
@@ -90,10 +97,14 @@ class Trajectory:
 def require_limits(
     duration: Any, unit: float, phase_limit: Any = PHASE_LIMIT, step_limit: Any = STEP_LIMIT
 ) -> None:
-    """Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of time."""
+    """Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of
+    time.
+    """
     longest = LONGEST * min(1.0, unit)
     if not (is_number(duration) and 0.0 < duration <= longest):
-        raise InvalidInput("duration", duration, f"a number of seconds greater than 0, at most {longest:.3g}")
+        raise InvalidInput(
+            "duration", duration, f"a number of seconds greater than 0, at most {longest:.3g}"
+        )
     for name, limit in {"phase_limit": phase_limit, "step_limit": step_limit}.items():
         if not is_whole(limit) or limit < 0:
             raise InvalidInput(name, limit, "a whole number, at least 0")

@@ -1,4 +1,6 @@
-"""What follows where two surfaces touch and have no normal velocities, and slip ends or begins at them."""
+"""What follows where two surfaces touch and have no normal velocities, and slip ends or begins at
+them.
+"""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -40,10 +42,14 @@ if TYPE_CHECKING:
     from tippetop.contact.several import OnSeveral
 
 TOGETHER = 30.0
-"""How many times `SLOWEST_SLIP` the slip of the other contact may be where it ends on one to end with it."""
+"""How many times `SLOWEST_SLIP` the slip of the other contact may be where it ends on one to end
+with it.
+"""
 
 ABOUT = 1.0 + 1e-3
-"""The same of slip that ends on both at once: what is left of it is known to rounding of the velocities."""
+"""The same of slip that ends on both at once: what is left of it is known to rounding of the
+velocities.
+"""
 
 FIRST, SECOND, BOTH, NEITHER = "first", "second", "both", "neither"
 
@@ -76,7 +82,9 @@ class TwoClosed:
         rolls: float,
         ended: tuple[bool, bool] | None = None,
     ) -> "TwoClosed":
-        """The contacts in a state that has slip, or tilts, by no more than what is taken for none."""
+        """The contacts in a state that has slip, or tilts, by no more than what is taken for
+        none.
+        """
         tops = off_branch(tops[0]), off_branch(tops[1])
         # What sticks does not slip because tilting has ended: that is held, too.
         ended = ended_slips(state, tops) if ended is None else ended
@@ -111,7 +119,8 @@ class TwoClosed:
     def consistent(self, found: Resolution) -> list[str]:
         """Which contacts may stay closed: exactly one candidate is expected.
 
-        Where rolling is held, what one contact may do alone both may; else that which is pressed the more.
+        Where rolling is held, what one contact may do alone both may; else that which is pressed
+        the more.
         """
         normal, free = found.motion.normal, self.pair.free
         candidates = [BOTH] if normal[0] > 0.0 and normal[1] > 0.0 else []
@@ -121,7 +130,9 @@ class TwoClosed:
         held = [number for number in (0, 1) if ways[number] == HELD]
         if held and not candidates:
             return [(FIRST, SECOND)[max(held, key=lambda number: normal[number])]]
-        candidates += [name for way, name in zip(ways, (FIRST, SECOND), strict=True) if way == OPENS]
+        candidates += [
+            name for way, name in zip(ways, (FIRST, SECOND), strict=True) if way == OPENS
+        ]
         return candidates + ([NEITHER] if free[0][2] >= 0.0 and free[1][2] >= 0.0 else [])
 
     def _alone(self, number: int) -> str:
@@ -152,7 +163,9 @@ class TwoClosed:
             least = rolling_of_slip(self.pair, self.rolls) if patches else -1.0
             mode = StickingOnTwo(self.tops[0], self.rules, self.tops[1], self.rolls, least)
             still = rests(self.state, *found.motion.moving[2])
-            return Transition((), Resting(self.tops[0], self.rules, mode) if still else mode, self.state)
+            return Transition(
+                (), Resting(self.tops[0], self.rules, mode) if still else mode, self.state
+            )
         return Transition((), self._turning(self.tops, self.xi[2]), self.state)
 
     def _turning(self, tops: Tops, zeta: float) -> StickingAndSliding:
@@ -194,7 +207,9 @@ def rolling_of(state: State, top: Top) -> float:
     """Sign of omega_e where rolling is resisted and goes on; else 0."""
     if not top.resists_rolling or not is_rolling(state.axis, state.momentum, top):
         return 0.0
-    return 1.0 if turning_along(ContactPair.of(state.axis, state.momentum, (top, top))) > 0.0 else -1.0
+    return (
+        1.0 if turning_along(ContactPair.of(state.axis, state.momentum, (top, top))) > 0.0 else -1.0
+    )
 
 
 def ended_slips(state: State, tops: Tops) -> tuple[bool, bool]:

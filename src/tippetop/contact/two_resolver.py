@@ -60,7 +60,8 @@ def settled(
 def slipping(
     rules: "OnSeveral", time: float, state: State, tops: Tops, which: str, rolls: float
 ) -> Transition:
-    """What follows where what both contacts need, or one of them, reaches the limit of what the table can.
+    """What follows where what both contacts need, or one of them, reaches the limit of what the
+    table can.
 
     Of those that stick, that of this number slips, or "both"; where only the first does, it does.
     """
@@ -75,9 +76,13 @@ def slipping(
         else:
             number = int(which)
             needed = pair_motion(pair, (None, None), rolls).needed(number)
-            found = turning_about(pair, 1 - number, 1.0 if (needed > 0.0) == (number == 0) else -1.0, rolls)
+            found = turning_about(
+                pair, 1 - number, 1.0 if (needed > 0.0) == (number == 0) else -1.0, rolls
+            )
     except ArithmeticError as error:
-        return failed("The direction in which slip, or rolling, begins on two surfaces", error, state)
+        return failed(
+            "The direction in which slip, or rolling, begins on two surfaces", error, state
+        )
     stuck = (number_of(tops[0]),) if alone else (number_of(tops[0]), number_of(tops[1]))
     marks = _marks((time, time), here, found, Before(stuck, bool(rolls)))
     return replace(here.letting_go(found, 2), events=marks)
@@ -86,7 +91,8 @@ def slipping(
 def _marks(
     times: tuple[float, float], here: TwoClosed, found: Resolution, before: Before
 ) -> tuple[Event, ...]:
-    """What is told where a contact sticks that did not, or slips that stuck; and the same of rolling.
+    """What is told where a contact sticks that did not, or slips that stuck; and the same of
+    rolling.
 
     The times are that of slip's end, or beginning, and that of rolling's.
     """
@@ -94,7 +100,9 @@ def _marks(
     for top, held in zip(here.tops, found.sticks, strict=True):
         surface = number_of(top)
         if held != (surface in before.stuck):
-            told.append(Event(EventKind.STICK if held else EventKind.SLIP, times[0], surface=surface))
+            told.append(
+                Event(EventKind.STICK if held else EventKind.SLIP, times[0], surface=surface)
+            )
     if before.rolled != bool(found.rolls):
         kind = EventKind.ROLL if found.rolls else EventKind.HALT
         told += [Event(kind, times[1], surface=number_of(top)) for top in here.tops]

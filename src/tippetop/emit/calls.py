@@ -45,7 +45,9 @@ class Calls(Expressions):
             case ast.Name(id="abs") if self.plain:
                 return f"Math.abs({self.arguments(node.args)})"
             case ast.Name(id="max" | "min" as word) if are_given_singly(node):
-                return reduce(lambda a, b: f"py.{OF_TWO[word]}({a}, {b})", map(self.text, node.args))
+                return reduce(
+                    lambda a, b: f"py.{OF_TWO[word]}({a}, {b})", map(self.text, node.args)
+                )
             case ast.Name(id="len") if self.numeric:
                 return f"{self.text(node.args[0])}.length"
             case ast.Name(id=name):
@@ -90,7 +92,9 @@ class Calls(Expressions):
             return ", ".join([*found, self._named(node.keywords)])
         order = self._order(node, set(words))
         rest = order[len(found) : max(map(order.index, words)) + 1]
-        return ", ".join([*found, *(self.text(words[one]) if one in words else "undefined" for one in rest)])
+        return ", ".join(
+            [*found, *(self.text(words[one]) if one in words else "undefined" for one in rest)]
+        )
 
     def _order(self, node: ast.Call, words: set[str]) -> list[str]:
         """The names of the parameters of what is called."""
@@ -112,7 +116,11 @@ class Calls(Expressions):
 
 def are_given_singly(node: ast.Call) -> bool:
     """Whether a call gives several things one by one, and nothing by name."""
-    return len(node.args) > 1 and not node.keywords and not any(isinstance(a, ast.Starred) for a in node.args)
+    return (
+        len(node.args) > 1
+        and not node.keywords
+        and not any(isinstance(a, ast.Starred) for a in node.args)
+    )
 
 
 def is_class(name: str) -> bool:

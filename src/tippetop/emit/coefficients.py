@@ -1,4 +1,6 @@
-"""Coefficients of power series as nodes: what Taylor's method computes, recorded number by number."""
+"""Coefficients of power series as nodes: what Taylor's method computes, recorded number by
+number.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -30,7 +32,9 @@ class NodeArithmetic(PlainArithmetic):
         return a if condition else b
 
     def rarely(self, condition: Any, a: Any, b: Any) -> Any:
-        """The same, where it is the second mostly; one condition for all that a function computes rarely."""
+        """The same, where it is the second mostly; one condition for all that a function computes
+        rarely.
+        """
         return condition.graph.rarely(condition, a, b)
 
 

@@ -19,12 +19,16 @@ class Definitions(Statements):
                     yield ""
                     yield from said(node)
                     yield from self.function_lines(node, f"function {self.name(name)}")
-                case ast.ClassDef() if (known := self.program.classes.get(self.name(node.name))) is not None:
+                case ast.ClassDef() if (
+                    known := self.program.classes.get(self.name(node.name))
+                ) is not None:
                     if known.node is node:
                         yield ""
                         yield from said(node)
                         yield from self._class(known)
-                case ast.Assign(value=value) | ast.AnnAssign(value=ast.expr() as value) if not is_type(node):
+                case ast.Assign(value=value) | ast.AnnAssign(value=ast.expr() as value) if (
+                    not is_type(node)
+                ):
                     yield f"const {self.pattern(targets_of(node)[0])} = {self.text(value)};"
 
     def _class(self, known: Class) -> Iterator[str]:
@@ -38,17 +42,27 @@ class Definitions(Statements):
         if known.kind in RECORDS:
             yield f"static fields = {json.dumps(list(known.fields))};"
         if known.kind == "py.NamedTuple":
-            yield from (f"get {place}() {{ return this.{name}; }}" for place, name in enumerate(known.fields))
+            yield from (
+                f"get {place}() {{ return this.{name}; }}"
+                for place, name in enumerate(known.fields)
+            )
         if known.kind in RECORDS and known.fields:
             yield from self._constructor(known)
         for node in known.node.body:
             match node:
-                case ast.Assign(targets=[ast.Name(id=name)], value=value) if known.kind == "py.Enum":
+                case ast.Assign(targets=[ast.Name(id=name)], value=value) if (
+                    known.kind == "py.Enum"
+                ):
                     yield f'static {name} = new this("{name}", {self.text(value)});'
-                case ast.Assign(targets=[ast.Name(id=name)], value=value) if known.kind == "py.Thing":
+                case ast.Assign(targets=[ast.Name(id=name)], value=value) if (
+                    known.kind == "py.Thing"
+                ):
                     yield f"static {name} = {self.text(value)};"
                 case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
-                    if ast.unparse(node.annotation).startswith("ClassVar") and known.kind == "py.Record":
+                    if (
+                        ast.unparse(node.annotation).startswith("ClassVar")
+                        and known.kind == "py.Record"
+                    ):
                         yield f"get {name}() {{ return {self.text(value)}; }}"
                 case ast.FunctionDef(name=name) if f"{known.name}.{name}" not in self.program.left:
                     yield from self._method(node)

@@ -25,7 +25,9 @@ COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 
 
 class Untranslatable(SyntaxError):
-    """Something of Python that the program does not use so far, and the translator does not know."""
+    """Something of Python that the program does not use so far, and the translator does not
+    know.
+    """
 
 
 class Expressions(ABC):
@@ -76,7 +78,11 @@ class Expressions(ABC):
     def truth(self, node: ast.expr, binds: int = ARROW) -> str:
         """Whether an expression is true."""
         match node:
-            case ast.Compare() | ast.UnaryOp(op=ast.Not()) | ast.Call(func=ast.Name("bool" | "isinstance")):
+            case (
+                ast.Compare()
+                | ast.UnaryOp(op=ast.Not())
+                | ast.Call(func=ast.Name("bool" | "isinstance"))
+            ):
                 return self.text(node, binds)
             case ast.BoolOp(op=op, values=values):
                 sign, own = ("||", OR) if isinstance(op, ast.Or) else ("&&", AND)
@@ -125,7 +131,10 @@ class Expressions(ABC):
             case ast.Compare():
                 return self._comparison(node)
             case ast.IfExp(test=test, body=body, orelse=orelse):
-                return f"{self.truth(test, OR)} ? {self.text(body, OR)} : {self.text(orelse)}", ARROW
+                return (
+                    f"{self.truth(test, OR)} ? {self.text(body, OR)} : {self.text(orelse)}",
+                    ARROW,
+                )
             case ast.JoinedStr(values=values):
                 return f"`{''.join(map(self._formatted, values))}`", ATOM
             case ast.Subscript():
@@ -141,7 +150,9 @@ class Expressions(ABC):
                 return f"new py.Dict({self._comprehension(node.generators, pair)})", ATOM
             case ast.Dict(keys=keys, values=values):
                 pairs = [
-                    f"[{self.text(k)}, {self.text(v)}]" if k else f"...{self.text(v, ATOM)}.entries()"
+                    f"[{self.text(k)}, {self.text(v)}]"
+                    if k
+                    else f"...{self.text(v, ATOM)}.entries()"
                     for k, v in zip(keys, values, strict=True)
                 ]
                 return f"new py.Dict([{', '.join(pairs)}])", ATOM
@@ -166,7 +177,9 @@ class Expressions(ABC):
 
     def _comparison(self, node: ast.Compare) -> tuple[str, int]:
         sides = [node.left, *node.comparators]
-        found = [self._compared(a, op, b) for a, op, b in zip(sides, node.ops, sides[1:], strict=False)]
+        found = [
+            self._compared(a, op, b) for a, op, b in zip(sides, node.ops, sides[1:], strict=False)
+        ]
         if len(found) == 1:
             return found[0]
         return " && ".join(f"({text})" if own < AND else text for text, own in found), AND
@@ -178,7 +191,9 @@ class Expressions(ABC):
         negated = isinstance(op, ast.NotEq | ast.IsNot | ast.NotIn)  # codespell:ignore
         if isinstance(op, ast.In | ast.NotIn):  # codespell:ignore
             found = f"py.contains({right}, {left})"
-        elif self.numeric or isinstance(op, ast.Is | ast.IsNot) or ast.Constant in (type(a), type(b)):
+        elif (
+            self.numeric or isinstance(op, ast.Is | ast.IsNot) or ast.Constant in (type(a), type(b))
+        ):
             return f"{left} {'!' if negated else '='}== {right}", EQUAL
         else:
             found = f"py.eq({left}, {right})"
@@ -188,7 +203,9 @@ class Expressions(ABC):
         match part:
             case ast.FormattedValue(value=inner, format_spec=None):
                 return f"${{py.str({self.text(inner)})}}"
-            case ast.FormattedValue(value=inner, format_spec=ast.expr() as spec) if "g'" in ast.unparse(spec):
+            case ast.FormattedValue(value=inner, format_spec=ast.expr() as spec) if (
+                "g'" in ast.unparse(spec)
+            ):
                 return f'${{py.format({self.text(inner)}, "{ast.unparse(spec)[2:-1]}")}}'
             case ast.Constant(value=text):
                 return json.dumps(text)[1:-1].replace("`", "\\`").replace("${", "\\${")
@@ -205,7 +222,9 @@ class Expressions(ABC):
                 return f"py.slice({whole}, {', '.join(parts)})"
             case ast.Tuple(elts=places):
                 row = f"{whole}[{self.text(places[0])}]"
-                return self.rows.get(row, row) + "".join(f"[{self.text(place)}]" for place in places[1:])
+                return self.rows.get(row, row) + "".join(
+                    f"[{self.text(place)}]" for place in places[1:]
+                )
             case _ if self.numeric:
                 return f"{whole}[{self.text(node.slice)}]"
             case ast.Constant(value=int(number)) if self.module not in self.program.indexed:
@@ -231,7 +250,9 @@ class Expressions(ABC):
 
 
 def is_of_numbers(node: ast.BinOp) -> bool:
-    """Whether an operator means the same in both, of numbers; not of lists, nor where zero may divide."""
+    """Whether an operator means the same in both, of numbers; not of lists, nor where zero may
+    divide.
+    """
     if isinstance(node.op, ast.Div):
         return isinstance(node.right, ast.Constant)
     return not (is_list(node.left) or is_list(node.right))

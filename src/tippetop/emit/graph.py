@@ -1,8 +1,8 @@
 """A function in plain operators as a graph of operations, each of them there once.
 
-The function is run on nodes instead of numbers, and what it does to them is recorded. What is multiplied by 0
-or 1 is left out, and what is computed twice is computed once. All of that is exact in floating-point numbers;
-powers of halves and quarters become products and roots.
+The function is run on nodes instead of numbers, and what it does to them is recorded. What is
+multiplied by 0 or 1 is left out, and what is computed twice is computed once. All of that is exact
+in floating-point numbers; powers of halves and quarters become products and roots.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,9 @@ SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
 NEGATIVE, LESS, SELECT, RARELY = "negative", "less", "select", "rarely"
 SIZE, ROOT, POWER, SINE, COSINE = "abs", "sqrt", "pow", "sin", "cos"
 SPREAD, TOTAL = "spread", "total"
-"""What makes nodes; where they have several values, the last two are one of them for all, and their sum."""
+"""What makes nodes; where they have several values, the last two are one of them for all, and their
+sum.
+"""
 
 LARGEST_POWER = 16
 """Whole powers up to this are products."""

@@ -22,11 +22,15 @@ OPERATIONS: Mapping[str, Callable[..., Any]] = {
 
 
 def hoisted(recorded: Recorded) -> tuple[Recorded, Recorded]:
-    """A function of the parameters alone, and the rest, to which what that makes are further parameters."""
+    """A function of the parameters alone, and the rest, to which what that makes are further
+    parameters.
+    """
     fixed = set[int]()
     for node in recorded.nodes:
         given = node.name in (graph.PARAMETER, graph.CONSTANT)
-        if given or (node.operands and fixed.issuperset([operand.place for operand in node.operands])):
+        if given or (
+            node.operands and fixed.issuperset([operand.place for operand in node.operands])
+        ):
             fixed.add(node.place)
     moving = [node for node in recorded.nodes if node.place not in fixed]
     asked = {operand.place for node in moving for operand in node.operands}
@@ -49,7 +53,9 @@ def hoisted(recorded: Recorded) -> tuple[Recorded, Recorded]:
 
 
 def played(recorded: Recorded, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
-    """What a recorded function makes of a state and parameters, in the arithmetic that they have."""
+    """What a recorded function makes of a state and parameters, in the arithmetic that they
+    have.
+    """
     found = dict[int, Any]()
     for node in recorded.nodes:
         match node.name:

@@ -25,7 +25,9 @@ def laid_out(line: str) -> Iterator[str]:
 
 
 def _longest_brackets(line: str) -> tuple[int, int]:
-    """Where what is in them begins and ends; of brackets that are all there is in others, the inner ones."""
+    """Where what is in them begins and ends; of brackets that are all there is in others, the inner
+    ones.
+    """
     opened, found = list[int](), [(0, 0)]
     for token in TOKEN.finditer(line):
         if token[0] in "([{":
@@ -39,7 +41,9 @@ def _longest_brackets(line: str) -> tuple[int, int]:
 
 
 def _parts(text: str) -> Iterator[str]:
-    """What stands between commas, or else between the signs of operations, with which a line begins."""
+    """What stands between commas, or else between the signs of operations, with which a line
+    begins.
+    """
     depth, commas, signs = 0, list[int](), list[int]()
     for token in TOKEN.finditer(text):
         depth += (token[0] in "([{") - (token[0] in ")]}")

@@ -47,8 +47,10 @@ SPELLINGS = {
     graph.LESS: "{t}_flag = fcmp ogt {v} {1}, {0}\n  {t} = uitofp <{n} x i1> {t}_flag to {v}",
     graph.SELECT: "{t}_flag = fcmp une {v} {0}, zeroinitializer\n  " + CHOICE.replace("{0}", "{t}"),
     graph.SPREAD: "{t}_one = extractelement {v} {0}, i64 {row}\n" + SPREAD,
-    graph.TOTAL: "{t}_one = call reassoc double @llvm.vector.reduce.fadd.v{n}f64(double 0.0, {v} {0})\n"
-    + SPREAD,
+    graph.TOTAL: (
+        "{t}_one = call reassoc double @llvm.vector.reduce.fadd.v{n}f64(double 0.0, {v} {0})\n"
+        + SPREAD
+    ),
 }
 """What makes {t} of {0}, {1}, ..."""
 
@@ -59,7 +61,9 @@ NEED = """\
 rare:"""
 RARE = "{t}_rare = select <{n} x i1> %need, {v} {1}, {v} {2}"
 EITHER = "{t} = phi {v} [ {2}, %ready ], [ {t}_rare, %rare ]"
-"""What is computed only where one of the launches has need of it: how that begins, and what it makes."""
+"""What is computed only where one of the launches has need of it: how that begins, and what it
+makes.
+"""
 
 PART = 200
 """Operations a block: for thousands in one, LLVM takes twice as long to find registers."""
@@ -68,7 +72,8 @@ BLOCK = """\
 br i1 %any, label %{name}, label %none
 {name}:"""
 
-# What does not fit into registers lies on the stack in whole cache lines: two lines a number cost twice.
+# What does not fit into registers lies on the stack in whole cache lines: two lines a number cost
+# twice.
 FRAME = """\
 define void @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, i64 %count{more})
 alignstack(64) {{
@@ -123,12 +128,13 @@ none:
 def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool = False) -> str:
     """Functions `name(y, p, out, count, more)` of arrays whose rows have a number for each launch.
 
-    Their count is a multiple of the launches `abreast`, and 1 if that is. What is computed besides goes to
-    `more`, unless that is null.
+    Their count is a multiple of the launches `abreast`, and 1 if that is. What is computed besides
+    goes to `more`, unless that is null.
 
-    If they are made again and again, they are functions `name(y, p, out, enough, most)` of as many numbers
-    abreast: what is made of y is put into its place, and only what is made besides goes to `out`, until the
-    last of that is less than enough, or no number, or as many times as may be; they return how many.
+    If they are made again and again, they are functions `name(y, p, out, enough, most)` of as many
+    numbers abreast: what is made of y is put into its place, and only what is made besides goes to
+    `out`, until the last of that is less than enough, or no number, or as many times as may be;
+    they return how many.
     """
     frame, vector = AGAIN if again else FRAME, f"<{abreast} x double>"
     count = abreast if again else "%count" if abreast > 1 else 1
@@ -138,18 +144,25 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
         return spread(node.value, abreast) if node.name == graph.CONSTANT else f"%t{node.place}"
 
     parts = [
-        f"declare {vector} @llvm.{name}.v{abreast}f64({vector}{', ' + vector if name == 'pow' else ''})\n"
+        f"declare {vector}"
+        f" @llvm.{name}.v{abreast}f64({vector}{', ' + vector if name == 'pow' else ''})\n"
         for name in ("fabs", "sqrt", "sin", "cos", "pow")
     ]
     parts.append(f"declare double @llvm.vector.reduce.fadd.v{abreast}f64(double, {vector})\n")
     parts.append(f"declare i1 @llvm.vector.reduce.or.v{abreast}i1(<{abreast} x i1>)\n")
-    if abreast > 1 and any(is_small_power(node) for made in functions.values() for node in made.nodes):
+    if abreast > 1 and any(
+        is_small_power(node) for made in functions.values() for node in made.nodes
+    ):
         parts.append(power_function(abreast))
     for name, recorded in functions.items():
         known = {node.place: name_of(node) for node in recorded.nodes}
         lines = spelt(recorded, known, words)
         replaced = recorded.size if again else 0
-        given = {"y": recorded.outputs[:replaced], "out": recorded.outputs[replaced:], "more": recorded.more}
+        given = {
+            "y": recorded.outputs[:replaced],
+            "out": recorded.outputs[replaced:],
+            "more": recorded.more,
+        }
         for place, nodes in given.items():
             lines += [MORE] if place == "more" and nodes else []
             lines += [
@@ -158,7 +171,9 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
             ]
         last = known[recorded.outputs[-1].place] if again else ""
         more = ", ptr noalias %more" if recorded.more else ""
-        parts.append(frame.format(name=name, body="\n  ".join(lines), last=last, more=more, **words))
+        parts.append(
+            frame.format(name=name, body="\n  ".join(lines), last=last, more=more, **words)
+        )
     return "".join(parts)
 
 
@@ -176,7 +191,10 @@ def spelt(recorded: Recorded, known: Mapping[int, str], words: Mapping[str, obje
     if either:
         lines += ["br label %ready", "ready:", line(either[0], NEED), *map(line, seldom)]
         lines += [*(line(node, RARE) for node in either), "br label %rest", "rest:"]
-        lines += [*(line(node, EITHER) for node in either), *in_blocks(list(map(line, rest)), "later")]
+        lines += [
+            *(line(node, EITHER) for node in either),
+            *in_blocks(list(map(line, rest)), "later"),
+        ]
     return lines
 
 
@@ -204,14 +222,18 @@ def parted(recorded: Recorded) -> tuple[Sequence[graph.Node], ...]:
             needed.update([operand.place for operand in kept])
     later = set[int]()
     for node in recorded.nodes:
-        if node.name == graph.RARELY or not later.isdisjoint([operand.place for operand in node.operands]):
+        if node.name == graph.RARELY or not later.isdisjoint(
+            [operand.place for operand in node.operands]
+        ):
             later.add(node.place)
     made = [node for node in recorded.nodes if node.name != graph.CONSTANT]
     either = [node for node in made if node.name == graph.RARELY]
     if len({node.operands[0].place for node in either}) > 1 or any(
         node.place in later and node.place not in needed for node in made
     ):
-        raise graph.NotRecordable("what is computed rarely is so on one condition, and needs nothing of it")
+        raise graph.NotRecordable(
+            "what is computed rarely is so on one condition, and needs nothing of it"
+        )
     return (
         [node for node in made if node.place in needed and node.place not in later],
         [node for node in made if node.place not in needed],

@@ -13,7 +13,8 @@ LARGEST = 0.5
 """Exponents between 0 and this are served: so no power of a number overflows."""
 
 LOGARITHM = [2.0 / math.log(2.0) / (2 * k + 1) for k in range(11)]
-"""log2((1 + s) / (1 - s)) / s in powers of s^2: to rounding for numbers from 2^(-1/2) to 2^(1/2)."""
+"""log2((1 + s) / (1 - s)) / s in powers of s^2: to rounding for numbers from 2^(-1/2) to 2^(1/2).
+"""
 
 EXPONENTIAL = [math.log(2.0) ** k / math.factorial(k) for k in range(14)]
 """2^f in powers of f, to rounding for |f| <= 1/2."""

@@ -66,7 +66,8 @@ class Program:
     Raises
     ------
     ValueError
-        If what a module imports of one written by hand would be taken for something of another module.
+        If what a module imports of one written by hand would be taken for something of another
+        module.
     """
 
     def __init__(
@@ -105,12 +106,16 @@ class Program:
 
     def _enter(self, module: str, node: ast.stmt) -> None:
         match node:
-            case ast.ImportFrom(module=where, names=names) if where in self.trees or where in self.given:
+            case ast.ImportFrom(module=where, names=names) if (
+                where in self.trees or where in self.given
+            ):
                 for alias in names:
                     known = self.names.get((str(where), alias.name))
                     if where in self.given:
                         if alias.name in self.made and self.given[where]:
-                            raise ValueError(f"{module}: {alias.name} of {where} is another module's name")
+                            raise ValueError(
+                                f"{module}: {alias.name} of {where} is another module's name"
+                            )
                         self.imported.setdefault(self.given[where], set()).add(alias.name)
                         known = alias.name
                     # What a translated module leaves out is the runtime's.
@@ -216,16 +221,22 @@ def targets_of(node: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
 def names_in(target: ast.AST) -> list[str]:
     """The names that a target binds."""
     return [
-        node.id for node in ast.walk(target) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+        node.id
+        for node in ast.walk(target)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
     ]
 
 
 def is_type(node: ast.Assign | ast.AnnAssign) -> bool:
-    """Whether an assignment at the top of a module names a type, or is there for what is written later."""
+    """Whether an assignment at the top of a module names a type, or is there for what is written
+    later.
+    """
     if isinstance(node, ast.Assign):
         made = node.value.func if isinstance(node.value, ast.Call) else node.value
         return isinstance(made, ast.Subscript) or ast.unparse(made) == "TypeVar"
-    return ast.unparse(node.annotation) == "TypeAlias" or ast.unparse(node.value or NOTHING) == "None"
+    return (
+        ast.unparse(node.annotation) == "TypeAlias" or ast.unparse(node.value or NOTHING) == "None"
+    )
 
 
 def safe(name: str) -> str:

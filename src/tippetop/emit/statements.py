@@ -36,7 +36,12 @@ class Statements(Calls):
 
     def _statement(self, node: ast.stmt) -> Iterator[str]:
         match node:
-            case ast.Expr(value=ast.Constant()) | ast.Pass() | ast.Assert() | ast.AnnAssign(value=None):
+            case (
+                ast.Expr(value=ast.Constant())
+                | ast.Pass()
+                | ast.Assert()
+                | ast.AnnAssign(value=None)
+            ):
                 return
             case ast.Expr(value=ast.Call(func=ast.Name(id=name))) if name in self.program.left:
                 return
@@ -44,8 +49,8 @@ class Statements(Calls):
                 yield f"{self.text(value)};"
             case ast.Return(value=value):
                 yield "return null;" if value is None else f"return {self.text(value)};"
-            case ast.Assign(targets=[ast.Tuple() as places], value=ast.Tuple() as given) if is_each_its_own(
-                places, given
+            case ast.Assign(targets=[ast.Tuple() as places], value=ast.Tuple() as given) if (
+                is_each_its_own(places, given)
             ):
                 for target, value in zip(places.elts, given.elts, strict=True):
                     yield self._assigned(target, self.text(value))
@@ -82,7 +87,9 @@ class Statements(Calls):
                 yield f"  if (!(error instanceof {self.text(handler.type)})) throw error;"
                 yield from indented(self._block(handler.body))
                 yield "}"
-            case ast.With(items=[place], body=body) if ast.unparse(place).startswith("np.errstate("):
+            case ast.With(items=[place], body=body) if ast.unparse(place).startswith(
+                "np.errstate("
+            ):
                 yield from ("py.heed(false);", "try {")
                 yield from indented(self._block(body))
                 yield from ("} finally {", "  py.heed(true);", "}")
@@ -90,7 +97,9 @@ class Statements(Calls):
                 raise self.refused(node)
 
     def _var(self, *names: str) -> str:
-        """What declares names in all of a function, as Python does, before they are first written there."""
+        """What declares names in all of a function, as Python does, before they are first written
+        there.
+        """
         new = not self.declared.issuperset(names)
         self.declared.update(names)
         return "var " if new else ""
@@ -119,15 +128,21 @@ class Statements(Calls):
 
     def _loop(self, node: ast.For) -> Iterator[str]:
         match node:
-            case ast.For(target=ast.Name(id=name), iter=ast.Call(func=ast.Name("range"), args=args)):
+            case ast.For(
+                target=ast.Name(id=name), iter=ast.Call(func=ast.Name("range"), args=args)
+            ):
                 i = self.name(name) if name != "_" else "turn"
                 start = self.text(args[0]) if len(args) > 1 else "0"
                 stop = self.text(args[1] if len(args) > 1 else args[0], LESS)
                 step = self.text(args[2]) if len(args) > 2 else "1"
                 sign = ">" if step.startswith("-") else "<"
                 # Rows of arrays whose numbers are gone through are looked up once.
-                rows: list[Any] = [one for inner in node.body for one in ast.walk(inner) if is_row(one, name)]
-                found = sorted({(self.text(one.value), self.text(one.slice.elts[0])) for one in rows})
+                rows: list[Any] = [
+                    one for inner in node.body for one in ast.walk(inner) if is_row(one, name)
+                ]
+                found = sorted(
+                    {(self.text(one.value), self.text(one.slice.elts[0])) for one in rows}
+                )
                 self.rows = {f"{whole}[{place}]": f"{whole}{place}" for whole, place in found}
                 yield from (f"var {own} = {row};" for row, own in self.rows.items())
                 self._var(name)
@@ -142,7 +157,9 @@ class Statements(Calls):
 
 def is_each_its_own(places: ast.Tuple, values: ast.Tuple) -> bool:
     """Whether names are bound one after the other to values in which none of them is."""
-    names = {node.id for place in places.elts for node in ast.walk(place) if isinstance(node, ast.Name)}
+    names = {
+        node.id for place in places.elts for node in ast.walk(place) if isinstance(node, ast.Name)
+    }
     read = {node.id for node in ast.walk(values) if isinstance(node, ast.Name)}
     plain = all(isinstance(place, ast.Name) for place in places.elts)
     starred = any(isinstance(value, ast.Starred) for value in values.elts)

@@ -19,14 +19,19 @@ class NodeValues:
 
 
 def unrolled(recorded: Recorded, abreast: int) -> Recorded:
-    """What does the same with each of so many values, one after another in the state and the parameters."""
+    """What does the same with each of so many values, one after another in the state and the
+    parameters.
+    """
     graph, values = Graph(), dict[int, list[Node]]()
     for node in recorded.nodes:
         operands = [values[operand.place] for operand in node.operands]
         if node.name == CONSTANT:
             found = [graph.taken(node.value)] * abreast
         elif node.name in (STATE, PARAMETER):
-            found = [graph.node(node.name, (), int(node.value) * abreast + lane) for lane in range(abreast)]
+            found = [
+                graph.node(node.name, (), int(node.value) * abreast + lane)
+                for lane in range(abreast)
+            ]
         elif node.name == SPREAD:
             found = [operands[0][int(node.value)]] * abreast
         elif node.name == TOTAL:

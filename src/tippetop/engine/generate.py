@@ -1,4 +1,6 @@
-"""The engine's generated modules: mechanics and contact modes as JavaScript, tables and the method."""
+"""The engine's generated modules: mechanics and contact modes as JavaScript, tables and the
+method.
+"""
 
 import ast
 import importlib
@@ -54,13 +56,23 @@ LEFT = {
     "Body.turned",
     "Contact.rules",
     "require_problem",
-    *("TippetopError", "FileTrouble", "Unavailable", "InvalidInput.__reduce__", "require", "one_of"),
+    *(
+        "TippetopError",
+        "FileTrouble",
+        "Unavailable",
+        "InvalidInput.__reduce__",
+        "require",
+        "one_of",
+    ),
     *("is_number", "is_whole", "short", "_typed"),
     *("read", "recordable", "_compiled", "_of_kind", "continuous", "Guard.with_parameters"),
     *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
     *("Monitor.energy_error", "Graph.rarely"),
     *("precession_branch", "state_of", "is_held", "steady_launch"),
-    *(f"Problem.{name}" for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")),
+    *(
+        f"Problem.{name}"
+        for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")
+    ),
 }
 """What no page asks for, or what it has of the runtime."""
 
@@ -70,7 +82,10 @@ INDEXED = {"tippetop.mechanics.series", "tippetop.mechanics.slip_onset"}
 PLAIN = {
     *(f"tippetop.integrators.{name}" for name in ("falls", "stepping")),
     *(f"tippetop.mechanics.{name}" for name in ("flight", "roots", "separation", "touchdown")),
-    *(f"tippetop.mechanics.{name}" for name in ("dry_impact", "impact", "impact_on_two", "impact_process")),
+    *(
+        f"tippetop.mechanics.{name}"
+        for name in ("dry_impact", "impact", "impact_on_two", "impact_process")
+    ),
     *(f"tippetop.mechanics.{name}" for name in ("impulse", "runge_kutta", "viscous_impact")),
     "tippetop.contact.flight",
 }

@@ -1,4 +1,6 @@
-"""What `make page` builds from `web/` for browsers: the player of runs, and the laboratory's page."""
+"""What `make page` builds from `web/` for browsers: the player of runs, and the laboratory's
+page.
+"""
 
 import base64
 import gzip
@@ -11,7 +13,9 @@ BUILT = Path(__file__).parent / "built"
 """Where the built files are; a released package brings them."""
 
 LOADER = Path(__file__).with_name("loader.js").read_text(encoding="utf-8")
-"""JavaScript that takes the player out of a page that has it, packed, in an element called "player-code"."""
+"""JavaScript that takes the player out of a page that has it, packed, in an element called
+"player-code".
+"""
 
 
 @cache

@@ -11,7 +11,8 @@ from tippetop.files import written_beside
 
 
 def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
-    """Write every variable over time as CSV: a header of names with their units, then one row a sample.
+    """Write every variable over time as CSV: a header of names with their units, then one row a
+    sample.
 
     Vectors take a column for each component; what is not a number is left empty.
 

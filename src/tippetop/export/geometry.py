@@ -26,7 +26,9 @@ class Mesh(NamedTuple):
 
 
 def lathe(part: ToyPart, unit: float, segments: int = SEGMENTS) -> Mesh:
-    """The triangles of a part of a toy whose size is `unit` (m), with edges where its colours meet."""
+    """The triangles of a part of a toy whose size is `unit` (m), with edges where its colours
+    meet.
+    """
     sectors, columns = len(part.colours), len(part.profile)
     steps = segments // sectors
     sector = np.repeat(np.arange(sectors), steps + 1)

@@ -22,7 +22,9 @@ from tippetop.problem import Problem
 from tippetop.samples import continuous
 
 TURN_PER_KEY = 0.5
-"""Angle by which the body may turn between two keys, rad; a viewer goes the shortest way between them."""
+"""Angle by which the body may turn between two keys, rad; a viewer goes the shortest way between
+them.
+"""
 LEAST_KEYS = 60.0
 """Keys per second at least."""
 MOST_KEYS = 100_000
@@ -64,7 +66,9 @@ def glb_bytes(run: xr.Dataset) -> bytes:
     model = _Gltf()
     unit = size(problem.body)
     toy = model.mesh("toy", [(lathe(part, unit), part.opacity) for part in toy_parts(problem.body)])
-    table = ToyPart("table", np.array([(_TABLE_RADII, 0.0), (0.0, 0.0)]), (SCENES["light"]["table"],))
+    table = ToyPart(
+        "table", np.array([(_TABLE_RADII, 0.0), (0.0, 0.0)]), (SCENES["light"]["table"],)
+    )
     start = {"translation": poses.positions[0].tolist(), "rotation": turns[0].tolist()}
     # glTF has y up; the root turns z up into it.
     half = 0.5**0.5
@@ -81,20 +85,27 @@ def glb_bytes(run: xr.Dataset) -> bytes:
             {"input": keys, "output": model.accessor(values), "interpolation": "LINEAR"}
             for values in outputs.values()
         ]
-        channels = [{"sampler": k, "target": {"node": 1, "path": path}} for k, path in enumerate(outputs)]
-        model.json["animations"] = [{"name": tell(run).headline, "samplers": samplers, "channels": channels}]
+        channels = [
+            {"sampler": k, "target": {"node": 1, "path": path}} for k, path in enumerate(outputs)
+        ]
+        model.json["animations"] = [
+            {"name": tell(run).headline, "samplers": samplers, "channels": channels}
+        ]
     model.json["asset"]["extras"] = {"problem": json.loads(run.attrs["problem"])}
     return model.bytes()
 
 
 def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
-    """Times of the animation's keys, s: so dense that the body turns little between them; one if it is still.
+    """Times of the animation's keys, s: so dense that the body turns little between them; one if it
+    is still.
 
     Raises `InvalidInput` if the run would need too many keys.
     """
     start, end = run["time"].values[[0, -1]].tolist()
     duration = end - start
-    fastest = float(np.linalg.norm(run["angular_momentum"].values, axis=1).max()) / min(body.I1, body.I3)
+    fastest = float(np.linalg.norm(run["angular_momentum"].values, axis=1).max()) / min(
+        body.I1, body.I3
+    )
     keys = int(np.ceil(duration * max(LEAST_KEYS, fastest / TURN_PER_KEY))) + 1
     if keys > MOST_KEYS:
         raise InvalidInput(
@@ -119,7 +130,9 @@ class _Gltf:
         }
 
     def accessor(self, values: NDArray[Any]) -> int:
-        """Add an array to the buffer, whole numbers as such and others in single precision; its number."""
+        """Add an array to the buffer, whole numbers as such and others in single precision; its
+        number.
+        """
         whole = values.dtype == np.uint32
         rows = values.reshape(len(values), -1).astype("<u4" if whole else "<f4")
         view = {"buffer": 0, "byteOffset": len(self.buffer), "byteLength": rows.nbytes}
@@ -151,7 +164,11 @@ class _Gltf:
         return len(self.json["meshes"]) - 1
 
     def _material(self, opacity: float) -> int:
-        surface = {"baseColorFactor": [1.0, 1.0, 1.0, opacity], "metallicFactor": 0.0, "roughnessFactor": 0.5}
+        surface = {
+            "baseColorFactor": [1.0, 1.0, 1.0, opacity],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 0.5,
+        }
         material: dict[str, Any] = {"pbrMetallicRoughness": surface}
         if opacity < 1:
             material["alphaMode"] = "BLEND"

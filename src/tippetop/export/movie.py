@@ -48,8 +48,9 @@ def write_movie(
     run, path, overwrite
         What, where, and whether a file there may go.
     fps
-        Pictures per second; None for 30 in an .mp4 and 20 in a .gif. A .gif shows each for a whole number of
-        hundredths of a second, two at least: it gets the nearest rate that it can hold, and plays in time.
+        Pictures per second; None for 30 in an .mp4 and 20 in a .gif. A .gif shows each for a whole
+        number of hundredths of a second, two at least: it gets the nearest rate that it can hold,
+        and plays in time.
     speed
         Seconds of the run per second of film: less than 1 for slow motion.
     pixels
@@ -105,7 +106,8 @@ def ffmpeg() -> str:
 
 
 def require_film(ending: str, duration: float) -> None:
-    """Refuse a film that cannot be made of a run, before that is followed: one that takes too many pictures.
+    """Refuse a film that cannot be made of a run, before that is followed: one that takes too many
+    pictures.
 
     Raises `InvalidInput`; or `Unavailable` if there is no ffmpeg for an .mp4.
     """
@@ -123,7 +125,9 @@ def frames(
     pixels: tuple[int, int],
     progress: Callable[[int, int], None] = lambda drawn, count: None,
 ) -> Iterator[Frame]:
-    """The pictures of a film, shape (height, width, 3) each; `InvalidInput` if there would be too many."""
+    """The pictures of a film, shape (height, width, 3) each; `InvalidInput` if there would be too
+    many.
+    """
     start, end = run["time"].values[[0, -1]].tolist()
     count = math.floor((end - start) * fps / speed) + 1
     if count > MOST_FRAMES:
@@ -140,7 +144,9 @@ def frames(
     for number, (position, frame) in enumerate(zip(positions, turns, strict=True)):
         view = view_of(np.array([position[0], position[1], 0.85]), _EYE, pixels)
         drawn = picture(toy, view, position, frame, path[: seen[number]], cell)
-        yield _captioned(drawn, f"{headline[:1].upper()}{headline[1:]}", f"t = {times[number]:.3f} s", speed)
+        yield _captioned(
+            drawn, f"{headline[:1].upper()}{headline[1:]}", f"t = {times[number]:.3f} s", speed
+        )
         progress(number + 1, count)
 
 
@@ -161,14 +167,29 @@ def _check(fps: float, speed: float, pixels: tuple[int, int]) -> None:
         raise InvalidInput("fps", fps, "a number greater than 0 and at most 240")
     if not (is_number(speed) and 0 < speed <= 100):
         raise InvalidInput("speed", speed, "a number greater than 0 and at most 100")
-    two = isinstance(pixels, Sequence) and len(pixels) == 2 and all(is_whole(side) for side in pixels)
+    two = (
+        isinstance(pixels, Sequence) and len(pixels) == 2 and all(is_whole(side) for side in pixels)
+    )
     if not two or any(side < 16 or side > 4096 or side % 2 for side in pixels):
         raise InvalidInput("pixels", pixels, "two even numbers from 16 to 4096")
 
 
-def _encode(encoder: str, pictures: Iterator[Frame], path: Path, fps: float, pixels: tuple[int, int]) -> None:
+def _encode(
+    encoder: str, pictures: Iterator[Frame], path: Path, fps: float, pixels: tuple[int, int]
+) -> None:
     width, height = pixels
-    source = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", f"{fps:g}", "-i", "-")
+    source = (
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "rgb24",
+        "-s",
+        f"{width}x{height}",
+        "-r",
+        f"{fps:g}",
+        "-i",
+        "-",
+    )
     command = [encoder, "-y", "-loglevel", "error", *source, *_MP4, "-f", "mp4", str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdin is not None
@@ -187,5 +208,10 @@ def _encode(encoder: str, pictures: Iterator[Frame], path: Path, fps: float, pix
 
 def _save_gif(pictures: Iterator[Frame], path: Path, fps: float) -> None:
     first = Image.fromarray(next(pictures)).quantize(128)
-    rest = (Image.fromarray(drawn).quantize(palette=first, dither=Image.Dither.NONE) for drawn in pictures)
-    first.save(path, format="GIF", save_all=True, append_images=rest, duration=round(1000 / fps), loop=0)
+    rest = (
+        Image.fromarray(drawn).quantize(palette=first, dither=Image.Dither.NONE)
+        for drawn in pictures
+    )
+    first.save(
+        path, format="GIF", save_all=True, append_images=rest, duration=round(1000 / fps), loop=0
+    )

@@ -1,9 +1,9 @@
 """Where the top is between the samples of a run, to the fourth order of their distance.
 
-The axis is interpolated with its rate L x n / I1, and the turn about it with omega3 = L.n / I3, counting
-whole turns: between samples a fast top may turn more than once. The turn is what is left after the axis is
-carried over by the shortest rotation, so that the samples themselves are exact. The player in the browser
-does the same (`track.js`).
+The axis is interpolated with its rate L x n / I1, and the turn about it with omega3 = L.n / I3,
+counting whole turns: between samples a fast top may turn more than once. The turn is what is left
+after the axis is carried over by the shortest rotation, so that the samples themselves are exact.
+The player in the browser does the same (`track.js`).
 """
 
 from typing import NamedTuple
@@ -20,7 +20,9 @@ Array = NDArray[np.float64]
 
 
 class Poses(NamedTuple):
-    """Positions of the centre of mass, m, shape (k, 3), and k turns from axis up and marker along x."""
+    """Positions of the centre of mass, m, shape (k, 3), and k turns from axis up and marker along
+    x.
+    """
 
     positions: Array
     turns: Rotation
@@ -51,7 +53,9 @@ def poses_at(run: xr.Dataset, times: ArrayLike) -> Poses:
     turn += 2 * np.pi * np.round((0.5 * h * (first + last) - turn) / (2 * np.pi))
     about_axis = _cubic(u, h, 0.0 * turn, turn, first, last)[:, None] * np.array([0.0, 0.0, 1.0])
     turned = shortest(axes[i], axis) * turns[i] * Rotation.from_rotvec(about_axis)
-    return Poses(between(run[["x", "y", "height"]].to_array().values.T, run["velocity"].values), turned)
+    return Poses(
+        between(run[["x", "y", "height"]].to_array().values.T, run["velocity"].values), turned
+    )
 
 
 def contact_path(run: xr.Dataset) -> Array:
@@ -63,14 +67,18 @@ def contact_path(run: xr.Dataset) -> Array:
 
 
 def _cubic(u: Array, h: Array, a: Array, b: Array, rate_a: Array, rate_b: Array) -> Array:
-    """The cubic through two values with the rates at both ends, at a share u of the time h between them."""
+    """The cubic through two values with the rates at both ends, at a share u of the time h between
+    them.
+    """
     v = 1.0 - u
     by_value = v * v * (1 + 2 * u) * a + u * u * (3 - 2 * u) * b
     return np.asarray(by_value + u * v * h * (v * rate_a - u * rate_b))
 
 
 def _carrying_spin(start: Array, axis: Array, rate: Array) -> Array:
-    """How fast the shortest rotation from `start` to a moving axis turns backwards about it, rad/s."""
+    """How fast the shortest rotation from `start` to a moving axis turns backwards about it,
+    rad/s.
+    """
     turning = np.einsum("ij,ij->i", np.cross(start, axis), rate)
     return np.asarray(turning / np.maximum(1.0 + np.einsum("ij,ij->i", start, axis), 1e-9))
 

@@ -1,4 +1,6 @@
-"""Pictures of the toy on its table without a browser: a ray for every pixel, in sizes of the toy."""
+"""Pictures of the toy on its table without a browser: a ray for every pixel, in sizes of the
+toy.
+"""
 
 from typing import Any, NamedTuple
 
@@ -20,7 +22,9 @@ _TABLE, _LINE, _SKY, _TRACE = (
 
 
 class View(NamedTuple):
-    """A camera: where it is, which way its picture's right, up and depth go, and how wide it sees."""
+    """A camera: where it is, which way its picture's right, up and depth go, and how wide it
+    sees.
+    """
 
     eye: Array
     right: Array
@@ -33,7 +37,9 @@ class View(NamedTuple):
     """Width and height of the picture."""
 
     def rays(self, area: Area, fine: int) -> Array:
-        """Unit directions of rays through some pixels, `fine` across each, shape (rows, columns, 3)."""
+        """Unit directions of rays through some pixels, `fine` across each, shape (rows, columns,
+        3).
+        """
         left, right, top, bottom = area
         width, height = self.pixels
         x = (left + (np.arange((right - left) * fine) + 0.5) / fine) * 2 / width - 1
@@ -41,7 +47,9 @@ class View(NamedTuple):
         across = np.multiply.outer(x, self.spread * self.right)
         upward = np.multiply.outer(y, self.spread * self.up)
         direction = (self.ahead + across + upward[:, None]).astype(np.float32)
-        return np.asarray(direction / np.sqrt(np.einsum("...i,...i", direction, direction))[..., None])
+        return np.asarray(
+            direction / np.sqrt(np.einsum("...i,...i", direction, direction))[..., None]
+        )
 
     def project(self, points: Array) -> tuple[Array, Array]:
         """Columns and rows, in pixels, of points in space of shape (k, 3)."""
@@ -73,9 +81,9 @@ def picture(
 ) -> NDArray[np.uint8]:
     """The picture of a moment, shape (height, width, 3).
 
-    The toy's centre of mass is at `position`, and its axes are the columns of `frame`, shape (3, 3). The path
-    of the contact point so far, shape (k, 2), is as `fine_path` makes it; `cell` is the width of the table's
-    squares.
+    The toy's centre of mass is at `position`, and its axes are the columns of `frame`, shape (3,
+    3). The path of the contact point so far, shape (k, 2), is as `fine_path` makes it; `cell` is
+    the width of the table's squares.
     """
     width, height = view.pixels
     colours = _table(view.eye, view.rays((0, width, 0, height), 1), cell)
@@ -89,7 +97,14 @@ def picture(
     ):
         left, right, top, bottom = area = view.area(about, np.array(reach))
         if left < right and top < bottom:
-            draw(colours[top:bottom, left:right], toy, view.eye, view.rays(area, fine), position, frame)
+            draw(
+                colours[top:bottom, left:right],
+                toy,
+                view.eye,
+                view.rays(area, fine),
+                position,
+                frame,
+            )
     return (np.clip(colours, 0, 1) * 255 + 0.5).astype(np.uint8)
 
 
@@ -104,7 +119,9 @@ def _table(eye: Array, rays: Array, cell: float) -> Array:
         for k in (0, 1):
             off = np.abs((point[..., k] / cell + every / 2) % every - every / 2)
             line = np.clip((width + blur - off) / np.maximum(2 * blur, 1e-6), 0, 1)
-            ink = np.maximum(ink, strength * line * np.minimum(1.0, width / np.maximum(blur, width)))
+            ink = np.maximum(
+                ink, strength * line * np.minimum(1.0, width / np.maximum(blur, width))
+            )
     colour = _TABLE + ink[..., None] * (_LINE - _TABLE)
     fog = np.where(seen, np.clip((distance - 12) / 20, 0, 1), 1.0)[..., None]
     return np.asarray(colour + fog * (_SKY - colour))
@@ -115,7 +132,9 @@ def fine_path(trace: Array, touching: NDArray[np.bool_]) -> tuple[Array, NDArray
 
     There are none between corners of which one is not `touching` the table.
     """
-    steps = np.maximum(np.ceil(np.linalg.norm(np.diff(trace, axis=0), axis=1) / 0.012), 1).astype(int)
+    steps = np.maximum(np.ceil(np.linalg.norm(np.diff(trace, axis=0), axis=1) / 0.012), 1).astype(
+        int
+    )
     steps[~(touching[1:] & touching[:-1])] = 0
     number = np.repeat(np.arange(len(steps)), steps)
     share = (np.arange(len(number)) - np.repeat(np.cumsum(steps) - steps, steps)) / steps[number]
@@ -132,7 +151,9 @@ def _draw_path(colours: Array, view: View, path: Array) -> None:
         colours[i[inside], j[inside]] = _TRACE
 
 
-def _draw_toy(colours: Array, toy: Toy, eye: Array, rays: Array, position: Array, frame: Array) -> None:
+def _draw_toy(
+    colours: Array, toy: Toy, eye: Array, rays: Array, position: Array, frame: Array
+) -> None:
     """Draw the toy into an area of the picture, given several rays a pixel."""
     start, ahead = ((eye - position) @ frame).astype(np.float32), rays @ frame
     hits = toy.meet(np.broadcast_to(start, rays.shape), ahead)
@@ -148,7 +169,9 @@ def _draw_toy(colours: Array, toy: Toy, eye: Array, rays: Array, position: Array
     colours += paint[..., :3]
 
 
-def _cast_shadow(colours: Array, toy: Toy, eye: Array, rays: Array, position: Array, frame: Array) -> None:
+def _cast_shadow(
+    colours: Array, toy: Toy, eye: Array, rays: Array, position: Array, frame: Array
+) -> None:
     """Darken the table where the toy is between it and the light."""
     ground = np.where(rays[..., 2] < -1e-3, -eye[2] / np.minimum(rays[..., 2], -1e-3), 1e3)
     foot = (eye + ground[..., None] * rays - position).astype(np.float32) @ frame

@@ -1,4 +1,6 @@
-"""Turned bodies as files for printing, in millimetres: STL for the body alone, 3MF for all of its parts."""
+"""Turned bodies as files for printing, in millimetres: STL for the body alone, 3MF for all of its
+parts.
+"""
 
 import math
 from importlib.util import find_spec
@@ -18,11 +20,13 @@ FACETS = 180
 MM = 1e3
 
 
-def write_solid(piece: Workpiece, path: Path | str, overwrite: bool = False, *, facets: int = FACETS) -> None:
+def write_solid(
+    piece: Workpiece, path: Path | str, overwrite: bool = False, *, facets: int = FACETS
+) -> None:
     """Write a turned body as triangles, closed, in millimetres.
 
-    Cavities and inserts are hollows in the body. In 3MF, the inserts that weigh something follow as objects
-    of their own.
+    Cavities and inserts are hollows in the body. In 3MF, the inserts that weigh something follow as
+    objects of their own.
 
     Parameters
     ----------
@@ -38,7 +42,8 @@ def write_solid(piece: Workpiece, path: Path | str, overwrite: bool = False, *, 
     Raises
     ------
     InvalidInput
-        If the name ends otherwise, the facets are too few, or an insert touches the surface of another part.
+        If the name ends otherwise, the facets are too few, or an insert touches the surface of
+        another part.
     FileTrouble
         If the file exists or cannot be written.
     Unavailable
@@ -65,8 +70,8 @@ def write_solid(piece: Workpiece, path: Path | str, overwrite: bool = False, *, 
 def solids(piece: Workpiece, facets: int) -> dict[str, Any]:
     """The body, and then the weights in it, by name, each with the hollows that the others leave.
 
-    They are meshes of trimesh, in millimetres. Raises `InvalidInput` if an insert touches the surface of the
-    body or another insert.
+    They are meshes of trimesh, in millimetres. Raises `InvalidInput` if an insert touches the
+    surface of the body or another insert.
     """
     for number, inner in enumerate(piece.insides):
         if any("on" in inner.sides(other) for other in (piece.outline, *piece.insides[:number])):
@@ -85,7 +90,9 @@ def solids(piece: Workpiece, facets: int) -> dict[str, Any]:
         name = "body" if outer is None else f"insert {outer + 1}"
         found[name] = trimesh.util.concatenate([found[name], hollow])
     weights = (piece.density, *(insert.density for insert in piece.inserts))
-    return {name: solid for (name, solid), weight in zip(found.items(), weights, strict=True) if weight}
+    return {
+        name: solid for (name, solid), weight in zip(found.items(), weights, strict=True) if weight
+    }
 
 
 def _line(profile: Profile, facets: int) -> Any:

@@ -1,8 +1,8 @@
 """A run as the player in the browser takes it: one block of bytes.
 
-Layout, little-endian: the letters TTRK, the length of the header (uint32), the header (JSON, padded with
-blanks to a multiple of 8), the sample times (float64), then the header's columns (float32), each with all its
-samples before the next. `web/src/player/track.js` reads it.
+Layout, little-endian: the letters TTRK, the length of the header (uint32), the header (JSON, padded
+with blanks to a multiple of 8), the sample times (float64), then the header's columns (float32),
+each with all its samples before the next. `web/src/player/track.js` reads it.
 """
 
 import json
@@ -46,7 +46,9 @@ def pack_run(run: xr.Dataset) -> bytes:
     header = {
         "samples": run.sizes["time"],
         "duration": end,
-        "columns": [[name, values.shape[1] if values.ndim > 1 else 1] for name, values in columns.items()],
+        "columns": [
+            [name, values.shape[1] if values.ndim > 1 else 1] for name, values in columns.items()
+        ],
         "flights": flights(run),
         "turns_over": turns_over if begin <= turns_over <= end else None,
         "modes": [str(word) for word in run["mode"].attrs["flag_meanings"].split()],
@@ -75,7 +77,9 @@ def unpack_header(block: bytes) -> dict[str, Any]:
 
 
 def flights(run: xr.Dataset) -> Any:
-    """Begin and end of every flight there is to see, s, those too near each other to be told apart as one."""
+    """Begin and end of every flight there is to see, s, those too near each other to be told apart
+    as one.
+    """
     (begin, end), starts, ends = _ends(run), run["flight_start"].values, run["flight_end"].values
     seen = (starts < end) & (ends > begin)
     starts, ends = starts[seen].clip(begin), ends[seen].clip(max=end)

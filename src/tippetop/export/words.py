@@ -31,7 +31,9 @@ SWINGS = 20.0
 
 
 class Story(NamedTuple):
-    """A run in words: what became of the top, as a clause ("inverts at 7.56 s"), and sentences beside it."""
+    """A run in words: what became of the top, as a clause ("inverts at 7.56 s"), and sentences
+    beside it.
+    """
 
     headline: str
     details: tuple[str, ...]
@@ -51,7 +53,9 @@ def tell(run: xr.Dataset) -> Story:
 
 
 def known_spins(problem: Problem) -> CriticalSpins | None:
-    """The critical spins of a launch; None where Jellett's integral is not conserved, or there are none."""
+    """The critical spins of a launch; None where Jellett's integral is not conserved, or there are
+    none.
+    """
     if not problem.top.conserves_jellett:
         return None
     try:
@@ -61,7 +65,9 @@ def known_spins(problem: Problem) -> CriticalSpins | None:
 
 
 def known_end(problem: Problem) -> Prediction | None:
-    """The steady states a launch heads for; None where the theory does not hold, or nothing takes energy."""
+    """The steady states a launch heads for; None where the theory does not hold, or nothing takes
+    energy.
+    """
     if problem.friction.vanishes:
         return None
     try:
@@ -74,7 +80,11 @@ def known_end(problem: Problem) -> Prediction | None:
 def end_in_words(prediction: Prediction) -> str:
     """All that a launch may head for, as a phrase: "inverted spin with ω₃ = −82.87 rad/s"."""
     states = " or for ".join(steady_in_words(state) for state in prediction.reachable)
-    return states if prediction.certain else f"{states}: each is stable, and the launch's details decide"
+    return (
+        states
+        if prediction.certain
+        else f"{states}: each is stable, and the launch's details decide"
+    )
 
 
 def steady_in_words(state: SteadyState[float]) -> str:
@@ -103,7 +113,9 @@ def _end(run: xr.Dataset, problem: Problem, end: Prediction | None) -> str:
     if theta[-1] > math.pi - NEAR and np.all(theta > math.pi - AROUND):
         return "stays inverted"
     swings = _late(run, problem, 0.0)
-    unstable = end is not None and all(state.kind is not SteadyKind.UPRIGHT for state in end.reachable)
+    unstable = end is not None and all(
+        state.kind is not SteadyKind.UPRIGHT for state in end.reachable
+    )
     if np.all(theta[swings] < NEAR) and not unstable:
         comes = "falls back" if problem.launch.tilt > math.pi / 2 else "comes"
         return f"{comes} upright at {_since(run, theta >= NEAR):.2f} s"

@@ -35,7 +35,9 @@ CRITICAL = (r"$\omega_{c1}$", r"$\omega_{c2}$")
 def panels(
     height: float, rows: int = 1, columns: int = 1, *, lettered: bool = True, **options: Any
 ) -> tuple[Figure, Any]:
-    """Return a figure of this height, inches, with its panel, or an array of panels marked with letters."""
+    """Return a figure of this height, inches, with its panel, or an array of panels marked with
+    letters.
+    """
     figure = Figure(figsize=(WIDTH, height))
     made = figure.subplots(rows, columns, **options)
     if lettered and rows * columns > 1:
@@ -47,19 +49,26 @@ Told = ParamSpec("Told")
 
 
 class Drawing(Protocol):
-    """Makes what draws into two panels, or into one or an array of them, a figure of what it is told."""
+    """Makes what draws into two panels, or into one or an array of them, a figure of what it is
+    told.
+    """
 
     @overload
-    def __call__(self, draw: Callable[Concatenate[Axes, Axes, Told], None], /) -> Callable[Told, Figure]: ...
+    def __call__(
+        self, draw: Callable[Concatenate[Axes, Axes, Told], None], /
+    ) -> Callable[Told, Figure]: ...
 
     @overload
-    def __call__(self, draw: Callable[Concatenate[Axes, Told], None], /) -> Callable[Told, Figure]: ...
+    def __call__(
+        self, draw: Callable[Concatenate[Axes, Told], None], /
+    ) -> Callable[Told, Figure]: ...
 
 
 def drawn(height: float, rows: int = 1, columns: int = 1, **options: Any) -> Drawing:
     """Let what draws into the `panels` of a figure return the figure, in the house style.
 
-    It is given the panels, those of several rows and columns as an array, before what is to be drawn.
+    It is given the panels, those of several rows and columns as an array, before what is to be
+    drawn.
     """
     whole = rows > 1 and columns > 1
 
@@ -94,9 +103,16 @@ def letters(panels: Iterable[Axes]) -> None:
     """Mark the panels of a figure with bold letters above their top left corners."""
     for axes, letter in zip(panels, "abcdefgh", strict=False):
         axes.annotate(
-            letter, (0, 1), (-6, 6), xycoords="axes fraction", textcoords="offset points",
-            ha="right", va="bottom", fontweight="bold", annotation_clip=False,
-        )  # fmt: skip
+            letter,
+            (0, 1),
+            (-6, 6),
+            xycoords="axes fraction",
+            textcoords="offset points",
+            ha="right",
+            va="bottom",
+            fontweight="bold",
+            annotation_clip=False,
+        )
 
 
 ALONG_X, ALONG_Y = ("data", "axes fraction"), ("axes fraction", "data")
@@ -124,14 +140,25 @@ def note(
     side = {-1: "right", 0: "center", 1: "left"}[int(np.sign(offset[0]))]
     height = {-1: "top", 0: "center", 1: "bottom"}[int(np.sign(offset[1]))]
     effects = [withStroke(linewidth=2.5, foreground="white")] if halo else None
-    placed = {"ha": side, "va": height, "size": 9, "color": color, "path_effects": effects, **options}
+    placed = {
+        "ha": side,
+        "va": height,
+        "size": 9,
+        "color": color,
+        "path_effects": effects,
+        **options,
+    }
     axes.annotate(text, at, offset, textcoords="offset points", **placed)
 
 
 def legend_above(axes: Axes, columns: int) -> None:
     """Put the legend on top of a panel, outside of it."""
     axes.legend(
-        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.4
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=columns,
+        borderaxespad=0.2,
+        columnspacing=1.4,
     )
 
 
@@ -145,8 +172,12 @@ def inset(axes: Axes, box: Box) -> Axes:
 
 
 def source(axes: Axes, panel: Axes) -> None:
-    """Show where an inset is taken from: by a frame like its own, without lines across the panel."""
+    """Show where an inset is taken from: by a frame like its own, without lines across the
+    panel.
+    """
     (left, right), (low, high) = panel.get_xlim(), panel.get_ylim()
-    axes.indicate_inset((left, low, right - left, high - low), edgecolor=INK, alpha=0.8, lw=0.8, zorder=6)
+    axes.indicate_inset(
+        (left, low, right - left, high - low), edgecolor=INK, alpha=0.8, lw=0.8, zorder=6
+    )
     for spine in panel.spines.values():
         spine.set(edgecolor=INK, lw=0.8)

@@ -1,6 +1,8 @@
-"""Shared primitives of the schematic drawings: a blank canvas, arrows, arcs, dimensions, labels, shading.
+"""Shared primitives of the schematic drawings: a blank canvas, arrows, arcs, dimensions, labels,
+shading.
 
-Points are rows of arrays in data units. A canvas has equal axes and no frame, so a data unit is a length.
+Points are rows of arrays in data units. A canvas has equal axes and no frame, so a data unit is a
+length.
 """
 
 from collections.abc import Sequence
@@ -22,7 +24,8 @@ Array = NDArray[np.float64]
 def canvas(xlim: tuple[float, float], ylim: tuple[float, float]) -> tuple[Figure, Axes]:
     """Return a figure of full width filled by frameless equal axes with exactly these limits."""
     height = WIDTH * (ylim[1] - ylim[0]) / (xlim[1] - xlim[0])
-    # An engine that does nothing: with none at all, saving falls back on the style's constrained layout.
+    # An engine that does nothing: with none at all, saving falls back on the style's constrained
+    # layout.
     figure = Figure(figsize=(WIDTH, height), layout=PlaceHolderLayoutEngine(True, False))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=xlim, ylim=ylim, aspect="equal")
@@ -39,7 +42,8 @@ def unit(vector: ArrayLike) -> Array:
 def projection(azimuth: float, elevation: float) -> Array:
     """Return the matrix whose product with points in rows is their place in a parallel projection.
 
-    Its columns point to the right and upwards in the picture, z up; the angles are those of the eye.
+    Its columns point to the right and upwards in the picture, z up; the angles are those of the
+    eye.
     """
     ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
     return np.array([[-sa, -se * ca], [ca, -se * sa], [0.0, ce]])
@@ -48,8 +52,8 @@ def projection(azimuth: float, elevation: float) -> Array:
 def arc(first: ArrayLike, towards: ArrayLike, angle: float, start: float = 0.0) -> Array:
     """Return points of the unit circle about the origin, from `start` to `angle` radians.
 
-    The circle lies in the plane of the two vectors, of two or three components, and is measured from `first`
-    towards the other.
+    The circle lies in the plane of the two vectors, of two or three components, and is measured
+    from `first` towards the other.
     """
     u = unit(first)
     along = np.asarray(towards, dtype=float)
@@ -59,18 +63,31 @@ def arc(first: ArrayLike, towards: ArrayLike, angle: float, start: float = 0.0) 
 
 
 def line(
-    axes: Axes, points: ArrayLike, color: str = INK, width: float = 1.0, dashed: bool = False, z: float = 2
+    axes: Axes,
+    points: ArrayLike,
+    color: str = INK,
+    width: float = 1.0,
+    dashed: bool = False,
+    z: float = 2,
 ) -> None:
     """Draw a polyline."""
     x, y = np.asarray(points, dtype=float).T
     style = (0, (4, 3)) if dashed else "-"
-    axes.plot(x, y, color=color, lw=width, ls=style, zorder=z, solid_capstyle="butt", dash_capstyle="butt")
+    axes.plot(
+        x, y, color=color, lw=width, ls=style, zorder=z, solid_capstyle="butt", dash_capstyle="butt"
+    )
 
 
 def arrow(
-    axes: Axes, points: ArrayLike, color: str = INK, width: float = 1.6, head: float = 0.11, z: float = 4
+    axes: Axes,
+    points: ArrayLike,
+    color: str = INK,
+    width: float = 1.6,
+    head: float = 0.11,
+    z: float = 4,
 ) -> None:
-    """Draw an arrow along a polyline, its tip exactly on the last point; `head` is the length of its head.
+    """Draw an arrow along a polyline, its tip exactly on the last point; `head` is the length of
+    its head.
 
     On an arc the head lies along the chord it covers, so it does not seem to leave the curve.
     """
@@ -161,7 +178,9 @@ def filled(
 def picture(
     axes: Axes, rgba: Array, extent: Sequence[float], z: float = 1, clip: PathPatch | None = None
 ) -> None:
-    """Place an image on the canvas: rows from the bottom up, `extent` as (left, right, bottom, top)."""
+    """Place an image on the canvas: rows from the bottom up, `extent` as (left, right, bottom,
+    top).
+    """
     left, right, bottom, top = extent
     image = axes.imshow(
         rgba,

@@ -1,4 +1,6 @@
-"""Dry friction: the friction that rolling needs, steps against the exact motion, smoothing, and patches."""
+"""Dry friction: the friction that rolling needs, steps against the exact motion, smoothing, and
+patches.
+"""
 
 import numpy as np
 import xarray as xr
@@ -10,7 +12,9 @@ from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, FAINT, INK,
 
 @mark.drawn(5.6, 2, 1, height_ratios=[1.25, 1])
 def rolling_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
-    """Return the friction that rolling needs over the spin, and tilts with more and with less than that."""
+    """Return the friction that rolling needs over the spin, and tilts with more and with less than
+    that.
+    """
     for tilt, row in zip(data["tilt"], data["friction_needed"], strict=True):
         main = float(tilt) == data.attrs["tilt_rad"]
         above.plot(data["spin"], row, color=CONVERGED if main else MUTED)
@@ -60,11 +64,15 @@ def smoothed_figure(axes: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(4.2)
 def patch_figure(axes: Axes, data: xr.Dataset) -> None:
-    """Return the map of the time of turning over, over patch radius and spin; grey where it does not."""
+    """Return the map of the time of turning over, over patch radius and spin; grey where it does
+    not.
+    """
     axes.set_facecolor(FAINT)
     axes.grid(visible=False)
     times = np.ma.masked_invalid(data["turning_time"].values.T)
-    image = axes.pcolormesh(1e3 * data["radius"], data["spin"], times, shading="nearest", rasterized=True)
+    image = axes.pcolormesh(
+        1e3 * data["radius"], data["spin"], times, shading="nearest", rasterized=True
+    )
     axes.set_xscale("log")
     mark.plain_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1, 2, 5))
     axes.axhline(float(data["upright_limit"]), color=ACCENT, ls=DASHED, lw=1.2)
@@ -75,11 +83,15 @@ def patch_figure(axes: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(5.2, 2, 1, sharex=True, height_ratios=[1.4, 1])
 def viscous_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
-    """Return times of turning over against the viscous coefficient, of patches that have it and of itself."""
+    """Return times of turning over against the viscous coefficient, of patches that have it and of
+    itself.
+    """
     coefficient = data["coefficient"].values
     above.loglog(coefficient, data["viscous_time"], "--", color=INK, label="viscous")
     below.axhline(1.0, color=INK, ls="--")
-    for mu, times, color in zip(data["mu"], data["patch_time"], (CYCLE[2], CONVERGED, ACCENT), strict=True):
+    for mu, times, color in zip(
+        data["mu"], data["patch_time"], (CYCLE[2], CONVERGED, ACCENT), strict=True
+    ):
         above.loglog(coefficient, times, "o-", color=color, label=rf"patch, $\mu$ = {float(mu):g}")
         below.semilogx(coefficient, times / data["viscous_time"], "o-", color=color)
     mark.plain_ticks(above.yaxis, (1, 2, 3))

@@ -1,4 +1,6 @@
-"""Fast oscillations on a long axis: drawn as the band between their turning points, not as a solid blob."""
+"""Fast oscillations on a long axis: drawn as the band between their turning points, not as a solid
+blob.
+"""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,15 +13,17 @@ _ACROSS = 150
 _POINTS = 600
 
 
-def envelope(times: ArrayLike, values: ArrayLike, across: int = _ACROSS) -> tuple[Array, Array, Array]:
+def envelope(
+    times: ArrayLike, values: ArrayLike, across: int = _ACROSS
+) -> tuple[Array, Array, Array]:
     """The band that an oscillation fills.
 
-    Where turning points follow each other too closely to be seen apart, the band lies between the curves
-    through the upper and through the lower ones; elsewhere it is the curve itself.
+    Where turning points follow each other too closely to be seen apart, the band lies between the
+    curves through the upper and through the lower ones; elsewhere it is the curve itself.
 
-    Times and values of the oscillation are of shape (n,), increasing in time; values that are not finite are
-    left out. So many oscillations can be seen side by side `across` the axis. Returned are times at equal
-    distances, and the lower and upper edge of the band there, shape (m,).
+    Times and values of the oscillation are of shape (n,), increasing in time; values that are not
+    finite are left out. So many oscillations can be seen side by side `across` the axis. Returned
+    are times at equal distances, and the lower and upper edge of the band there, shape (m,).
     """
     t, y = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
     t, y = t[np.isfinite(y)], y[np.isfinite(y)]
@@ -46,7 +50,9 @@ def band(
     label: str = "",
     across: int = _ACROSS,
 ) -> None:
-    """Draw an oscillation as a line where one sees it, and as a pale band between two lines where not."""
+    """Draw an oscillation as a line where one sees it, and as a pale band between two lines where
+    not.
+    """
     grid, low, high = envelope(times, values, across)
     inside = high - low > 1e-3 * (high.max() - low.min())
     axes.fill_between(grid, low, high, where=inside, color=color, alpha=0.22, lw=0)

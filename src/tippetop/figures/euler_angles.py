@@ -18,7 +18,8 @@ _PRECESSION, _NUTATION, _ROTATION = np.radians((60.0, 34.0, 45.0))
 def euler_angles_drawing() -> Figure:
     """Return the Euler angles: alpha about z, beta about the line of nodes N, gamma about Z.
 
-    Space axes x, y, z are grey, body axes X, Y, Z blue; everything is drawn by one parallel projection.
+    Space axes x, y, z are grey, body axes X, Y, Z blue; everything is drawn by one parallel
+    projection.
     """
     figure, axes = draw.canvas((-1.22, 1.98), (-0.9, 1.32))
     view = draw.projection(azimuth=np.radians(35), elevation=np.radians(22))
@@ -36,7 +37,9 @@ def euler_angles_drawing() -> Figure:
 
 
 def _discs(axes: Axes, view: Array, space: Array, body: Array, nodes: Array) -> None:
-    """Draw the planes xy and XY as discs, the half of the tilted one that lies below the other first."""
+    """Draw the planes xy and XY as discs, the half of the tilted one that lies below the other
+    first.
+    """
     across = np.cross(body[2], nodes)
     for start, order in ((np.pi, 0.2), (0.0, 1.2)):
         half = draw.arc(nodes, across, start + np.pi, start) @ view
@@ -51,7 +54,9 @@ def _frame(axes: Axes, view: Array, frame: Array, names: Sequence[str], color: s
     for direction, name in zip(frame, names, strict=True):
         tip = direction @ view
         draw.arrow(axes, [0 * tip, 1.2 * tip], color, width=1.6, head=0.09)
-        draw.label(axes, 1.2 * tip + 0.09 * draw.unit(tip), f"$\\mathbf{{{name}}}$", color=color, size=12)
+        draw.label(
+            axes, 1.2 * tip + 0.09 * draw.unit(tip), f"$\\mathbf{{{name}}}$", color=color, size=12
+        )
 
 
 def _euler_arcs(axes: Axes, view: Array, space: Array, body: Array, nodes: Array) -> None:
@@ -64,17 +69,24 @@ def _euler_arcs(axes: Axes, view: Array, space: Array, body: Array, nodes: Array
         curve = draw.arc(first, towards, angle) @ view
         draw.arrow(axes, radius * curve, ACCENT, width=1.6, head=0.075, z=5)
         middle = curve[len(curve) // 2]
-        draw.label(axes, radius * middle + 0.1 * draw.unit(middle), f"${name}$", color=ACCENT, size=13)
+        draw.label(
+            axes, radius * middle + 0.1 * draw.unit(middle), f"${name}$", color=ACCENT, size=13
+        )
     draw.dot(axes, (0, 0), radius=0.025)
 
 
 def _euler_key(axes: Axes, at: tuple[float, float]) -> None:
     turns = (("\\alpha", "z", "x", "N"), ("\\beta", "N", "z", "Z"), ("\\gamma", "Z", "N", "X"))
     rows = [
-        (f"${angle}$", f"about $\\mathbf{{{axis}}}$, from $\\mathbf{{{first}}}$ to $\\mathbf{{{last}}}$")
+        (
+            f"${angle}$",
+            f"about $\\mathbf{{{axis}}}$, from $\\mathbf{{{first}}}$ to $\\mathbf{{{last}}}$",
+        )
         for angle, axis, first, last in turns
     ]
     for row, (symbol, text) in enumerate([*rows, ("$\\mathbf{N}$", "line of nodes")]):
         y = at[1] - 0.15 * row
-        draw.label(axes, (at[0], y), symbol, color=ACCENT if row < len(rows) else INK, va="baseline")
+        draw.label(
+            axes, (at[0], y), symbol, color=ACCENT if row < len(rows) else INK, va="baseline"
+        )
         draw.label(axes, (at[0] + 0.1, y), text, size=9.5, ha="left", va="baseline")

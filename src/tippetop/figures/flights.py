@@ -18,19 +18,22 @@ def continue_unilateral(
 ) -> None:
     """Draw how a variable goes on from lift-off when the table only pushes.
 
-    `run` has the variable with the suffix _flight over time, and lift_off_time. If `whole`, the axis is too
-    long for its oscillations to be seen, and they are drawn as a band.
+    `run` has the variable with the suffix _flight over time, and lift_off_time. If `whole`, the
+    axis is too long for its oscillations to be seen, and they are drawn as a band.
     """
     after = scale * run[f"{name}_flight"].sel(time=slice(float(run["lift_off_time"]), None))
     if whole:
         band(axes, after["time"], after, UNILATERAL, 1.1, "table only pushes")
     else:
-        axes.plot(after["time"], after, color=UNILATERAL, lw=1.1, zorder=4, label="table only pushes")
+        axes.plot(
+            after["time"], after, color=UNILATERAL, lw=1.1, zorder=4, label="table only pushes"
+        )
 
 
 @mark.drawn(3.9)
 def onset_figure(axes: Axes, sweep: xr.Dataset, over: str, reported: float) -> None:
-    """Return the least spin that leaves the table against "mu" or "tilt", with the launches of the scan.
+    """Return the least spin that leaves the table against "mu" or "tilt", with the launches of the
+    scan.
 
     `reported` is the spin of the report's abnormal point, rad/s.
     """
@@ -39,18 +42,33 @@ def onset_figure(axes: Axes, sweep: xr.Dataset, over: str, reported: float) -> N
     stays = ~np.isfinite(times)
     axes.plot(values[stays], spins[stays], "o", color=FAINT, ms=3.5, mec=MUTED, mew=0.5, zorder=2)
     dots = axes.scatter(
-        values[~stays], spins[~stays], c=times[~stays], s=22, norm=LogNorm(), zorder=2, edgecolors="none"
+        values[~stays],
+        spins[~stays],
+        c=times[~stays],
+        s=22,
+        norm=LogNorm(),
+        zorder=2,
+        edgecolors="none",
     )
     bar = axes.figure.colorbar(dots, ax=axes, label="first lift-off (s)", pad=0.02)
     first, last = np.nanmin(times), np.nanmax(times)
-    locator = LogLocator(subs=(1, 2, 5)) if last > 5 * first else MaxNLocator(4, steps=[1, 2, 5, 10])
+    locator = (
+        LogLocator(subs=(1, 2, 5)) if last > 5 * first else MaxNLocator(4, steps=[1, 2, 5, 10])
+    )
     ticks = locator.tick_values(first, last)
     mark.plain_ticks(bar.ax.yaxis, ticks[(first <= ticks) & (ticks <= last)])
-    for k, (window, style) in enumerate(zip(sweep["window"].values, ("-", (0, (4, 2))), strict=False)):
+    for k, (window, style) in enumerate(
+        zip(sweep["window"].values, ("-", (0, (4, 2))), strict=False)
+    ):
         axes.plot(
-            sweep[over], sweep["onset"].sel(window=window), color=ACCENT, ls=style, lw=1.8, zorder=4 - k,
+            sweep[over],
+            sweep["onset"].sel(window=window),
+            color=ACCENT,
+            ls=style,
+            lw=1.8,
+            zorder=4 - k,
             label=f"onset within {window:g} s",
-        )  # fmt: skip
+        )
     name = rf"report: $\omega_a$ = {reported:g}"
     axes.axhline(reported, color=REPORT, lw=1.1, ls=DASHED, label=name)
     own = 0.3 if over == "mu" else 0.1

@@ -1,9 +1,10 @@
 """What the toy and its table look like: read by figures, films, models and, as data, by the player.
 
-Lengths are in sizes of the toy: radii of a tippe top's sphere, or half the height or the width of any other
-body, which is drawn by its outline. Of a tippe top that is known as a sphere only, this sphere is whole; the
-toy is that sphere cut by a flat face, with a stem that reaches just as far as the sphere would. What is cut
-away is drawn as glass: so one sees what touches the table when the toy lies on its face.
+Lengths are in sizes of the toy: radii of a tippe top's sphere, or half the height or the width of
+any other body, which is drawn by its outline. Of a tippe top that is known as a sphere only, this
+sphere is whole; the toy is that sphere cut by a flat face, with a stem that reaches just as far as
+the sphere would. What is cut away is drawn as glass: so one sees what touches the table when the
+toy lies on its face.
 """
 
 import json
@@ -31,14 +32,28 @@ STEM_TOP = 1.0 - KNOB
 
 SCENES: Mapping[str, Mapping[str, Any]] = {
     "light": {
-        "background": "#eef1f4", "table": "#e3d9c8", "line": "#b7a98f", "ruler": "#f3d27a",
-        "trace": ACCENT, "sky": "#ffffff", "ground": "#e5d9c4", "sun": 2.4, "ambient": 1.7,
+        "background": "#eef1f4",
+        "table": "#e3d9c8",
+        "line": "#b7a98f",
+        "ruler": "#f3d27a",
+        "trace": ACCENT,
+        "sky": "#ffffff",
+        "ground": "#e5d9c4",
+        "sun": 2.4,
+        "ambient": 1.7,
     },
     "dark": {
-        "background": "#14181d", "table": "#3b3832", "line": "#5f594e", "ruler": "#c9a84f",
-        "trace": "#ff6fa5", "sky": "#c4d3e6", "ground": "#5a4d3d", "sun": 2.3, "ambient": 1.4,
+        "background": "#14181d",
+        "table": "#3b3832",
+        "line": "#5f594e",
+        "ruler": "#c9a84f",
+        "trace": "#ff6fa5",
+        "sky": "#c4d3e6",
+        "ground": "#5a4d3d",
+        "sun": 2.3,
+        "ambient": 1.4,
     },
-}  # fmt: skip
+}
 """The colours around the toy, and how bright it is there, by the theme."""
 
 _PALE, _CREAM, _SAND, _WOOD = "#66C5F0", "#F4E7CF", "#E4D2AE", ("#D9AE78", "#C79A62")
@@ -52,7 +67,9 @@ class ToyPart(NamedTuple):
     name: str
     """What it is of the toy."""
     profile: Array
-    """Points (distance from the axis, height along it from the centre of mass), from below, shape (k, 2)."""
+    """Points (distance from the axis, height along it from the centre of mass), from below, shape
+    (k, 2).
+    """
     colours: tuple[str, ...]
     """Colours of equal sectors around the axis, as #rrggbb."""
     opacity: float = 1.0
@@ -74,7 +91,9 @@ def size(body: Body) -> float:
 
 
 def toy_parts(body: Body) -> tuple[ToyPart, ...]:
-    """The parts of the toy for this body: of a tippe top, or the belts of any other body's outline."""
+    """The parts of the toy for this body: of a tippe top, or the belts of any other body's
+    outline.
+    """
     ball = _plain_ball(body)
     if ball:
         return _tippe_top(ball.eccentricity)
@@ -82,7 +101,9 @@ def toy_parts(body: Body) -> tuple[ToyPart, ...]:
     pieces = [np.array(line) / extent(lines) for line in lines]
     if len(pieces) == 1:
         middle, last = len(pieces[0]) // 2, len(pieces[0]) - 1
-        pieces = [pieces[0][i : j + 1] for i, j in pairwise((0, middle - BAND, middle + BAND, last))]
+        pieces = [
+            pieces[0][i : j + 1] for i, j in pairwise((0, middle - BAND, middle + BAND, last))
+        ]
     return tuple(
         ToyPart(f"belt {number}", piece, _BAND if number % 2 else _BOWL)
         for number, piece in enumerate(pieces)
@@ -91,7 +112,11 @@ def toy_parts(body: Body) -> tuple[ToyPart, ...]:
 
 def _plain_ball(body: Body) -> EccentricSphere | None:
     """The sphere of a body of which nothing else is known."""
-    return body.shape if isinstance(body.shape, EccentricSphere) and own_profile(body) is None else None
+    return (
+        body.shape
+        if isinstance(body.shape, EccentricSphere) and own_profile(body) is None
+        else None
+    )
 
 
 def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:
@@ -112,7 +137,9 @@ def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:
 
 
 def as_json() -> str:
-    """What the page draws toys from, its `looks.json`: scenes, a tippe top, the colours of belts, rules."""
+    """What the page draws toys from, its `looks.json`: scenes, a tippe top, the colours of belts,
+    rules.
+    """
     parts = [part.plain() for part in _tippe_top(0.0)]
     rules = {"arc_step": ARC_STEP, "band": BAND}
     told = {"scenes": SCENES, "tippe_top": parts, "bowl": _BOWL, "band": _BAND, "meridian": rules}

@@ -12,17 +12,32 @@ from matplotlib.figure import Figure
 import tippetop.figures.annotation as mark
 from tippetop.catalogue import SWEPT, Ending, written_unit
 from tippetop.errors import InvalidInput
-from tippetop.figures.style import CONVERGED, CYCLE, FAINT, INK, MUTED, SEQUENTIAL, house_style, pi_ticks
+from tippetop.figures.style import (
+    CONVERGED,
+    CYCLE,
+    FAINT,
+    INK,
+    MUTED,
+    SEQUENTIAL,
+    house_style,
+    pi_ticks,
+)
 
 MAPPED = ("final_theta", "turns_over", "flights")
 """The maps that are drawn of every sweep."""
 
 SHORT = {
-    "friction.mu": "friction coefficient μ", "body.shape.eccentricity": "eccentricity α", "body.I1": "I₁",
-    "body.I3": "I₃", "launch.tilt": "tilt at launch", "launch.spin": "axial spin at launch",
+    "friction.mu": "friction coefficient μ",
+    "body.shape.eccentricity": "eccentricity α",
+    "body.I1": "I₁",
+    "body.I3": "I₃",
+    "launch.tilt": "tilt at launch",
+    "launch.spin": "axial spin at launch",
     "gravity": "gravity",
-}  # fmt: skip
-"""What some fields are called, in few words; others on axes by what they are, elsewhere by their name."""
+}
+"""What some fields are called, in few words; others on axes by what they are, elsewhere by their
+name.
+"""
 
 NOTHING = {"turns_over": ["never"], "flights": ["none"], "first_lift_off": ["never"]}
 """What it means where some variables have no value: grey in maps, and no point of a curve."""
@@ -41,7 +56,9 @@ MOST_PANELS = 9
 """Maps that are drawn side by side."""
 
 WIDEST = 1e300
-"""How far the ends of an axis may be apart, in its unit: farther ones overflow where ticks are looked for."""
+"""How far the ends of an axis may be apart, in its unit: farther ones overflow where ticks are
+looked for.
+"""
 
 MOST_STEP = 1.05
 """Ratio of neighbouring steps of an axis from which on it counts as geometric."""
@@ -49,10 +66,11 @@ MOST_STEP = 1.05
 
 @house_style()
 def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
-    """Draw a variable of a sweep: over axes as colours, over one axis as a curve, of draws as points.
+    """Draw a variable of a sweep: over axes as colours, over one axis as a curve, of draws as
+    points.
 
-    Of three axes the third goes from panel to panel, over at most `MOST_PANELS` of its values; of more than
-    three, those after the third stay at the middle one of their values.
+    Of three axes the third goes from panel to panel, over at most `MOST_PANELS` of its values; of
+    more than three, those after the third stay at the middle one of their values.
 
     Raises
     ------
@@ -91,7 +109,9 @@ def require_drawable(coordinates: Mapping[str, np.ndarray[Any, Any]]) -> None:
             least, most = _ends(np.unique(values))
         if not most - least < WIDEST:
             ends = float(values.min()), float(values.max())
-            raise InvalidInput(name, ends, f"an axis with cells over at most {WIDEST:g}, to be drawn")
+            raise InvalidInput(
+                name, ends, f"an axis with cells over at most {WIDEST:g}, to be drawn"
+            )
 
 
 def _panels(sweep: xr.Dataset, variable: str) -> Figure:
@@ -185,14 +205,20 @@ def _name(sweep: xr.Dataset, field: str) -> str:
 
 def _heading(words: str, units: str) -> str:
     """A name with its unit, as it begins a line."""
-    unit = written_unit(units).replace("^2", "²").replace("^3", "³") if units not in ("", "1") else ""
+    unit = (
+        written_unit(units).replace("^2", "²").replace("^3", "³") if units not in ("", "1") else ""
+    )
     return words[:1].upper() + words[1:] + (f" ({unit})" if unit else "")
 
 
 def _title(sweep: xr.Dataset, variable: str) -> str:
     title, means = _heading(SWEPT[variable].label, SWEPT[variable].units), NOTHING.get(variable, [])
     if variable == "final_theta":
-        means = [words for ending, words in UNFINISHED.items() if (sweep["outcome"].values == ending).any()]
+        means = [
+            words
+            for ending, words in UNFINISHED.items()
+            if (sweep["outcome"].values == ending).any()
+        ]
     single = sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("draw" in sweep.coords)
     sign = "no point" if single else "grey"
     return f"{title}; {sign}: {', '.join(means)}" if means else title

@@ -1,4 +1,6 @@
-"""The outline of a body as it is drawn: its own profile where it has one, else the hull of its surfaces."""
+"""The outline of a body as it is drawn: its own profile where it has one, else the hull of its
+surfaces.
+"""
 
 import math
 
@@ -20,7 +22,8 @@ def meridian(body: Body) -> list[Line]:
 
 
 def own_profile(body: Body) -> list[Line] | None:
-    """The profile that a body has, in smooth lines from below; None if it has none, or not this shape.
+    """The profile that a body has, in smooth lines from below; None if it has none, or not this
+    shape.
 
     It may have another one by now: the profile is stated beside the surfaces.
     """

@@ -45,7 +45,13 @@ def stiffness_figure(axes: Axes, counts: xr.Dataset) -> None:
     for k, (method, color) in enumerate(zip(methods, colors, strict=True)):
         height = counts["evaluations"].sel(integrator=method).values / 1e3
         place = launches + (k - (len(methods) - 1) / 2) * width
-        axes.bar(place, np.maximum(height, 0), 0.9 * width, color=color, label=_LABELS.get(method, method))
+        axes.bar(
+            place,
+            np.maximum(height, 0),
+            0.9 * width,
+            color=color,
+            label=_LABELS.get(method, method),
+        )
         for x in place[height < 0]:
             axes.annotate("gave up", (x, 0), rotation=90, size=8, color=ACCENT, ha="center")
     names = [

@@ -19,8 +19,8 @@ _ECCENTRICITY, _TILT = 0.3, np.radians(50.0)
 def model_drawing() -> Figure:
     """Return the model seen from the side: an eccentric sphere on the table.
 
-    The top leans to the left, so that axis 2 = z x X, with X the horizontal direction of the lean, points at
-    the reader.
+    The top leans to the left, so that axis 2 = z x X, with X the horizontal direction of the lean,
+    points at the reader.
     """
     figure, axes = draw.canvas((-2.0, 2.15), (-0.7, 2.5))
     points = _Model(_ECCENTRICITY, _TILT)
@@ -32,7 +32,9 @@ def model_drawing() -> Figure:
 
 
 class _Model:
-    """The points and directions of the model in the plane of the page; R = 1 and the table is at height 0."""
+    """The points and directions of the model in the plane of the page; R = 1 and the table is at
+    height 0.
+    """
 
     def __init__(self, eccentricity: float, tilt: float) -> None:
         self.tilt = tilt
@@ -93,7 +95,9 @@ def _model_vectors(axes: Axes, model: _Model) -> None:
     draw.arrow(axes, [-0.52 * model.up, model.contact], ACCENT, width=1.8, z=3)
     draw.label(axes, (-0.07, -0.42), "$g_n\\mathbf{z}$", color=ACCENT, ha="right")
     draw.arrow(axes, [model.contact, -0.6 * model.lean], ACCENT, width=1.8)
-    draw.label(axes, (0.3, -0.14), "$\\mathbf{f} = -\\mu\\, g_n \\mathbf{v}_A$", color=ACCENT, ha="left")
+    draw.label(
+        axes, (0.3, -0.14), "$\\mathbf{f} = -\\mu\\, g_n \\mathbf{v}_A$", color=ACCENT, ha="left"
+    )
     draw.arrow(axes, [model.contact, 0.6 * model.lean], MUTED, width=1.8)
     draw.label(axes, (-0.55, -0.14), "$\\mathbf{v}_A$", color=MUTED)
     draw.dot(axes, model.contact, radius=0.035)

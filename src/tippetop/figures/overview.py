@@ -12,7 +12,9 @@ from tippetop.dataset import require_run
 from tippetop.figures.style import ACCENT, CONVERGED, DASHED, MUTED, WIDTH, house_style, pi_ticks
 
 TALLEST_PRECESSION = 400.0
-"""Precession beyond which a curve is cut off, rad/s: it peaks without bound where the axis is vertical."""
+"""Precession beyond which a curve is cut off, rad/s: it peaks without bound where the axis is
+vertical.
+"""
 
 
 class ShownFigure(Figure):
@@ -60,7 +62,9 @@ def plot(run: xr.Dataset) -> Figure:
 
 
 def shade_flights(axes: Axes, run: xr.Dataset) -> None:
-    """Shade the time a run spends above the table; a run that stopped at lift-off gets a line there."""
+    """Shade the time a run spends above the table; a run that stopped at lift-off gets a line
+    there.
+    """
     for begin, end in zip(run["flight_start"].values, run["flight_end"].values, strict=True):
         axes.axvspan(begin, end, color=ACCENT, alpha=0.15, linewidth=0.4)
     if run.attrs["outcome"] == "lifted_off":

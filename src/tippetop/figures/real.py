@@ -28,14 +28,21 @@ def leine_figure(axes: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(5.4, 2, 1)
 def stepping_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
-    """Return the tilt during the rocking by time-stepping, and how far off it finds what happens."""
+    """Return the tilt during the rocking by time-stepping, and how far off it finds what
+    happens.
+    """
     for step, tilt, color in zip(data["step"], data["theta"], CYCLE, strict=False):
         above.plot(data["time"], tilt, color=color, lw=1.2, label=f"{1e3 * float(step):g} ms")
     above.plot(data["time"], data["exact_theta"], color=INK, ls=DASHED, lw=1.4, label="exact")
     span = (float(data["time"][0]), float(data["time"][-1]))
     above.set(xlim=span, xlabel="time (s)", ylabel=mark.TILT)
     mark.legend_above(above, 6)
-    words = {"stem": "stem touches", "back": "back on its sphere", "both": "on both", "apart": "apart"}
+    words = {
+        "stem": "stem touches",
+        "back": "back on its sphere",
+        "both": "on both",
+        "apart": "apart",
+    }
     steps = 1e3 * data["step"].values
     for (name, text), color in zip(words.items(), CYCLE, strict=False):
         off = np.abs(data[name].values - float(data[f"exact_{name}"]))
@@ -47,7 +54,9 @@ def stepping_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(4.8, 2, 1, sharex=True)
 def stems_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
-    """Return the final tilt, and Jellett's integral about the tip over what it takes, by the tip's radius."""
+    """Return the final tilt, and Jellett's integral about the tip over what it takes, by the tip's
+    radius.
+    """
     radius = 1e3 * data["radius"].values
     above.plot(radius, data["final_theta"], "o-", color=CONVERGED)
     above.set_ylabel(r"tilt at the end (rad)")
@@ -61,7 +70,9 @@ def stems_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
 def egg_figure(axes: Axes, data: xr.Dataset) -> None:
     """Return the tilt of eggs that are spun on their sides, with their first lift-offs."""
     colors = colormaps["viridis"](np.linspace(0.0, 0.9, data.sizes["rate"]))
-    for rate, tilt, lift, color in zip(data["rate"], data["theta"], data["lift_off"], colors, strict=True):
+    for rate, tilt, lift, color in zip(
+        data["rate"], data["theta"], data["lift_off"], colors, strict=True
+    ):
         axes.plot(data["time"], tilt, color=color, lw=1.2, label=f"{float(rate):g} rad/s")
         if np.isfinite(lift):
             at = (float(lift), float(np.interp(lift, data["time"], tilt)))
@@ -73,7 +84,9 @@ def egg_figure(axes: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(3.8, 1, 2)
 def rolling_figure(left: Axes, right: Axes, data: xr.Dataset) -> None:
-    """Return precessions of a disk and of two balls that roll with their centres at rest, by their tilts."""
+    """Return precessions of a disk and of two balls that roll with their centres at rest, by their
+    tilts.
+    """
     for axes, name in ((left, "disk"), (right, "balls")):
         tilt = data[f"{name}_tilt"]
         axes.plot(tilt, data[f"{name}_precession"], color=CONVERGED, label="closed formula")

@@ -15,7 +15,9 @@ from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT
 
 _NAME, _NAME_REPORT = "converged", "report's method"
 _LINES = (("_listing", "time_listing", REPORT, 2.6, 1.8), ("", "time", CONVERGED, 1.0, 0.8))
-"""Of both methods: endings of variables, times, colours, widths of lines, and of the edges of bands."""
+"""Of both methods: endings of variables, times, colours, widths of lines, and of the edges of
+bands.
+"""
 
 
 @mark.drawn(5.0, 2, 2, sharex=True)
@@ -31,12 +33,13 @@ def motion_figure(
 ) -> None:
     """Return tilt, axial spin, precession and slip of a launch, by both methods.
 
-    The precession is cut at `precession_limit` rad/s: it has peaks wherever the axis comes near the vertical.
-    `zoom` is a span of time, s, whose tilt is also drawn large, in the box `inset` (left, bottom, width,
-    height in parts of the panel). The reversals of the precession are marked: `quiet_start` and `quiet_end`
-    where they enclose a calm that comes later than 1 s, otherwise `last_reversal`. What the report prints
-    gets squares: when the top has turned over and when the precession reverses, s, and the time of what it
-    takes for the end, s, with theta, omega3 and phi_dot then.
+    The precession is cut at `precession_limit` rad/s: it has peaks wherever the axis comes near the
+    vertical. `zoom` is a span of time, s, whose tilt is also drawn large, in the box `inset` (left,
+    bottom, width, height in parts of the panel). The reversals of the precession are marked:
+    `quiet_start` and `quiet_end` where they enclose a calm that comes later than 1 s, otherwise
+    `last_reversal`. What the report prints gets squares: when the top has turned over and when the
+    precession reverses, s, and the time of what it takes for the end, s, with theta, omega3 and
+    phi_dot then.
     """
     tilt, spin, turning, slip = panels.flat
     _pair(tilt, run, "theta", legend=True)
@@ -49,10 +52,16 @@ def motion_figure(
     turning.plot(reported_reversals, np.zeros(len(reported_reversals)), "s", **square)
     for time, below in zip(reversed(reported_reversals), (-6, -20), strict=False):
         mark.note(turning, f"report:\n{time:g} s", (time, 0), (7, below), REPORT, halo=True)
-    turned = reported_turn, float(np.interp(reported_turn, run["time_listing"], run["theta_listing"]))
+    turned = (
+        reported_turn,
+        float(np.interp(reported_turn, run["time_listing"], run["theta_listing"])),
+    )
     tilt.plot(*turned, "s", **square)
     mark.note(tilt, f"report: {reported_turn:g} s", turned, (6, -8), REPORT, halo=True)
-    speeds = {f"speed{end}": np.hypot(run[f"slip_x{end}"], run[f"slip_y{end}"]) for end in ("_listing", "")}
+    speeds = {
+        f"speed{end}": np.hypot(run[f"slip_x{end}"], run[f"slip_y{end}"])
+        for end in ("_listing", "")
+    }
     _pair(slip, run.assign(speeds), "speed")
     slip.set(ylabel="slip speed $|v_A|$ (m/s)", ylim=(0, None))
     for axes, name in ((tilt, "theta"), (spin, "omega3"), (turning, "phi_dot")):
@@ -68,12 +77,17 @@ def motion_figure(
 
 @mark.drawn(3.0)
 def tilt_figure(
-    axes: Axes, run: xr.Dataset, zoom: tuple[float, float], inset: mark.Box = (0.56, 0.14, 0.42, 0.56)
+    axes: Axes,
+    run: xr.Dataset,
+    zoom: tuple[float, float],
+    inset: mark.Box = (0.56, 0.14, 0.42, 0.56),
 ) -> None:
-    """Return the tilt of a launch over time by both methods, with the lift-off (`lift_off_time`) marked.
+    """Return the tilt of a launch over time by both methods, with the lift-off (`lift_off_time`)
+    marked.
 
-    Where the top flies, also how it goes on when the table only pushes. `zoom` is a span of time, s, that is
-    also drawn large, in the box `inset` (left, bottom, width, height in parts of the panel).
+    Where the top flies, also how it goes on when the table only pushes. `zoom` is a span of time,
+    s, that is also drawn large, in the box `inset` (left, bottom, width, height in parts of the
+    panel).
     """
     _over_time(axes, run)
     _trio(axes, run, "theta")
@@ -84,7 +98,9 @@ def tilt_figure(
 
 @mark.drawn(3.0)
 def upright_figure(axes: Axes, run: xr.Dataset, until: float = 3.0) -> None:
-    """Return the tilt of a launch that stays near the vertical, up to a time, s, on a scale of its own."""
+    """Return the tilt of a launch that stays near the vertical, up to a time, s, on a scale of its
+    own.
+    """
     _over_time(axes, run)
     start = run.sel(time=slice(None, until), time_listing=slice(None, until))
     _pair(axes, start, "theta", legend=True)
@@ -96,7 +112,8 @@ def upright_figure(axes: Axes, run: xr.Dataset, until: float = 3.0) -> None:
 
 @mark.drawn(3.0)
 def energy_figure(axes: Axes, run: xr.Dataset, reported: tuple[float, float]) -> None:
-    """Return the energy over time: the report's (4.1) by its method, and the converged one on both tables.
+    """Return the energy over time: the report's (4.1) by its method, and the converged one on both
+    tables.
 
     `reported` is the time, s, and the gain, J, that the report names.
     """
@@ -109,7 +126,14 @@ def energy_figure(axes: Axes, run: xr.Dataset, reported: tuple[float, float]) ->
     axes.set(ylabel="energy (mJ)", ylim=(0, None))
     low = 1e3 * float(np.interp(reported[0], run["time_listing"], run["energy_listing"]))
     high = low + 1e3 * reported[1]
-    ends = {"arrowstyle": "|-|", "color": INK, "lw": 1.2, "mutation_scale": 3, "shrinkA": 0, "shrinkB": 0}
+    ends = {
+        "arrowstyle": "|-|",
+        "color": INK,
+        "lw": 1.2,
+        "mutation_scale": 3,
+        "shrinkA": 0,
+        "shrinkB": 0,
+    }
     axes.annotate("", (reported[0], low), (reported[0], high), arrowprops=ends, zorder=6)
     text = f"the report's gain\nof {reported[1]:g} J at {reported[0]:g} s"
     mark.note(axes, text, (reported[0], high), (-22, -14), INK, halo=True)
@@ -131,7 +155,9 @@ def force_figure(axes: Axes, run: xr.Dataset) -> None:
 
 @mark.drawn(4.6, 2, 1, height_ratios=[1.3, 1])
 def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: float) -> None:
-    """Return tilt and force to where the report stopped, s, to the lift-off, and from there in flight."""
+    """Return tilt and force to where the report stopped, s, to the lift-off, and from there in
+    flight.
+    """
     stop = float(run["lift_off_time"])
     before = run.sel(time=run["time"] <= stop)
     other = run.sel(time_listing=run["time_listing"] <= reported_stop)
@@ -149,7 +175,9 @@ def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: floa
         shade_flights(axes, run)
     mark.tilt_axis(tilt)
     force.axhline(0, color=ACCENT, lw=1.0)
-    force.set(xlabel="time (s)", ylabel="normal force $g_n$ (N)", xlim=(stop - 0.55, reported_stop + 1.25))
+    force.set(
+        xlabel="time (s)", ylabel="normal force $g_n$ (N)", xlim=(stop - 0.55, reported_stop + 1.25)
+    )
     tilt.set_xlim(0, 8)
     for time, color in ((stop, ACCENT), (reported_stop, REPORT)):
         force.axvline(time, color=color, lw=1.0, ls=DASHED)
@@ -161,7 +189,9 @@ def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: floa
         (f"the top leaves the table\nat {stop:.3f} s", (stop, end), (-44, 22), ACCENT),
         (f"the report stops\nat {reported_stop:g} s", (reported_stop, last), (52, -12), INK),
     ):
-        mark.note(tilt, text, at, offset, color, va="center", arrowprops={**mark.LEADER, "color": color})
+        mark.note(
+            tilt, text, at, offset, color, va="center", arrowprops={**mark.LEADER, "color": color}
+        )
     tilt.legend(loc="upper left")
 
 
@@ -179,7 +209,9 @@ def _pair(
     legend: bool = False,
     names: tuple[str, str] = (_NAME_REPORT, _NAME),
 ) -> None:
-    """Draw a variable by both methods: the report's below and wide, so that it shows where they differ."""
+    """Draw a variable by both methods: the report's below and wide, so that it shows where they
+    differ.
+    """
     for (suffix, time, color, _, edge), label in zip(_LINES, names, strict=True):
         band(axes, run[time], scale * run[f"{name}{suffix}"], color, edge, label)
     if legend:
@@ -187,9 +219,16 @@ def _pair(
 
 
 def _trio(
-    axes: Axes, run: xr.Dataset, name: str, *, scale: float = 1.0, names: tuple[str, str] | None = None
+    axes: Axes,
+    run: xr.Dataset,
+    name: str,
+    *,
+    scale: float = 1.0,
+    names: tuple[str, str] | None = None,
 ) -> None:
-    """Draw a variable by both methods and, where the top flies, as it goes on when the table only pushes."""
+    """Draw a variable by both methods and, where the top flies, as it goes on when the table only
+    pushes.
+    """
     flies = f"{name}_flight" in run
     _pair(
         axes,

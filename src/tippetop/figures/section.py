@@ -26,7 +26,9 @@ MM = 1e3
 
 @house_style()
 def section(piece: Workpiece) -> Figure:
-    """Draw the section of a turned body, to scale, with its centre of mass and the surfaces it stands on."""
+    """Draw the section of a turned body, to scale, with its centre of mass and the surfaces it
+    stands on.
+    """
     points = MM * piece.outline.points(STEPS)
     reach, low, high = points.real.max(), points.imag.min(), points.imag.max()
     room = 0.12 * max(reach, (high - low) / 2.0)
@@ -66,10 +68,19 @@ def _zones(axes: Axes, piece: Workpiece) -> None:
         for side in (1.0, -1.0):
             label = text if side > 0 else None
             if zone.tube:
-                axes.plot(side * touched[:, 0], touched[:, 1], color=color, lw=3.0, label=label, zorder=4)
+                axes.plot(
+                    side * touched[:, 0], touched[:, 1], color=color, lw=3.0, label=label, zorder=4
+                )
             else:
-                dot: dict[str, Any] = {"marker": "o", "ls": "", "markersize": 6, "markeredgecolor": "white"}
-                axes.plot(side * touched[:1, 0], touched[:1, 1], color=color, label=label, zorder=5, **dot)
+                dot: dict[str, Any] = {
+                    "marker": "o",
+                    "ls": "",
+                    "markersize": 6,
+                    "markeredgecolor": "white",
+                }
+                axes.plot(
+                    side * touched[:1, 0], touched[:1, 1], color=color, label=label, zorder=5, **dot
+                )
         if zone.tube and number == surfaces.index(zone[:3]):
             whole = _touched(zone, np.linspace(0.0, 2.0 * np.pi, 4 * STEPS))
             for side in (1.0, -1.0) if zone.radius else (1.0,):

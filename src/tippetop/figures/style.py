@@ -1,7 +1,8 @@
 """The house style: one palette, one set of sizes, and output that is the same on every run.
 
-Figures are plain `matplotlib.figure.Figure` objects, never pyplot ones, so there is no display to need and
-nothing to close. Both making and saving a figure must happen inside `house_style`; `save` sees to the latter.
+Figures are plain `matplotlib.figure.Figure` objects, never pyplot ones, so there is no display to
+need and nothing to close. Both making and saving a figure must happen inside `house_style`; `save`
+sees to the latter.
 """
 
 from collections.abc import Iterator
@@ -89,13 +90,17 @@ _STYLE: dict[Any, Any] = {
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """Return the context in which every figure of the project is made; it also decorates what makes one."""
+    """Return the context in which every figure of the project is made; it also decorates what makes
+    one.
+    """
     with mpl.rc_context(_STYLE):
         yield
 
 
 def save(figure: Figure, path: Path | str, **options: Any) -> None:
-    """Write `figure` to `path` in the house style and undated, so that equal figures are equal files."""
+    """Write `figure` to `path` in the house style and undated, so that equal figures are equal
+    files.
+    """
     dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
     with house_style():
         figure.savefig(path, **{"metadata": dated.get(Path(path).suffix.lower()), **options})

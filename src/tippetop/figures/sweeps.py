@@ -1,4 +1,6 @@
-"""Many launches: where they end, how long they take (the report's Figs. 6 and 7), what the windows do."""
+"""Many launches: where they end, how long they take (the report's Figs. 6 and 7), what the windows
+do.
+"""
 
 from typing import Any
 
@@ -24,16 +26,31 @@ def final_tilt_figure(axes: Axes, sweep: xr.Dataset, reported: tuple[float, floa
     below = sweep.sel(spin=sweep["spin"] <= onset)
     above = sweep.sel(spin=sweep["spin"] > onset)
     axes.plot(below["spin"], below["final_theta"], color=CONVERGED, lw=1.8, label="converged")
-    axes.plot(above["spin"], above["final_theta"], ".", color=MUTED, ms=3, label="converged, table pulls")
+    axes.plot(
+        above["spin"], above["final_theta"], ".", color=MUTED, ms=3, label="converged, table pulls"
+    )
     flying = sweep.sel(spin_flight=sweep["spin_flight"] > onset)
     axes.plot(
-        flying["spin_flight"], flying["final_theta_flight"], "-D", color=UNILATERAL, ms=3.5, lw=1.4, zorder=5,
+        flying["spin_flight"],
+        flying["final_theta_flight"],
+        "-D",
+        color=UNILATERAL,
+        ms=3.5,
+        lw=1.4,
+        zorder=5,
         label="table only pushes",
-    )  # fmt: skip
+    )
     axes.plot(
-        sweep["spin_listing"], sweep["final_theta_listing"], "o", color=REPORT, label="report's method",
-        ms=5, mec="white", mew=0.5, zorder=4,
-    )  # fmt: skip
+        sweep["spin_listing"],
+        sweep["final_theta_listing"],
+        "o",
+        color=REPORT,
+        label="report's method",
+        ms=5,
+        mec="white",
+        mew=0.5,
+        zorder=4,
+    )
     _critical(axes, (*reported[:2], *ours), 1.1)
     for name, theirs, spin in zip(mark.CRITICAL, reported, ours, strict=False):
         mark.note(axes, f"{name} = {spin:.1f}", (spin, np.pi + 0.56), (5, 0), CONVERGED, va="top")
@@ -76,8 +93,8 @@ def _abnormal(axes: Axes, theirs: float, onset: float) -> None:
 def flip_time_figure(left: Axes, right: Axes, times: xr.Dataset, reported: float) -> None:
     """Return flip times against friction: the report's range with fits, and three decades of it.
 
-    `reported` is the power of mu that the report prints; its line goes through the middle of the points of
-    its method.
+    `reported` is the power of mu that the report prints; its line goes through the middle of the
+    points of its method.
     """
     mu = times["mu"].values
     fine = np.linspace(mu[0], mu[-1], 200)
@@ -102,12 +119,18 @@ def flip_time_figure(left: Axes, right: Axes, times: xr.Dataset, reported: float
 def _products(axes: Axes, wide: xr.Dataset) -> None:
     """Draw mu times the flip time: level where the law t ~ 1/mu holds."""
     axes.axvspan(0.2, 1.0, color=REPORT, alpha=0.10, lw=0)
-    mark.note(axes, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X)
+    mark.note(
+        axes, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X
+    )
     colors = (CONVERGED, UNILATERAL)
     for spin, color in zip(wide["spin_wide"].values, colors, strict=False):
         product = wide["mu_wide"] * wide["flip_time_wide"].sel(spin_wide=spin)
-        axes.plot(wide["mu_wide"], product, "-o", color=color, ms=3, lw=1.2, label=f"{spin:g} rad/s")
-    axes.set(xscale="log", yscale="log", xlabel=mark.FRICTION, ylabel=r"$\mu\,\times$ flip time (s²/m)")
+        axes.plot(
+            wide["mu_wide"], product, "-o", color=color, ms=3, lw=1.2, label=f"{spin:g} rad/s"
+        )
+    axes.set(
+        xscale="log", yscale="log", xlabel=mark.FRICTION, ylabel=r"$\mu\,\times$ flip time (s²/m)"
+    )
     mark.plain_ticks(axes.xaxis, [0.01, 0.1, 1, 10])
     mark.plain_ticks(axes.yaxis, [1, 2, 5, 10, 20, 50, 100])
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.88))
@@ -115,22 +138,30 @@ def _products(axes: Axes, wide: xr.Dataset) -> None:
 
 
 @mark.drawn(3.3, 1, 2, lettered=False)
-def windows_figure(left: Axes, right: Axes, sweep: xr.Dataset, reported: tuple[float, float]) -> None:
+def windows_figure(
+    left: Axes, right: Axes, sweep: xr.Dataset, reported: tuple[float, float]
+) -> None:
     """Return the two critical spins against the length of the runs they are read from.
 
     `reported` are the report's two critical spins, rad/s.
     """
     names = ("upright", "inverted")
-    for axes, name, symbol, theirs in zip((left, right), names, mark.CRITICAL, reported, strict=True):
+    for axes, name, symbol, theirs in zip(
+        (left, right), names, mark.CRITICAL, reported, strict=True
+    ):
         window = sweep["window"].values
         span = sweep[f"{name}_by_margin"]
         axes.axhline(theirs, color=REPORT, lw=1.2, ls=DASHED)
-        axes.plot([window[0]] * 2, [float(span.min()), float(span.max())], color=FAINT, lw=7, zorder=1)
+        axes.plot(
+            [window[0]] * 2, [float(span.min()), float(span.max())], color=FAINT, lw=7, zorder=1
+        )
         axes.plot(window, sweep[f"{name}_by_window"], "-o", color=CONVERGED)
         place: dict[str, Any] = {"xycoords": mark.ALONG_Y, "ha": "right"}
         mark.note(axes, f"report: {theirs:g}", (1.0, theirs), (0, 3), REPORT, **place)
         last = float(sweep[f"{name}_by_window"][-1])
-        mark.note(axes, f"{last:.2f}", (window[-1], last), (0, -8 if name == "inverted" else 7), CONVERGED)
+        mark.note(
+            axes, f"{last:.2f}", (window[-1], last), (0, -8 if name == "inverted" else 7), CONVERGED
+        )
         axes.set_xscale("log")
         axes.set_xlim(0.8 * window[0], 1.5 * window[-1])
         mark.plain_ticks(axes.xaxis, list(window))

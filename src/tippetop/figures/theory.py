@@ -56,14 +56,18 @@ def _branches(axes: Axes, states: xr.Dataset, suffix: str, right: float) -> None
         axes.plot(np.where(which, spin, np.nan), tilt, **line)
     turning = int(np.nanargmin(spin))
     if 0 < turning < len(spin) - 1 and spin[turning] < min(upright, inverted) - 1.0:
-        mark.note(axes, f"fold, {spin[turning]:.1f}", (spin[turning], tilt[turning]), (-8, 0), ACCENT)
+        mark.note(
+            axes, f"fold, {spin[turning]:.1f}", (spin[turning], tilt[turning]), (-8, 0), ACCENT
+        )
         axes.plot(spin[turning], tilt[turning], "s", color=ACCENT, ms=5, zorder=5)
     for symbol, limit, height, offset in (
         (mark.CRITICAL[0], upright, 0.0, (5, 8)),
         (mark.CRITICAL[1], inverted, np.pi, (5, -9)),
     ):
         axes.plot(limit, height, "s", color=ACCENT, ms=5, zorder=5, clip_on=False)
-        mark.note(axes, f"{symbol} = {limit:.2f}", (limit, height), offset, ACCENT, zorder=6, halo=True)
+        mark.note(
+            axes, f"{symbol} = {limit:.2f}", (limit, height), offset, ACCENT, zorder=6, halo=True
+        )
 
 
 def _ends_of_runs(axes: Axes, states: xr.Dataset, suffix: str) -> None:
@@ -76,19 +80,31 @@ def _ends_of_runs(axes: Axes, states: xr.Dataset, suffix: str) -> None:
     ):
         if which.any():
             axes.plot(
-                spin[which], end[which], marker, ms=size, mfc=face, mec=INK, mew=1.1, ls="none", label=name,
-                zorder=4, clip_on=False,
-            )  # fmt: skip
+                spin[which],
+                end[which],
+                marker,
+                ms=size,
+                mfc=face,
+                mec=INK,
+                mew=1.1,
+                ls="none",
+                label=name,
+                zorder=4,
+                clip_on=False,
+            )
 
 
 @house_style()
 def growth_figure(critical: xr.Dataset, reported: tuple[float, float]) -> Figure:
-    """Return the growth rates of both vertical spins, and the thresholds that a window makes of them.
+    """Return the growth rates of both vertical spins, and the thresholds that a window makes of
+    them.
 
     `reported` are the report's two critical spins, rad/s.
     """
     figure = Figure(figsize=(WIDTH, 5.4))
-    panels = figure.subplot_mosaic([["rate", "rate"], ["upright", "inverted"]], height_ratios=[1.25, 1])
+    panels = figure.subplot_mosaic(
+        [["rate", "rate"], ["upright", "inverted"]], height_ratios=[1.25, 1]
+    )
     _growth(panels["rate"], critical, reported)
     names = ("upright", "inverted")
     for name, symbol, theirs in zip(names, mark.CRITICAL, reported, strict=True):
@@ -99,7 +115,9 @@ def growth_figure(critical: xr.Dataset, reported: tuple[float, float]) -> Figure
 
 def _growth(axes: Axes, critical: xr.Dataset, reported: tuple[float, float]) -> None:
     spins = critical["growth_spin"].values
-    upright, inverted = (critical["growth_rate"].sel(vertical=name) for name in ("upright", "inverted"))
+    upright, inverted = (
+        critical["growth_rate"].sel(vertical=name) for name in ("upright", "inverted")
+    )
     limits = critical["critical_launch"].values
     slow = 1.0 / critical.attrs["apparent_window_s"]
     axes.axhspan(-slow, slow, color=MUTED, alpha=0.3, lw=0)
@@ -132,12 +150,17 @@ def _apparent(axes: Axes, critical: xr.Dataset, name: str, symbol: str, theirs: 
     axes.set_xlim(visible[0] / 1.25, visible[-1] * 1.25)
     mark.plain_ticks(axes.xaxis, list(visible))
     axes.set_xlabel("least tilt told from none (rad)")
-    axes.set_title(f"{symbol} (rad/s) seen in {critical.attrs['apparent_window_s']:g} s", weight="normal")
+    axes.set_title(
+        f"{symbol} (rad/s) seen in {critical.attrs['apparent_window_s']:g} s", weight="normal"
+    )
     values = [limit, theirs, *seen, *runs.values[np.isfinite(runs.values)]]
     room = 0.16 * (max(values) - min(values))
     axes.set_ylim(min(values) - room, max(values) + room)
     edge = 0.0 if name == "upright" else 1.0
-    for text, value, color in ((f"true {limit:.2f}", limit, ACCENT), (f"report: {theirs:g}", theirs, REPORT)):
+    for text, value, color in (
+        (f"true {limit:.2f}", limit, ACCENT),
+        (f"report: {theirs:g}", theirs, REPORT),
+    ):
         mark.note(axes, text, (edge, value), (4 - 8 * edge, 3), color, xycoords=mark.ALONG_Y)
     if name == "upright":
         axes.legend(loc="lower right")
@@ -148,7 +171,9 @@ _REGIONS = {"I": "#E8ECF0", "IIa": "#D5E8F8", "IIb": "#F9E3C4", "III": "#F3DCE6"
 
 @mark.drawn(4.9)
 def groups_figure(axes: Axes, chart: xr.Dataset) -> None:
-    """Return the map of the eccentric spheres by inertia ratio and eccentricity, with some tops on it."""
+    """Return the map of the eccentric spheres by inertia ratio and eccentricity, with some tops on
+    it.
+    """
     alpha = chart["alpha"].values
     left, right = chart.attrs["gamma_least"], chart.attrs["gamma_greatest"]
     first, jump, last = (
@@ -179,14 +204,24 @@ def _no_precession(axes: Axes, chart: xr.Dataset) -> None:
     low, high = chart["no_precession_from"], chart["no_precession_to"]
     exists = np.isfinite(low)
     axes.fill_betweenx(
-        chart["alpha"][exists], low[exists], high[exists], facecolor="none", edgecolor=MUTED, hatch="////",
+        chart["alpha"][exists],
+        low[exists],
+        high[exists],
+        facecolor="none",
+        edgecolor=MUTED,
+        hatch="////",
         lw=0.6,
-    )  # fmt: skip
+    )
     middle = 0.5 * float(low[0] + high[0])
     axes.annotate(
-        "no tilted\nprecession is stable", (middle, 0.03), (0.63, 0.085), color=INK, size=9, ha="center",
+        "no tilted\nprecession is stable",
+        (middle, 0.03),
+        (0.63, 0.085),
+        color=INK,
+        size=9,
+        ha="center",
         arrowprops={**mark.LEADER, "color": INK},
-    )  # fmt: skip
+    )
 
 
 def _name_regions(axes: Axes) -> None:

@@ -1,4 +1,6 @@
-"""The way to the end: runs against the limit of weak friction, and what a run says of its nutation."""
+"""The way to the end: runs against the limit of weak friction, and what a run says of its
+nutation.
+"""
 
 from typing import Any
 
@@ -16,7 +18,9 @@ _SPAN = 3.0
 
 @mark.drawn(5.6, 2, 1, sharex=True, height_ratios=[1.2, 1])
 def collapse_figure(linear: Axes, logarithmic: Axes, flow: xr.Dataset) -> None:
-    """Return the tilt against mu t of runs at several frictions, with the averaged flow, on two scales."""
+    """Return the tilt against mu t of runs at several frictions, with the averaged flow, on two
+    scales.
+    """
     limit = float(flow["flip_limit"])
     for axes in (linear, logarithmic):
         _runs_and_flow(axes, flow)
@@ -30,24 +34,36 @@ def collapse_figure(linear: Axes, logarithmic: Axes, flow: xr.Dataset) -> None:
 
 
 def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
-    """Draw the run with most friction as it is, the others as ranges, and the flow as two bounds."""
+    """Draw the run with most friction as it is, the others as ranges, and the flow as two
+    bounds.
+    """
     axes.plot(
-        flow["mu_time_swing"], flow["theta_swing"], color=REPORT, lw=0.8,
+        flow["mu_time_swing"],
+        flow["theta_swing"],
+        color=REPORT,
+        lw=0.8,
         label=rf"run, $\mu$ = {float(flow['friction'][0]):g} s/m",
-    )  # fmt: skip
+    )
     for k, color in zip(range(1, flow.sizes["friction"]), (UNILATERAL, CONVERGED), strict=False):
         mu = float(flow["friction"][k])
         axes.fill_between(
-            flow["mu_time"], flow["run_low"][k], flow["run_high"][k], color=color, alpha=0.4, lw=0.9,
+            flow["mu_time"],
+            flow["run_low"][k],
+            flow["run_high"][k],
+            color=color,
+            alpha=0.4,
+            lw=0.9,
             label=rf"run, $\mu$ = {mu:g} s/m: range of the nutation",
-        )  # fmt: skip
+        )
     for bound, name in (("flow_low", "limit of small friction: range"), ("flow_high", None)):
         axes.plot(flow["mu_time"], flow[bound], color=INK, lw=1.1, ls=(0, (5, 3)), label=name)
 
 
 @mark.drawn(5.6, 2, 1, sharex=True, height_ratios=[1.45, 1])
 def exponent_figure(above: Axes, below: Axes, times: xr.Dataset) -> None:
-    """Return mu times the time to turn over against friction, in several senses, and the local exponent."""
+    """Return mu times the time to turn over against friction, in several senses, and the local
+    exponent.
+    """
     mu = times["mu_flip"].values
     limits = (float(times["limit_arrival"]), float(times["limit_crossing"]))
     for limit, color in zip(limits, (CONVERGED, UNILATERAL), strict=True):
@@ -56,7 +72,13 @@ def exponent_figure(above: Axes, below: Axes, times: xr.Dataset) -> None:
         mark.note(above, f"limit {limit:.4f}", (mu[0], limit), aside, color, ha="left")
     for name, color, line, size, label in (
         ("settling_time", "#B4BDC6", "-o", 6.5, "stays within 0.01 rad of the end"),
-        ("arrival_time_window", REPORT, "s", 5.5, "the report's: within 0.01 rad of the tilt at 20 s"),
+        (
+            "arrival_time_window",
+            REPORT,
+            "s",
+            5.5,
+            "the report's: within 0.01 rad of the tilt at 20 s",
+        ),
         ("arrival_time_end", CONVERGED, "-o", 3.5, "first within 0.01 rad of the end"),
         ("crossing_time", UNILATERAL, "-o", 3.5, r"first tilt of more than $\pi/2$"),
     ):
@@ -69,13 +91,18 @@ def exponent_figure(above: Axes, below: Axes, times: xr.Dataset) -> None:
     _exponents(below, times)
     for axes in (above, below):
         axes.axvspan(0.2, 1.0, color=REPORT, alpha=0.09, lw=0)
-    mark.note(below, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X)
+    mark.note(
+        below, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X
+    )
 
 
 def _exponents(axes: Axes, times: xr.Dataset) -> None:
     mu = times["mu_flip"].values
     axes.axhline(-1, color=MUTED, lw=0.9, ls=DASHED)
-    for name, color, width in (("arrival_time_end", CONVERGED, 0.7), ("crossing_time", UNILATERAL, 1.6)):
+    for name, color, width in (
+        ("arrival_time_end", CONVERGED, 0.7),
+        ("crossing_time", UNILATERAL, 1.6),
+    ):
         axes.plot(mu, times[f"exponent_{name}"], "-o", color=color, ms=3.5, lw=width)
     axes.set_xscale("log")
     axes.set_xlim(mu[0] / 1.12, mu[-1] * 1.12)
@@ -86,7 +113,9 @@ def _exponents(axes: Axes, times: xr.Dataset) -> None:
 
 @mark.drawn(5.0, 2, 1, sharex=True)
 def balance_figure(tilt: Axes, ratio: Axes, run: xr.Dataset) -> None:
-    """Return how near a run is to gyroscopic balance, and its tilt within the envelope of its nutation."""
+    """Return how near a run is to gyroscopic balance, and its tilt within the envelope of its
+    nutation.
+    """
     time = run["time_diagnosed"].values
     _within_envelope(tilt, run, 0.9)
     inset = mark.inset(tilt, (0.71, 0.13, 0.28, 0.66))
@@ -107,15 +136,22 @@ def balance_figure(tilt: Axes, ratio: Axes, run: xr.Dataset) -> None:
 def _within_envelope(axes: Axes, run: xr.Dataset, width: float) -> None:
     time = run["time_diagnosed"].values
     axes.fill_between(
-        time, run["envelope_low"], run["envelope_high"], color=REPORT, alpha=0.35, lw=0,
+        time,
+        run["envelope_low"],
+        run["envelope_high"],
+        color=REPORT,
+        alpha=0.35,
+        lw=0,
         label="between the turning points on a smooth table",
-    )  # fmt: skip
+    )
     axes.plot(time, run["theta_diagnosed"], color=CONVERGED, lw=width, label="run")
 
 
 @mark.drawn(4.9, 2, 3, sharex=True, lettered=False)
 def potential_figure(panels: Any, run: xr.Dataset) -> None:
-    """Return the effective potential of the tilt at several instants of a run, with the energy level."""
+    """Return the effective potential of the tilt at several instants of a run, with the energy
+    level.
+    """
     tilt = run["well_theta"].values
     for k, axes in enumerate(panels.flat):
         well, level = 1e3 * run["potential"][k].values, 1e3 * float(run["level"][k])
@@ -130,6 +166,8 @@ def potential_figure(panels: Any, run: xr.Dataset) -> None:
         axes.set_title(f"t = {float(run['instant'][k]):g} s", weight="normal", size=10)
     for axes in panels[1]:
         axes.set_xlabel(mark.TILT)
-        axes.xaxis.set_ticks([0, np.pi / 4, np.pi / 2, 3 * np.pi / 4, np.pi], ["0", "", "π/2", "", "π"])
+        axes.xaxis.set_ticks(
+            [0, np.pi / 4, np.pi / 2, 3 * np.pi / 4, np.pi], ["0", "", "π/2", "", "π"]
+        )
     for axes in panels[:, 0]:
         axes.set_ylabel("effective potential (mJ)")

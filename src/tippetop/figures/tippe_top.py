@@ -1,4 +1,6 @@
-"""The toy itself, in three stages of turning over (the report's Fig. 1), seen along parallel rays."""
+"""The toy itself, in three stages of turning over (the report's Fig. 1), seen along parallel
+rays.
+"""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -65,10 +67,18 @@ def _stage(axes: Axes, x: float, tilt: float, view: Array) -> None:
     draw.label(axes, (x - 1.25, mass[1] + 0.05), "CM", size=9.5, va="bottom")
 
 
-def _spin(axes: Axes, centre: Array, view: Array, height: float = 3.0, radius: float = 0.42) -> None:
-    """Draw the vertical through the sphere's centre and an arrow turning about it, the far part behind it."""
+def _spin(
+    axes: Axes, centre: Array, view: Array, height: float = 3.0, radius: float = 0.42
+) -> None:
+    """Draw the vertical through the sphere's centre and an arrow turning about it, the far part
+    behind it.
+    """
     ends = centre * [1, 1, 0] + [[0, 0, centre[2]], [0, 0, height + 0.4]]
-    ring = draw.arc([1, 0, 0], [0, 1, 0], np.radians(325), np.radians(25)) * radius + centre * [1, 1, 0]
+    ring = draw.arc([1, 0, 0], [0, 1, 0], np.radians(325), np.radians(25)) * radius + centre * [
+        1,
+        1,
+        0,
+    ]
     ring[:, 2] = height
     draw.arrow(axes, ring @ view, ACCENT, width=1.8, head=0.2, z=2.5)
     draw.line(axes, ends @ view, MUTED, 1.0, dashed=True, z=2.4)
@@ -92,12 +102,14 @@ def _picture(toy: Toy, frame: Array, view: Array, pixels: int = 300, oversample:
 
 
 def _bled(blocks: Array) -> Array:
-    """Undo the averaging of colour with empty space, and spread the edge's colour one pixel outwards.
+    """Undo the averaging of colour with empty space, and spread the edge's colour one pixel
+    outwards.
 
     Without it, a viewer that interpolates the picture draws a dark fringe around it.
     """
     around = sum(
-        (np.roll(blocks, shift, axis) for axis in (0, 1) for shift in (-1, 1)), np.zeros_like(blocks)
+        (np.roll(blocks, shift, axis) for axis in (0, 1) for shift in (-1, 1)),
+        np.zeros_like(blocks),
     )
     source = np.where(blocks[..., 3:] > 0, blocks, around)
     blocks[..., :3] = source[..., :3] / np.maximum(source[..., 3:], 1e-9)
@@ -105,7 +117,9 @@ def _bled(blocks: Array) -> Array:
 
 
 def _shadow(offset: float, spread: float, strength: float, pixels: int = 160) -> Array:
-    """Return a soft round shadow (RGBA) on the square of half width 2, darkest `offset` to the right."""
+    """Return a soft round shadow (RGBA) on the square of half width 2, darkest `offset` to the
+    right.
+    """
     grid = np.linspace(-2, 2, pixels)
     x, y = np.meshgrid(grid, grid)
     rgba = np.zeros((pixels, pixels, 4))

@@ -1,6 +1,7 @@
 """The toy met by rays, and lit: what pictures of it made without a browser are drawn with.
 
-Lengths are in sizes of the toy; points and directions are in the body's frame, about its centre of mass.
+Lengths are in sizes of the toy; points and directions are in the body's frame, about its centre of
+mass.
 """
 
 from collections.abc import Iterator
@@ -30,7 +31,9 @@ FAR = 1e9
 
 
 class _Quadric(NamedTuple):
-    """Where w (x^2 + y^2) = p + q z + s z^2, between two heights and two distances from the axis."""
+    """Where w (x^2 + y^2) = p + q z + s z^2, between two heights and two distances from the
+    axis.
+    """
 
     w: float
     p: float
@@ -128,7 +131,9 @@ class Toy:
             for distance in surface.meet(o, d):
                 nearer = np.nonzero(distance < nearest)
                 nearest[nearer] = distance[nearer]
-                normals[nearer] = surface.normal(o[nearer] + distance[nearer][..., None] * d[nearer])
+                normals[nearer] = surface.normal(
+                    o[nearer] + distance[nearer][..., None] * d[nearer]
+                )
                 parts[nearer] = part
         length = np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
         return Hits(nearest, normals / length, parts)
@@ -154,12 +159,15 @@ class Toy:
         half /= np.linalg.norm(half, axis=-1, keepdims=True)
         gloss = 0.4 * np.clip(np.einsum("...i,...i", normal, half), 0, 1) ** 40
         return np.asarray(
-            self.paint(point, hits.parts) * (0.42 + 0.28 * sky + 0.42 * sun)[..., None] + gloss[..., None]
+            self.paint(point, hits.parts) * (0.42 + 0.28 * sky + 0.42 * sun)[..., None]
+            + gloss[..., None]
         )
 
 
 def _turned(curve: NDArray[np.float64]) -> Iterator[_Quadric]:
-    """The surface that a smooth line turns to, with the body on its left: as few quadrics as it takes."""
+    """The surface that a smooth line turns to, with the body on its left: as few quadrics as it
+    takes.
+    """
     rises = np.sign(np.where(np.abs(np.diff(curve[:, 1])) < LEVEL, 0.0, np.diff(curve[:, 1])))
     turns = np.flatnonzero(np.diff(rises)) + 1
     if len(turns):

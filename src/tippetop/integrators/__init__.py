@@ -1,4 +1,6 @@
-"""Integrators by name: compiled by heyoka and by numba, collocation, SciPy's, and Runge and Kutta's."""
+"""Integrators by name: compiled by heyoka and by numba, collocation, SciPy's, and Runge and
+Kutta's.
+"""
 
 from importlib.util import find_spec
 
@@ -48,7 +50,8 @@ def make_integrator(
     Parameters
     ----------
     name
-        One of `NAMES`; None for the best installed, which "collocation" relieves where the motion is stiff.
+        One of `NAMES`; None for the best installed, which "collocation" relieves where the motion
+        is stiff.
     tolerance
         Relative error per step; None for the integrator's own default. Not for "rk4".
     step
@@ -71,7 +74,9 @@ def make_integrator(
         raise InvalidInput("integrator", name, one_of(name, NAMES))
     if name == "rk4":
         if tolerance is not None:
-            raise InvalidInput("tolerance", tolerance, "none with rk4, whose error follows from its step")
+            raise InvalidInput(
+                "tolerance", tolerance, "none with rk4, whose error follows from its step"
+            )
         if step is None or not (is_number(step) and step > 0):
             raise InvalidInput(
                 "step",
@@ -90,7 +95,10 @@ def make_integrator(
 
 def _adaptive(name: str, tolerance: float) -> Integrator:
     """An integrator that chooses its steps; they are imported when asked for, which is slow."""
-    for needing, package, there in (("taylor", "heyoka", has_taylor), ("compiled", "numba", has_numba)):
+    for needing, package, there in (
+        ("taylor", "heyoka", has_taylor),
+        ("compiled", "numba", has_numba),
+    ):
         if name == needing and not there():
             others = ", ".join(other for other in NAMES if other != name)
             raise Unavailable(

@@ -1,4 +1,6 @@
-"""The seam behind which every integrator stands: equations and guards in, arcs of the solution out."""
+"""The seam behind which every integrator stands: equations and guards in, arcs of the solution
+out.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -19,7 +21,9 @@ Rows: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar
 """Several of them."""
 
 Expansion: TypeAlias = Callable[[Sequence[float]], NDArray[np.float64]]
-"""From a state to the coefficients of the solution from there, in powers of time, each number's in a row."""
+"""From a state to the coefficients of the solution from there, in powers of time, each number's in
+a row.
+"""
 
 TOLERANCES = {
     "taylor": 2.0**-52,
@@ -31,13 +35,17 @@ TOLERANCES = {
     "bdf": 1e-9,
     "lsoda": 1e-11,
 }
-"""The integrators that choose their steps, and the relative error per step of each where nobody says."""
+"""The integrators that choose their steps, and the relative error per step of each where nobody
+says.
+"""
 
 LEAST_TOLERANCE = 2.3e-14
 """Below this no solver but Taylor's honours a relative tolerance."""
 
 NOT_FINITE = "the solution is no longer finite"
-"""Why an integrator gives up where numbers grow beyond all bounds: its last state then means nothing."""
+"""Why an integrator gives up where numbers grow beyond all bounds: its last state then means
+nothing.
+"""
 
 NO_START, NO_STEP = "the motion is singular from the start", "the step size fell to nothing"
 """Why it finds no step at all, and none any more."""
@@ -47,7 +55,8 @@ NO_START, NO_STEP = "the motion is singular from the start", "the step size fell
 class Guard:
     """A condition that ends a motion: the first time its value falls through zero from above.
 
-    It may start at zero, or below by rounding, and rise: however soon it falls again, that ends the motion.
+    It may start at zero, or below by rounding, and rise: however soon it falls again, that ends the
+    motion.
     """
 
     name: str
@@ -65,7 +74,8 @@ class Motion:
     """Autonomous equations of motion y' = rates(y, parameters), and what ends them."""
 
     rates: Rows
-    """Time derivative of the state, in plain operators where a compiled integrator is to take it."""
+    """Time derivative of the state, in plain operators where a compiled integrator is to take it.
+    """
     size: int
     """How many numbers the state has."""
     parameters: int
@@ -90,7 +100,8 @@ class Arc:
     """Why the integrator gave up there, or None."""
     steps: int = 0
     evaluations: int = 0
-    """Steps accepted, and evaluations of the right-hand side (for the Taylor method: expansions)."""
+    """Steps accepted, and evaluations of the right-hand side (for the Taylor method: expansions).
+    """
     method: "Integrator | None" = None
     """Who took them, if it is not the integrator that was asked."""
 
@@ -104,7 +115,9 @@ class Integrator(Protocol):
 
     @property
     def caution(self) -> str:
-        """What is to be said of a run, however it ended; nothing where errors are held in every step."""
+        """What is to be said of a run, however it ended; nothing where errors are held in every
+        step.
+        """
 
     def integrate(
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
@@ -123,13 +136,16 @@ class Integrator(Protocol):
         Yields
         ------
         Arc
-            Arcs that join, none longer than fits in memory; the last reaches the end, or names the guard that
-            ended the motion, located to the integrator's tolerance, or says why there is no more.
+            Arcs that join, none longer than fits in memory; the last reaches the end, or names the
+            guard that ended the motion, located to the integrator's tolerance, or says why there is
+            no more.
         """
 
 
 def require_tolerance(tolerance: Any, name: str) -> None:
-    """Refuse, with `InvalidInput`, a relative error per step that the integrator of a name cannot keep to."""
+    """Refuse, with `InvalidInput`, a relative error per step that the integrator of a name cannot
+    keep to.
+    """
     least = TOLERANCES["taylor"] if name == "taylor" else LEAST_TOLERANCE
     if not (is_number(tolerance) and least <= tolerance < 1):
         raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")

@@ -1,4 +1,6 @@
-"""The classical Runge-Kutta method of fourth order with fixed step, as in the report's Appendix B."""
+"""The classical Runge-Kutta method of fourth order with fixed step, as in the report's Appendix
+B.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -18,11 +20,15 @@ class ClassicalRK4(StepByStep):
     step: float
     """Step size, in the units of time of the motion."""
     name: str = field(default="rk4", init=False)
-    caution: ClassVar[str] = "How far fixed steps are off is not known: compare a run of half the step."
+    caution: ClassVar[str] = (
+        "How far fixed steps are off is not known: compare a run of half the step."
+    )
     degree: ClassVar[int] = 5
     """The polynomials' error is of higher order than the method's."""
 
-    def steps(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Iterator[Accepted | str]:
+    def steps(
+        self, rates: RightHandSide, start: tuple[float, Array], end: float
+    ) -> Iterator[Accepted | str]:
         """The steps; see `StepByStep`."""
         time, state = start
         steps = max(1, int(np.ceil((end - start[0]) / self.step - 1e-9)))

@@ -1,9 +1,10 @@
 """Collocation at Radau's points: an implicit method of high order, for stiff motions.
 
-A step's solution is the polynomial that starts where the step does and satisfies the equations of motion at
-the points, the last of which is the step's end: Radau IIA, which damps what stiff friction damps however long
-the step (Hairer and Wanner 1996, Solving Ordinary Differential Equations II, IV.5 and IV.8). Its coefficients
-in Chebyshev's polynomials fall off as fast as the motion is smooth, and say how good a solution it is.
+A step's solution is the polynomial that starts where the step does and satisfies the equations of
+motion at the points, the last of which is the step's end: Radau IIA, which damps what stiff
+friction damps however long the step (Hairer and Wanner 1996, Solving Ordinary Differential
+Equations II, IV.5 and IV.8). Its coefficients in Chebyshev's polynomials fall off as fast as the
+motion is smooth, and say how good a solution it is.
 """
 
 from collections.abc import Iterator
@@ -26,15 +27,19 @@ PARTS = 4
 """Parts of a step, each with a polynomial that stands for it in a solution."""
 
 LAST, SMOOTH = 2, 8
-"""How many of the last coefficients tell the error of a step, and how many of the first guess at the next."""
+"""How many of the last coefficients tell the error of a step, and how many of the first guess at
+the next.
+"""
 
 FLAT, FALLING = 0.1, (2, 6)
-"""Part of those before them that the last coefficients are at least where they fall off no more; and which of
-the first tell how they do."""
+"""Part of those before them that the last coefficients are at least where they fall off no more;
+and which of the first tell how they do.
+"""
 
 NEWTON, SETTLED, ROUGH = 10, 1e-15, 1e-9
-"""Newton's iterations; the correction, relatively, after which there is none; and the largest correction by
-rounding alone, which does not get smaller any more."""
+"""Newton's iterations; the correction, relatively, after which there is none; and the largest
+correction by rounding alone, which does not get smaller any more.
+"""
 
 SLOWER, FASTER, SAFETY = 0.25, 3.0, 0.8
 """How much shorter or longer the next step may be, and how much shorter it is than it should."""
@@ -60,7 +65,8 @@ class Points(NamedTuple):
     integrals: Array
     """Integrals, from 0 to each point, of Lagrange's polynomials on the points, shape (s, s)."""
     transform: Array
-    """From values at the places to coefficients in Chebyshev's polynomials, shape (s + 1, s + 1)."""
+    """From values at the places to coefficients in Chebyshev's polynomials, shape (s + 1, s + 1).
+    """
 
 
 @lru_cache
@@ -70,7 +76,9 @@ def radau_points(stages: int = STAGES) -> Points:
     points = np.append(0.5 + 0.5 * inner, 1.0)
     legendre = np.polynomial.legendre
     values = legendre.legvander(2.0 * points - 1.0, stages - 1)
-    sums = [legendre.legval(2.0 * points - 1.0, legendre.legint(row, lbnd=-1)) for row in np.eye(stages)]
+    sums = [
+        legendre.legval(2.0 * points - 1.0, legendre.legint(row, lbnd=-1)) for row in np.eye(stages)
+    ]
     integrals = np.asarray(0.5 * np.array(sums).T @ np.linalg.inv(values), dtype=float)
     places = np.append(0.0, points)
     transform = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * places - 1.0, stages))
@@ -84,11 +92,14 @@ class Collocation(StepByStep):
     tolerance: float = TOLERANCES["collocation"]
     """Relative and absolute size of the last coefficients of a step's polynomials, at most."""
     shortest: float = 0.0
-    """The method gives up where its steps would be shorter than this, and begins with such steps."""
+    """The method gives up where its steps would be shorter than this, and begins with such steps.
+    """
     name: str = field(default="collocation", init=False)
     degree: ClassVar[int] = 11
 
-    def steps(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Iterator[Accepted | str]:
+    def steps(
+        self, rates: RightHandSide, start: tuple[float, Array], end: float
+    ) -> Iterator[Accepted | str]:
         """The steps; see `StepByStep`."""
         (time, state), before, slope = start, None, rates(*start)
         if not np.all(np.isfinite(slope)):
@@ -129,7 +140,8 @@ class Collocation(StepByStep):
         if error > self.tolerance:
             return None, max(SAFETY * (self.tolerance / error) ** (1.0 / STAGES), SLOWER)
         if error > FLAT * float(np.max(sizes[-2 * LAST : -LAST])):
-            # Rounding, that is, in stiff motion: the first ones tell how they would fall off but for that.
+            # Rounding, that is, in stiff motion: the first ones tell how they would fall off but
+            # for that.
             (low, a), (high, b) = ((k, float(sizes[k])) for k in FALLING)
             error = min(error, b * (b / a) ** ((STAGES - high) / (high - low)) + TINY)
         return step, min(SAFETY * (self.tolerance / error) ** (1.0 / STAGES), FASTER)
@@ -152,7 +164,9 @@ class Step:
         return np.asarray(chebval(self._place(time), self.terms)).T
 
     def beyond(self, times: Array) -> Array:
-        """What the polynomial, but for its last terms, says of times after the step, shape (m, size)."""
+        """What the polynomial, but for its last terms, says of times after the step, shape (m,
+        size).
+        """
         return np.asarray(chebval(self._place(times), self.terms[:SMOOTH])).T
 
     def _place(self, time: Any) -> Any:
@@ -160,7 +174,9 @@ class Step:
 
 
 def solved(rates: RightHandSide, start: Array, span: float, guess: Array) -> Array | None:
-    """The states at the points of a step, shape (s, size), by Newton's method; None if it does not settle."""
+    """The states at the points of a step, shape (s, size), by Newton's method; None if it does not
+    settle.
+    """
     integrals, size, states, last = span * radau_points().integrals, len(start), guess, np.inf
     for _ in range(NEWTON):
         values, slopes = rates.linearized(states)

@@ -34,7 +34,9 @@ ADVANCE = types.UniTuple(types.int64, 3)(  # type: ignore[no-untyped-call]
     *[types.int64] * 2,
 )
 WITHIN = types.void(ROW, types.int64, types.float64, ROW)
-"""What the functions of `dormand_prince` take; a motion's functions are the addresses of their code."""
+"""What the functions of `dormand_prince` take; a motion's functions are the addresses of their
+code.
+"""
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,9 @@ def _compiled(motion: Motion) -> Machinery | None:
     method = _method(width)
     addresses = (one["rates"].address,), (one["guards"].address, several["guards"].address)
     numbers = len(motion.guards), width
-    return Machinery(method["advance"], method["within"], *addresses, *numbers, one["guards"], several)
+    return Machinery(
+        method["advance"], method["within"], *addresses, *numbers, one["guards"], several
+    )
 
 
 @cache

@@ -1,4 +1,6 @@
-"""Solutions as polynomials in time, one a step: what every integrator gives, whatever its method."""
+"""Solutions as polynomials in time, one a step: what every integrator gives, whatever its
+method.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -19,26 +21,32 @@ NEWTON = 6
 """Improvements of a time at which a component has some value."""
 
 EXACT = 3e-9
-"""Such an improvement, as part of a step, after which the next one, of the order of its square, is none."""
+"""Such an improvement, as part of a step, after which the next one, of the order of its square, is
+none.
+"""
 
 SHORTEST = 1e-8
 """The last of the steps that such a component's values make, relatively."""
 
 ALONE = 2**17
-"""Multiplications of a product of matrices that one thread does: several wait for each other, and for other
-programs."""
+"""Multiplications of a product of matrices that one thread does: several wait for each other, and
+for other programs.
+"""
 
 FEW = 64
 """Numbers whose powers are made one after another, and not all at once."""
 
 MANY = 1024
-"""Polynomials that are evaluated at a time, so that their coefficients stay in the processor's cache."""
+"""Polynomials that are evaluated at a time, so that their coefficients stay in the processor's
+cache.
+"""
 
 KEPT = 2**24
-"""Size of memory, in bytes, that an allocator is to keep for the next arrays where these are freed."""
+"""Size of memory, in bytes, that an allocator is to keep for the next arrays where these are freed.
+"""
 
-# That of GNU's C library gives all back to the system that is larger than the largest it has seen freed, and
-# fetching it again page by page takes a third as long as a run.
+# That of GNU's C library gives all back to the system that is larger than the largest it has seen
+# freed, and fetching it again page by page takes a third as long as a run.
 np.empty(KEPT, dtype=np.uint8)
 
 
@@ -49,8 +57,9 @@ class DenseSolution:
     knots: Array
     """Ends of the steps, increasing, shape (k + 1,)."""
     terms: Array
-    """Coefficients in increasing powers of the part of a step that has passed, shape (k, size, degree +
-    1)."""
+    """Coefficients in increasing powers of the part of a step that has passed, shape (k, size,
+    degree + 1).
+    """
 
     @property
     def size(self) -> int:
@@ -84,7 +93,8 @@ class DenseSolution:
         return DenseSolution(knots, self.terms)
 
     def knots_of(self, number: int, end: float) -> list[float]:
-        """Values of a component that grows, where every other step begins before it reaches `end`; and `end`.
+        """Values of a component that grows, where every other step begins before it reaches `end`;
+        and `end`.
 
         A step is short beside the radius of convergence, and two still are.
         """
@@ -113,8 +123,12 @@ class DenseSolution:
         return cls(np.array([time]), np.empty((0, size, 1)))
 
     @classmethod
-    def of_steps(cls, knots: Array, terms: Array, size: int, count: int, width: int) -> "DenseSolution":
-        """The first of some steps, with all coefficients in a row, beside those of further numbers."""
+    def of_steps(
+        cls, knots: Array, terms: Array, size: int, count: int, width: int
+    ) -> "DenseSolution":
+        """The first of some steps, with all coefficients in a row, beside those of further
+        numbers.
+        """
         steps = terms.reshape(len(knots) - 1, width, -1)
         return cls(knots[: count + 1].copy(), steps[:count, :size].copy())
 
@@ -122,7 +136,9 @@ class DenseSolution:
     def of_rows(
         cls, knots: Sequence[float], start: Sequence[float], rows: Sequence[Array]
     ) -> "DenseSolution":
-        """Steps whose coefficients from the first on lie in rows, from the numbers with which they begin."""
+        """Steps whose coefficients from the first on lie in rows, from the numbers with which they
+        begin.
+        """
         later = np.concatenate(rows).reshape(len(knots) - 1, len(start), -1)
         terms = np.empty((*later.shape[:2], later.shape[2] + 1))
         terms[:, :, 1:], terms[0, :, 0] = later, start
@@ -136,7 +152,9 @@ class DenseSolution:
         if len(parts) == 1:
             return parts[0]
         knots = np.concatenate([parts[0].knots, *(part.knots[1:] for part in parts[1:])])
-        terms = np.zeros((len(knots) - 1, parts[0].terms.shape[1], max(p.terms.shape[2] for p in parts)))
+        terms = np.zeros(
+            (len(knots) - 1, parts[0].terms.shape[1], max(p.terms.shape[2] for p in parts))
+        )
         first = 0
         for part in parts:
             terms[first : first + len(part.terms), :, : part.terms.shape[2]] = part.terms
@@ -174,7 +192,9 @@ class DenseSolution:
         places, transform, to_powers = chebyshev(degree)
         knots = np.asarray(knots, dtype=float)
         rows = function((knots[:-1, None] + places * np.diff(knots)[:, None]).ravel())
-        values = table(rows, places.size * (len(knots) - 1)).reshape(len(knots) - 1, degree + 1, len(rows))
+        values = table(rows, places.size * (len(knots) - 1)).reshape(
+            len(knots) - 1, degree + 1, len(rows)
+        )
         # Through Chebyshev's polynomials, whose coefficients fall off, so that no digits are lost.
         return cls(knots, np.swapaxes(to_powers @ (transform @ values), 1, 2))
 
@@ -192,8 +212,8 @@ class DenseSolution:
         Parameters
         ----------
         moving
-            Takes k times, and returns the numbers, their rates, and rates of those: n rows each, of k
-            values or of one for all.
+            Takes k times, and returns the numbers, their rates, and rates of those: n rows each, of
+            k values or of one for all.
         frequency
             That is w.
         knots
@@ -207,9 +227,15 @@ class DenseSolution:
         begin, rate, second = (table(rows, len(ends) - 1) for rows in moving(ends[:-1]))
         span = ends[1] - ends[0]
         terms = np.zeros((len(begin), begin.shape[1], degree + 1))
-        terms[:, :, 0], terms[:, :, 1], terms[:, :, 2] = begin, span * rate, 0.5 * span * span * second
+        terms[:, :, 0], terms[:, :, 1], terms[:, :, 2] = (
+            begin,
+            span * rate,
+            0.5 * span * span * second,
+        )
         for k in range(3, degree + 1):
-            terms[:, :count, k] = -((frequency * span) ** 2) / (k * (k - 1)) * terms[:, :count, k - 2]
+            terms[:, :count, k] = (
+                -((frequency * span) ** 2) / (k * (k - 1)) * terms[:, :count, k - 2]
+            )
         return cls(ends, terms)
 
 
@@ -239,7 +265,9 @@ def parts_of(times: Array, starts: Array, ends: Array) -> Array:
 
 
 def evaluated(terms: Array, which: NDArray[np.intp], parts: Array) -> Array:
-    """Values of polynomials, terms of shape (k, size, degree + 1), at one place each, shape (m, size)."""
+    """Values of polynomials, terms of shape (k, size, degree + 1), at one place each, shape (m,
+    size).
+    """
     found = np.empty((len(parts), terms.shape[1]))
     for first in range(0, len(parts), MANY):
         here = slice(first, first + MANY)
@@ -271,7 +299,9 @@ def powers(numbers: Array, count: int) -> Array:
 
 @lru_cache
 def chebyshev(degree: int) -> tuple[Array, Array, Array]:
-    """Chebyshev's points in [0, 1], and the matrices from values there to his coefficients and to powers."""
+    """Chebyshev's points in [0, 1], and the matrices from values there to his coefficients and to
+    powers.
+    """
     size = degree + 1
     angles = np.pi * (np.arange(size) + 0.5) / size
     places: Array = 0.5 - 0.5 * np.cos(angles)
@@ -284,6 +314,8 @@ def chebyshev(degree: int) -> tuple[Array, Array, Array]:
     to_powers = np.zeros((size, size))
     for k in range(size):
         basis = np.polynomial.Chebyshev.basis(k, domain=[0.0, 1.0])
-        terms = basis.convert(kind=np.polynomial.Polynomial, domain=[-1.0, 1.0], window=[-1.0, 1.0]).coef
+        terms = basis.convert(
+            kind=np.polynomial.Polynomial, domain=[-1.0, 1.0], window=[-1.0, 1.0]
+        ).coef
         to_powers[: len(terms), k] = terms
     return places, transform, to_powers

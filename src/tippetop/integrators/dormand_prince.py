@@ -1,8 +1,8 @@
 """Steps of Dormand and Prince's method of order 8(5,3), in Python that numba compiles.
 
-Hairer, Norsett and Wanner 1993, Solving Ordinary Differential Equations I, section II.10: order, error
-estimate, step sizes and dense output are as in SciPy's DOP853. Sums are compensated: what rounding takes from
-the state in a step is given back in the next.
+Hairer, Norsett and Wanner 1993, Solving Ordinary Differential Equations I, section II.10: order,
+error estimate, step sizes and dense output are as in SciPy's DOP853. Sums are compensated: what
+rounding takes from the state in a step is given back in the next.
 """
 
 import math
@@ -23,7 +23,9 @@ polynomials: Any = None
 """What `tableau.written_out` writes, so that numbers are in it and no loops over them."""
 
 REACHED, FULL, SUSPECT, STUCK, SINGULAR = range(5)
-"""How `advance` ends: at the end, out of room, after a step in which a guard may fall, or unable to go on."""
+"""How `advance` ends: at the end, out of room, after a step in which a guard may fall, or unable to
+go on.
+"""
 
 SAFETY, LEAST_FACTOR, MOST_FACTOR = 0.9, 0.2, 10.0
 """How much of the step that the error allows is taken, and how much steps may differ."""
@@ -32,8 +34,9 @@ NOTHING = 2e-15
 """A step shorter than this part of the time does not move it."""
 
 EARLIEST, RISEN = 0.5**40, 1e-15
-"""Where else a guard is looked at that starts at zero: one place is within any rebound; and what it must
-reach there to have risen: less is rounding."""
+"""Where else a guard is looked at that starts at zero: one place is within any rebound; and what it
+must reach there to have risen: less is rounding.
+"""
 
 ROWS = 21
 """Stages of a step, 16, two estimates of its error, and room for three states."""
@@ -45,9 +48,10 @@ LOOKS = 8
 """Parts of a step at whose ends guards are looked at."""
 
 STEADY, TIGHT = 1.25, 1e-6
-"""What the greatest of a guard's values at the ends and the middle of a step is below, in units of the least,
-if it is looked at nowhere else; and the tolerance up to which that will do: such steps are a small part of
-what swings, those of a loose one are not."""
+"""What the greatest of a guard's values at the ends and the middle of a step is below, in units of
+the least, if it is looked at nowhere else; and the tolerance up to which that will do: such steps
+are a small part of what swings, those of a loose one are not.
+"""
 
 
 def evaluate(function: Compiled, y: Array, p: Array, out: Array) -> None:
@@ -61,12 +65,19 @@ def fixed(array: Array) -> Array:
 
 
 def look(
-    guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array, tight: bool
+    guards: Compiled,
+    p: Array,
+    terms: Array,
+    first: int,
+    y: Array,
+    values: Array,
+    room: Array,
+    tight: bool,
 ) -> bool:
     """Put the guards' values at the looks of a step into the rows of values after the first.
 
-    False where they vary so little at a tight tolerance that none falls: only those at its middle and its end
-    are there then.
+    False where they vary so little at a tight tolerance that none falls: only those at its middle
+    and its end are there then.
     """
     for number in (LOOKS // 2, LOOKS):
         within(terms, first, number / LOOKS, y)
@@ -99,7 +110,11 @@ def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array, size: i
         first, second = k[16, i] / scale, k[17, i] / scale
         fifth += first * first
         third += second * second
-    return 0.0 if fifth == 0.0 and third == 0.0 else h * fifth / math.sqrt((fifth + 0.01 * third) * size)
+    return (
+        0.0
+        if fifth == 0.0 and third == 0.0
+        else h * fifth / math.sqrt((fifth + 0.01 * third) * size)
+    )
 
 
 def eighth_root(number: float) -> float:
@@ -127,9 +142,18 @@ def measure(a: Array, b: Array, y: Array, tolerance: Array, size: int) -> float:
 
 
 def first_step(
-    rates: Compiled, p: Array, y: Array, k: Array, place: Array, span: float, tolerance: Array, size: int
+    rates: Compiled,
+    p: Array,
+    y: Array,
+    k: Array,
+    place: Array,
+    span: float,
+    tolerance: Array,
+    size: int,
 ) -> float:
-    """A step to begin with, whose error is about right, and the rates in k[0]; -1 where there are none."""
+    """A step to begin with, whose error is about right, and the rates in k[0]; -1 where there are
+    none.
+    """
     evaluate(rates, y, p, k[0])
     for i in range(size):
         if not math.isfinite(k[0, i]):
@@ -150,14 +174,18 @@ def within(terms: Array, first: int, part: float, y: Array) -> None:
     """Put the state at a part of a step, whose coefficients are from `first` on, in y."""
     at = first
     for i in range(len(y)):
-        high = terms[at + 4] + part * (terms[at + 5] + part * (terms[at + 6] + part * terms[at + 7]))
+        high = terms[at + 4] + part * (
+            terms[at + 5] + part * (terms[at + 6] + part * terms[at + 7])
+        )
         low = terms[at + 2] + part * (terms[at + 3] + part * high)
         y[i] = terms[at] + part * (terms[at + 1] + part * low)
         at += POWERS
 
 
 def may_fall(values: Array, guard: int) -> bool:
-    """Whether a guard with these values at the looks falls through zero, or may dip below it in between."""
+    """Whether a guard with these values at the looks falls through zero, or may dip below it in
+    between.
+    """
     least, most = values[0, guard], values[0, guard]
     for i in range(1, LOOKS + 1):
         least = min(least, values[i, guard])
@@ -176,7 +204,9 @@ def may_fall(values: Array, guard: int) -> bool:
     return False
 
 
-def rises(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, guard: int) -> bool:
+def rises(
+    guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, guard: int
+) -> bool:
     """Whether a guard that starts at zero, or by rounding below, rises before the first look."""
     part = 1.0 / LOOKS
     while part > EARLIEST:
@@ -189,9 +219,18 @@ def rises(guards: Compiled, p: Array, terms: Array, first: int, y: Array, values
 
 
 def suspect(
-    guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, room: Array, tight: bool
+    guards: Compiled,
+    p: Array,
+    terms: Array,
+    first: int,
+    y: Array,
+    values: Array,
+    room: Array,
+    tight: bool,
 ) -> bool:
-    """Whether a guard may fall in a step; values has those at its start, and room for the other looks."""
+    """Whether a guard may fall in a step; values has those at its start, and room for the other
+    looks.
+    """
     if not look(guards, p, terms, first, y, values, room, tight):
         return False
     for guard in range(len(values[0])):
@@ -220,8 +259,8 @@ def take_step(
 ) -> int:
     """Take the longest step whose error is allowed; how many were tried, 0 if none is long enough.
 
-    It brings the time in `span` up to date too, and puts the coefficients of its polynomials into `terms`,
-    from `first` on; the last three are room.
+    It brings the time in `span` up to date too, and puts the coefficients of its polynomials into
+    `terms`, from `first` on; the last three are room.
     """
     time, reach, error, tries = span[0], span[0], 2.0, 0
     while not error < 1.0:
@@ -259,14 +298,15 @@ def advance(
 ) -> tuple[int, int, int]:
     """Take steps from a state, which is brought up to date.
 
-    A motion is rates and guards, so many as `count`, of its state y and parameters p. What rounding has taken
-    from the state so far is in `lost`. The rows of `k`, shape (`ROWS`, n), are room for the rates of the
-    stages, of which the first have been found unless all begins here, and for what is made of them. `span` is
-    the time, the end, and the next step's size, to begin with 0 or minus the least to be tried: time and size
-    are brought up to date. `tolerance` is the relative and the absolute error per step. `knots`, shape
-    (n + 1,), and `terms` are room for the ends of steps and the coefficients of their polynomials, those of
-    each number in a row; `steps` of them are there. The state has `size` numbers; its rows, and those of what
-    is made of it, may be longer, with zeros at the end.
+    A motion is rates and guards, so many as `count`, of its state y and parameters p. What rounding
+    has taken from the state so far is in `lost`. The rows of `k`, shape (`ROWS`, n), are room for
+    the rates of the stages, of which the first have been found unless all begins here, and for what
+    is made of them. `span` is the time, the end, and the next step's size, to begin with 0 or minus
+    the least to be tried: time and size are brought up to date. `tolerance` is the relative and the
+    absolute error per step. `knots`, shape (n + 1,), and `terms` are room for the ends of steps and
+    the coefficients of their polynomials, those of each number in a row; `steps` of them are there.
+    The state has `size` numbers; its rows, and those of what is made of it, may be longer, with
+    zeros at the end.
 
     It returns how many steps are there then, how often the rates were asked for, and how it ended.
     """
@@ -286,7 +326,9 @@ def advance(
         if steps == len(knots) - 1:
             return steps, calls, FULL
         first = steps * len(y) * POWERS
-        tries = take_step(rates, p, y, lost, k, span, tolerance, terms, first, size, moved, new, place)
+        tries = take_step(
+            rates, p, y, lost, k, span, tolerance, terms, first, size, moved, new, place
+        )
         if tries == 0:
             return steps, calls, STUCK
         calls += 12 * tries + 3

@@ -12,8 +12,9 @@ from tippetop.integrators import has_llvm
 from tippetop.integrators.base import Array, Rows
 
 Evaluation: TypeAlias = Callable[[Array, Sequence[Any]], Array]
-"""From n states, shape (size, ...), and parameters, each of a shape that becomes theirs, to numbers of each,
-shape (numbers, ...)."""
+"""From n states, shape (size, ...), and parameters, each of a shape that becomes theirs, to numbers
+of each, shape (numbers, ...).
+"""
 
 
 @lru_cache(maxsize=64)

@@ -17,11 +17,14 @@ Value = Callable[[float], float]
 """A guard as a function of time."""
 
 AT_ONCE = 1e-3
-"""Part of a step: a guard that falls as early, where the solution is wrong by more than the guard, and is
-positive in the end was zero but for that error. To end there would bring the motion nowhere."""
+"""Part of a step: a guard that falls as early, where the solution is wrong by more than the guard,
+and is positive in the end was zero but for that error. To end there would bring the motion nowhere.
+"""
 
 INEXACT = 0.05
-"""How near zero a dip must come, as a part of its depth, for the interpolation not to be trusted about it."""
+"""How near zero a dip must come, as a part of its depth, for the interpolation not to be trusted
+about it.
+"""
 
 
 def first_fall(
@@ -32,9 +35,9 @@ def first_fall(
 ) -> tuple[int, float, Array] | None:
     """The guard that first falls through zero within a step, when, and the state there.
 
-    A guard that dips below zero and returns within the step is found by minimising it between the probes
-    where its probed values bend that way; one that starts at zero, rises, and is back before the first probe,
-    by looking earlier.
+    A guard that dips below zero and returns within the step is found by minimising it between the
+    probes where its probed values bend that way; one that starts at zero, rises, and is back before
+    the first probe, by looking earlier.
 
     Parameters
     ----------
@@ -43,7 +46,8 @@ def first_fall(
     dense
         The solution within the step, as interpolated.
     advance
-        The same by a step of its own: dearer, and exact where the interpolation of a long step is not.
+        The same by a step of its own: dearer, and exact where the interpolation of a long step is
+        not.
     step
         Where it begins and ends.
     """
@@ -109,7 +113,9 @@ def _value_of(guard: GuardValue, state: Array) -> float:
 def brackets(
     probes: Sequence[float], values: Sequence[float], value: Value, exact: Value
 ) -> Iterator[tuple[float, float, Value]]:
-    """The intervals over which the guard falls from positive to not positive, in turn; in which solution."""
+    """The intervals over which the guard falls from positive to not positive, in turn; in which
+    solution.
+    """
     last, least = len(probes) - 1, min(values)
     if least > 0.0 and 2.0 * least >= max(values):
         return  # what is told of dips below is true of none
@@ -120,20 +126,25 @@ def brackets(
     for i in range(last + 1):
         before, after = max(i - 1, 0), min(i + 1, last)
         if values[i] > 0.0 and values[i] <= min(values[before], values[after]):
-            # Between the probes it may be lower, though by little: by less than it falls within two of them.
+            # Between the probes it may be lower, though by little: by less than it falls within two
+            # of them.
             drop = max(values[max(i - 2, 0) : i + 3]) - values[i]
             if values[i] < drop:
                 place, lowest = dip(value, probes[before], probes[after])
                 if lowest <= 0.0:
                     yield probes[before], place, value
-                elif lowest < INEXACT * drop and exact(place) <= 0.0 and exact(probes[before]) > 0.0:
+                elif (
+                    lowest < INEXACT * drop and exact(place) <= 0.0 and exact(probes[before]) > 0.0
+                ):
                     yield probes[before], place, exact
         if values[i] > 0.0 and values[after] <= 0.0:
             yield probes[i], probes[after], value
 
 
 def _early_bracket(start: float, end: float, value: Value) -> tuple[float, float, Value] | None:
-    """The interval before the first probe over which a guard falls that starts at zero and rises."""
+    """The interval before the first probe over which a guard falls that starts at zero and
+    rises.
+    """
     part = EARLIEST
     while part < 1.0 / LOOKS:
         low, high = start + part * (end - start), start + 2.0 * part * (end - start)
@@ -148,10 +159,10 @@ def _polished(
 ) -> tuple[float, Array] | None:
     """Improve the time of a guard's zero with solutions that really end there.
 
-    The solution inside a step is less accurate than at its ends, so the step is taken again with other ends,
-    `advance(time)`, until the secant no longer moves. None if it leads far away, as to where a guard began
-    at zero, or comes to no place: the solution inside the step is wrong by more than the guard is, and that
-    need not fall.
+    The solution inside a step is less accurate than at its ends, so the step is taken again with
+    other ends, `advance(time)`, until the secant no longer moves. None if it leads far away, as to
+    where a guard began at zero, or comes to no place: the solution inside the step is wrong by more
+    than the guard is, and that need not fall.
     """
     start, end = step
     shift = min(1e-4 * (end - start), 0.1 * (guess - start))
@@ -170,6 +181,8 @@ def _polished(
         time, other, beside, theirs = new, time, state, value
         state = advance(new)
         value = _value_of(guard, state)
-    if moved > max(finest, 4e-16 * max(1.0, abs(time))) or abs(time - guess) > 0.5 * (guess - start):
+    if moved > max(finest, 4e-16 * max(1.0, abs(time))) or abs(time - guess) > 0.5 * (
+        guess - start
+    ):
         return None
     return (time, state) if abs(value) <= abs(theirs) else (other, beside)

@@ -1,4 +1,6 @@
-"""Functions that make numbers of several values better again and again, compiled where they can be."""
+"""Functions that make numbers of several values better again and again, compiled where they can
+be.
+"""
 
 import ctypes
 from collections.abc import Callable, Sequence
@@ -13,11 +15,14 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.vectors import Scalar
 
 Iteration: TypeAlias = Callable[[Any, Any, Any, float, int], int]
-"""From room for numbers, parameters, and what is made besides: the numbers are made better, until the last of
-what is made besides is less than something, or no number, or as many times as may be. It tells how many."""
+"""From room for numbers, parameters, and what is made besides: the numbers are made better, until
+the last of what is made besides is less than something, or no number, or as many times as may be.
+It tells how many.
+"""
 
 Improvement: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar], Any], Sequence[Scalar]]
-"""From numbers and parameters, and who spreads and adds up their values, to better ones, and more."""
+"""From numbers and parameters, and who spreads and adds up their values, to better ones, and more.
+"""
 
 
 def room(count: int) -> Any:
@@ -36,7 +41,9 @@ def put_from(numbers: Any, first: int, values: Sequence[float]) -> None:
 
 
 def put_rows(numbers: Any, first: int, values: Sequence[float], abreast: int) -> None:
-    """Put values into room for numbers, from one of them on, each for as many as there are abreast."""
+    """Put values into room for numbers, from one of them on, each for as many as there are
+    abreast.
+    """
     _rows(numbers, abreast)[first : first + len(values)] = np.array(values)[:, None]
 
 

@@ -14,8 +14,9 @@ from tippetop.integrators.sealed_folders import kept_content
 from tippetop.interrupts import heard
 
 EFFORT = 1
-"""How hard the compiler tries, of 3: with 2 it takes an eighth longer, and its code runs no faster; with 0 it
-takes a quarter of the time, and its code a third longer."""
+"""How hard the compiler tries, of 3: with 2 it takes an eighth longer, and its code runs no faster;
+with 0 it takes a quarter of the time, and its code a third longer.
+"""
 
 
 def machine_code(
@@ -58,7 +59,8 @@ def _machine(effort: int = EFFORT) -> llvm.TargetMachine:
 
 
 class Compiled:
-    """A compiled function of rows of the state, of the parameters, and of room for what it makes of them.
+    """A compiled function of rows of the state, of the parameters, and of room for what it makes of
+    them.
 
     A row is a number, or has one for each of n launches, n a multiple of how many the code takes
     an instruction; they lie one after another.
@@ -68,14 +70,20 @@ class Compiled:
         self.engine, self.address = engine, engine.get_function_address(name)
         self._gives_more = gives_more
         places = [ctypes.c_void_p] * 3, [ctypes.c_void_p] * gives_more
-        self._function = ctypes.CFUNCTYPE(None, *places[0], ctypes.c_int64, *places[1])(self.address)
+        self._function = ctypes.CFUNCTYPE(None, *places[0], ctypes.c_int64, *places[1])(
+            self.address
+        )
 
     def __call__(self, y: Array, p: Array, out: Array, more: Array | None = None) -> None:
-        """Compute, for as many launches as the rows have numbers, and give more if that is asked for."""
+        """Compute, for as many launches as the rows have numbers, and give more if that is asked
+        for.
+        """
         asked = [None if more is None else _address(more)] * self._gives_more
         self._function(*map(_address, (y, p, out)), y.shape[1] if y.ndim > 1 else 1, *asked)
 
 
 def _address(rows: Array) -> int:
-    """Where rows are that lie one after another; a quarter of the time that `rows.ctypes.data` takes."""
+    """Where rows are that lie one after another; a quarter of the time that `rows.ctypes.data`
+    takes.
+    """
     return ctypes.addressof(ctypes.c_char.from_buffer(rows.data)) if rows.size else 0

@@ -15,14 +15,17 @@ from tippetop.integrators.sealed_folders import kept
 from tippetop.interrupts import heard
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
-"""How functions are compiled: a sum and a product may be rounded together, as in what LLVM compiles."""
+"""How functions are compiled: a sum and a product may be rounded together, as in what LLVM
+compiles.
+"""
 
 SOURCE = "source.py"
 """The code in a folder of the cache."""
 
 
 def compiled(source: str, signatures: Mapping[str, Any]) -> dict[str, Any]:
-    """Some functions of a source, compiled for signatures; its other functions are compiled with them.
+    """Some functions of a source, compiled for signatures; its other functions are compiled with
+    them.
 
     They are taken from the cache, or else kept there; see `kept`.
     """

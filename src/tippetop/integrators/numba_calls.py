@@ -1,6 +1,7 @@
 """What `dormand_prince` leaves to numba: how it calls what LLVM compiled, and what it may rely on.
 
-The text of this is appended to that of `dormand_prince`, whose functions of the same names it replaces.
+The text of this is appended to that of `dormand_prince`, whose functions of the same names it
+replaces.
 """
 
 from collections.abc import Sequence
@@ -67,7 +68,8 @@ def look(
     room: Array,
     tight: bool,
 ) -> bool:
-    """Put the guards' values at the looks of a step into the rows of values after the first, all at once.
+    """Put the guards' values at the looks of a step into the rows of values after the first, all at
+    once.
 
     It never says that none falls: to find out whether they vary takes as long.
     """

@@ -14,16 +14,22 @@ Choice: TypeAlias = Callable[[Any, Any, Any], Any]
 """What chooses between two by a flag: of numbers, or of arrays."""
 
 LOOKS = 32
-"""Intervals at whose ends a polynomial is looked at; between them its second derivative bounds it."""
+"""Intervals at whose ends a polynomial is looked at; between them its second derivative bounds it.
+"""
 
 FEW = 4
-"""So many polynomials at most are taken one by one in plain numbers, quicker than arrays so short."""
+"""So many polynomials at most are taken one by one in plain numbers, quicker than arrays so short.
+"""
 
 TOGETHER = 256
-"""Columns that are multiplied at once: of a few hundred more, threads cost several times what they save."""
+"""Columns that are multiplied at once: of a few hundred more, threads cost several times what they
+save.
+"""
 
 TURNS = 60
-"""Improvements of a zero at most: Newton's where they stay in the bracket, halvings where they do not."""
+"""Improvements of a zero at most: Newton's where they stay in the bracket, halvings where they do
+not.
+"""
 
 
 @lru_cache
@@ -49,7 +55,9 @@ class Polynomials:
 
     @classmethod
     def of_unit(cls, unit: Array, span: Array) -> "Polynomials":
-        """Polynomials whose coefficients are in powers of the part of their intervals that has passed."""
+        """Polynomials whose coefficients are in powers of the part of their intervals that has
+        passed.
+        """
         found = cls.__new__(cls)
         found.span, found.unit = span, unit
         return found
@@ -58,7 +66,8 @@ class Polynomials:
     def sag(self) -> Array:
         """How far a polynomial can go beyond its values at Gauss's eight points, shape (n,)."""
         k = np.arange(len(self.unit))
-        # Between two of them by interval^2 / 8 max |f''|, and beyond the outer ones by distance max |f'|.
+        # Between two of them by interval^2 / 8 max |f''|, and beyond the outer ones by distance max
+        # |f'|.
         return times(np.maximum(k * (k - 1) * (0.19**2 / 8.0), k * 0.02), np.abs(self.unit))
 
     @cached_property
@@ -69,11 +78,15 @@ class Polynomials:
     @property
     def slopes(self) -> Array:
         """First derivatives at the looks, over the interval, shape (LOOKS + 1, n)."""
-        return times(_places(len(self.unit) - 1), self.unit[1:] * np.arange(1, len(self.unit))[:, None])
+        return times(
+            _places(len(self.unit) - 1), self.unit[1:] * np.arange(1, len(self.unit))[:, None]
+        )
 
     @cached_property
     def bending(self) -> Array:
-        """How far a polynomial can lie below two neighbouring looks: interval^2 / 8 max |f''|, shape (n,)."""
+        """How far a polynomial can lie below two neighbouring looks: interval^2 / 8 max |f''|,
+        shape (n,).
+        """
         k = np.arange(len(self.unit))
         return times(k * (k - 1) / (8.0 * LOOKS**2), np.abs(self.unit))
 
@@ -97,11 +110,13 @@ class Polynomials:
         return Polynomials.of_unit(unit, self.span.take(which))
 
     def first_fall(self, from_above: bool = False) -> Array:
-        """First times at which the polynomials fall to zero from above, nan where they do not, shape (n,).
+        """First times at which the polynomials fall to zero from above, nan where they do not,
+        shape (n,).
 
-        Where no look finds a polynomial at or below zero, but its second derivative could take it there
-        between two looks, its least value there is found first. A polynomial that starts at or below zero and
-        does not rise falls at 0, unless it has to come `from_above`: then it may start at zero, not below.
+        Where no look finds a polynomial at or below zero, but its second derivative could take it
+        there between two looks, its least value there is found first. A polynomial that starts at
+        or below zero and does not rise falls at 0, unless it has to come `from_above`: then it may
+        start at zero, not below.
         """
         values = self.values
         falls = (values[1:] <= 0.0) & (values[:-1] > 0.0)
@@ -116,7 +131,9 @@ class Polynomials:
             dips &= (slopes[:-1] < 0.0) & (slopes[1:] > 0.0)
         for lane in np.flatnonzero(dips.any(axis=0)):
             for look in np.flatnonzero(dips[:, lane]):
-                place, value = of_each(_least_near, self.unit[:, [lane]], np.array([(look + 0.5) / LOOKS]))
+                place, value = of_each(
+                    _least_near, self.unit[:, [lane]], np.array([(look + 0.5) / LOOKS])
+                )
                 if value[0] <= 0.0:
                     low[lane], high[lane], found[lane] = look / LOOKS, place[0], True
                     break
@@ -129,7 +146,9 @@ class Polynomials:
         return zeros * self.span
 
     def refined_least(self) -> tuple[Array, Array]:
-        """Times at which the least values are taken, and those values, by Newton's method; of shape (n,)."""
+        """Times at which the least values are taken, and those values, by Newton's method; of shape
+        (n,).
+        """
         best = self.values.argmin(axis=0)
         place, value = best / LOOKS, self.lowest.copy()
         # At an end away from which it rises there is nothing to find.
@@ -156,7 +175,9 @@ class Polynomials:
 
 
 def times(matrix: Array, columns: Array) -> Array:
-    """A matrix, or a row, times columns: so few at once that NumPy's library has no use for threads."""
+    """A matrix, or a row, times columns: so few at once that NumPy's library has no use for
+    threads.
+    """
     count = columns.shape[1]
     if count <= TOGETHER:
         return np.asarray(matrix @ columns)
@@ -181,7 +202,8 @@ def least_of_each(*lots: Sequence["Polynomials"]) -> list[float]:
 
 
 def of_each(find: Callable[..., Any], unit: Array, *given: Array) -> Array:
-    """What is found of each of many polynomials at once, or, where they are few, of one after the other.
+    """What is found of each of many polynomials at once, or, where they are few, of one after the
+    other.
 
     Either way it does not depend on the others: each stands still where it has arrived.
     """
@@ -194,7 +216,9 @@ def of_each(find: Callable[..., Any], unit: Array, *given: Array) -> Array:
 def _least_near(
     terms: Row, guess: Scalar, where: Choice, some: Callable[[Any], Any]
 ) -> tuple[Scalar, Scalar]:
-    """The place of a least value no further than a look from a guess, and that value, by Newton's method."""
+    """The place of a least value no further than a look from a guess, and that value, by Newton's
+    method.
+    """
     slopes = [power * term for power, term in enumerate(terms)][1:]
     first, last, place, moving = guess - 1.0 / LOOKS, guess + 1.0 / LOOKS, guess, True
     for _ in range(5):
@@ -207,7 +231,9 @@ def _least_near(
     return place, _horner(terms, place)[0]
 
 
-def _zero(terms: Row, low: Scalar, high: Scalar, where: Choice, some: Callable[[Any], Any]) -> Scalar:
+def _zero(
+    terms: Row, low: Scalar, high: Scalar, where: Choice, some: Callable[[Any], Any]
+) -> Scalar:
     """A zero between places where a polynomial is positive and not positive."""
     place, moving = 0.5 * (low + high), True
     for _ in range(TURNS):

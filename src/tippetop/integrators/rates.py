@@ -12,7 +12,8 @@ SHIFT = 1e-100
 
 
 class RightHandSide:
-    """A motion's rates as the step-by-step methods take them, with a count of how often they were asked.
+    """A motion's rates as the step-by-step methods take them, with a count of how often they were
+    asked.
 
     Where the arithmetic breaks down, the rates are not numbers, and the method finds no step.
     """
@@ -45,7 +46,13 @@ class RightHandSide:
         with np.errstate(all="ignore"):
             try:
                 rates = self.motion.rates(list(np.moveaxis(moved, 2, 0)), self.parameters)
-            except (ArithmeticError, TypeError, ValueError):  # A law of one's own may not take them.
+            except (
+                ArithmeticError,
+                TypeError,
+                ValueError,
+            ):  # A law of one's own may not take them.
                 rates = [np.nan] * size
-        values = np.stack([np.broadcast_to(np.asarray(rate), moved.shape[:2]) for rate in rates], axis=-1)
+        values = np.stack(
+            [np.broadcast_to(np.asarray(rate), moved.shape[:2]) for rate in rates], axis=-1
+        )
         return np.ascontiguousarray(values[0].real), np.transpose(values.imag, (1, 2, 0)) / SHIFT

@@ -1,10 +1,10 @@
 """An implicit method that relieves an explicit one where the motion is stiff.
 
-Where friction damps slip much faster than the top moves, slip follows the motion, and an explicit method
-still takes steps as short as the damping: 7,500,000 of them for 2 s with mu = 1e6 s/m, where an implicit
-method needs two hundred. So after as many steps as there are in a full arc of Taylor's method it is looked
-whether they are long beside the fastest damping; if so, the implicit method goes on while its steps are much
-longer.
+Where friction damps slip much faster than the top moves, slip follows the motion, and an explicit
+method still takes steps as short as the damping: 7,500,000 of them for 2 s with mu = 1e6 s/m, where
+an implicit method needs two hundred. So after as many steps as there are in a full arc of Taylor's
+method it is looked whether they are long beside the fastest damping; if so, the implicit method
+goes on while its steps are much longer.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -21,11 +21,14 @@ PATIENCE = 4096
 """Steps of an explicit method after which it is looked whether the motion is stiff."""
 
 STIFF = 3.0
-"""Step times fastest damping from which a motion is stiff: what is damped is then gone within a step, and a
-series of order 20 is as short as that only because of it."""
+"""Step times fastest damping from which a motion is stiff: what is damped is then gone within a
+step, and a series of order 20 is as short as that only because of it.
+"""
 
 LONGER = 100.0
-"""How much longer the steps of the implicit method must be: each costs as much as so many explicit ones."""
+"""How much longer the steps of the implicit method must be: each costs as much as so many explicit
+ones.
+"""
 
 
 @dataclass(frozen=True)
@@ -89,8 +92,12 @@ class Relieved:
                     return
 
 
-def is_stiff(motion: Motion, parameters: Sequence[Scalar], states: Array, steps: Array) -> NDArray[np.bool_]:
-    """Whether a motion is stiff in states, shape (n, size), about which it took steps, shape (n,)."""
+def is_stiff(
+    motion: Motion, parameters: Sequence[Scalar], states: Array, steps: Array
+) -> NDArray[np.bool_]:
+    """Whether a motion is stiff in states, shape (n, size), about which it took steps, shape
+    (n,).
+    """
     slopes = RightHandSide(motion, parameters).linearized(states)[1]
     known = np.all(np.isfinite(slopes), axis=(1, 2))
     damping = -np.linalg.eigvals(np.where(known[:, None, None], slopes, 0.0)).real.min(axis=1)

@@ -1,4 +1,6 @@
-"""What the step-by-step integrators share: arcs of their steps, as polynomials, up to where a guard falls."""
+"""What the step-by-step integrators share: arcs of their steps, as polynomials, up to where a guard
+falls.
+"""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
@@ -16,7 +18,9 @@ MANY = 512
 
 
 class Accepted(NamedTuple):
-    """A step that was taken: when it ends, the state there, and the solution within it (see `first_fall`)."""
+    """A step that was taken: when it ends, the state there, and the solution within it (see
+    `first_fall`).
+    """
 
     end: float
     end_state: Array
@@ -35,7 +39,9 @@ class StepByStep(ABC):
         """Degree of the polynomials that stand for a step."""
 
     @abstractmethod
-    def steps(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Iterator[Accepted | str]:
+    def steps(
+        self, rates: RightHandSide, start: tuple[float, Array], end: float
+    ) -> Iterator[Accepted | str]:
         """Steps that follow one another to the end, or at last why there are no more."""
 
     def integrate(
@@ -48,7 +54,9 @@ class StepByStep(ABC):
         guards = [guard.with_parameters(parameters) for guard in motion.guards]
 
         def keep(until: float, dense: Dense) -> None:
-            values.append(np.array([dense(knots[-1] + place * (until - knots[-1])) for place in places]))
+            values.append(
+                np.array([dense(knots[-1] + place * (until - knots[-1])) for place in places])
+            )
             knots.append(until)
 
         def arc(end_state: Array, guard: str | None = None, failure: str | None = None) -> Arc:

@@ -41,7 +41,9 @@ class SciPy(StepByStep):
         """Degree of the polynomials by which the solver interpolates."""
         return METHODS[self.name][1]
 
-    def steps(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Iterator[Accepted | str]:
+    def steps(
+        self, rates: RightHandSide, start: tuple[float, Array], end: float
+    ) -> Iterator[Accepted | str]:
         """The steps; see `StepByStep`."""
         if not np.all(np.isfinite(rates(*start))):
             yield NO_START
@@ -51,7 +53,11 @@ class SciPy(StepByStep):
             before = float(solver.t), solver.y.copy()
             failure = _take_step(solver)
             reach = float(solver.t)
-            if not failure and reach - before[0] <= LEAST_STEP * max(1.0, abs(reach)) and reach < end:
+            if (
+                not failure
+                and reach - before[0] <= LEAST_STEP * max(1.0, abs(reach))
+                and reach < end
+            ):
                 failure = NO_STEP
             if failure:
                 yield failure
@@ -64,7 +70,9 @@ class SciPy(StepByStep):
 
     def _solver(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Any:
         absolute = self.tolerance if self.absolute is None else self.absolute
-        return METHODS[self.name][0](rates, start[0], start[1], end, rtol=self.tolerance, atol=absolute)
+        return METHODS[self.name][0](
+            rates, start[0], start[1], end, rtol=self.tolerance, atol=absolute
+        )
 
     def _land(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Array:
         """The state after integrating afresh to exactly this time."""

@@ -19,14 +19,16 @@ import psutil
 Found = TypeVar("Found")
 
 VARIABLE = "TIPPETOP_CACHE"
-"""Environment variable that names another folder for the cache than the user's, or "off" for none."""
+"""Environment variable that names another folder for the cache than the user's, or "off" for none.
+"""
 
 SEAL, CONTENT = "seal.json", "content.zlib"
 """The digests of all else in a folder, and what is in it where that is one file."""
 
 PREFIX, MOST, LARGEST = "code-", 1024, 2**27
-"""How the folders are called, and how many there are at most, and bytes in them, when one more is made: then
-those go that were not used for longest."""
+"""How the folders are called, and how many there are at most, and bytes in them, when one more is
+made: then those go that were not used for longest.
+"""
 
 SEALED = re.compile(r"(code|numba)-[0-9a-f]{32}")
 """Names of folders that are whole, of this version and of earlier ones."""
@@ -41,16 +43,17 @@ OLD = "cache.db*", "making-*"
 def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
     """What comes of a folder of compiled code.
 
-    What is damaged in it is thrown away, and where none can be kept every process compiles for itself.
+    What is damaged in it is thrown away, and where none can be kept every process compiles for
+    itself.
 
     Parameters
     ----------
     made
-        What is compiled, and with what, as something that is written down: it is compiled once for each
-        kind of processor.
+        What is compiled, and with what, as something that is written down: it is compiled once for
+        each kind of processor.
     use
-        Takes the code from a folder, or compiles it and puts it there if it is empty; with no folder it
-        compiles only.
+        Takes the code from a folder, or compiles it and puts it there if it is empty; with no
+        folder it compiles only.
     """
     place = os.environ.get(VARIABLE) or users_folder()
     if place != "off" and find_spec("llvmlite") is not None:
@@ -93,7 +96,11 @@ def _processor() -> tuple[str, ...]:
     """What code is compiled for."""
     import llvmlite.binding as llvm  # noqa: PLC0415 - optional
 
-    return llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+    return (
+        llvm.get_process_triple(),
+        llvm.get_host_cpu_name(),
+        llvm.get_host_cpu_features().flatten(),
+    )
 
 
 def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
@@ -112,7 +119,9 @@ def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
 
 
 def _clear(place: Path) -> None:
-    """Remove what is too much, and what processes have left that are no more: killed while they compiled."""
+    """Remove what is too much, and what processes have left that are no more: killed while they
+    compiled.
+    """
     # A folder that the variable names may hold anything: only what is surely of this package goes.
     folders = [folder for folder in place.iterdir() if folder.is_dir() and _is_own(folder)]
     size, held = 0, [folder for folder in folders if SEALED.fullmatch(folder.name)]
@@ -141,7 +150,9 @@ def _size(place: Path) -> int:
 
 
 def _is_own(folder: Path) -> bool:
-    """Whether this user made a folder: code of others is not run. Only its maker can write to it."""
+    """Whether this user made a folder: code of others is not run. Only its maker can write to
+    it.
+    """
     return not hasattr(os, "getuid") or folder.stat().st_uid == os.getuid()
 
 

@@ -1,4 +1,6 @@
-"""Dormand and Prince's steps as arcs: how a motion is followed with functions that are compiled for it."""
+"""Dormand and Prince's steps as arcs: how a motion is followed with functions that are compiled for
+it.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
@@ -11,7 +13,9 @@ from tippetop.integrators.dormand_prince import FULL, POWERS, ROWS, SINGULAR, ST
 from tippetop.integrators.falls import first_fall
 
 FEW, WIDER, MANY = 128, 4, 4096
-"""Steps for which there is room at first, how many times as many there is room for then, and in an arc."""
+"""Steps for which there is room at first, how many times as many there is room for then, and in an
+arc.
+"""
 
 FAILURES = {SINGULAR: NO_START, STUCK: NO_STEP}
 """Why there may be no solution, or no more of it."""
@@ -173,7 +177,11 @@ class Stepping:
     def beside(self) -> "Stepping":
         """Another motion of the same kind, for trial."""
         if self.other is None:
-            start, end, tolerance = (self.time, self.state), float(self.span[1]), float(self.tolerance[0])
+            start, end, tolerance = (
+                (self.time, self.state),
+                float(self.span[1]),
+                float(self.tolerance[0]),
+            )
             self.other = Stepping(self.functions, self.parameters, start, end, tolerance, 1)
         return self.other
 

@@ -1,4 +1,6 @@
-"""The coefficients of Dormand and Prince's method of order 8(5,3), which are SciPy's, written out as code."""
+"""The coefficients of Dormand and Prince's method of order 8(5,3), which are SciPy's, written out
+as code.
+"""
 
 from collections.abc import Iterable, Sequence
 
@@ -8,14 +10,17 @@ from scipy.integrate import DOP853
 from tippetop.integrators.dormand_prince import Array
 
 TAKEN = "rates, h, p, y, lost, k, place"
-"""What the functions of stages take; those of a step tell what it adds to the state in `moved` too."""
+"""What the functions of stages take; those of a step tell what it adds to the state in `moved` too.
+"""
 
 SLOPE = "k{}_i"
 """A number's rate at a stage, once it is read."""
 
 
 def written_out(size: int | None = None) -> str:
-    """The functions in which the method's coefficients are, as code; stages of a size without loops."""
+    """The functions in which the method's coefficients are, as code; stages of a size without
+    loops.
+    """
     lines = list[str]()
     for name, first, rows, taken in (
         ("stages", 1, [*DOP853.A[1:], DOP853.B], f"{TAKEN}, moved"),
@@ -32,10 +37,13 @@ def written_out(size: int | None = None) -> str:
     lines.append("def combined(y: Array, k: Array):")
     errors = DOP853.E5, DOP853.E3
     lines += _for_each(
-        *_reads(*errors), *(f"k[{n}, i] = {_sum(row, SLOPE)}" for n, row in enumerate(errors, start=16))
+        *_reads(*errors),
+        *(f"k[{n}, i] = {_sum(row, SLOPE)}" for n, row in enumerate(errors, start=16)),
     )
     # Of the polynomials x, x (1 - x), x^2 (1 - x), ... the ends of the step give the first three.
-    lines.append("def polynomials(h: float, y: Array, new: Array, k: Array, terms: Array, first: int):")
+    lines.append(
+        "def polynomials(h: float, y: Array, new: Array, k: Array, terms: Array, first: int):"
+    )
     lines.append("    at = first")
     powers = enumerate(_powers()[1:], start=1)
     lines += _for_each(
@@ -52,7 +60,12 @@ def written_out(size: int | None = None) -> str:
 
 
 def _stage(
-    number: int, weights: Array, i: str = "i", y: str = "y[i]", lost: str = "lost[i]", slope: str = "k[{}, i]"
+    number: int,
+    weights: Array,
+    i: str = "i",
+    y: str = "y[i]",
+    lost: str = "lost[i]",
+    slope: str = "k[{}, i]",
 ) -> list[str]:
     """Where the rates of a stage are found: those of stage 12 at the end of the step."""
     lines = [f"step = h * ({_sum(weights, slope)}) + {lost}", f"place[{i}] = {y} + step"]

@@ -22,34 +22,40 @@ from tippetop.integrators.sealed_folders import kept_content
 from tippetop.interrupts import heard
 
 RESOLVED = 1e6
-"""Step, in roundings of time, below which only a solution that blows up is followed: these matter in it."""
+"""Step, in roundings of time, below which only a solution that blows up is followed: these matter
+in it.
+"""
 
 LONG = 4096
 """Steps in an arc at most."""
 
 LEFT_OUT = 100.0
-"""What the last terms of a step's series may add to a number, in tolerances of that number or of 1, the
-larger: else the step is cut. The compiler compares them with the largest number or guard alone: beside huge
-slip or friction the axis would go astray."""
+"""What the last terms of a step's series may add to a number, in tolerances of that number or of 1,
+the larger: else the step is cut. The compiler compares them with the largest number or guard alone:
+beside huge slip or friction the axis would go astray.
+"""
 
 SAFETY, SHORT = 0.9, 16
-"""How long a step that is cut may be, of what that allows; and how many steps at most, none longer than that,
-are taken next."""
+"""How long a step that is cut may be, of what that allows; and how many steps at most, none longer
+than that, are taken next.
+"""
 
 GUARDED = 2.0**-5
-"""Weight of guards beside the numbers of the motion where the compiler chooses steps by the largest of all. A
-guard's zero needs fewer digits than they do, since the state there is theirs: by itself a guard would cost
-steps."""
+"""Weight of guards beside the numbers of the motion where the compiler chooses steps by the largest
+of all. A guard's zero needs fewer digits than they do, since the state there is theirs: by itself a
+guard would cost steps.
+"""
 
 EFFORT, FEW = 3, 0
-"""How hard the compiler tries, of 3; and where code is to run a few times: a tenth of the time compiles
-it, and it runs for twice as long."""
+"""How hard the compiler tries, of 3; and where code is to run a few times: a tenth of the time
+compiles it, and it runs for twice as long.
+"""
 
 Numbers: TypeAlias = Callable[[tuple[float, ...]], Sequence[float]]
 """From the parameters of a motion to those of what is compiled."""
 
-# For the whole process: what it says of guards on the terminal, its makers understand; and what is compiled
-# is kept by this package, whole or not at all.
+# For the whole process: what it says of guards on the terminal, its makers understand; and what is
+# compiled is kept by this package, whole or not at all.
 hy.set_logger_level_critical()
 hy.llvm_state.set_diskcache_enabled(False)
 
@@ -69,7 +75,9 @@ class Taylor:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         compiled = _compiled(motion, self.tolerance)
         while start[0] < end:
-            solution, state, outcome, taken = compiled.arc(parameters, start, end, LEFT_OUT * self.tolerance)
+            solution, state, outcome, taken = compiled.arc(
+                parameters, start, end, LEFT_OUT * self.tolerance
+            )
             steps = len(solution.terms)
             # Rounding of time may swallow all steps before numbers have grown beyond all bounds.
             stuck = outcome == hy.taylor_outcome.step_limit and not solution.end > start[0]
@@ -86,28 +94,50 @@ class Taylor:
                 return
             start = solution.end, state
 
-    def expansion(self, motion: Motion, parameters: Sequence[float], degree: int, count: int) -> Expansion:
-        """The coefficients of the first numbers of a motion's solutions in powers of time, compiled."""
+    def expansion(
+        self, motion: Motion, parameters: Sequence[float], degree: int, count: int
+    ) -> Expansion:
+        """The coefficients of the first numbers of a motion's solutions in powers of time,
+        compiled.
+        """
         compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree), FEW)
         numbers = np.array(compiled.numbers(tuple(parameters)))
         return lambda start: compiled.expanded(start, numbers, count)
 
 
 class _Compiled:
-    """An integrator, the parameters it takes by those of the motion, and a lock that it is used under."""
+    """An integrator, the parameters it takes by those of the motion, and a lock that it is used
+    under.
+    """
 
     def __init__(self, integrator: Any, numbers: Numbers) -> None:
         self.integrator, self.numbers, self.lock = integrator, numbers, threading.Lock()
         self._room = BytesIO()
-        self._coefficients, self._state, self._parameters = integrator.tc, integrator.state, integrator.pars
+        self._coefficients, self._state, self._parameters = (
+            integrator.tc,
+            integrator.state,
+            integrator.pars,
+        )
 
     def arc(
         self, parameters: Sequence[float], start: tuple[float, Array], end: float, accuracy: float
     ) -> tuple[DenseSolution, Array, Any, int]:
-        """An arc whose steps leave out no more of any number, its end, what ended it, and steps taken."""
-        (time, state), parts, left, longest, most = start, list[DenseSolution](), LONG, math.inf, LONG
+        """An arc whose steps leave out no more of any number, its end, what ended it, and steps
+        taken.
+        """
+        (time, state), parts, left, longest, most = (
+            start,
+            list[DenseSolution](),
+            LONG,
+            math.inf,
+            LONG,
+        )
         taken = 0
-        run, outcome, numbers = self.integrator, hy.taylor_outcome.step_limit, self.numbers(tuple(parameters))
+        run, outcome, numbers = (
+            self.integrator,
+            hy.taylor_outcome.step_limit,
+            self.numbers(tuple(parameters)),
+        )
         with self.lock:
             # Those that appear in no equation, beyond the last that does, it has no room for.
             run.pars[:] = numbers[: len(run.pars)]
@@ -132,10 +162,12 @@ class _Compiled:
         return DenseSolution.joined(parts), state, outcome, taken
 
     def _advance(self, end: float, longest: float, most: int) -> tuple[DenseSolution, Any]:
-        """Take so many steps at most, none longer: for half the price of heyoka's continuous output."""
+        """Take so many steps at most, none longer: for half the price of heyoka's continuous
+        output.
+        """
         size, knots = self._coefficients.size, array("d", [self.integrator.time])
-        # Bytes are copied in a third of the time that arrays need, and quicker where others were before.
-        # Whoever interrupts this may still look at them: then there is new room.
+        # Bytes are copied in a third of the time that arrays need, and quicker where others were
+        # before. Whoever interrupts this may still look at them: then there is new room.
         room, self._room = self._room, BytesIO()
         room.seek(0)
         step, keep, note = self._coefficients.reshape(-1).data, room.write, knots.append
@@ -200,8 +232,8 @@ def _compiled(motion: Motion, tolerance: float, effort: int = EFFORT) -> _Compil
 def _expressions(motion: Motion, state: Sequence[Any]) -> tuple[Sequence[Any], Numbers]:
     """The rates and guards in heyoka's terms, and the parameters in them by those of the motion.
 
-    To heyoka, what is made of parameters alone is a series like any other, expanded in every step: so it is
-    made once and is a parameter.
+    To heyoka, what is made of parameters alone is a series like any other, expanded in every step:
+    so it is made once and is a parameter.
     """
 
     def values(y: Sequence[Any], p: Sequence[Any]) -> list[Any]:
@@ -221,15 +253,20 @@ def _expressions(motion: Motion, state: Sequence[Any]) -> tuple[Sequence[Any], N
 
 
 def _cut(solution: DenseSolution, accuracy: float) -> DenseSolution | None:
-    """A solution up to its first step that leaves out more of some number, and as much of that as does not.
+    """A solution up to its first step that leaves out more of some number, and as much of that as
+    does not.
 
-    None if there is none but those in which rounding of time matters; to less than these, none is cut. A step
-    that is cut needs not be repeated: a shorter one has the same series.
+    None if there is none but those in which rounding of time matters; to less than these, none is
+    cut. A step that is cut needs not be repeated: a shorter one has the same series.
     """
     last = np.maximum(np.abs(solution.terms[:, :, -1]), np.abs(solution.terms[:, :, -2]))
     if last.max(initial=0.0) <= accuracy:
         return None
-    spans, degree, shortest = np.diff(solution.knots), solution.terms.shape[2] - 1, _resolved(solution.knots)
+    spans, degree, shortest = (
+        np.diff(solution.knots),
+        solution.terms.shape[2] - 1,
+        _resolved(solution.knots),
+    )
     with np.errstate(all="ignore"):  # where nothing is left out, or numbers grow beyond all bounds
         excess = (last / (accuracy * np.maximum(np.abs(solution.terms[:, :, 0]), 1.0))).max(axis=1)
         allowed = np.maximum(SAFETY * spans * excess ** (-1.0 / (degree - 1)), shortest)
@@ -250,7 +287,9 @@ def _resolved(knots: Array) -> Array:
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
-    """A solution that ended in numbers that are none, without its last steps, too short to be told."""
+    """A solution that ended in numbers that are none, without its last steps, too short to be
+    told.
+    """
     fine = np.flatnonzero(np.diff(solution.knots) > _resolved(solution.knots))
     steps = fine[-1] + 1 if len(fine) else 0
     return DenseSolution(solution.knots[: steps + 1], solution.terms[:steps])

@@ -1,1 +1,3 @@
-"""The laboratory: a page where anyone launches the top, and the player in a notebook. Browsers compute it."""
+"""The laboratory: a page where anyone launches the top, and the player in a notebook. Browsers
+compute it.
+"""

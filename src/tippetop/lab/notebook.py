@@ -52,7 +52,9 @@ def _widget() -> Any:
         import anywidget  # noqa: PLC0415 - optional
         import traitlets  # noqa: PLC0415 - comes with anywidget
     except ImportError:
-        raise Unavailable("a run is shown in a notebook by anywidget: pip install 'tippetop[lab]'") from None
+        raise Unavailable(
+            "a run is shown in a notebook by anywidget: pip install 'tippetop[lab]'"
+        ) from None
 
     def show(self: Any, run: xr.Dataset) -> None:
         """Play another run in the same widget."""

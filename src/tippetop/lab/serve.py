@@ -53,14 +53,17 @@ class PageHandler(SimpleHTTPRequestHandler):
 def serve(host: str, port: int, browser: bool, announce: Callable[[str], None]) -> None:
     """Serve the page until interrupted, at an address and a port; 0.0.0.0 lets other devices in.
 
-    `browser` says whether to open it here, and `announce` is told the address, and a code to scan for it.
-    Raises `InvalidInput` if nothing can listen there, and `Unavailable` if the page is not built.
+    `browser` says whether to open it here, and `announce` is told the address, and a code to scan
+    for it. Raises `InvalidInput` if nothing can listen there, and `Unavailable` if the page is not
+    built.
     """
     page_path()
     try:
         server = ThreadingHTTPServer((host, port), PageHandler)
     except (OSError, OverflowError) as error:
-        raise InvalidInput("host", f"{host}:{port}", f"an address and a free port here ({error})") from None
+        raise InvalidInput(
+            "host", f"{host}:{port}", f"an address and a free port here ({error})"
+        ) from None
     name = _own_address() if host in EVERYWHERE else host
     address = f"http://{name}:{server.server_port}/"
     announce(f"The laboratory is at {address} until Ctrl+C.")

@@ -1,4 +1,6 @@
-"""Bodies to order: the cavity, weight, or bowl and stem that give a wanted eccentricity and I1 / I3."""
+"""Bodies to order: the cavity, weight, or bowl and stem that give a wanted eccentricity and I1 /
+I3.
+"""
 
 import math
 from collections.abc import Callable
@@ -58,7 +60,9 @@ def design_insert(
     require("piece", piece, Workpiece, "a Workpiece")
     sphere = piece.hull.zones[0]
     if sphere.name != "sphere":
-        raise InvalidInput("piece", f"a body that stands on a {sphere.name}", "one that stands on a sphere")
+        raise InvalidInput(
+            "piece", f"a body that stands on a {sphere.name}", "one that stands on a sphere"
+        )
     if not density >= 0.0:
         raise InvalidInput("density", density, "a number at least 0")
     if density == piece.density:
@@ -94,13 +98,17 @@ def design_insert(
 
 
 def _room(piece: Workpiece, height: float) -> float:
-    """Distance of a point of the axis from all surfaces, m; 0 outside of the body, and in what is let in."""
+    """Distance of a point of the axis from all surfaces, m; 0 outside of the body, and in what is
+    let in.
+    """
     point, profiles = 1j * height, (piece.outline, *piece.insides)
     away = min(profile.distance(point) for profile in profiles)
     if away <= ROUNDING * piece.outline.size:
         return 0.0
     # From the axis one sees half of what is around.
-    around = [abs(sum(edge.angle_seen(point) for edge in profile.edges)) > 1.0 for profile in profiles]
+    around = [
+        abs(sum(edge.angle_seen(point) for edge in profile.edges)) > 1.0 for profile in profiles
+    ]
     return away if around == [True] + [False] * len(piece.insides) else 0.0
 
 
@@ -113,10 +121,11 @@ def design_bowl(
     stem: float | None = None,
     wall: float | None = None,
 ) -> Workpiece:
-    """The bowl with a stem inside, of one material, that stands on its sphere as wanted, and on its stem.
+    """The bowl with a stem inside, of one material, that stands on its sphere as wanted, and on its
+    stem.
 
-    The sphere is cut off just where the stem takes over. The thickness of the bowl and the length of the
-    stem, which is round at its end, are found.
+    The sphere is cut off just where the stem takes over. The thickness of the bowl and the length
+    of the stem, which is round at its end, are found.
 
     Parameters
     ----------
@@ -183,7 +192,9 @@ def _wall(radius: float, wall: float | None) -> float:
         raise InvalidInput("radius", radius, "a number greater than 0")
     least = radius / 20.0 if wall is None else wall
     if not 0.0 < least < radius / 2.0:
-        raise InvalidInput("wall", least, "a thickness greater than 0 and less than half the radius")
+        raise InvalidInput(
+            "wall", least, "a thickness greater than 0 and less than half the radius"
+        )
     return least
 
 
@@ -200,7 +211,9 @@ def _found(
     eccentricity: float,
     inertia_ratio: float,
 ) -> Workpiece:
-    """The body with the wanted ratio, among those with the wanted eccentricity: one a size, or none."""
+    """The body with the wanted ratio, among those with the wanted eccentricity: one a size, or
+    none.
+    """
 
     def ratio(size: float) -> float:
         other = partner(size)
@@ -223,7 +236,9 @@ def _found(
     runs = [list(run) for finite, run in groupby(ratios, math.isfinite) if finite]
     longer = [run for run in runs if len(run) > 1] or runs
     between = " or ".join(f"{min(run):.5g} to {max(run):.5g}" for run in longer)
-    raise InvalidInput("inertia_ratio", inertia_ratio, f"one from {between}, with this eccentricity")
+    raise InvalidInput(
+        "inertia_ratio", inertia_ratio, f"one from {between}, with this eccentricity"
+    )
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:

@@ -29,7 +29,9 @@ class Edge(NamedTuple):
     end: complex
     """Where it begins and ends."""
     turn: float = 0.0
-    """Angle by which it turns to the left along the way, rad, between -pi and pi; 0 where it is straight."""
+    """Angle by which it turns to the left along the way, rad, between -pi and pi; 0 where it is
+    straight.
+    """
 
     @property
     def chord(self) -> complex:
@@ -38,7 +40,9 @@ class Edge(NamedTuple):
 
     @property
     def radius(self) -> float:
-        """Radius of the arc, m: negative where it turns to the right, infinite where it is straight."""
+        """Radius of the arc, m: negative where it turns to the right, infinite where it is
+        straight.
+        """
         return abs(self.chord) / (2.0 * math.sin(self.turn / 2.0)) if self.turn else math.inf
 
     @property
@@ -71,18 +75,24 @@ class Edge(NamedTuple):
     def velocities(self, share: ArrayLike) -> Points:
         """Derivatives of `points` with respect to the share."""
         t = np.asarray(share, dtype=float)
-        return np.asarray(self.chord / np.sinc(self.turn / math.tau) * np.exp(1j * (t - 0.5) * self.turn))
+        return np.asarray(
+            self.chord / np.sinc(self.turn / math.tau) * np.exp(1j * (t - 0.5) * self.turn)
+        )
 
     def nodes(self) -> tuple[Points, NDArray[np.float64]]:
-        """Points on it, and what to weigh a polynomial of r and z there with, for its integral over dz.
+        """Points on it, and what to weigh a polynomial of r and z there with, for its integral over
+        dz.
 
-        Of degree 4 at most it is a polynomial along the edge, or a trigonometric one of degree 5 over an
-        angle of at most pi: Gauss's rule with 20 points is exact for both, but for rounding.
+        Of degree 4 at most it is a polynomial along the edge, or a trigonometric one of degree 5
+        over an angle of at most pi: Gauss's rule with 20 points is exact for both, but for
+        rounding.
         """
         return self.points(_SHARES), _WEIGHTS / 2.0 * self.velocities(_SHARES).imag
 
     def share(self, point: complex) -> float:
-        """The share of it after which it comes to a point that is on it, or on its line or circle."""
+        """The share of it after which it comes to a point that is on it, or on its line or
+        circle.
+        """
         gone, left = point - self.start, self.end - point
         if not self.turn:
             return (gone / self.chord).real
@@ -115,7 +125,9 @@ class Edge(NamedTuple):
 
 
 def meetings(one: Edge, other: Edge, within: float) -> list[complex]:
-    """Where two edges meet to this distance, m; of edges that lie on each other, the ends that they share."""
+    """Where two edges meet to this distance, m; of edges that lie on each other, the ends that they
+    share.
+    """
     ends = [one.start, one.end, other.start, other.end]
     if one.turn and other.turn:
         found = [_polished(one, other, point) for point in _of_circles(one, other)]
@@ -124,11 +136,15 @@ def meetings(one: Edge, other: Edge, within: float) -> list[complex]:
         found = [_polished(one, other, point) for point in found]
     else:
         found = _of_lines(one, other)
-    return [point for point in ends + found if max(one.distance(point), other.distance(point)) <= within]
+    return [
+        point for point in ends + found if max(one.distance(point), other.distance(point)) <= within
+    ]
 
 
 def _polished(one: Edge, other: Edge, point: complex) -> complex:
-    """A meeting as found along the edges: seen from the centres of arcs nearly straight it is far off."""
+    """A meeting as found along the edges: seen from the centres of arcs nearly straight it is far
+    off.
+    """
     t, u = one.share(point), other.share(point)
     for _ in range(NEWTON):
         along, across = complex(one.velocities(t)), complex(other.velocities(u))

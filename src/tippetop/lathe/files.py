@@ -21,22 +21,30 @@ STARTS = "0123456789+-."
 def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
     """Read a workpiece from a .toml file, or its profile from a .csv or .svg file.
 
-    In TOML a profile may be the name of such a file, beside this one. A CSV file has two or three columns,
-    with or without a heading: distance from the axis, height and radius of the arc that ends there. An SVG
-    file has one path, of lines and circular arcs, in no moved or turned group, with the axis at x = 0.
+    In TOML a profile may be the name of such a file, beside this one. A CSV file has two or three
+    columns, with or without a heading: distance from the axis, height and radius of the arc that
+    ends there. An SVG file has one path, of lines and circular arcs, in no moved or turned group,
+    with the axis at x = 0.
 
-    Fields that are given are set, or are other than in the file. Raises `FileTrouble` if a file cannot be
-    read, `InvalidInput` if it does not hold what it should, `Unavailable` if SVG cannot be read here.
+    Fields that are given are set, or are other than in the file. Raises `FileTrouble` if a file
+    cannot be read, `InvalidInput` if it does not hold what it should, `Unavailable` if SVG cannot
+    be read here.
     """
     path = path_of(path)
     whole = path.suffix.lower() == ".toml"
-    told = parse_toml(read_text(path, ACCEPTED), "workpiece", path.name) if whole else {"profile": path.name}
+    told = (
+        parse_toml(read_text(path, ACCEPTED), "workpiece", path.name)
+        if whole
+        else {"profile": path.name}
+    )
     found = {**told, **fields}
     inserts = found.get("inserts")
     parts = {"": found}
     if isinstance(inserts, list):
         # What is read is put in, and not into what was given.
-        found["inserts"] = inserts = [dict(part) if isinstance(part, dict) else part for part in inserts]
+        found["inserts"] = inserts = [
+            dict(part) if isinstance(part, dict) else part for part in inserts
+        ]
         parts |= {f"inserts.{number}.": part for number, part in enumerate(inserts)}
     with ExitStack() as files:
         if whole:
@@ -84,15 +92,20 @@ def _from_svg(text: str, path: Path) -> list[list[float]]:
         from svg.path import parse_path  # noqa: PLC0415 - optional
     except ImportError:
         raise Unavailable(
-            'SVG files are read with svg.path, which is not installed: pip install "tippetop[lathe]"'
+            "SVG files are read with svg.path, which is not installed: pip install"
+            ' "tippetop[lathe]"'
         ) from None
     try:
         elements = list(ElementTree.fromstring(text).iter())
     except ElementTree.ParseError as error:
         raise InvalidInput("SVG", named(path), f"XML; {error}") from None
-    lines = [element.get("d", "") for element in elements if element.tag.rpartition("}")[2] == "path"]
+    lines = [
+        element.get("d", "") for element in elements if element.tag.rpartition("}")[2] == "path"
+    ]
     if len(lines) != 1 or any("transform" in element.attrib for element in elements):
-        raise InvalidInput("SVG", f"{len(lines)} paths in {named(path)}", "one path, without transformations")
+        raise InvalidInput(
+            "SVG", f"{len(lines)} paths in {named(path)}", "one path, without transformations"
+        )
     try:
         return _drawn(parse_path(lines[0]))
     except InvalidInput:
@@ -110,7 +123,9 @@ def _drawn(line: Any) -> list[list[float]]:
                 ends = [(segment.end, 0.0)]
             case "Line" | "Close":
                 ends = [(segment.end, 0.0)] if segment.end != segment.start else []
-            case "Arc" if abs(segment.radius.real - segment.radius.imag) <= 1e-9 * abs(segment.radius):
+            case "Arc" if abs(segment.radius.real - segment.radius.imag) <= 1e-9 * abs(
+                segment.radius
+            ):
                 radius = -segment.radius.real if segment.sweep else segment.radius.real
                 halves = (0.5, 1.0) if segment.arc else (1.0,)
                 ends = [(segment.point(share), radius) for share in halves]

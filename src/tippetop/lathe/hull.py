@@ -1,9 +1,9 @@
 """What a turned body touches the table with: the surfaces that its convex hull is made of.
 
-At tilt theta the table is a line in the half-plane through the axis, whose normal, away from the body, is
-(sin(theta), -cos(theta)). Of a point or the centre of an arc (rho, zeta), tube its radius, the support
-function is rho sin(theta) - zeta cos(theta) + tube. The largest one is that of the body: the surface on which
-it stands.
+At tilt theta the table is a line in the half-plane through the axis, whose normal, away from the
+body, is (sin(theta), -cos(theta)). Of a point or the centre of an arc (rho, zeta), tube its radius,
+the support function is rho sin(theta) - zeta cos(theta) + tube. The largest one is that of the
+body: the surface on which it stands.
 """
 
 import cmath
@@ -17,13 +17,17 @@ from numpy.typing import NDArray
 from tippetop.lathe.profile import ROUNDING, Profile
 
 ON_AXIS = 1e-4
-"""How far off the axis the centre of a sphere's arc may be, in radii of it and in sizes of the body."""
+"""How far off the axis the centre of a sphere's arc may be, in radii of it and in sizes of the
+body.
+"""
 
 NARROWEST = 1e-9
 """Least range of tilts of a surface, rad."""
 
 _CLOSE = 1e-7
-"""How far rounding may move a tilt at which one surface follows another that it touches nearly, rad."""
+"""How far rounding may move a tilt at which one surface follows another that it touches nearly,
+rad.
+"""
 
 
 class Zone(NamedTuple):
@@ -57,27 +61,33 @@ class ConvexHull(NamedTuple):
     zones: tuple[Zone, ...]
     """The surfaces it touches the table with, by the tilt."""
     flats: tuple[float, ...]
-    """Tilts at which it lies on a circle or a line rather than on a point: 0 and pi on a flat end, between
-    them on a cylinder or a cone."""
+    """Tilts at which it lies on a circle or a line rather than on a point: 0 and pi on a flat end,
+    between them on a cylinder or a cone.
+    """
 
     def support(self, tilt: float) -> float:
         """Height above the table of the origin of the profile's coordinates, m."""
         return max(zone.support(tilt) for zone in self.zones if zone.low <= tilt <= zone.high)
 
     def protrusion(self, zone: Zone) -> tuple[float, float]:
-        """How far one of its surfaces, were it whole, would reach out of it at most, m, and at which tilt."""
+        """How far one of its surfaces, were it whole, would reach out of it at most, m, and at
+        which tilt.
+        """
         found = [(0.0, zone.low)]
         for other in self.zones:
             tilts = [other.low, other.high]
             steepest = math.atan2(zone.radius - other.radius, other.height - zone.height)
-            tilts += [tilt for tilt in (steepest, steepest + math.pi) if other.low < tilt < other.high]
+            tilts += [
+                tilt for tilt in (steepest, steepest + math.pi) if other.low < tilt < other.high
+            ]
             found += [(zone.support(tilt) - other.support(tilt), tilt) for tilt in tilts]
         return max(found)
 
     def whole(self, reach: float) -> list[Zone]:
         """Its surfaces, each once, as they make up the body if they are whole.
 
-        Left out are those that then reach out of the others by less than a length, m, wherever it stands.
+        Left out are those that then reach out of the others by less than a length, m, wherever it
+        stands.
         """
         kept = list({zone[:3]: zone for zone in self.zones}.values())
         for zone in list(kept):
@@ -85,7 +95,9 @@ class ConvexHull(NamedTuple):
             tilts = np.concatenate(
                 [np.linspace(*part[3:], 33) for part in self.zones if part[:3] == zone[:3]]
             )
-            beyond = [zone.support(t) - max(other.support(t) for other in others) for t in tilts if others]
+            beyond = [
+                zone.support(t) - max(other.support(t) for other in others) for t in tilts if others
+            ]
             if max(beyond, default=math.inf) <= reach:
                 kept.remove(zone)
         return kept
@@ -94,7 +106,8 @@ class ConvexHull(NamedTuple):
 def hull_of(profile: Profile) -> ConvexHull:
     """The convex hull of a body of revolution.
 
-    It is followed from tilt 0 to pi: each surface until another is further out, or its arc is at its end.
+    It is followed from tilt 0 to pi: each surface until another is further out, or its arc is at
+    its end.
     """
     pieces = _Pieces(profile)
     within = ROUNDING * profile.size
@@ -111,9 +124,12 @@ def hull_of(profile: Profile) -> ConvexHull:
 
 
 def _is_end_of_sphere(zone: Zone, zones: list[Zone]) -> bool:
-    """Whether it only seems to be a tip, because the arc of the sphere beside it is a little off the axis."""
+    """Whether it only seems to be a tip, because the arc of the sphere beside it is a little off
+    the axis.
+    """
     beside = any(
-        other.name == "sphere" and {zone.low, zone.high} & {other.low, other.high} for other in zones
+        other.name == "sphere" and {zone.low, zone.high} & {other.low, other.high}
+        for other in zones
     )
     return zone.name == "tip" and zone.high - zone.low < 2.0 * ON_AXIS and beside
 
@@ -130,7 +146,11 @@ def _merged(zones: list[Zone], within: float) -> list[Zone]:
     found: list[Zone] = []
     for zone in zones:
         last = found[-1] if found else None
-        if last and max(abs(one - other) for one, other in zip(last[:3], zone[:3], strict=True)) <= within:
+        if (
+            last
+            and max(abs(one - other) for one, other in zip(last[:3], zone[:3], strict=True))
+            <= within
+        ):
             found[-1] = last._replace(high=zone.high)
         else:
             found.append(zone._replace(low=last.high if last else 0.0))
@@ -138,7 +158,9 @@ def _merged(zones: list[Zone], within: float) -> list[Zone]:
 
 
 class _Pieces:
-    """The points and the arcs that are convex of a profile, and between which tilts each can touch."""
+    """The points and the arcs that are convex of a profile, and between which tilts each can
+    touch.
+    """
 
     def __init__(self, profile: Profile) -> None:
         edges = profile.edges
@@ -157,7 +179,9 @@ class _Pieces:
             [math.pi] * self.count + [s + edges[k].turn for s, k in zip(starts, arcs, strict=True)]
         )
         self.left = np.full(len(self.low), -math.inf)
-        self.starting = [[n for n, ends in self.ends.items() if ends[0] == k] for k in range(self.count)]
+        self.starting = [
+            [n for n, ends in self.ends.items() if ends[0] == k] for k in range(self.count)
+        ]
 
     def zone(self, number: int, low: float, high: float) -> Zone:
         """The surface of a piece."""
@@ -167,7 +191,9 @@ class _Pieces:
 
     def lowest(self) -> int:
         """The piece on which the body stands at tilt 0, or just above it."""
-        support = np.where((self.low <= 0.0) & (self.high > 0.0), self.tube - self.height, -math.inf)
+        support = np.where(
+            (self.low <= 0.0) & (self.high > 0.0), self.tube - self.height, -math.inf
+        )
         lowest = np.flatnonzero(support >= support.max() - ROUNDING * self.size)
         return int(max(lowest, key=lambda number: (self.radius[number], self.tube[number])))
 
@@ -180,12 +206,17 @@ class _Pieces:
         else:
             rises[self.starting[number]] = self.low[self.starting[number]]
         rises[self.left > tilt - _CLOSE] = math.inf
-        rises[(rises < self.low - NARROWEST) | (rises >= self.high) | (rises < tilt - _CLOSE)] = math.inf
+        rises[(rises < self.low - NARROWEST) | (rises >= self.high) | (rises < tilt - _CLOSE)] = (
+            math.inf
+        )
         first = int(np.argmin(rises))
-        return (max(tilt, float(rises[first])), first) if rises[first] < math.pi else (math.pi, number)
+        return (
+            (max(tilt, float(rises[first])), first) if rises[first] < math.pi else (math.pi, number)
+        )
 
     def _rises(self, number: int, tilt: float) -> NDArray[np.float64]:
-        """The tilts at which the circles and points come to be further out than one of them, from a tilt on.
+        """The tilts at which the circles and points come to be further out than one of them, from a
+        tilt on.
 
         Where arcs meet their own ends the two are equally far out, and this is not looked for.
         """

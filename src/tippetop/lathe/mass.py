@@ -19,15 +19,17 @@ class MassProperties(NamedTuple):
 
 
 Filling: TypeAlias = tuple[Profile, float]
-"""A profile filled with a material: its density, less that of what it takes the place of, kg/m^3."""
+"""A profile filled with a material: its density, less that of what it takes the place of, kg/m^3.
+"""
 
 
 def mass_properties(fillings: Sequence[Filling]) -> MassProperties:
     """Mass properties of bodies of revolution put together, on one axis; exact but for rounding.
 
-    By Green's theorem the integrals over a profile are integrals along its edges. With r the distance from
-    the axis and z the height along it, that of pi r^2 over dz is the volume, that of pi r^4 / 2 the moment of
-    inertia about the axis, and those of pi r^2 z and pi r^2 z^2 are the moments of the height.
+    By Green's theorem the integrals over a profile are integrals along its edges. With r the
+    distance from the axis and z the height along it, that of pi r^2 over dz is the volume, that of
+    pi r^4 / 2 the moment of inertia about the axis, and those of pi r^2 z and pi r^2 z^2 are the
+    moments of the height.
     """
     mass = _integral(fillings, lambda r, z: math.pi * r**2)
     center = _integral(fillings, lambda r, z: math.pi * r**2 * z) / mass
@@ -39,5 +41,6 @@ def mass_properties(fillings: Sequence[Filling]) -> MassProperties:
 def _integral(fillings: Sequence[Filling], integrand: Callable[[Any, Any], Any]) -> float:
     nodes = [(density, *profile.nodes) for profile, density in fillings]
     return sum(
-        density * float(integrand(points.real, points.imag) @ weights) for density, points, weights in nodes
+        density * float(integrand(points.real, points.imag) @ weights)
+        for density, points, weights in nodes
     )

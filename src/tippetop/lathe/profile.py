@@ -1,4 +1,6 @@
-"""Profiles of bodies of revolution: closed lines of edges beside the axis, checked to enclose a body."""
+"""Profiles of bodies of revolution: closed lines of edges beside the axis, checked to enclose a
+body.
+"""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +17,9 @@ ROUNDING = 1e-9
 """What counts as the same place, in sizes of the profile."""
 
 HALF_CIRCLE = 1e-12
-"""An arc whose radius is this close to half its chord, relative, is half a circle: so its centre is exact."""
+"""An arc whose radius is this close to half its chord, relative, is half a circle: so its centre is
+exact.
+"""
 
 SHORT = 1e-6
 """How much too short the radius of half a circle may be, relative: its ends have few digits."""
@@ -64,16 +68,22 @@ class Profile:
         return len(self.loop) > len(self.edges) or self.edges[0].start.real == 0.0
 
     def points(self, steps: int) -> Points:
-        """Points along it, `steps` on every arc; the last of a line that closes itself is the first."""
+        """Points along it, `steps` on every arc; the last of a line that closes itself is the
+        first.
+        """
         shares = [np.arange(steps) / steps if edge.turn else np.zeros(1) for edge in self.edges]
         found = [edge.points(share) for edge, share in zip(self.edges, shares, strict=True)]
         return np.concatenate([*found, [self.edges[-1].end]])
 
     def points_above(self, height: float) -> list[tuple[float, ...]]:
-        """The points that state it, as `profile_of` takes them, with heights from another origin, m."""
+        """The points that state it, as `profile_of` takes them, with heights from another origin,
+        m.
+        """
         start = self.edges[0].start
         ends = [(edge.end, (edge.radius,) if edge.turn else ()) for edge in self.edges]
-        return [(point.real, point.imag - height, *radius) for point, radius in [(start, ()), *ends]]
+        return [
+            (point.real, point.imag - height, *radius) for point, radius in [(start, ()), *ends]
+        ]
 
     def surrounds(self, point: complex) -> bool:
         """Whether a point that is not on it is inside."""
@@ -98,14 +108,18 @@ class Profile:
         return found
 
 
-def profile_of(points: Sequence[Sequence[float]], unit: float = 1.0, field: str = "profile") -> Profile:
-    """The profile through points, whose numbers are in a unit, m; in sentences they are called a `field`.
+def profile_of(
+    points: Sequence[Sequence[float]], unit: float = 1.0, field: str = "profile"
+) -> Profile:
+    """The profile through points, whose numbers are in a unit, m; in sentences they are called a
+    `field`.
 
-    They are distance from the axis, height along it and, where an arc ends, its radius: positive if it turns
-    to the left. In a row either way round, from the axis to the axis or from one to itself.
+    They are distance from the axis, height along it and, where an arc ends, its radius: positive if
+    it turns to the left. In a row either way round, from the axis to the axis or from one to
+    itself.
 
-    Raises `InvalidInput` if they are not the edge of a body: an open line, one that meets itself or crosses
-    the axis, an arc too tight for its ends, or nothing inside.
+    Raises `InvalidInput` if they are not the edge of a body: an open line, one that meets itself or
+    crosses the axis, an arc too tight for its ends, or nothing inside.
     """
     _refuse_points(points, field)
     size = max(max(abs(point[0]), abs(point[1] - points[0][1])) for point in points)
@@ -137,28 +151,41 @@ def _refuse_points(points: Sequence[Sequence[float]], field: str) -> None:
         if max(map(abs, point)) > LARGEST:
             raise InvalidInput(f"{field}.{number}", list(point), f"numbers of at most {LARGEST:g}")
         if point[0] < 0.0:
-            raise InvalidInput(f"{field}.{number}.0", point[0], "a distance from the axis, at least 0")
+            raise InvalidInput(
+                f"{field}.{number}.0", point[0], "a distance from the axis, at least 0"
+            )
     if len(points[0]) == 3 and points[0][2]:
-        raise InvalidInput(f"{field}.0.2", points[0][2], "no radius: at the first point no arc ends")
+        raise InvalidInput(
+            f"{field}.0.2", points[0][2], "no radius: at the first point no arc ends"
+        )
 
 
 def _edge(points: Sequence[Sequence[float]], number: int, size: float, field: str) -> Edge:
-    """The edge that ends at a point; refuses none, an arc that is too tight, and one across the axis."""
+    """The edge that ends at a point; refuses none, an arc that is too tight, and one across the
+    axis.
+    """
     start, end = (complex(*point[:2]) for point in points[number - 1 : number + 1])
     if abs(end - start) <= ROUNDING * size:
-        raise InvalidInput(f"{field}.{number}", list(points[number][:2]), "a point away from the one before")
+        raise InvalidInput(
+            f"{field}.{number}", list(points[number][:2]), "a point away from the one before"
+        )
     radius = points[number][2] if len(points[number]) == 3 else 0.0
     if not radius:
         return Edge(start, end)
     share = abs(end - start) / (2.0 * abs(radius))
     if share > 1.0 + SHORT:
-        least = f"0 for a straight edge, or a size of at least half the distance, {abs(end - start) / 2:g}"
+        least = (
+            "0 for a straight edge, or a size of at least half the distance,"
+            f" {abs(end - start) / 2:g}"
+        )
         raise InvalidInput(f"{field}.{number}.2", radius, least)
     half = math.pi / 2.0 if share > 1.0 - HALF_CIRCLE else math.asin(share)
     edge = Edge(start, end, math.copysign(2.0 * half, radius))
     innermost = edge.center - abs(edge.radius)
     if innermost.real < -ROUNDING * size and 0.0 < edge.share(innermost) < 1.0:
-        raise InvalidInput(f"{field}.{number}", list(points[number]), "an arc that stays beside the axis")
+        raise InvalidInput(
+            f"{field}.{number}", list(points[number]), "an arc that stays beside the axis"
+        )
     return edge
 
 
@@ -169,12 +196,21 @@ def _closed(edges: list[Edge], within: float, field: str) -> list[Edge]:
     if closes:
         edges[-1] = edges[-1]._replace(end=first)
     elif first.real > within or last.real > within:
-        ends = f"an open line from ({first.real:g}, {first.imag:g}) to ({last.real:g}, {last.imag:g})"
-        raise InvalidInput(field, ends, "a line that ends where it began, or one from the axis to the axis")
+        ends = (
+            f"an open line from ({first.real:g}, {first.imag:g}) to ({last.real:g}, {last.imag:g})"
+        )
+        raise InvalidInput(
+            field, ends, "a line that ends where it began, or one from the axis to the axis"
+        )
     edges = [
-        edge._replace(start=_on_axis(edge.start, within), end=_on_axis(edge.end, within)) for edge in edges
+        edge._replace(start=_on_axis(edge.start, within), end=_on_axis(edge.end, within))
+        for edge in edges
     ]
-    on_axis = [k for k, edge in enumerate(edges) if not edge.turn and edge.start.real == edge.end.real == 0.0]
+    on_axis = [
+        k
+        for k, edge in enumerate(edges)
+        if not edge.turn and edge.start.real == edge.end.real == 0.0
+    ]
     if closes and len(on_axis) == 1:
         edges = edges[on_axis[0] + 1 :] + edges[: on_axis[0]]
     for point in [edge.end for edge in edges[:-1]] + [_innermost(edge) for edge in edges]:
@@ -189,7 +225,9 @@ def _on_axis(point: complex, within: float) -> complex:
 
 
 def _innermost(edge: Edge) -> complex:
-    """The point of an arc closest to the axis between its ends; its middle where that is at an end."""
+    """The point of an arc closest to the axis between its ends; its middle where that is at an
+    end.
+    """
     if edge.turn:
         point = edge.center - abs(edge.radius)
         if 1e-6 < edge.share(point) < 1.0 - 1e-6:
@@ -211,7 +249,8 @@ def _refuse_meetings(edges: list[Edge], within: float, field: str) -> None:
         for point in meetings(edges[one], edges[other], within):
             if all(abs(point - end) > 10.0 * within for end in shared):
                 place = (
-                    f"a line whose edges {one + 1} and {other + 1} meet at ({point.real:g}, {point.imag:g})"
+                    f"a line whose edges {one + 1} and {other + 1} meet at ({point.real:g},"
+                    f" {point.imag:g})"
                 )
                 raise InvalidInput(field, place, "a line that does not meet itself")
 

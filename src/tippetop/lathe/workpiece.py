@@ -1,4 +1,6 @@
-"""Bodies turned on a lathe, as users state them: a profile, a density, and what is let into them."""
+"""Bodies turned on a lathe, as users state them: a profile, a density, and what is let into
+them.
+"""
 
 from functools import cached_property
 from typing import Annotated, Literal, Self
@@ -32,7 +34,8 @@ class Insert(Part):
     --------
     >>> import tippetop as tt
     >>> steel = tt.Insert(profile=[(0, -15), (0, -5, 5)], density=7800)
-    >>> ball = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm", inserts=[steel])
+    >>> profile = [(0, -20), (0, 20, 20)]
+    >>> ball = tt.Workpiece(profile=profile, density=700, unit="mm", inserts=[steel])
     >>> round(1e3 * ball.mass_properties.center, 3)  # mm
     -1.368
     """
@@ -47,9 +50,10 @@ class Workpiece(Part):
     Attributes
     ----------
     profile
-        Points (distance from the axis, height along it) in a row: from the axis to the axis, or from one to
-        itself. The edge to a point is straight, or with a third number an arc of this radius: positive where
-        it turns to the left, as the outside of a ball does on the way up. No arc is more than half a circle.
+        Points (distance from the axis, height along it) in a row: from the axis to the axis, or
+        from one to itself. The edge to a point is straight, or with a third number an arc of this
+        radius: positive where it turns to the left, as the outside of a ball does on the way up. No
+        arc is more than half a circle.
     density
         Density, kg/m^3.
     inserts
@@ -76,14 +80,18 @@ class Workpiece(Part):
         for number, inner in enumerate(self.insides):
             field, sides = f"inserts.{number}.profile", inner.sides(outline)
             if "out" in sides:
-                raise InvalidInput(field, "a line that leaves the body", "one inside the body's profile")
+                raise InvalidInput(
+                    field, "a line that leaves the body", "one inside the body's profile"
+                )
             if "on" in sides and not self.inserts[number].density:
                 raise InvalidInput(
                     field, "an open cavity", "one inside; what is open is the body's own profile"
                 )
             for other in self.insides[:number]:
                 if not (_apart(inner, other) or _within(inner, other) or _within(other, inner)):
-                    raise InvalidInput(field, "a line across another insert's", "one beside or inside it")
+                    raise InvalidInput(
+                        field, "a line across another insert's", "one beside or inside it"
+                    )
         return self
 
     @cached_property
@@ -101,11 +109,15 @@ class Workpiece(Part):
 
     @cached_property
     def around(self) -> tuple[int | None, ...]:
-        """The number of the insert in which each insert is, the innermost; None in the body itself."""
+        """The number of the insert in which each insert is, the innermost; None in the body
+        itself.
+        """
         found = []
         for inner in self.insides:
             others = [
-                k for k, other in enumerate(self.insides) if other is not inner and _within(inner, other)
+                k
+                for k, other in enumerate(self.insides)
+                if other is not inner and _within(inner, other)
             ]
             found.append(min(others, key=lambda k: area_of(self.insides[k].edges), default=None))
         return tuple(found)

@@ -69,7 +69,9 @@ def beginning(
     ArithmeticError
         If no such direction is found: more than one contact force may be consistent, or none.
     """
-    parts = [Vanishing(which) for which, wanted in zip((True, False), begins, strict=True) if wanted]
+    parts = [
+        Vanishing(which) for which, wanted in zip((True, False), begins, strict=True) if wanted
+    ]
     stiffness = [_stiffness(part, point) for part in parts]
 
     tried = list[tuple[Sequence[Slip], Motion]]()
@@ -86,27 +88,37 @@ def beginning(
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         _, _, wrench, acceleration = motion(ways)
         return [
-            Resisted(part.rate(acceleration, point.top), stiff * size(part.resisting(wrench, point.top)))
+            Resisted(
+                part.rate(acceleration, point.top), stiff * size(part.resisting(wrench, point.top))
+            )
             for part, stiff in zip(parts, stiffness, strict=True)
         ]
 
     ways: list[Slip] = []
     if parts:
-        # Against what would have held it; slip, if both begin, against what holds it once rolling goes on.
+        # Against what would have held it; slip, if both begin, against what holds it once rolling
+        # goes on.
         beside = (
-            beginning(point, slip, rolling, (False, True), None, moved).rolling if all(begins) else rolling
+            beginning(point, slip, rolling, (False, True), None, moved).rolling
+            if all(begins)
+            else rolling
         )
         against = held or moved(point, slip, beside)[0]
-        ways = directions(response, [scaled(-1.0, part.resisting(against, point.top)) for part in parts])
+        ways = directions(
+            response, [scaled(-1.0, part.resisting(against, point.top)) for part in parts]
+        )
     found = motion(ways)
     along = [inner(part.rate(found[3], point.top), e) for part, e in zip(parts, ways, strict=True)]
-    return Beginning(found[0], found[1], tuple(max(rate, 0.0) for rate in along), found[2], found[3])
+    return Beginning(
+        found[0], found[1], tuple(max(rate, 0.0) for rate in along), found[2], found[3]
+    )
 
 
 def settling(
     point: ContactPoint, slip: Slip | None, rolling: Slip | None, moved: Moved = contact_motion
 ) -> tuple[Beginning, tuple[bool, bool]]:
-    """How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin again.
+    """How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin
+    again.
 
     Parameters
     ----------
@@ -136,12 +148,16 @@ def settling(
 
 
 def _admits(point: ContactPoint, found: Beginning) -> bool:
-    """Whether the table can hold what does not go on, and the contact closed if the gap would close."""
+    """Whether the table can hold what does not go on, and the contact closed if the gap would
+    close.
+    """
     if found.wrench.force[2] <= 0.0 and presses(point.axis, point.momentum, point.top):
         return False
     if found.slip is None and slip_reserve(point.top, found.wrench) < 0.0:
         return False
-    return found.rolling is not None or bool(rolling_reserve(point, found.wrench, found.slip) >= 0.0)
+    return found.rolling is not None or bool(
+        rolling_reserve(point, found.wrench, found.slip) >= 0.0
+    )
 
 
 def _stiffness(part: Vanishing, point: ContactPoint) -> float:

@@ -1,4 +1,6 @@
-"""Laws and limit surfaces made of branches, of which one holds: see `tippetop.mechanics.contensou_hertz`."""
+"""Laws and limit surfaces made of branches, of which one holds: see
+`tippetop.mechanics.contensou_hertz`.
+"""
 
 from typing import Any
 
@@ -19,7 +21,9 @@ def whole_law(law: FrictionLaw) -> Any:
 
 
 def on_branch(top: Top, slip: Slip) -> Top:
-    """A top with the branch of its law that holds where it slips, or in that direction; of floats."""
+    """A top with the branch of its law that holds where it slips, or in that direction; of
+    floats.
+    """
     if not is_branched(top.friction):
         return top
     return top._replace(friction=whole_law(top.friction).branch(slip))
@@ -33,7 +37,9 @@ def on_numbered_branch(top: Top, slip: Slip) -> Top:
 
 
 def on_other_branch(top: Top) -> Top:
-    """A top with the branch of its law, or of its limit surface, that takes over where its own ends."""
+    """A top with the branch of its law, or of its limit surface, that takes over where its own
+    ends.
+    """
     law: Any = top.friction
     return top._replace(friction=law.other_branch())
 
@@ -44,10 +50,14 @@ def off_branch(top: Top) -> Top:
 
 
 def on_limit_branch(top: Top, wrench: Wrench) -> Top:
-    """A top with the branch of its law's limit surface that belongs to what holds it at rest; of floats."""
+    """A top with the branch of its law's limit surface that belongs to what holds it at rest; of
+    floats.
+    """
     if not is_branched(top.friction):
         return top
-    return top._replace(friction=whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2]))
+    return top._replace(
+        friction=whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2])
+    )
 
 
 def has_limit_branches(law: FrictionLaw) -> bool:
@@ -56,6 +66,8 @@ def has_limit_branches(law: FrictionLaw) -> bool:
 
 
 def limit_guard(top: Top, wrench: Wrench) -> Scalar:
-    """Positive as long as the branch of the limit surface that a body at rest has is the one it is on."""
+    """Positive as long as the branch of the limit surface that a body at rest has is the one it is
+    on.
+    """
     law: Any = top.friction
     return law.limit_guard(wrench.force[2], wrench.torque[2])

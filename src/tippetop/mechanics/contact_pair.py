@@ -1,27 +1,28 @@
 """Two closed contacts of one body, which slip or stick: what the table does, and what it can hold.
 
-The gaps change at gap_i'' = A_ij N_j + b_i with the normal forces N_i and the friction that goes with them.
-Both stay closed where A N + b = 0 has N > 0: there c' = 0, and c'' with it. Both contact points lie in the
-plane of the axis and the vertical, a_2 - a_1 = D e, with e the horizontal direction of the axis and D
-constant, as the tilt is. While both stay closed the body turns about e and the vertical only, so that with
-t = z x e
+The gaps change at gap_i'' = A_ij N_j + b_i with the normal forces N_i and the friction that goes
+with them. Both stay closed where A N + b = 0 has N > 0: there c' = 0, and c'' with it. Both contact
+points lie in the plane of the axis and the vertical, a_2 - a_1 = D e, with e the horizontal
+direction of the axis and D constant, as the tilt is. While both stay closed the body turns about e
+and the vertical only, so that with t = z x e
 
     v_2 = v_1 + zeta t,        zeta = D omega_z:
 
-xi = (v_1, zeta) says how both slip. Where both stick, three of its components are held: along e the points
-move as one, and what holds them may act at either; across e each is held by itself. With N_i and the needed
-forces T_i across e and S along it, Coulomb's friction can where |T_i| <= mu N_i and
+xi = (v_1, zeta) says how both slip. Where both stick, three of its components are held: along e the
+points move as one, and what holds them may act at either; across e each is held by itself. With N_i
+and the needed forces T_i across e and S along it, Coulomb's friction can where |T_i| <= mu N_i and
 
     |S| <= sqrt(mu^2 N_1^2 - T_1^2) + sqrt(mu^2 N_2^2 - T_2^2).
 
-Patches that resist drilling both stick or neither does, as xi = 0. There nothing works, and the body turns
-about the line that joins both contact points as fast as it did: in the frame that goes with it nothing
-changes, both T_i are zero, and S is all that the limit surfaces have to exert: as Coulomb's friction does.
-Where rolling is resisted the T_i are none any more but constant, and moments of drilling may take a share in
-what holds the points across e.
+Patches that resist drilling both stick or neither does, as xi = 0. There nothing works, and the
+body turns about the line that joins both contact points as fast as it did: in the frame that goes
+with it nothing changes, both T_i are zero, and S is all that the limit surfaces have to exert: as
+Coulomb's friction does. Where rolling is resisted the T_i are none any more but constant, and
+moments of drilling may take a share in what holds the points across e.
 
-What rolls turns about e, one way or the other: rolling resistance is a couple -+ length (N_1 + N_2) e. Where
-omega_e = 0 it is any up to that, along e: across e the normal forces hold the body already.
+What rolls turns about e, one way or the other: rolling resistance is a couple -+ length (N_1 + N_2)
+e. Where omega_e = 0 it is any up to that, along e: across e the normal forces hold the body
+already.
 """
 
 from collections.abc import Sequence
@@ -80,7 +81,12 @@ class ContactPair(NamedTuple):
         return (other, point, turning) if number else (point, other, turning)
 
     def holding(
-        self, ended: tuple[bool, bool], normal: tuple[Wrench, Wrench], moving: Moving, *, stopped: bool
+        self,
+        ended: tuple[bool, bool],
+        normal: tuple[Wrench, Wrench],
+        moving: Moving,
+        *,
+        stopped: bool,
     ) -> list[At]:
         """What keeps both contacts closed, and at rest where slip has ended, and rolling.
 
@@ -158,7 +164,9 @@ def turning_along(pair: ContactPair) -> Scalar:
 
 
 def without_tilting(state: State, top: Top) -> State:
-    """The state with c' = 0 and no sinking: what is taken from the momentum lies across the axis."""
+    """The state with c' = 0 and no sinking: what is taken from the momentum lies across the
+    axis.
+    """
     n = state.axis
     rate = axis_rate(n, state.momentum, top)[2]
     part = top.transverse_inertia * rate / (n[0] * n[0] + n[1] * n[1])
@@ -180,10 +188,11 @@ def slips_of(pair: ContactPair, xi: Slip) -> tuple[Slip, Slip]:
 def at_rest(
     pair: ContactPair, velocity: Vector, ended: tuple[bool, bool], *, stopped: bool
 ) -> tuple[Vector, Vector]:
-    """Angular momentum and velocity after the impulses that end what is left of slip, and of rolling.
+    """Angular momentum and velocity after the impulses that end what is left of slip, and of
+    rolling.
 
-    They act at the contacts, and keep the normal velocities: what little slip is left goes as friction takes
-    it.
+    They act at the contacts, and keep the normal velocities: what little slip is left goes as
+    friction takes it.
     """
     omega, up = pair.first.turning, Wrench(VERTICAL, NO_TORQUE)
     one, other = (add(velocity, cross(omega, point.arm)) for point in pair)

@@ -1,9 +1,9 @@
 """Dry friction of a round contact patch that slips and drills at once (Contensou 1963).
 
-Every part of the patch rubs by Coulomb's law against its own velocity, so that drilling makes sliding easier
-and sliding makes drilling easier. With slip speed v, drilling rate w and patch radius R, force and torque
-depend on kappa = v / (R |w|) alone, and derive from one convex dissipation potential. Sticking needs v = 0
-and w = 0.
+Every part of the patch rubs by Coulomb's law against its own velocity, so that drilling makes
+sliding easier and sliding makes drilling easier. With slip speed v, drilling rate w and patch
+radius R, force and torque depend on kappa = v / (R |w|) alone, and derive from one convex
+dissipation potential. Sticking needs v = 0 and w = 0.
 """
 
 from typing import NamedTuple
@@ -15,7 +15,9 @@ from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 PI = 3.141592653589793
 
 ELLIPSOIDAL_RADIUS = 3.0 * PI / 16.0
-"""Semi-axis rho of the ellipsoidal limit surface over the patch radius: it drills as hard as Hertz's."""
+"""Semi-axis rho of the ellipsoidal limit surface over the patch radius: it drills as hard as
+Hertz's.
+"""
 
 
 class PatchLaw(NamedTuple):
@@ -44,8 +46,9 @@ class PatchLaw(NamedTuple):
 class EllipsoidalLaw(PatchLaw):
     """Contensou friction with an ellipsoidal limit surface (Leine and Glocker 2003).
 
-    S = sqrt(v^2 + rho^2 w^2), f = -mu v / S, t = -mu rho^2 w / S along the vertical, and rho = (3 pi/16)
-    patch_radius: analytic but for v = w = 0, where any (T / mu N)^2 + (M / (mu N rho))^2 <= 1 is possible.
+    S = sqrt(v^2 + rho^2 w^2), f = -mu v / S, t = -mu rho^2 w / S along the vertical, and rho = (3
+    pi/16) patch_radius: analytic but for v = w = 0, where any (T / mu N)^2 + (M / (mu N rho))^2 <=
+    1 is possible.
     """
 
     @property

@@ -1,7 +1,7 @@
 """Contensou friction of a patch with Hertz's pressure, exact, in two analytic branches.
 
-See `contensou`. The law has two derivatives where the branches meet, kappa = 1: there the point of the patch
-that stands still is on its rim.
+See `contensou`. The law has two derivatives where the branches meet, kappa = 1: there the point of
+the patch that stands still is on its rim.
 """
 
 from typing import Any, NamedTuple
@@ -15,24 +15,29 @@ from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
 # fmt: off
 LIMIT: tuple[tuple[float, ...], ...] = (
-    (0.8835729338221295, 3.889778559163314, 5.573221706650525, 3.0420944615186203, 0.7966720357548377,
-     0.26696888590798373, 0.05714222546990528, 0.0010481676273393747, 0.00039135703969367353),
+    (0.8835729338221295, 3.889778559163314, 5.573221706650525, 3.0420944615186203,
+     0.7966720357548377, 0.26696888590798373, 0.05714222546990528, 0.0010481676273393747,
+     0.00039135703969367353),
     (1.0, 4.402328783813161, 6.1825966830889465, 2.8926555398109404, 0.12101121238237003,
      -0.09382811272248932, 0.006126226581420139),
 )
 # fmt: on
-"""Coefficients of two polynomials whose ratio is F on the limit surface, in (1 - (T / T(kappa = 1))^2)^(1/2);
-relative error 4e-16."""
+"""Coefficients of two polynomials whose ratio is F on the limit surface, in (1 - (T / T(kappa =
+1))^2)^(1/2); relative error 4e-16.
+"""
 
 EDGE = 1e-5
-"""How far beyond kappa^2 = 1 the law of drilling serves, off by kappa^2 - 1 to the power of 5/2 over 5.
+"""How far beyond kappa^2 = 1 the law of drilling serves, off by kappa^2 - 1 to the power of 5/2
+over 5.
 
-Slip's law has a singularity there that power series feel: they come no nearer to it than half of this, and no
-launch is on both branches, or on neither, by rounding.
+Slip's law has a singularity there that power series feel: they come no nearer to it than half of
+this, and no launch is on both branches, or on neither, by rounding.
 """
 
 BEYOND = 1e-20
-"""Share of slip in drilling, and of drilling in slip, that keeps a branch finite far from where it holds."""
+"""Share of slip in drilling, and of drilling in slip, that keeps a branch finite far from where it
+holds.
+"""
 
 BRANCH_TORQUE = 9.0 * PI / 128.0
 """T at kappa = 1."""
@@ -42,7 +47,9 @@ class HertzPiece(PatchLaw):
     """A branch of Hertz's law, which has a number beyond where it holds, too."""
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
-        """Force and torque per unit normal force; what prevails, drilling or slip, must not be zero."""
+        """Force and torque per unit normal force; what prevails, drilling or slip, must not be
+        zero.
+        """
         return resisting(self, slip, angular_velocity)
 
     @property
@@ -58,7 +65,9 @@ class HertzDrillingLaw(HertzPiece):
     """
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
-        """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
+        """Force over slip, and torque, per unit normal force, at slip of this square and drilling R
+        w.
+        """
         larger = drilling * drilling + BEYOND * square
         return scaled_shares(self, larger, drilling, drilling_shares(square / larger))
 
@@ -83,7 +92,9 @@ class HertzDrillingLaw(HertzPiece):
         return prevalence(slip, EDGE)
 
     def other_branch(self) -> "HertzSlidingLaw":
-        """The law where this one does not hold, and whose piece of the limit surface adjoins this one's."""
+        """The law where this one does not hold, and whose piece of the limit surface adjoins this
+        one's.
+        """
         return HertzSlidingLaw(*self)
 
 
@@ -95,23 +106,26 @@ class HertzSlidingLaw(HertzPiece):
         F = (3/16) [kappa (4 - kappa^2) sig + q (kappa^2 + 2) / kappa],
         T = (3/8) [(1 - kappa^2 + 3/8 kappa^4) sig + q (3/4 - 3/8 kappa^2)],
 
-    f = -mu F along the slip and |t| = mu R T. The terms cancel for large kappa. They do not in x = cos(sig) =
-    q / kappa and y = 1 - x^2 = 1 / kappa^2, with sig kappa = x + y C and C = 2/3 x + y D:
+    f = -mu F along the slip and |t| = mu R T. The terms cancel for large kappa. They do not in x =
+    cos(sig) = q / kappa and y = 1 - x^2 = 1 / kappa^2, with sig kappa = x + y C and C = 2/3 x + y
+    D:
 
         F = (3/16) [6 x + (4 y - 1) C],        T kappa = (3/8) [x + (y - 1) C + 3/8 D].
 
-    D is analytic in x on [0, 1] with the nearest singularity at -1, and a ratio of polynomials gives it to
-    rounding, with plain operators only.
+    D is analytic in x on [0, 1] with the nearest singularity at -1, and a ratio of polynomials
+    gives it to rounding, with plain operators only.
 
     Notes
     -----
-    Beyond its branch, x is the root of |1 - 1 / kappa^2|: there is a number there for an integrator that
-    looks ahead, but not the law. It is followed from kappa^2 = 1 + EDGE / 2 on; drilling's branch serves up
-    to 1 + EDGE. So that it has derivatives at kappa = 1 too, x is 1e-6 there.
+    Beyond its branch, x is the root of |1 - 1 / kappa^2|: there is a number there for an integrator
+    that looks ahead, but not the law. It is followed from kappa^2 = 1 + EDGE / 2 on; drilling's
+    branch serves up to 1 + EDGE. So that it has derivatives at kappa = 1 too, x is 1e-6 there.
     """
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
-        """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
+        """Force over slip, and torque, per unit normal force, at slip of this square and drilling R
+        w.
+        """
         other = drilling * drilling
         larger = square + BEYOND * other
         return scaled_shares(self, larger, drilling, sliding_shares(1.0 - other / larger))
@@ -137,15 +151,17 @@ class HertzSlidingLaw(HertzPiece):
         return -prevalence(slip, 0.5 * EDGE)
 
     def other_branch(self) -> "HertzDrillingLaw":
-        """The law where this one does not hold, and whose piece of the limit surface adjoins this one's."""
+        """The law where this one does not hold, and whose piece of the limit surface adjoins this
+        one's.
+        """
         return HertzDrillingLaw(*self)
 
 
 class HertzBranch(NamedTuple):
     """The branch of Hertz's law that a number tells: the other one has no part in it.
 
-    Both have a number wherever the patch moves, so that the same equations follow many launches, each on its
-    own: a single one costs half with those of its branch alone.
+    Both have a number wherever the patch moves, so that the same equations follow many launches,
+    each on its own: a single one costs half with those of its branch alone.
     """
 
     mu: Scalar
@@ -175,7 +191,9 @@ class HertzBranch(NamedTuple):
         return resisting(self, slip, angular_velocity)
 
     def shares(self, square: Scalar, drilling: Scalar) -> tuple[Scalar, Scalar]:
-        """Force over slip, and torque, per unit normal force, at slip of this square and drilling R w."""
+        """Force over slip, and torque, per unit normal force, at slip of this square and drilling R
+        w.
+        """
         other = drilling * drilling
         larger = self._either(other + BEYOND * square, square + BEYOND * other)
         share = self._either(square, other) / larger
@@ -192,7 +210,9 @@ class HertzBranch(NamedTuple):
         return self.whole.reserve(normal, force, drilling)
 
     def branch_guard(self, slip: Vector) -> Scalar:
-        """Positive as long as this branch is followed, up to `EDGE` or down to half of it, m^2/s^2."""
+        """Positive as long as this branch is followed, up to `EDGE` or down to half of it,
+        m^2/s^2.
+        """
         return (2.0 * self.drills - 1.0) * prevalence(slip, 0.5 * EDGE * (1.0 + self.drills))
 
     def other_branch(self) -> "HertzBranch":
@@ -205,7 +225,9 @@ class HertzBranch(NamedTuple):
 
 
 class HertzLaw(PatchLaw):
-    """Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of them."""
+    """Contensou friction with Hertz's pressure, whichever branch holds: for numbers, or arrays of
+    them.
+    """
 
     def drills(self, slip: Vector) -> Scalar:
         """Whether drilling prevails here, a truth value of floats, or an array of them."""
@@ -231,7 +253,9 @@ class HertzLaw(PatchLaw):
         return self.numbered_branch((*slip, drilling)).traction(slip, angular_velocity)
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
-        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than zero."""
+        """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2; else less than
+        zero.
+        """
         if normal == 0.0:  # without a normal force there is no friction
             return -(force[0] ** 2) - force[1] ** 2 - (drilling / self.patch_radius) ** 2
         return self.limit_branch(normal, drilling).reserve(normal, force, drilling)
@@ -244,7 +268,8 @@ def prevalence(slip: Vector, edge: Scalar) -> Scalar:
 
 
 def heaviness(law: Any, normal: Scalar, drilling: Scalar, edge: Scalar) -> Scalar:
-    """M^2 - (1 - edge) (mu N R T(1))^2, (N m)^2: positive where drilling torque M is on drilling's piece.
+    """M^2 - (1 - edge) (mu N R T(1))^2, (N m)^2: positive where drilling torque M is on drilling's
+    piece.
 
     T falls by 2/3 of what kappa^2 exceeds 1 by, relatively, and T^2 by 4/3 of it.
     """

@@ -11,7 +11,9 @@ TINY = 1e-300
 
 
 class CoulombLaw(NamedTuple):
-    """Coulomb's friction: f = -mu v / |v| in sliding, and at v = 0 any force up to mu N. No torque."""
+    """Coulomb's friction: f = -mu v / |v| in sliding, and at v = 0 any force up to mu N. No
+    torque.
+    """
 
     mu: Scalar
 
@@ -39,7 +41,8 @@ class RollingResistance(NamedTuple):
     """A torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity."""
 
     length: Scalar
-    """Arm of the normal force's couple, m. At w_t = 0 it is any horizontal torque up to length N."""
+    """Arm of the normal force's couple, m. At w_t = 0 it is any horizontal torque up to length N.
+    """
 
     def couple(self, angular_velocity: Vector) -> Vector:
         """Torque against rolling per unit normal force, m; nothing where there is none at all."""

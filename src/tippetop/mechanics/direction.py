@@ -1,9 +1,9 @@
 """Directions in which velocities begin that cannot be held: along each, A(e) = R e with R >= 0.
 
-Under dry friction the rate A of a velocity xi depends on its direction e = xi / s alone. Friction takes
-energy, so that e -> c e + A(e), normalized, comes to such a direction if c is large enough. It comes there
-slowly where one component of xi responds much less than another to what resists it, such as drilling of a
-small patch: Newton's method ends the search.
+Under dry friction the rate A of a velocity xi depends on its direction e = xi / s alone. Friction
+takes energy, so that e -> c e + A(e), normalized, comes to such a direction if c is large enough.
+It comes there slowly where one component of xi responds much less than another to what resists it,
+such as drilling of a small patch: Newton's method ends the search.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,7 +21,8 @@ EXACT, DIRECTED = 4e-16, 1e-9
 """Change of a direction that is rounding, and how well one must be known at least."""
 
 APART = 1e-7
-"""Difference of two directions from which a derivative is found; its error costs steps, no digits."""
+"""Difference of two directions from which a derivative is found; its error costs steps, no digits.
+"""
 
 
 class Resisted(NamedTuple):
@@ -30,7 +31,9 @@ class Resisted(NamedTuple):
     rate: Slip
     """A."""
     strength: float
-    """Size of what resists it, as large as its share in A at least: the part of c that is not A itself."""
+    """Size of what resists it, as large as its share in A at least: the part of c that is not A
+    itself.
+    """
 
 
 Response = Callable[[Sequence[Slip]], Sequence[Resisted]]
@@ -67,12 +70,14 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
         found = _improved(response, ways)
         if found is not None:
             return found
-        # Exactly against what drives it, as may be in a plane, a direction stays so: it is turned round.
+        # Exactly against what drives it, as may be in a plane, a direction stays so: it is turned
+        # round.
         rates = [resisted.rate for resisted in response(ways)]
         along = [inner(rate, e) for rate, e in zip(rates, ways, strict=True)]
         against = min(0.0, *along)
         ways = [
-            _unit(rates[i]) if along[i] < 0.0 and along[i] == against else ways[i] for i in range(len(ways))
+            _unit(rates[i]) if along[i] < 0.0 and along[i] == against else ways[i]
+            for i in range(len(ways))
         ]
     raise Unsolved("no direction in which the contact can go on, though nothing can hold it")
 
@@ -94,11 +99,15 @@ def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
 
 def _grow(responses: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
     """Whether velocities in these directions grow, or stay."""
-    return all(inner(a.rate, e) >= -DIRECTED * a.strength for a, e in zip(responses, ways, strict=True))
+    return all(
+        inner(a.rate, e) >= -DIRECTED * a.strength for a, e in zip(responses, ways, strict=True)
+    )
 
 
 def _leads(responses: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
-    """Whether directions that do not turn at once are known: slip alone, in a plane, never turns slowly."""
+    """Whether directions that do not turn at once are known: slip alone, in a plane, never turns
+    slowly.
+    """
     return len(ways) == 1 and len(ways[0]) == 2 and _grow(responses, ways)
 
 
@@ -130,7 +139,9 @@ def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
     for j in range(count):
         there = across(moved([APART if i == j else 0.0 for i in range(count)]))
         columns.append([(there[i] - here[i]) / APART for i in range(count)])
-    return moved(solve([[column[i] for column in columns] for i in range(count)], [-x for x in here]))
+    return moved(
+        solve([[column[i] for column in columns] for i in range(count)], [-x for x in here])
+    )
 
 
 def _apart(ways: Sequence[Slip], others: Sequence[Slip]) -> float:

@@ -1,10 +1,14 @@
-"""Discs of complex numbers, by which an analytic function is bounded: what a surface may be evaluated on."""
+"""Discs of complex numbers, by which an analytic function is bounded: what a surface may be
+evaluated on.
+"""
 
 from typing import Any
 
 
 class Disc:
-    """All complex numbers within a radius of a real centre, and what arithmetic can make of them."""
+    """All complex numbers within a radius of a real centre, and what arithmetic can make of
+    them.
+    """
 
     def __init__(self, centre: float, radius: float) -> None:
         self.centre, self.radius = centre, radius
@@ -17,7 +21,9 @@ class Disc:
     def __mul__(self, other: Any) -> "Disc":
         if isinstance(other, Disc):
             far = abs(other.centre) + other.radius
-            return Disc(self.centre * other.centre, abs(self.centre) * other.radius + self.radius * far)
+            return Disc(
+                self.centre * other.centre, abs(self.centre) * other.radius + self.radius * far
+            )
         return Disc(self.centre * other, self.radius * abs(other))
 
     def __pow__(self, exponent: float) -> "Disc":

@@ -1,13 +1,15 @@
 """Dry friction in an impact: slip, sticking, drilling and rolling with the normal impulse as time.
 
-While the normal impulse p grows, slip zeta (see `stick_slip`) changes by d zeta / dp = A(e), which depends on
-its direction e alone, as the configuration is fixed. Slip that ends stays ended if the limit surface admits
-the impulse that keeps it so; else it goes on along a direction with A = R e, R > 0, which then is constant:
-as in contact (see `beginning`), with unit normal impulses for forces that weight calls for.
+While the normal impulse p grows, slip zeta (see `stick_slip`) changes by d zeta / dp = A(e), which
+depends on its direction e alone, as the configuration is fixed. Slip that ends stays ended if the
+limit surface admits the impulse that keeps it so; else it goes on along a direction with A = R e, R
+> 0, which then is constant: as in contact (see `beginning`), with unit normal impulses for forces
+that weight calls for.
 
-A direction along which A(e) = R e stays so: all impulses then grow in a straight line, until slip has ended
-if R < 0. Slip comes to such a direction much faster than it ends where one component of it responds much more
-to friction than another, as sliding does on a small patch, on which drilling lasts: equations that are stiff.
+A direction along which A(e) = R e stays so: all impulses then grow in a straight line, until slip
+has ended if R < 0. Slip comes to such a direction much faster than it ends where one component of
+it responds much more to friction than another, as sliding does on a small patch, on which drilling
+lasts: equations that are stiff.
 """
 
 import math
@@ -19,7 +21,13 @@ from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.impact_process import SteppedProcess
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, first_reach
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import Acceleration, ContactPoint, is_set_valued, slip_length, struck_wrench
+from tippetop.mechanics.rolling import (
+    Acceleration,
+    ContactPoint,
+    is_set_valued,
+    slip_length,
+    struck_wrench,
+)
 from tippetop.mechanics.runge_kutta import RungeKuttaStep
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import come_to_rest, inner, plus, scaled, size, slip_part
@@ -33,7 +41,9 @@ ENDED = 10.0 * FUZZ
 """Slip, in units of the body's speed, that is none."""
 
 KEPT = 1e-8
-"""How near, relatively, friction must be to what keeps the direction of slip to count as equal to it."""
+"""How near, relatively, friction must be to what keeps the direction of slip to count as equal to
+it.
+"""
 
 LOOK = 4
 """After how many steps each it is looked whether slip has come to a direction that it keeps."""
@@ -66,7 +76,9 @@ class DryProcess(SteppedProcess):
         return slip_length(self.top.friction)
 
     def parts(self, velocity: Slip) -> tuple[Slip, Slip]:
-        """Slip zeta and horizontal angular velocity (times the arm's length) of six velocities, m/s."""
+        """Slip zeta and horizontal angular velocity (times the arm's length) of six velocities,
+        m/s.
+        """
         return slip_part(velocity, self.reach), scaled(self.body.lever, velocity[3:5])
 
     def zeros(self, velocity: Slip) -> tuple[bool, bool]:
@@ -76,7 +88,9 @@ class DryProcess(SteppedProcess):
         return ended, self.top.resists_rolling and size(rolling) <= least
 
     def settled(self, here: Impulse) -> Self:
-        """The impact with what has ended after an impulse, and where that goes on if it cannot stay so."""
+        """The impact with what has ended after an impulse, and where that goes on if it cannot stay
+        so.
+        """
         velocity = self.body.velocities(here)
         ended, stopped = self.zeros(velocity)
         if not (ended or stopped):
@@ -89,11 +103,15 @@ class DryProcess(SteppedProcess):
     def friction(self, velocity: Slip) -> Slip:
         """Force and torque per unit normal impulse at these velocities, six numbers."""
         way = self.way if self.ended else slip_part(velocity, self.reach)
-        wrench = struck_wrench(self.body.contact, way, self.rolling_way if self.stopped else velocity[3:5])
+        wrench = struck_wrench(
+            self.body.contact, way, self.rolling_way if self.stopped else velocity[3:5]
+        )
         return (*wrench.force, *wrench.torque)
 
     def pace(self, velocity: Slip, unit: Slip) -> float:
-        """Rate of a clock in which slip, and rolling, that end decay exponentially: traction over both."""
+        """Rate of a clock in which slip, and rolling, that end decay exponentially: traction over
+        both.
+        """
         reach, rate = self.reach, 0.0
         slip, rolling = size(slip_part(velocity, reach)), size(velocity[3:5])
         if not self.ended and slip > 0.0:
@@ -103,7 +121,9 @@ class DryProcess(SteppedProcess):
         return rate
 
     def after(self, here: Impulse) -> State:
-        """The state after an impulse, in which slip and rolling that have ended are exactly zero."""
+        """The state after an impulse, in which slip and rolling that have ended are exactly
+        zero.
+        """
         then = self.body.after(here)
         still = come_to_rest(along_table(then), self.top, *self.zeros(self.body.velocities(here)))
         return then._replace(momentum=still.momentum, velocity=(*still.velocity, then.velocity[2]))
@@ -113,13 +133,18 @@ class DryProcess(SteppedProcess):
         here, there = self.body.velocities(taken.here), self.body.velocities(taken.there)
         parts = zip(self.parts(here), self.parts(there), self.parts(off), strict=True)
         least = 1e-6 * self.body.speed
-        ratios = [size(wrong) / max(size(before), size(after), least) for before, after, wrong in parts]
+        ratios = [
+            size(wrong) / max(size(before), size(after), least) for before, after, wrong in parts
+        ]
         return float(max(*ratios, abs(off[2]) / self.speed))
 
-    def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
+    def straight(
+        self, here: Impulse, goal: Goal, guess: float, taken: int
+    ) -> tuple[Impulse, bool] | None:
         """Where a straight line leads, and whether to the goal: slip may end before.
 
-        It is None if slip changes its direction, or begins, or rolling is resisted; or is not looked for.
+        It is None if slip changes its direction, or begins, or rolling is resisted; or is not
+        looked for.
         """
         if taken % LOOK or self.top.resists_rolling or (self.ended and self.way is not None):
             return None
@@ -136,15 +161,20 @@ class DryProcess(SteppedProcess):
         return first_reach(along, goal, guess), True
 
     def line(self, here: Impulse) -> tuple[Slip, float] | None:
-        """Force and torque per unit normal impulse on a straight line, and its length until slip ends."""
+        """Force and torque per unit normal impulse on a straight line, and its length until slip
+        ends.
+        """
         velocity = self.body.velocities(here)
         slip, unit = self.parts(velocity)[0], self.friction(velocity)
         if self.ended:
             return unit, math.inf
-        grip = SLIP.resisting(Wrench((unit[0], unit[1], 1.0), (unit[3], unit[4], unit[5])), self.top)
+        grip = SLIP.resisting(
+            Wrench((unit[0], unit[1], 1.0), (unit[3], unit[4], unit[5])), self.top
+        )
         speed, holds = size(slip), size(grip)
         way, change = scaled(1.0 / speed, slip), slip_part(self.body.change(unit), self.reach)
-        # What changes slip so, and what changes it along itself; their ratio in the metric of kinetic energy.
+        # What changes slip so, and what changes it along itself; their ratio in the metric of
+        # kinetic energy.
         doing, along = self.impulse_for(change), self.impulse_for(way)
         inertia = inner(way, along)
         rate = inner(way, doing) / inertia
@@ -161,10 +191,16 @@ class DryProcess(SteppedProcess):
         return exact, speed / -rate if rate < 0.0 else math.inf
 
     def impulse_for(self, change: Slip) -> Slip:
-        """What changes slip so: impulses of force, and that of a drilling torque over the law's length."""
-        held, lengths = ((0, 1), (1.0, 1.0)) if self.reach is None else ((0, 1, 5), (1.0, 1.0, self.reach))
+        """What changes slip so: impulses of force, and that of a drilling torque over the law's
+        length.
+        """
+        held, lengths = (
+            ((0, 1), (1.0, 1.0)) if self.reach is None else ((0, 1, 5), (1.0, 1.0, self.reach))
+        )
         pairs, response = list(zip(held, lengths, strict=True)), self.body.response
-        return tuple(solve([[a * response[i][j] * b for j, b in pairs] for i, a in pairs], list(change)))
+        return tuple(
+            solve([[a * response[i][j] * b for j, b in pairs] for i, a in pairs], list(change))
+        )
 
 
 def struck_motion(

@@ -1,14 +1,17 @@
-"""How slip, or rolling, ends: the velocities that dry friction can bring to zero, and their last moments.
+"""How slip, or rolling, ends: the velocities that dry friction can bring to zero, and their last
+moments.
 
-What ends is a velocity xi: the slip zeta (see `stick_slip`), or rolling, which is the horizontal angular
-velocity w_t under rolling resistance. Away from xi = 0 the table's wrench depends on the direction e = xi / s
-alone, s = |xi|, and on numbers that do not end with it: with y = (n, L), and u where the contact slips,
+What ends is a velocity xi: the slip zeta (see `stick_slip`), or rolling, which is the horizontal
+angular velocity w_t under rolling resistance. Away from xi = 0 the table's wrench depends on the
+direction e = xi / s alone, s = |xi|, and on numbers that do not end with it: with y = (n, L), and u
+where the contact slips,
 
     y' = Y(y, e),        xi' = A(y, e) = R e + V,        s' = R,        s e' = V,        V.e = 0.
 
-With xi itself as a variable beside y nothing cancels as it goes to zero. Where R < 0, s reaches zero in
-finite time while e turns ever faster. In a clock whose unit is the time s / |A|, nearly -ln s, it does not:
-de = V/|A|, dy = s Y/|A|, dt = s/|A|, ds = s R/|A|. Nor does it where s has a least value, R = 0.
+With xi itself as a variable beside y nothing cancels as it goes to zero. Where R < 0, s reaches
+zero in finite time while e turns ever faster. In a clock whose unit is the time s / |A|, nearly -ln
+s, it does not: de = V/|A|, dy = s Y/|A|, dt = s/|A|, ds = s R/|A|. Nor does it where s has a least
+value, R = 0.
 """
 
 from typing import NamedTuple
@@ -29,15 +32,17 @@ from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, dot, sca
 from tippetop.mechanics.wrench import COUPLES, FORCES, Slip, Wrench
 
 DIGITS, SLOW = 1e-11, 1e-9
-"""Error of a velocity that is not followed by itself, in natural units, and one that is slow beside it."""
+"""Error of a velocity that is not followed by itself, in natural units, and one that is slow beside
+it.
+"""
 
 QUICK = 1e5
 """How many times its own velocities change in a natural unit of time where they change fast."""
 
 JAMMING = 1e-8
-"""Delassus number of the slipping contact, over that without friction, that is next to nothing: the time that
-is left falls as its square, and is rounding then. Of what the impact after it takes, a part as small is the
-friction's before.
+"""Delassus number of the slipping contact, over that without friction, that is next to nothing: the
+time that is left falls as its square, and is rounding then. Of what the impact after it takes, a
+part as small is the friction's before.
 """
 
 
@@ -55,11 +60,15 @@ class Vanishing(NamedTuple):
         return not self.slip and not self.held
 
     def recurs(self, top: Top) -> bool:
-        """Whether it may end and begin many times a second: slip under a law that resists nothing else."""
+        """Whether it may end and begin many times a second: slip under a law that resists nothing
+        else.
+        """
         return self.slip and slip_length(top.friction) is None and not top.resists_rolling
 
     def of(self, axis: Vector, momentum: Vector, velocity: Slip, top: Top) -> Slip:
-        """The velocity xi, from axis, angular momentum and horizontal velocity of the centre of mass."""
+        """The velocity xi, from axis, angular momentum and horizontal velocity of the centre of
+        mass.
+        """
         if self.slip:
             return slip_of(axis, momentum, (velocity[0], velocity[1]), top)
         return angular_velocity(axis, momentum, top)[:2]
@@ -91,8 +100,11 @@ class Vanishing(NamedTuple):
         force, torque = top.friction.traction((direction[0], direction[1]), (0.0, 0.0, w))
         return force if reach is None else (*force, torque[2])
 
-    def contact(self, point: ContactPoint, xi: Slip | None, slip: Slip | None) -> tuple[Wrench, Acceleration]:
-        """What the table does, and how the contact accelerates, for a direction of xi; None is held.
+    def contact(
+        self, point: ContactPoint, xi: Slip | None, slip: Slip | None
+    ) -> tuple[Wrench, Acceleration]:
+        """What the table does, and how the contact accelerates, for a direction of xi; None is
+        held.
 
         The slip is asked for only where rolling ends or begins and the contact slips meanwhile.
         """
@@ -124,7 +136,9 @@ class Closing(NamedTuple):
 
 
 class ClosingRates(NamedTuple):
-    """What follows from a state: rates of axis, angular momentum, velocity and xi, and the table's wrench."""
+    """What follows from a state: rates of axis, angular momentum, velocity and xi, and the table's
+    wrench.
+    """
 
     axis: Vector
     momentum: Vector
@@ -160,7 +174,9 @@ def closing_rates(state: Closing, ending: Vanishing, top: Top) -> Closing:
     unit = 2.0 * (1.0 - inner(state.direction, state.direction)) - along
     turn = tuple(pace * a + unit * e for a, e in zip(rates.xi, state.direction, strict=True))
     moved, speeding = scaled(step, rates.velocity), along * state.speed
-    return Closing(scale(step, rates.axis), scale(step, rates.momentum), moved, turn, speeding, step)
+    return Closing(
+        scale(step, rates.axis), scale(step, rates.momentum), moved, turn, speeding, step
+    )
 
 
 def reopening_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
@@ -174,19 +190,25 @@ def reopening_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
 
 
 def landing_guard(state: Closing, ending: Vanishing, top: Top, horizon: Scalar) -> Scalar:
-    """Falls through zero where xi, at its present rate, ends within the horizon (s), and is small by itself.
+    """Falls through zero where xi, at its present rate, ends within the horizon (s), and is small
+    by itself.
 
-    That is s + horizon R V / (V + |A|) with a velocity V that is `QUICK` times the body's own: where xi
-    changes faster than that, there may be much of it left for so short a time.
+    That is s + horizon R V / (V + |A|) with a velocity V that is `QUICK` times the body's own:
+    where xi changes faster than that, there may be much of it left for so short a time.
     """
-    rate, turning = rates_in_time(state, ending, top).xi, angular_velocity(state.axis, state.momentum, top)
+    rate, turning = (
+        rates_in_time(state, ending, top).xi,
+        angular_velocity(state.axis, state.momentum, top),
+    )
     quick = QUICK * (1.0 + dot(turning, turning)) ** 0.5
     share = quick / (quick + inner(rate, rate) ** 0.5)
     return state.speed + horizon * share * inner(rate, state.direction)
 
 
 def overtaking_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
-    """Falls through zero where the other velocity, at present rates, ends in half the time left to this."""
+    """Falls through zero where the other velocity, at present rates, ends in half the time left to
+    this.
+    """
     rates = rates_in_time(state, ending, top)
     other = Vanishing(not ending.slip)
     xi = other.of(state.axis, state.momentum, state.velocity, top)
@@ -197,11 +219,13 @@ def overtaking_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
 def jamming_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     """Falls through zero where the normal force grows beyond all bounds: Painleve's paradox begins.
 
-    Friction that turns is about to press the contact as much as the normal force opens it. There xi changes
-    as fast, and would seem to end, however much of it is left.
+    Friction that turns is about to press the contact as much as the normal force opens it. There xi
+    changes as fast, and would seem to end, however much of it is left.
     """
     point = ContactPoint.of(state.axis, state.momentum, top)
-    pressed = going_on(point, *ending.beside(point, state.direction, slip_beside(state, ending, top)))[0]
+    pressed = going_on(
+        point, *ending.beside(point, state.direction, slip_beside(state, ending, top))
+    )[0]
     return point.response(pressed).point[2] - JAMMING * point.response(FORCES[2]).point[2]
 
 

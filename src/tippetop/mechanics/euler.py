@@ -1,7 +1,8 @@
-"""The published equations (2.8)-(2.15) in Euler angles: the reference model, singular where sin(theta) = 0.
+"""The published equations (2.8)-(2.15) in Euler angles: the reference model, singular where
+sin(theta) = 0.
 
-They are kept to check the others by and to redo what was done with them. They hold for the eccentric sphere
-with viscous friction only.
+They are kept to check the others by and to redo what was done with them. They hold for the
+eccentric sphere with viscous friction only.
 """
 
 from collections.abc import Sequence
@@ -13,7 +14,9 @@ from tippetop.mechanics.vectors import Functions, Scalar
 
 
 def published_normal_force(y: Sequence[Scalar], top: Top, functions: Functions) -> Scalar:
-    """Normal force g_n of equation (2.15), N, for y = (theta, theta', phi, phi', omega3, v_x, v_y)."""
+    """Normal force g_n of equation (2.15), N, for y = (theta, theta', phi, phi', omega3, v_x,
+    v_y).
+    """
     tilt, tilt_rate, _, precession, spin, slip_x, _ = y
     m, I1, I3, R, alpha, mu, g = published_parameters(top)
     s, c = functions.sin(tilt), functions.cos(tilt)
@@ -30,7 +33,8 @@ def published_rates(
     *,
     unilateral: bool = False,
 ) -> tuple[Scalar, ...]:
-    """Time derivative of y = (theta, theta', phi, phi', omega3, v_x, v_y) by equations (2.8)-(2.15).
+    """Time derivative of y = (theta, theta', phi, phi', omega3, v_x, v_y) by equations
+    (2.8)-(2.15).
 
     Parameters
     ----------
@@ -41,11 +45,11 @@ def published_rates(
     functions
         Where sin and cos come from.
     wrap
-        When given, theta is replaced by theta modulo this number first, as the report's listing does with pi;
-        the right-hand side then jumps wherever theta crosses a multiple of it.
+        When given, theta is replaced by theta modulo this number first, as the report's listing
+        does with pi; the right-hand side then jumps wherever theta crosses a multiple of it.
     unilateral
-        Whether a negative normal force is set to zero, as lines that the listing has commented out would (for
-        numbers that can be compared).
+        Whether a negative normal force is set to zero, as lines that the listing has commented out
+        would (for numbers that can be compared).
 
     Notes
     -----
@@ -66,7 +70,8 @@ def published_rates(
         s / I1 * (I1 * precession**2 * c - I3 * spin * precession - R * alpha * normal)
         + R * friction_x * reach / I1,
         precession,
-        (I3 * tilt_rate * spin - 2.0 * I1 * tilt_rate * precession * c - friction_y * R * offset) / (I1 * s),
+        (I3 * tilt_rate * spin - 2.0 * I1 * tilt_rate * precession * c - friction_y * R * offset)
+        / (I1 * s),
         -friction_y * R * s / I3,
         R
         * s
@@ -91,8 +96,14 @@ def published_energy(y: Sequence[Scalar], top: Top, functions: Functions) -> Sca
     s, c = functions.sin(tilt), functions.cos(tilt)
     offset = alpha - c
     transverse = tilt_rate**2 + precession**2 * s**2
-    rolling = offset**2 * transverse + s**2 * (tilt_rate**2 + spin**2 + 2.0 * spin * precession * offset)
-    return 0.5 * m * R**2 * rolling + 0.5 * (I1 * transverse + I3 * spin**2) + m * g * R * (1.0 - alpha * c)
+    rolling = offset**2 * transverse + s**2 * (
+        tilt_rate**2 + spin**2 + 2.0 * spin * precession * offset
+    )
+    return (
+        0.5 * m * R**2 * rolling
+        + 0.5 * (I1 * transverse + I3 * spin**2)
+        + m * g * R * (1.0 - alpha * c)
+    )
 
 
 def published_parameters(top: Top) -> tuple[Scalar, ...]:
@@ -104,7 +115,9 @@ def published_parameters(top: Top) -> tuple[Scalar, ...]:
         If the top is not an eccentric sphere with viscous friction.
     """
     if not (isinstance(top.surface, SphereSurface) and isinstance(top.friction, ViscousLaw)):
-        raise TypeError("the published equations hold for an eccentric sphere with viscous friction only")
+        raise TypeError(
+            "the published equations hold for an eccentric sphere with viscous friction only"
+        )
     return (
         top.mass,
         top.transverse_inertia,

@@ -1,8 +1,8 @@
 """Free flight of a body of revolution in closed form.
 
-In flight the angular momentum L is constant, the axis n turns about it at the constant rate w = L / I1, and
-the centre of mass falls (Landau and Lifshitz, Mechanics, sections 33 and 35). A number y of the axis so obeys
-y''' = -w^2 y', and every other one of the state y''' = 0.
+In flight the angular momentum L is constant, the axis n turns about it at the constant rate w = L /
+I1, and the centre of mass falls (Landau and Lifshitz, Mechanics, sections 33 and 35). A number y of
+the axis so obeys y''' = -w^2 y', and every other one of the state y''' = 0.
 """
 
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
@@ -22,7 +22,8 @@ def fly(state: State, elapsed: Scalar, top: Top, functions: Functions) -> State:
     state
         The state at the start.
     elapsed
-        Time since then, s: a number, or an array of them, whose shape every number of the result then has.
+        Time since then, s: a number, or an array of them, whose shape every number of the result
+        then has.
     top
         The body and gravity.
     functions
@@ -44,7 +45,9 @@ def precession(state: State, top: Top) -> Scalar:
 
 
 def flight_rates(state: State, top: Top) -> tuple[State, State]:
-    """Rates of change of the state in free flight, its numbers' units per s, and theirs, per s^2."""
+    """Rates of change of the state in free flight, its numbers' units per s, and theirs, per
+    s^2.
+    """
     turning = axis_rate(state.axis, state.momentum, top)
     still, falling = (0.0, 0.0, 0.0), (0.0, 0.0, -top.gravity)
     rate = State(turning, still, falling, state.velocity[2])
@@ -54,7 +57,8 @@ def flight_rates(state: State, top: Top) -> tuple[State, State]:
 def swing(frequency: Scalar, elapsed: Scalar, functions: Functions) -> tuple[Scalar, Scalar]:
     """sin(w t) / w, s, and (1 - cos(w t)) / w^2, s^2, for a frequency w, rad/s, that may be zero.
 
-    A number that obeys y''' = -w^2 y' gains the first of them times y', and the second times y'', in a time.
+    A number that obeys y''' = -w^2 y' gains the first of them times y', and the second times y'',
+    in a time.
     """
     half = 0.5 * elapsed * frequency + SMALL
     chord = elapsed * functions.sin(half) / half

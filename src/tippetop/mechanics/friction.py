@@ -24,10 +24,14 @@ class FrictionLaw(Protocol):
         """Whether its torque is zero at any slip."""
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
-        """Force and torque per unit normal force at this slip velocity (m/s) and angular velocity (rad/s)."""
+        """Force and torque per unit normal force at this slip velocity (m/s) and angular velocity
+        (rad/s).
+        """
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
-        """What its class makes the law of, numbers that may carry a length or a time, in these units."""
+        """What its class makes the law of, numbers that may carry a length or a time, in these
+        units.
+        """
 
 
 class ViscousLaw(NamedTuple):
@@ -50,7 +54,9 @@ class ViscousLaw(NamedTuple):
 
 
 class RegularizedCoulombLaw(NamedTuple):
-    """Coulomb friction smoothed below the slip speed eps (m/s): f = -mu v / sqrt(v^2 + eps^2), no torque."""
+    """Coulomb friction smoothed below the slip speed eps (m/s): f = -mu v / sqrt(v^2 + eps^2), no
+    torque.
+    """
 
     mu: Scalar
     eps: Scalar

@@ -7,16 +7,17 @@ from tippetop.mechanics.vectors import Scalar
 
 # fmt: off
 ABOVE = (
-    1.5707963267948966, 3.881827558189307, 3.7302986673933276, 1.7319485839406856, 0.3822634716370882,
-    0.031121258667402094,
+    1.5707963267948966, 3.881827558189307, 3.7302986673933276, 1.7319485839406856,
+    0.3822634716370882, 0.031121258667402094,
 )
 BELOW = (
-    1.0, 4.168900902778227, 6.952127871831827, 5.877944744228727, 2.6214376916842954, 0.573386336009741,
-    0.046682203384759896,
+    1.0, 4.168900902778227, 6.952127871831827, 5.877944744228727, 2.6214376916842954,
+    0.573386336009741, 0.046682203384759896,
 )
 # fmt: on
-"""D in x = cos(sig), see `contensou_hertz.HertzSlidingLaw`, is the ratio of these polynomials; relative
-error 1e-17."""
+"""D in x = cos(sig), see `contensou_hertz.HertzSlidingLaw`, is the ratio of these polynomials;
+relative error 1e-17.
+"""
 
 SHARE = BELOW[6] / BELOW[5]
 """Part of x^2 beside x in a factor of the latter."""
@@ -39,7 +40,13 @@ def sliding_shares(excess: Scalar) -> tuple[Scalar, Scalar]:
     x4 = excess * excess + NEAR_BRANCH
     x2 = x4**0.5
     x = x2**0.5
-    above = ABOVE[0] + ABOVE[1] * x + ABOVE[2] * x2 + ABOVE[4] * x4 + x * (ABOVE[3] * x2 + ABOVE[5] * x4)
+    above = (
+        ABOVE[0]
+        + ABOVE[1] * x
+        + ABOVE[2] * x2
+        + ABOVE[4] * x4
+        + x * (ABOVE[3] * x2 + ABOVE[5] * x4)
+    )
     odd = (x + SHARE * x2) * (BELOW[3] * x2 + BELOW[5] * x4)
     below = BELOW[0] + BELOW[1] * x + BELOW[2] * x2 + (BELOW[4] - SHARE * BELOW[3]) * x4 + odd
     d, y = above / below, 1.0 - x2
@@ -63,4 +70,7 @@ def scaled_shares(
         F, and T, times what prevails over slip, and over drilling.
     """
     speed = larger**0.5
-    return -patch.mu * law[0] / speed, (-patch.mu * patch.patch_radius) * (drilling * law[1]) / speed
+    return (
+        -patch.mu * law[0] / speed,
+        (-patch.mu * patch.patch_radius) * (drilling * law[1]) / speed,
+    )

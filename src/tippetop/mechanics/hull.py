@@ -50,7 +50,9 @@ class Hull(NamedTuple):
 
     @property
     def proportions(self) -> tuple[Scalar, ...]:
-        """Those of every surface, and before them, for all but the first, its size in sizes of the first."""
+        """Those of every surface, and before them, for all but the first, its size in sizes of the
+        first.
+        """
         found: tuple[Scalar, ...] = self.units[0].proportions
         for unit, size in zip(self.units[1:], self.sizes[1:], strict=True):
             found = (*found, size / self.sizes[0], *unit.proportions)
@@ -107,12 +109,16 @@ def acting(surface: Surface) -> Surface:
 
 
 def is_edge(surface: Surface) -> bool:
-    """Whether a surface, or the one that is active, is an edge, on whose face the body may lie flat."""
+    """Whether a surface, or the one that is active, is an edge, on whose face the body may lie
+    flat.
+    """
     return hasattr(acting(surface), "face_guard")
 
 
 def outer_height(surface: Surface, c: Scalar) -> Scalar:
-    """Height of the centre of mass above the table while the lowest of all surfaces touches it, m."""
+    """Height of the centre of mass above the table while the lowest of all surfaces touches it,
+    m.
+    """
     first, *others = each_surface(surface)
     height = first.height(c)
     for other in others:
@@ -122,5 +128,7 @@ def outer_height(surface: Surface, c: Scalar) -> Scalar:
 
 
 def lowest_surface(surface: Surface, c: float) -> Surface:
-    """The surface that reaches lowest at this c, active; the first of several that do. Of floats."""
+    """The surface that reaches lowest at this c, active; the first of several that do. Of
+    floats.
+    """
     return max(each_surface(surface), key=lambda one: float(one.height(c)))

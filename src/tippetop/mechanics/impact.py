@@ -1,29 +1,31 @@
 """Impact of the body on the table, with the friction impulse that follows from the friction law.
 
-An impact is too short for the body to move, so that its configuration, and the arm a from the centre of mass
-to the contact point, stay fixed while its velocities jump. The normal impulse p plays the part of time (Routh
-1905, Dynamics of a System of Rigid Bodies, Advanced Part, chapter 5; Stronge 2018, Impact Mechanics, chapter
-4): where the sliding body feels the force N (z + f) and the torque N t, the struck one gains
+An impact is too short for the body to move, so that its configuration, and the arm a from the
+centre of mass to the contact point, stay fixed while its velocities jump. The normal impulse p
+plays the part of time (Routh 1905, Dynamics of a System of Rigid Bodies, Advanced Part, chapter 5;
+Stronge 2018, Impact Mechanics, chapter 4): where the sliding body feels the force N (z + f) and the
+torque N t, the struck one gains
 
     dP = (z + f) dp,        dL = (a x (z + f) + t) dp,        f, t = law(slip, angular velocity),
 
-and the velocity w of its contact point changes by dw = M dP, with M the inverse inertia that the contact
-feels, symmetric and positive definite. For viscous friction alone this is a linear equation, solved exactly;
-for another law it is integrated (Glocker 2014, Meccanica 49, and Leine and Glocker 2003, Eur. J. Mech. A 22,
-treat set-valued laws in the same setting).
+and the velocity w of its contact point changes by dw = M dP, with M the inverse inertia that the
+contact feels, symmetric and positive definite. For viscous friction alone this is a linear
+equation, solved exactly; for another law it is integrated (Glocker 2014, Meccanica 49, and Leine
+and Glocker 2003, Eur. J. Mech. A 22, treat set-valued laws in the same setting).
 
-*Compression* lasts until the normal velocity v_n returns to zero from below. It may sink first: where
-friction presses the contact together more than p opens it (Painleve's paradox), an impact starts even
-at v_n = 0 and ends only when the slip has changed. It always ends, since M is positive definite and slip
-that friction has stopped leaves dv_n/dp = M_nn - M_nt M_tt^-1 M_tn > 0.
+*Compression* lasts until the normal velocity v_n returns to zero from below. It may sink first:
+where friction presses the contact together more than p opens it (Painleve's paradox), an impact
+starts even at v_n = 0 and ends only when the slip has changed. It always ends, since M is positive
+definite and slip that friction has stopped leaves dv_n/dp = M_nn - M_nt M_tt^-1 M_tn > 0.
 
-*Restitution* is Poisson's: it lasts while p grows from the impulse of compression p_c to (1 + e) p_c, with
-friction going on. With friction, that hypothesis may create energy: the slope dv_n/dp can be larger in
-restitution than in compression, and then the normal impulse gives back more work than it took, even for
-e < 1 (Stronge 1990). The work of the normal impulse, the integral of v_n dp, is therefore followed, and
-restitution ends at once should it reach zero, which is the most that Stronge's energetic hypothesis allows.
-As friction only takes (f.v + t.omega <= 0), no impact gains energy. Should v_n be negative at the end, which
-friction that turns during restitution might do, the impact goes on until it is zero.
+*Restitution* is Poisson's: it lasts while p grows from the impulse of compression p_c to (1 + e)
+p_c, with friction going on. With friction, that hypothesis may create energy: the slope dv_n/dp can
+be larger in restitution than in compression, and then the normal impulse gives back more work than
+it took, even for e < 1 (Stronge 1990). The work of the normal impulse, the integral of v_n dp, is
+therefore followed, and restitution ends at once should it reach zero, which is the most that
+Stronge's energetic hypothesis allows. As friction only takes (f.v + t.omega <= 0), no impact gains
+energy. Should v_n be negative at the end, which friction that turns during restitution might do,
+the impact goes on until it is zero.
 
 Jellett's integral is conserved: P acts at the fixed arm, and a.(a x P) = 0.
 """
@@ -64,12 +66,13 @@ def impact(state: State, restitution: float, top: Top, beside: Top | None = None
     state
         The state before, floats.
     restitution
-        Poisson's coefficient e between 0 and 1: normal impulse of restitution over that of compression.
+        Poisson's coefficient e between 0 and 1: normal impulse of restitution over that of
+        compression.
     top
         The body and the friction law, floats.
     beside
-        The same with another surface active that touches too, with no normal velocity, and is pressed onto
-        the table; None if none is.
+        The same with another surface active that touches too, with no normal velocity, and is
+        pressed onto the table; None if none is.
 
     Raises
     ------
@@ -81,7 +84,9 @@ def impact(state: State, restitution: float, top: Top, beside: Top | None = None
         If it takes too many steps.
     """
     if not 0.0 <= restitution <= 1.0:
-        raise ValueError(f"the coefficient of restitution must lie between 0 and 1, but is {restitution}")
+        raise ValueError(
+            f"the coefficient of restitution must lie between 0 and 1, but is {restitution}"
+        )
     body = Striking.of(state, top)
     process = process_of(body, beside)
     if not process.is_struck:
@@ -108,7 +113,9 @@ def process_of(body: Striking, beside: Top | None) -> ImpactProcess:
 
 
 def restitution_goal(process: ImpactProcess, compressed: Impulse, restitution: float) -> Goal:
-    """Poisson's end of restitution, or that of the energy stored, but not before the body has stopped."""
+    """Poisson's end of restitution, or that of the energy stored, but not before the body has
+    stopped.
+    """
     body, compression = process.body, process.normal(compressed)
     full = compression + restitution * compression
 

@@ -4,8 +4,9 @@ With the normal impulse p of the striking contact as time (see `impact`), the ot
 
     0 <= dp_j,    0 <= dv_nj,    dp_j dv_nj = 0    while its normal velocity v_nj is zero,
 
-and none of its own while it is open. At both, friction follows the law along the way. What the table does at
-the other contact is a force and a torque at the first, too: that of its moment about it.
+and none of its own while it is open. At both, friction follows the law along the way. What the
+table does at the other contact is a force and a torque at the first, too: that of its moment about
+it.
 """
 
 from dataclasses import dataclass, replace
@@ -21,7 +22,8 @@ from tippetop.mechanics.vectors import Vector, add, cross, length, scale
 from tippetop.mechanics.wrench import Slip
 
 OPEN = 1e-9
-"""Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes."""
+"""Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes.
+"""
 
 SUNK = 1e-7
 """Normal velocity below zero at which it sinks, in the same units: beyond all errors of steps."""
@@ -36,7 +38,8 @@ class SlipEnds(ArithmeticError):
 
 @dataclass(frozen=True)
 class ProcessOnTwo(SteppedProcess):
-    """Such an impact, floats: impulses are those of both contacts at what strikes, and work is its own.
+    """Such an impact, floats: impulses are those of both contacts at what strikes, and work is its
+    own.
 
     The other contact's normal impulse is one more of their numbers.
     """
@@ -70,7 +73,9 @@ class ProcessOnTwo(SteppedProcess):
         return here[NORMAL] - here[OTHER]
 
     def beside(self, change: Slip) -> Slip:
-        """Change of the six velocities of the other contact, by that of what strikes: it keeps digits."""
+        """Change of the six velocities of the other contact, by that of what strikes: it keeps
+        digits.
+        """
         x, y, z, *turning = change
         turned = (turning[0], turning[1], turning[2])
         return (*point_velocity((x, y, z), turned, self.apart), *turned)
@@ -80,7 +85,9 @@ class ProcessOnTwo(SteppedProcess):
         return plus(self.before, self.beside(self.body.change(here)))
 
     def settled(self, here: Impulse) -> Self:
-        """The impact from some impulses on, whether or not the other contact is closed, or sinks, then."""
+        """The impact from some impulses on, whether or not the other contact is closed, or sinks,
+        then.
+        """
         rise = self.there(here)[2] / self.speed
         pressed, sunk = bool(rise <= OPEN), bool(rise < -(OPEN if self.sunk else SUNK))
         same = pressed == self.pressed and sunk == self.sunk
@@ -118,9 +125,10 @@ class ProcessOnTwo(SteppedProcess):
     def share(self, unit: Slip, other: Slip) -> float:
         """Part of the normal impulses that acts at the other contact, which they keep closed.
 
-        Where friction presses it as much as its impulse opens it (Painleve's paradox) it sinks, and has all
-        of them until its slip has changed and it is back, as in an impact of its own.
-        Those, with the friction that they cause, are given: `unit` at what strikes, `other` at the other one.
+        Where friction presses it as much as its impulse opens it (Painleve's paradox) it sinks, and
+        has all of them until its slip has changed and it is back, as in an impact of its own.
+        Those, with the friction that they cause, are given: `unit` at what strikes, `other` at the
+        other one.
         """
         coupling, own = (self.beside(self.body.change(wrench))[2] for wrench in (unit, other))
         if self.sunk or (coupling < 0.0 and own <= 0.0):
@@ -142,11 +150,13 @@ class ProcessOnTwo(SteppedProcess):
         velocities = [self.there(end) for end in (taken.here, taken.there)]
         return max(super().wrong(taken, off), slip_error(velocities, self.beside(off), self.speed))
 
-    def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
+    def straight(
+        self, here: Impulse, goal: Goal, guess: float, taken: int
+    ) -> tuple[Impulse, bool] | None:
         """The rest if friction has come to hold both slips constant.
 
-        Where they change less along it than a step may err, a steep law would take many steps, and no other
-        way.
+        Where they change less along it than a step may err, a steep law would take many steps, and
+        no other way.
         """
         if not self.pressed:
             return None

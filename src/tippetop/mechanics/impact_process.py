@@ -6,7 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
-from tippetop.mechanics.impulse import FUZZ, NO_IMPULSE, NORMAL, Goal, Impulse, Striking, first_reach
+from tippetop.mechanics.impulse import (
+    FUZZ,
+    NO_IMPULSE,
+    NORMAL,
+    Goal,
+    Impulse,
+    Striking,
+    first_reach,
+)
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.runge_kutta import (
     POWER,
@@ -22,7 +30,9 @@ from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.wrench import Slip
 
 LONGEST = 5.0
-"""Step at most, in the time in which slip falls by a factor of e: so many times it are still stable."""
+"""Step at most, in the time in which slip falls by a factor of e: so many times it are still
+stable.
+"""
 
 TOLERANCE = 1e-9
 """Error of the slip in a step of the integration, relative to the slip."""
@@ -34,16 +44,21 @@ SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
 
 NEWTON, SHORT, STRAIGHT = 4, 2e-3, 1e-8
-"""Improvements of the end of an impact, and how near to it, in parts of its last step, the way is short, and
-straight."""
+"""Improvements of the end of an impact, and how near to it, in parts of its last step, the way is
+short, and straight.
+"""
 
 MOST = 20_000
-"""Steps after which an impact is given up, within seconds; most take some ten, on small patches thousands."""
+"""Steps after which an impact is given up, within seconds; most take some ten, on small patches
+thousands.
+"""
 
 
 @dataclass(frozen=True)
 class ImpactProcess(ABC):
-    """An impact under some law of friction: what may be asked of any, however its impulses are found."""
+    """An impact under some law of friction: what may be asked of any, however its impulses are
+    found.
+    """
 
     body: Striking
     """The body at the start of the impact."""
@@ -79,7 +94,8 @@ class ImpactProcess(ABC):
 
     @abstractmethod
     def until(self, here: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
-        """The first impulse from a given one on at which the goal is not negative, and the steps to there.
+        """The first impulse from a given one on at which the goal is not negative, and the steps to
+        there.
 
         The guess, positive, is how much the normal impulse may have to grow.
 
@@ -92,14 +108,15 @@ class ImpactProcess(ABC):
 
 @dataclass(frozen=True)
 class SteppedProcess(ImpactProcess):
-    """An impact of one contact under a law that says the friction at any slip, with slip as the clock.
+    """An impact of one contact under a law that says the friction at any slip, with slip as the
+    clock.
 
-    A law that is steep at small slip makes the equations stiff in p, as slip then changes fast. They are
-    integrated over s instead, dp = ds / (|f|/|v| + 1/v_0) with v_0 the initial speed of the contact point:
-    slip then decays at the rate of M however steep the law, and needs no more than some tens of units of s
-    to fall by twenty orders of magnitude. Once friction has come to hold the slip constant, f = -M_tt^-1
-    M_tn (less what a torque does), it stays so, and the rest is a straight line; it is checked
-    that the law agrees.
+    A law that is steep at small slip makes the equations stiff in p, as slip then changes fast.
+    They are integrated over s instead, dp = ds / (|f|/|v| + 1/v_0) with v_0 the initial speed of
+    the contact point: slip then decays at the rate of M however steep the law, and needs no more
+    than some tens of units of s to fall by twenty orders of magnitude. Once friction has come to
+    hold the slip constant, f = -M_tt^-1 M_tn (less what a torque does), it stays so, and the rest
+    is a straight line; it is checked that the law agrees.
     """
 
     @property
@@ -113,11 +130,15 @@ class SteppedProcess(ImpactProcess):
         return 2.0 * LONGEST / float(self.body.response[0][0] + self.body.response[1][1])
 
     def ends(self, goal: Goal) -> list[Goal]:
-        """What a step may reach, the goal first; the impact goes on, as it is settled then, from others."""
+        """What a step may reach, the goal first; the impact goes on, as it is settled then, from
+        others.
+        """
         return [goal]
 
     def pace(self, velocity: Slip, unit: Slip) -> float:
-        """Rate of the clock with the normal impulse, of what slips, for force and torque that go with it."""
+        """Rate of the clock with the normal impulse, of what slips, for force and torque that go
+        with it.
+        """
         slip, grip = math.hypot(velocity[0], velocity[1]), math.hypot(unit[0], unit[1])
         if slip == 0.0:
             slip = 1e-12 * self.speed
@@ -135,8 +156,11 @@ class SteppedProcess(ImpactProcess):
         velocities = [self.body.velocities(end) for end in (taken.here, taken.there)]
         return slip_error(velocities, off, self.speed)
 
-    def straight(self, here: Impulse, goal: Goal, guess: float, taken: int) -> tuple[Impulse, bool] | None:
-        """Where a straight line leads after some steps, and whether to the goal; None if there is none.
+    def straight(
+        self, here: Impulse, goal: Goal, guess: float, taken: int
+    ) -> tuple[Impulse, bool] | None:
+        """Where a straight line leads after some steps, and whether to the goal; None if there is
+        none.
 
         There is where friction holds the slip constant, if it does so all along.
         """
@@ -184,7 +208,9 @@ class SteppedProcess(ImpactProcess):
 
 
 def slip_error(ends: Sequence[Slip], off: Slip, speed: float) -> float:
-    """An error in velocities, known at a step's ends: of slip beside it, and of the normal one by a speed."""
+    """An error in velocities, known at a step's ends: of slip beside it, and of the normal one by a
+    speed.
+    """
     slip = max(1e-9 * speed, *[math.hypot(*end[:2]) for end in ends])
     return float(max(math.hypot(*off[:2]) / slip, abs(off[2]) / speed))
 
@@ -197,8 +223,8 @@ def doubt_of(now: SteppedProcess, taken: RungeKuttaStep) -> float:
 def landing(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Impulse:
     """The impulse within a step at which one of some goals is reached.
 
-    The cubic through its ends tells about where. From there on it is Newton's method, as a goal is linear in
-    the impulse, or the least or largest of some that are.
+    The cubic through its ends tells about where. From there on it is Newton's method, as a goal is
+    linear in the impulse, or the least or largest of some that are.
     """
 
     def missing(point: Impulse) -> float:

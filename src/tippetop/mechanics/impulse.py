@@ -17,8 +17,9 @@ FUZZ = 1e-14
 """Round-off in the velocity of the contact point, relative to what it is made of."""
 
 Impulse: TypeAlias = tuple[float, ...]
-"""Impulse of the table's force so far, N s, that of its torque, N m s, and the work of the normal part, J; or
-that, and more."""
+"""Impulse of the table's force so far, N s, that of its torque, N m s, and the work of the normal
+part, J; or that, and more.
+"""
 
 NORMAL, WORK = 2, 6
 """Places of the normal impulse in it, and of its work."""
@@ -38,13 +39,16 @@ class Striking(NamedTuple):
     """Length of the contact vector, m."""
     speed: float
     striking: float
-    """Speeds of the body's material, what rounding is measured by, and of its contact point, m/s."""
+    """Speeds of the body's material, what rounding is measured by, and of its contact point, m/s.
+    """
     before: Slip
-    """Velocity of the contact point, m/s, and angular velocity, rad/s; what is but round-off of a normal
-    velocity is zero."""
+    """Velocity of the contact point, m/s, and angular velocity, rad/s; what is but round-off of a
+    normal velocity is zero.
+    """
     response: tuple[Slip, ...]
-    """What an impulse adds to each of these six, per component of the force's and of the torque's: first of
-    all the inverse effective mass M (Delassus matrix), 1/kg."""
+    """What an impulse adds to each of these six, per component of the force's and of the torque's:
+    first of all the inverse effective mass M (Delassus matrix), 1/kg.
+    """
 
     @classmethod
     def of(cls, state: State, top: Top) -> "Striking":
@@ -80,17 +84,23 @@ class Striking(NamedTuple):
         return float(self.before[2] + sum(map(mul, self.response[2], impulse)))
 
     def friction(self, velocity: Slip) -> Slip:
-        """Force and torque per unit normal impulse under a law that says them at any slip, six numbers."""
+        """Force and torque per unit normal impulse under a law that says them at any slip, six
+        numbers.
+        """
         x, y, _, *omega = velocity
         force, torque = self.contact.top.traction((x, y), (omega[0], omega[1], omega[2]))
         return (*force, 1.0, *torque)
 
     def work(self, impulse: Impulse) -> float:
-        """Work of an impulse, J: times the mean velocity, as that is linear in it (Thomson and Tait)."""
+        """Work of an impulse, J: times the mean velocity, as that is linear in it (Thomson and
+        Tait).
+        """
         return float(0.5 * inner(impulse[:6], plus(self.before, self.velocities(impulse))))
 
     def straight(self, impulse: Impulse, unit: Slip) -> Callable[[float], Impulse]:
-        """The impulse that grows from a given one by so much per unit normal impulse of what strikes."""
+        """The impulse that grows from a given one by so much per unit normal impulse of what
+        strikes.
+        """
         approach, rise = self.approach(impulse), sum(map(mul, self.response[2], unit))
 
         def along(q: float) -> Impulse:

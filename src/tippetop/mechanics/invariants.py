@@ -17,8 +17,8 @@ def energy(state: State, top: Top) -> Scalar:
 def jellett(state: State, top: Top) -> Scalar:
     """Jellett's integral lambda = -L.a, kg m^3/s.
 
-    Constant for a top that conserves it (`Top.conserves_jellett`), an eccentric sphere under friction without
-    torque, because the moment a x F of the contact force is perpendicular to a, and the rate of a to L
-    (Jellett 1872). A torque M of the table changes it at the rate -M.a.
+    Constant for a top that conserves it (`Top.conserves_jellett`), an eccentric sphere under
+    friction without torque, because the moment a x F of the contact force is perpendicular to a,
+    and the rate of a to L (Jellett 1872). A torque M of the table changes it at the rate -M.a.
     """
     return -dot(state.momentum, contact_vector(state.axis, top.surface))

@@ -1,4 +1,6 @@
-"""Friction that turns and comes to press the contact, which it jams, and what an impulse does then."""
+"""Friction that turns and comes to press the contact, which it jams, and what an impulse does
+then.
+"""
 
 import math
 
@@ -14,19 +16,23 @@ from tippetop.mechanics.vectors import add, scale
 from tippetop.mechanics.wrench import FORCES
 
 PROBED = 1e-6
-"""Part of the slip that an impulse takes or turns that tells how the Delassus number changes with it."""
+"""Part of the slip that an impulse takes or turns that tells how the Delassus number changes with
+it.
+"""
 
 JAMMED, PAST = 1e-3, 1e-7
-"""Delassus number times mass of a slipping contact, below which its normal force leaves no step to take; and
-how far it is below zero at least where it is past that, which rounding does not decide."""
+"""Delassus number times mass of a slipping contact, below which its normal force leaves no step to
+take; and how far it is below zero at least where it is past that, which rounding does not decide.
+"""
 
 
 def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
-    """The state past the normal impulse over which friction comes to press the contact, which it jams.
+    """The state past the normal impulse over which friction comes to press the contact, which it
+    jams.
 
-    There the Delassus number of the slipping contact falls through zero. A little before, it is as much above
-    as it is below after twice that impulse, while the contact opens by nothing; next to nothing before, what
-    it closes by is of the square of `PAST`.
+    There the Delassus number of the slipping contact falls through zero. A little before, it is as
+    much above as it is below after twice that impulse, while the contact opens by nothing; next to
+    nothing before, what it closes by is of the square of `PAST`.
 
     Parameters
     ----------
@@ -38,15 +44,16 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     Returns
     -------
     tuple or None
-        The state after, the normal impulse, N s, and the energy that went with it, J. None if that number is
-        not next to zero, or does not fall as the impulse grows and the force does.
+        The state after, the normal impulse, N s, and the energy that went with it, J. None if that
+        number is not next to zero, or does not fall as the impulse grows and the force does.
 
     Raises
     ------
     Unsolved
-        If the motion alone has led to where it is zero, and the acceleration without a contact force with it,
-        so that the force is finite: the singular point of Genot and Brogliato (1999), past which motions as
-        near as one likes lift off, or are struck (Nordmark, Varkonyi and Champneys 2018).
+        If the motion alone has led to where it is zero, and the acceleration without a contact
+        force with it, so that the force is finite: the singular point of Genot and Brogliato
+        (1999), past which motions as near as one likes lift off, or are struck (Nordmark, Varkonyi
+        and Champneys 2018).
     ArithmeticError
         If a number on the way to it is too large.
     """
@@ -66,7 +73,9 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     if not fall > 0.0:
         if not abs(touch.free_acceleration) < JAMMED * top.gravity:
             return None
-        raise Unsolved("it would open there too, and whether it does or is struck rigid bodies do not tell")
+        raise Unsolved(
+            "it would open there too, and whether it does or is struck rigid bodies do not tell"
+        )
     further = touch.delassus + max(touch.delassus, PAST / top.mass)
     impulse = max(further, 0.0) / fall * PROBED * whole
     beyond = on_table(after(impulse), top)
@@ -74,7 +83,9 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
 
 
 def stuck_at_once(state: State, top: Top) -> State:
-    """The state after the impulse that ends slip, and drilling if the law resists it, without opening."""
+    """The state after the impulse that ends slip, and drilling if the law resists it, without
+    opening.
+    """
     body, (x, y, *_) = Striking.of(state, top), slip_of(*along_table(state), top)
     moving = body.contact._replace(free=Acceleration((x, y, 0.0), body.contact.turning))
     impulse, _ = moving.holding([*holding_slip(top.friction), (2, FORCES[2])])

@@ -1,9 +1,9 @@
 """Equations of motion of a body of revolution that slides on the table.
 
-The centre of mass moves by m u' = F, the angular momentum about it by L' = a x F + N t, and the axis by
-n' = L x n / I1, where F = N (z + f) is the contact force, N t its drilling torque and a the contact vector.
-The normal force N follows from differentiating the constraint z = h(n_z) twice. The variables have no
-singularity, and the right-hand side is algebraic.
+The centre of mass moves by m u' = F, the angular momentum about it by L' = a x F + N t, and the
+axis by n' = L x n / I1, where F = N (z + f) is the contact force, N t its drilling torque and a the
+contact vector. The normal force N follows from differentiating the constraint z = h(n_z) twice. The
+variables have no singularity, and the right-hand side is algebraic.
 """
 
 from typing import NamedTuple
@@ -15,8 +15,10 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
 PRESSED, ROUNDING = 1e-3, 1e-13
-"""Acceleration of the gap, over the largest of its parts, below which it is taken for zero at a lift-off; and
-the relative error of the axis, which is what such an acceleration may be made of in fast motion."""
+"""Acceleration of the gap, over the largest of its parts, below which it is taken for zero at a
+lift-off; and the relative error of the axis, which is what such an acceleration may be made of in
+fast motion.
+"""
 
 
 class SlidingContact(NamedTuple):
@@ -33,8 +35,9 @@ class SlidingContact(NamedTuple):
     free_acceleration: Scalar
     """Acceleration b of the gap there would be without a contact force, m/s^2."""
     delassus: Scalar
-    """Acceleration A of the gap per unit normal force with the friction that goes with it, 1/kg. Where it is
-    not positive, no contact force is consistent (Painleve's paradox)."""
+    """Acceleration A of the gap per unit normal force with the friction that goes with it, 1/kg.
+    Where it is not positive, no contact force is consistent (Painleve's paradox).
+    """
 
     @property
     def normal_force(self) -> Scalar:
@@ -91,7 +94,11 @@ def contact_swing(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
     if not surface.spherical:
         x, y, _ = cross(omega, contact_vector(axis, surface))
         return (x, y)
-    tilting, slope, radius = axis_rate(axis, momentum, top), surface.slope(axis[2]), surface.height(0.0)
+    tilting, slope, radius = (
+        axis_rate(axis, momentum, top),
+        surface.slope(axis[2]),
+        surface.height(0.0),
+    )
     return (-(slope * tilting[0] + radius * omega[1]), radius * omega[0] - slope * tilting[1])
 
 
@@ -107,8 +114,8 @@ def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> S
 
     Notes
     -----
-    The second derivative of the gap z - h(c), c = n_z, is A N + b with b of `free_acceleration` and A of
-    `driven_acceleration`, by z + f and a x (z + f) + t.
+    The second derivative of the gap z - h(c), c = n_z, is A N + b with b of `free_acceleration` and
+    A of `driven_acceleration`, by z + f and a x (z + f) + t.
     """
     arm = contact_vector(axis, top.surface)
     omega = angular_velocity(axis, momentum, top)
@@ -136,7 +143,9 @@ def turning_parts(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
 
 
 def driven_acceleration(axis: Vector, upwards: Scalar, moment: Vector, top: Top) -> Scalar:
-    """What a force upwards, N, and a moment M about the centre of mass, N m, add: F/m - (h'/I1) [M x n]_z."""
+    """What a force upwards, N, and a moment M about the centre of mass, N m, add: F/m - (h'/I1) [M
+    x n]_z.
+    """
     lever = top.surface.slope(axis[2]) / top.transverse_inertia
     return upwards / top.mass - lever * cross(moment, axis)[2]
 
@@ -154,7 +163,9 @@ def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
 
 
 def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:
-    """Moment of the contact force about the centre of mass per unit normal force, a x (z + f) + t, m."""
+    """Moment of the contact force about the centre of mass per unit normal force, a x (z + f) + t,
+    m.
+    """
     force = (traction.force[0], traction.force[1], VERTICAL[2])
     return add(cross(arm, force), traction.torque)
 
@@ -174,7 +185,9 @@ def sliding_rates(state: SlidingState, top: Top) -> SlidingState:
 
 
 def on_table(state: SlidingState, top: Top) -> State:
-    """The whole state of a body that touches the table: height h(c) and vertical velocity h'(c) c' added."""
+    """The whole state of a body that touches the table: height h(c) and vertical velocity h'(c) c'
+    added.
+    """
     c = state.axis[2]
     sinking = top.surface.slope(c) * axis_rate(state.axis, state.momentum, top)[2]
     return State(state.axis, state.momentum, (*state.velocity, sinking), top.surface.height(c))

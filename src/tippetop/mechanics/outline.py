@@ -12,10 +12,12 @@ Line: TypeAlias = list[tuple[float, float]]
 """Points (distance from the axis, height along it from the centre of mass), m."""
 
 SMOOTH = 0.15
-"""Angle at a corner, rad, from which on it is drawn as one: more than between the chords of an arc."""
+"""Angle at a corner, rad, from which on it is drawn as one: more than between the chords of an arc.
+"""
 
 FITS = 0.03
-"""How far a profile may be from where the body touches the table, in sizes of it, to be the body's."""
+"""How far a profile may be from where the body touches the table, in sizes of it, to be the body's.
+"""
 
 TILTS = 61
 """Tilts at which this is looked at."""
@@ -35,7 +37,9 @@ def extent(lines: Sequence[Line]) -> float:
 
 
 def is_outline(lines: Sequence[Line], surface: Surface) -> bool:
-    """Whether a body with these surfaces has this outline: it reaches as far down, whatever the tilt."""
+    """Whether a body with these surfaces has this outline: it reaches as far down, whatever the
+    tilt.
+    """
     points, within = [point for line in lines for point in line], FITS * extent(lines)
     for look in range(TILTS):
         tilt = math.pi * look / (TILTS - 1)

@@ -66,7 +66,9 @@ class PairMotion(NamedTuple):
         return dot(self.wrenches[number].force, directions_of(self.pair.first.axis)[1])
 
     def reserve(self, number: int) -> Scalar:
-        """Positive while the table can exert the horizontal force on a contact that alone sticks, N^2."""
+        """Positive while the table can exert the horizontal force on a contact that alone sticks,
+        N^2.
+        """
         return slip_reserve(self.pair[number].top, Wrench(self.wrenches[number].force, NO_TORQUE))
 
     def left(self, number: int) -> Scalar:
@@ -98,7 +100,9 @@ class PairMotion(NamedTuple):
 
     @property
     def both_reserve(self) -> Scalar:
-        """Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive A_i."""
+        """Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive
+        A_i.
+        """
         one, other, along = self.left(0), self.left(1), self.along
         product = one * other
         return one + other + 2.0 * (product * product + TINY) ** 0.25 - along * along
@@ -111,7 +115,9 @@ class PairMotion(NamedTuple):
     def spare(self, way: Slip) -> Scalar:
         """Power that friction takes at most where xi = `way`, less what holding takes of it, W."""
         spare: Any = 0.0
-        for point, slip, wrench in zip(self.pair, slips_of(self.pair, way), self.wrenches, strict=True):
+        for point, slip, wrench in zip(
+            self.pair, slips_of(self.pair, way), self.wrenches, strict=True
+        ):
             turning = turning_with(point, slip)
             force, torque = point.top.friction.traction((slip[0], slip[1]), turning)
             x, y, normal = wrench.force
@@ -136,7 +142,9 @@ def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
     couple = None if resistance is None else scale(-rolls * resistance.length, along)
     one, other = (normal_wrench(*contact, couple) for contact in zip(pair, slips, strict=True))
     stopped = resistance is not None and not rolls
-    wrenches = pair.holding((slips[0] is None, slips[1] is None), (one, other), pair.free, stopped=stopped)
+    wrenches = pair.holding(
+        (slips[0] is None, slips[1] is None), (one, other), pair.free, stopped=stopped
+    )
     found = [Wrench(NO_TORQUE, NO_TORQUE), Wrench(NO_TORQUE, NO_TORQUE)]
     for number, wrench in wrenches:
         found[number] = Wrench(*(add(a, b) for a, b in zip(found[number], wrench, strict=True)))

@@ -3,7 +3,14 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tippetop.mechanics.contact_pair import ContactPair, Slips, apart, directions_of, slips_of, turning_along
+from tippetop.mechanics.contact_pair import (
+    ContactPair,
+    Slips,
+    apart,
+    directions_of,
+    slips_of,
+    turning_along,
+)
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.pair_motion import PairMotion, pair_motion
@@ -31,15 +38,17 @@ class Resolution(NamedTuple):
 
 
 def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float) -> Resolution:
-    """How two contacts go on that slip so, of which slip has ended on some; if on one, on the first.
+    """How two contacts go on that slip so, of which slip has ended on some; if on one, on the
+    first.
 
-    What is tried first is to hold rolling, if that is resisted and has ended (rolls = 0), and then that it
-    begins, one way or the other.
+    What is tried first is to hold rolling, if that is resisted and has ended (rolls = 0), and then
+    that it begins, one way or the other.
 
     Raises
     ------
     ArithmeticError
-        If nothing can hold them, and there is no direction, or more than one, in which they can go on.
+        If nothing can hold them, and there is no direction, or more than one, in which they can go
+        on.
     """
     if rolls or not pair.first.top.resists_rolling:
         return of_slips(pair, xi, ended, rolls)
@@ -70,8 +79,8 @@ def rolling_way(held: PairMotion) -> float:
 def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float) -> Resolution:
     """The same where it is known how the body rolls.
 
-    What is tried first is that all stick that can, then that one of them slips, and then both; where patches
-    resist drilling, one does not slip alone.
+    What is tried first is that all stick that can, then that one of them slips, and then both;
+    where patches resist drilling, one does not slip alone.
     """
     one, other = slips_of(pair, xi)
     slips: Slips = (None if ended[0] else one, None if ended[1] else other)
@@ -134,7 +143,8 @@ def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         found = motion(ways[0])
         strength = sum(
-            stiffness * size(wrench.force[:2]) + drilled * abs(wrench.torque[2]) for wrench in found.wrenches
+            stiffness * size(wrench.force[:2]) + drilled * abs(wrench.torque[2])
+            for wrench in found.wrenches
         )
         return [Resisted(found.rate, strength)]
 
@@ -148,7 +158,9 @@ def _stiffness(pair: ContactPair) -> float:
 
 
 def against(held: PairMotion) -> Slip:
-    """Direction of xi against which friction exerts all it can along e, and what is needed across it."""
+    """Direction of xi against which friction exerts all it can along e, and what is needed across
+    it.
+    """
     along, across = directions_of(held.pair.first.axis)
     sign = -1.0 if held.along >= 0.0 else 1.0
     ratios = []
@@ -164,8 +176,9 @@ def against(held: PairMotion) -> Slip:
 def patches_letting_go(pair: ContactPair, rolls: float) -> Resolution | None:
     """How patches begin to slip that both stick; None where they can be held.
 
-    They can where forces alone do, without moments of drilling. If not, moments may help: either there are
-    some that do, or there is a direction in which slip begins, as both limit surfaces are convex.
+    They can where forces alone do, without moments of drilling. If not, moments may help: either
+    there are some that do, or there is a direction in which slip begins, as both limit surfaces are
+    convex.
     """
     if pair_motion(pair, (None, None), rolls).is_held:
         return None
@@ -176,10 +189,12 @@ def patches_letting_go(pair: ContactPair, rolls: float) -> Resolution | None:
 
 
 def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
-    """The |omega_e|, less than there is, at which patches that stick while the body rolls slip; -1 for none.
+    """The |omega_e|, less than there is, at which patches that stick while the body rolls slip; -1
+    for none.
 
-    With q = omega_e^2 the needed forces and the normal ones change as a + b q: those that can be held fill an
-    interval of q. From q = 0, where they may not, each direction in which slip begins bounds it from below.
+    With q = omega_e^2 the needed forces and the normal ones change as a + b q: those that can be
+    held fill an interval of q. From q = 0, where they may not, each direction in which slip begins
+    bounds it from below.
     """
     axis, momentum, tops = pair.first.axis, pair.first.momentum, (pair.first.top, pair.second.top)
 
@@ -192,7 +207,9 @@ def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
         if found is None:
             break
         assert found.begins is not None
-        least, most = (pair_motion(one, (None, None), rolls).spare(found.begins) for one in (still, pair))
+        least, most = (
+            pair_motion(one, (None, None), rolls).spare(found.begins) for one in (still, pair)
+        )
         bound = -least / (most - least)
         if not q < bound < 1.0:
             break

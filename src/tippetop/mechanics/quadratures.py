@@ -1,9 +1,10 @@
 """What follows from the motion and does not move it: place, orientation and the work of friction.
 
-The orientation of a body whose axis is n is the least rotation that takes a pole to n, after a turn about the
-axis by an angle psi. The least rotation from a pole is smooth everywhere but at the other one, so there are
-two charts, one a pole. With Euler angles, psi is chi + phi in the chart of z, and chi - phi in that of -z,
-where the body is first turned over about y. The rate of psi is omega3 less that of the chart's frame.
+The orientation of a body whose axis is n is the least rotation that takes a pole to n, after a turn
+about the axis by an angle psi. The least rotation from a pole is smooth everywhere but at the other
+one, so there are two charts, one a pole. With Euler angles, psi is chi + phi in the chart of z, and
+chi - phi in that of -z, where the body is first turned over about y. The rate of psi is omega3 less
+that of the chart's frame.
 """
 
 from typing import NamedTuple
@@ -45,8 +46,11 @@ def resistance_powers(state: State, torque: Vector, top: Top) -> tuple[Scalar, S
     return torque[2] * turning[2], torque[0] * turning[0] + torque[1] * turning[1]
 
 
-def orientation(axis: Vector, turn: Scalar, pole: Scalar, functions: Functions) -> tuple[Scalar, ...]:
-    """Unit quaternion, scalar first, of a body whose axis is n and whose psi in a chart is `turn`, rad.
+def orientation(
+    axis: Vector, turn: Scalar, pole: Scalar, functions: Functions
+) -> tuple[Scalar, ...]:
+    """Unit quaternion, scalar first, of a body whose axis is n and whose psi in a chart is `turn`,
+    rad.
 
     It turns the body from axis up, with its marker along x, to where it is.
     """
@@ -55,6 +59,12 @@ def orientation(axis: Vector, turn: Scalar, pole: Scalar, functions: Functions) 
     x, y = 0.5 * axis[0] / size, 0.5 * axis[1] / size
     up = 0.5 * (1.0 + pole)
     down = 1.0 - up
-    # The least rotation is (size, -y, x, 0) from z, and (x, 0, size, y) from -z after half a turn about y.
+    # The least rotation is (size, -y, x, 0) from z, and (x, 0, size, y) from -z after half a turn
+    # about y.
     w, i, j, k = up * size + down * x, -up * y, down * size + up * x, down * y
-    return (w * cosine - k * sine, i * cosine + j * sine, j * cosine - i * sine, k * cosine + w * sine)
+    return (
+        w * cosine - k * sine,
+        i * cosine + j * sine,
+        j * cosine - i * sine,
+        k * cosine + w * sine,
+    )

@@ -1,23 +1,25 @@
 """How the contact point responds to forces, and the forces that hold it: rolling without slipping.
 
-The body's point of contact, with velocity v = r' + omega x a, and its angular velocity change at the rates
+The body's point of contact, with velocity v = r' + omega x a, and its angular velocity change at
+the rates
 
     v' = F / m + (J (a x F + t)) x a + beta,        omega' = J (a x F + t) + k omega3 n',
 
-for a contact force F and torque t, where J is the inverse inertia, k = (I1 - I3) / I1, and beta = -g z + (k
-omega3 n') x a + omega x a' is what it does without them. Slip does not enter: axis and angular momentum are
-enough. The response to F and t is symmetric and positive definite (Delassus), and every mode of contact is a
-linear equation: slip needs v_z' = 0 with the law's F = N (f, 1), and rolling v' = 0. A contact that sticks
-under Contensou's friction does not drill either, omega_z' = 0, and rolling that is held has omega_x' =
-omega_y' = 0.
+for a contact force F and torque t, where J is the inverse inertia, k = (I1 - I3) / I1, and beta =
+-g z + (k omega3 n') x a + omega x a' is what it does without them. Slip does not enter: axis and
+angular momentum are enough. The response to F and t is symmetric and positive definite (Delassus),
+and every mode of contact is a linear equation: slip needs v_z' = 0 with the law's F = N (f, 1), and
+rolling v' = 0. A contact that sticks under Contensou's friction does not drill either, omega_z' =
+0, and rolling that is held has omega_x' = omega_y' = 0.
 
-Where v' = 0, and nothing holds rolling, the equations are those of omega' alone, since F = -m (gamma + omega'
-x a), gamma = -g z + omega x a':
+Where v' = 0, and nothing holds rolling, the equations are those of omega' alone, since F = -m
+(gamma + omega' x a), gamma = -g z + omega x a':
 
     (1/J + m a^2 - m a a) omega' = (1/J) k omega3 n' - m a x gamma + t,
 
-and with e the horizontal part of n, which that of a is -h' times, the matrix takes a horizontal rate w and
-omega_z' to alpha w + (beta (e.w) + kappa omega_z') e and kappa (e.w) + delta omega_z', where
+and with e the horizontal part of n, which that of a is -h' times, the matrix takes a horizontal
+rate w and omega_z' to alpha w + (beta (e.w) + kappa omega_z') e and kappa (e.w) + delta omega_z',
+where
 
     alpha = I1 + m h^2 + m h'^2 e^2,          beta = I3 - I1 - m h'^2,
     delta = I1 + (I3 - I1) c^2 + m h'^2 e^2,  kappa = (I3 - I1) c - m h h'.
@@ -46,7 +48,9 @@ Held: TypeAlias = tuple[int, Wrench]
 
 
 class Acceleration(NamedTuple):
-    """Rate of change of the contact point's velocity, m/s^2, and of the angular velocity, rad/s^2."""
+    """Rate of change of the contact point's velocity, m/s^2, and of the angular velocity,
+    rad/s^2.
+    """
 
     point: Vector
     turning: Vector
@@ -97,21 +101,27 @@ class ContactPoint(NamedTuple):
         return add(cross(self.arm, wrench.force), wrench.torque)
 
     def holding(self, held: Sequence[Held]) -> tuple[Wrench, Acceleration]:
-        """The combination of wrenches that keeps as many velocities constant, and the acceleration then.
+        """The combination of wrenches that keeps as many velocities constant, and the acceleration
+        then.
 
         Parameters
         ----------
         held
-            Components, 0 to 2 of the contact point's velocity, 3 to 5 of the angular velocity, with a wrench
-            each; that to component 2 may be a normal force with what goes with it.
+            Components, 0 to 2 of the contact point's velocity, 3 to 5 of the angular velocity, with
+            a wrench each; that to component 2 may be a normal force with what goes with it.
         """
         responses = [self.response(wrench) for _, wrench in held]
         columns, free = [flat(response) for response in responses], flat(self.free)
-        sizes = solve([[column[i] for column in columns] for i, _ in held], [-free[i] for i, _ in held])
+        sizes = solve(
+            [[column[i] for column in columns] for i, _ in held], [-free[i] for i, _ in held]
+        )
         force = torque = NO_TORQUE
         point, turning = self.free
         for size, (_, wrench), response in zip(sizes, held, responses, strict=True):
-            force, torque = add(force, scale(size, wrench.force)), add(torque, scale(size, wrench.torque))
+            force, torque = (
+                add(force, scale(size, wrench.force)),
+                add(torque, scale(size, wrench.torque)),
+            )
             point, turning = (
                 add(point, scale(size, response.point)),
                 add(turning, scale(size, response.turning)),
@@ -119,7 +129,8 @@ class ContactPoint(NamedTuple):
         return Wrench(force, torque), Acceleration(point, turning)
 
     def pivoting(self, drills: bool) -> tuple[Wrench, Acceleration]:
-        """What keeps the contact point's velocity constant, drilling too unless it drills, and what follows.
+        """What keeps the contact point's velocity constant, drilling too unless it drills, and what
+        follows.
 
         In the fewest operations: the motion of what sticks is made of little else.
         """
@@ -129,15 +140,24 @@ class ContactPoint(NamedTuple):
         high, steep = top.mass * (height * height), top.mass * (slope * slope)
         lever = top.mass * (height * slope)
         wide, leant = steep * leaning, top.transverse_inertia + excess * leaning
-        alpha, beta, kappa = top.transverse_inertia + high + wide, excess - steep, excess * c - lever
+        alpha, beta, kappa = (
+            top.transverse_inertia + high + wide,
+            excess - steep,
+            excess * c - lever,
+        )
         along = leant + high  # alpha + beta e^2
         carried = scale(-top.mass, cross(self.arm, self.carried))
         right = add(scale(top.transverse_inertia, self.free.turning), carried)
         driven = n[0] * right[0] + n[1] * right[1]
         if drills:
-            upright, across = top.transverse_inertia + excess * (c * c), 2.0 * excess * c * lever * leaning
+            upright, across = (
+                top.transverse_inertia + excess * (c * c),
+                2.0 * excess * c * lever * leaning,
+            )
             # (alpha + beta e^2) delta - kappa^2 e^2, without what cancels in it.
-            determinant = top.transverse_inertia * top.axial_inertia + leant * wide + upright * high + across
+            determinant = (
+                top.transverse_inertia * top.axial_inertia + leant * wide + upright * high + across
+            )
             delta = upright + wide
             leans = (delta * driven - kappa * leaning * right[2]) / determinant
             spins, torque = (along * right[2] - kappa * driven) / determinant, NO_TORQUE
@@ -152,7 +172,9 @@ class ContactPoint(NamedTuple):
 
 
 def arm_rate(axis: Vector, tilting: Vector, top: Top) -> Vector:
-    """Rate of the contact vector for this rate of the axis (1/s): -h' n' - h'' c' (n - c z), m/s."""
+    """Rate of the contact vector for this rate of the axis (1/s): -h' n' - h'' c' (n - c z),
+    m/s.
+    """
     c = axis[2]
     bend = -top.surface.curvature(c) * tilting[2]
     outward = (bend * axis[0], bend * axis[1], bend * (axis[2] - c))
@@ -169,12 +191,12 @@ def contact_motion(
     point
         The contact point.
     slip
-        The slip, of which a law that is set-valued takes the direction only: two components, or three with
-        the drilling rate times the law's slip length; or None where it is held at zero (both, if the law
-        resists drilling).
+        The slip, of which a law that is set-valued takes the direction only: two components, or
+        three with the drilling rate times the law's slip length; or None where it is held at zero
+        (both, if the law resists drilling).
     rolling
-        The horizontal angular velocity, of which only the direction counts, or None where it is held at zero;
-        without rolling resistance it does not matter.
+        The horizontal angular velocity, of which only the direction counts, or None where it is
+        held at zero; without rolling resistance it does not matter.
     """
     if slip is None and not point.top.resists_rolling:
         return point.pivoting(drills=slip_length(point.top.friction) is None)
@@ -185,7 +207,8 @@ def contact_motion(
 def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None) -> Wrench:
     """What goes with a unit normal impulse, and that; of floats, as for `contact_motion`.
 
-    Velocities that are held stay what they are: the configuration is fixed, and nothing falls meanwhile.
+    Velocities that are held stay what they are: the configuration is fixed, and nothing falls
+    meanwhile.
     """
     if slip is not None:
         point = point._replace(top=on_branch(point.top, slip))
@@ -201,7 +224,9 @@ def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | 
 def going_on(
     point: ContactPoint, slip: Slip | None, rolling: Horizontal | None
 ) -> tuple[Wrench, list[Held], list[Held]]:
-    """A unit normal force with what goes with it, and what holds slip, and rolling, where these are None."""
+    """A unit normal force with what goes with it, and what holds slip, and rolling, where these are
+    None.
+    """
     top = point.top
     slipping = [] if slip is not None else holding_slip(top.friction)
     if top.rolling_resistance is None:
@@ -213,7 +238,9 @@ def going_on(
 
 
 def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None = None) -> Wrench:
-    """A unit normal force with the friction that goes with it where the contact slips, and a couple."""
+    """A unit normal force with the friction that goes with it where the contact slips, and a
+    couple.
+    """
     force, torque = (0.0, 0.0), NO_TORQUE
     if slip is not None:
         force, torque = point.top.friction.traction((slip[0], slip[1]), turning_with(point, slip))
@@ -221,22 +248,30 @@ def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None 
 
 
 def holding_slip(law: FrictionLaw) -> list[Held]:
-    """The velocities that slip is, and drilling if the law resists it, each with the wrench that holds it."""
+    """The velocities that slip is, and drilling if the law resists it, each with the wrench that
+    holds it.
+    """
     return list(zip((0, 1, 5), slip_wrenches(law), strict=False))
 
 
 def slip_wrenches(law: FrictionLaw) -> tuple[Wrench, ...]:
-    """The wrenches that resist slip: two forces, and the drilling torque if the law resists that."""
+    """The wrenches that resist slip: two forces, and the drilling torque if the law resists
+    that.
+    """
     return FORCES[:2] if slip_length(law) is None else (*FORCES[:2], DRILLING)
 
 
 def slip_length(law: FrictionLaw) -> Scalar | None:
-    """Length by which drilling compares with slip under a law, m; None where it does not resist drilling."""
+    """Length by which drilling compares with slip under a law, m; None where it does not resist
+    drilling.
+    """
     return getattr(law, "slip_length", None)
 
 
 def slip_reserve(top: Top, wrench: Wrench) -> Scalar:
-    """Positive while the table can exert the force and drilling torque in a wrench that holds slip, N^2."""
+    """Positive while the table can exert the force and drilling torque in a wrench that holds slip,
+    N^2.
+    """
     law: Any = top.friction
     return law.reserve(wrench.force[2], wrench.force[:2], wrench.torque[2])
 
@@ -285,7 +320,9 @@ def spun_up(axis: Vector, momentum: Vector, change: Vector, top: Top) -> Vector:
 
 
 def is_set_valued(law: FrictionLaw) -> bool:
-    """Whether a law lets slip end: it has a `reserve`, and elsewhere depends on slip's direction alone."""
+    """Whether a law lets slip end: it has a `reserve`, and elsewhere depends on slip's direction
+    alone.
+    """
     return hasattr(law, "reserve")
 
 

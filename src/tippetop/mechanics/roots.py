@@ -6,17 +6,22 @@ from typing import TypeAlias
 from tippetop.mechanics.unsolved import Unsolved
 
 FINEST = 1e-10
-"""Step, relative to its piece, below which a gap that is neither open nor closing counts as closed."""
+"""Step, relative to its piece, below which a gap that is neither open nor closing counts as closed.
+"""
 
 GOLDEN, NARROWED = 0.5 * (3.0 - 5.0**0.5), 29
-"""Smaller part of an interval in the golden ratio, and how often one is divided for a least value."""
+"""Smaller part of an interval in the golden ratio, and how often one is divided for a least value.
+"""
 
 Triple: TypeAlias = tuple[float, float, float]
 """A function's value and its first two derivatives."""
 
 
-def first_root(function: Callable[[float], Triple], low: float, high: float, jerk: float) -> float | None:
-    """First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third derivative.
+def first_root(
+    function: Callable[[float], Triple], low: float, high: float, jerk: float
+) -> float | None:
+    """First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third
+    derivative.
 
     Raises `Unsolved` where it takes steps that are lost in rounding.
     """
@@ -45,8 +50,12 @@ def first_root(function: Callable[[float], Triple], low: float, high: float, jer
     return time
 
 
-def stays_positive(value: float, rate: float, acceleration: float, jerk: float, step: float) -> bool:
-    """Whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0, step]."""
+def stays_positive(
+    value: float, rate: float, acceleration: float, jerk: float, step: float
+) -> bool:
+    """Whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0,
+    step].
+    """
 
     def cubic(s: float) -> float:
         return value + s * (rate + s * (acceleration / 2.0 - s * jerk / 6.0))
@@ -61,13 +70,16 @@ def stays_positive(value: float, rate: float, acceleration: float, jerk: float, 
 
 
 def is_one_way(rate: float, acceleration: float, jerk: float, step: float) -> bool:
-    """Whether a function surely falls, or surely is concave, all along a step: it has one root at most."""
+    """Whether a function surely falls, or surely is concave, all along a step: it has one root at
+    most.
+    """
     falls = rate < 0.0 and rate + step * (acceleration + 0.5 * step * jerk) < 0.0
     return falls or acceleration + step * jerk < 0.0
 
 
 def dip(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
-    """Place and value of a function's least value between two points, or of one that is not positive.
+    """Place and value of a function's least value between two points, or of one that is not
+    positive.
 
     By golden section; the place is found to a millionth of the interval.
     """
@@ -89,7 +101,9 @@ def dip(function: Callable[[float], float], low: float, high: float) -> tuple[fl
 
 
 def crossing(function: Callable[[float], float], low: float, high: float) -> float:
-    """Root of a function between two points where its signs differ, by the method of Chandrupatla (1997)."""
+    """Root of a function between two points where its signs differ, by the method of Chandrupatla
+    (1997).
+    """
     x1, x2, part = high, low, 0.5
     y1, y2 = function(x1), function(x2)
     if y1 == 0.0 or y2 == 0.0:

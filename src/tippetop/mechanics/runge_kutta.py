@@ -28,17 +28,20 @@ STAGES: tuple[tuple[float, ...], ...] = (
     (-0.9371424300859873, 0.0, 0.0, 5.186372428844064, 1.0914373489967295, -8.149787010746927,
      -18.52006565999696, 22.739487099350505, 2.4936055526796523, -3.0467644718982196),
     (2.273310147516538, 0.0, 0.0, -10.53449546673725, -2.0008720582248625, -17.9589318631188,
-     27.94888452941996, -2.8589982771350235, -8.87285693353063, 12.360567175794303, 0.6433927460157636),
-    (0.054293734116568765, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585,
-     0.3111643669578199, -0.1521609496625161, 0.20136540080403034, 0.04471061572777259),
+     27.94888452941996, -2.8589982771350235, -8.87285693353063, 12.360567175794303,
+     0.6433927460157636),
+    (0.054293734116568765, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003,
+     -5.801203960010585, 0.3111643669578199, -0.1521609496625161, 0.20136540080403034,
+     0.04471061572777259),
 )
 # fmt: on
 """Weights of the slopes found so far, at each stage; those of the step itself are last."""
 
 # fmt: off
 FINE: tuple[float, ...] = (
-    0.01312004499419488, 0.0, 0.0, 0.0, 0.0, -1.2251564463762044, -0.4957589496572502, 1.6643771824549864,
-    -0.35032884874997366, 0.3341791187130175, 0.08192320648511571, -0.022355307863886294,
+    0.01312004499419488, 0.0, 0.0, 0.0, 0.0, -1.2251564463762044, -0.4957589496572502,
+    1.6643771824549864, -0.35032884874997366, 0.3341791187130175, 0.08192320648511571,
+    -0.022355307863886294,
 )
 # fmt: on
 """Weights in the difference to a step of order 5."""
@@ -59,7 +62,9 @@ POWER = -0.125
 
 
 class RungeKuttaStep(NamedTuple):
-    """A step: the numbers at its start, the rates there and at the stages, the numbers at its end."""
+    """A step: the numbers at its start, the rates there and at the stages, the numbers at its
+    end.
+    """
 
     here: Point
     there: Point
@@ -87,11 +92,15 @@ class RungeKuttaStep(NamedTuple):
         at, pull = part * part * (3.0 - 2.0 * part), part * rest * self.size
         return tuple(
             x + at * (y - x) + pull * (rest * a - part * b)
-            for x, y, a, b in zip(self.here, self.there, self.slopes[0], self.slopes[-1], strict=True)
+            for x, y, a, b in zip(
+                self.here, self.there, self.slopes[0], self.slopes[-1], strict=True
+            )
         )
 
 
-def step_from(here: Point, slope: Point, size: float, rates: Callable[[Point], Point]) -> RungeKuttaStep:
+def step_from(
+    here: Point, slope: Point, size: float, rates: Callable[[Point], Point]
+) -> RungeKuttaStep:
     """A step from a point with known rates."""
     slopes = stages(here, slope, size, rates)
     there = combined(here, size, STAGES[-1], slopes)
@@ -112,7 +121,9 @@ def stages(here: Point, slope: Point, size: float, rates: Callable[[Point], Poin
 
 
 def short_step(here: Point, slope: Point, size: float, rates: Callable[[Point], Point]) -> Point:
-    """Where a step leads that is short beside those of order 8: Kutta's, of order 4, costs a third."""
+    """Where a step leads that is short beside those of order 8: Kutta's, of order 4, costs a
+    third.
+    """
     half = 0.5 * size
     second = rates(moved(here, half, slope))
     third = rates(moved(here, half, second))
@@ -128,4 +139,6 @@ def moved(here: Point, size: float, slope: Point) -> Point:
 def combined(here: Point, size: float, weights: Sequence[float], slopes: Sequence[Point]) -> Point:
     """A point plus a step along a mean of slopes."""
     columns = zip(*slopes, strict=True)
-    return tuple([x + size * sum(map(mul, weights, column)) for x, column in zip(here, columns, strict=True)])
+    return tuple(
+        [x + size * sum(map(mul, weights, column)) for x, column in zip(here, columns, strict=True)]
+    )

@@ -22,20 +22,26 @@ NARROWEST = 1e-7
 Nearer to flat than that, the height of an edge is lost in rounding of c."""
 
 ACROSS = 8.0 * NARROWEST
-"""Angle of the axis about L that leads across flat, from where the discs are narrower than that, rad."""
+"""Angle of the axis about L that leads across flat, from where the discs are narrower than that,
+rad.
+"""
 
 WIDEST = 4.0
 """Largest radius of a disc of complex time, as an angle of the axis about L, rad."""
 
 CLEAR = 1e-9
-"""How much higher than a body reaches its centre of mass is when it is clear of the table, in sizes."""
+"""How much higher than a body reaches its centre of mass is when it is clear of the table, in
+sizes.
+"""
 
 INSIDE = 1.0 - 2.0**-53
 """Largest c below 1, where an edge has a slope."""
 
 
 class Tip(NamedTuple):
-    """Height c = n_z of the tip of the axis in free flight: its value, two derivatives, and frequency."""
+    """Height c = n_z of the tip of the axis in free flight: its value, two derivatives, and
+    frequency.
+    """
 
     height: float
     rate: float
@@ -84,7 +90,9 @@ class Tip(NamedTuple):
         """Largest |c - c(time)| for complex times within angle / frequency of a real one."""
         _, rate, acceleration = self.at(time)
         w = self.frequency
-        return abs(rate) * math.sinh(angle) / w + abs(acceleration) * (math.cosh(angle) - 1.0) / w**2
+        return (
+            abs(rate) * math.sinh(angle) / w + abs(acceleration) * (math.cosh(angle) - 1.0) / w**2
+        )
 
 
 class Separation(NamedTuple):
@@ -97,7 +105,9 @@ class Separation(NamedTuple):
     @classmethod
     def of(cls, state: State, top: Top) -> "Separation":
         """The gap of a free flight from a state on."""
-        return cls(Tip.of(state, top), top.surface, (state.height, state.velocity[2], -0.5 * top.gravity))
+        return cls(
+            Tip.of(state, top), top.surface, (state.height, state.velocity[2], -0.5 * top.gravity)
+        )
 
     def at(self, time: float) -> Triple:
         """Gap, its rate and its acceleration."""
@@ -128,12 +138,16 @@ class Separation(NamedTuple):
         return float(highest + CLEAR * self.shape.size)
 
     def clear_until(self, time: float, level: float) -> float:
-        """Until when, from a time on, the centre of mass is above a level; the time itself if it is not."""
+        """Until when, from a time on, the centre of mass is above a level; the time itself if it is
+        not.
+        """
         z, rise, fall = self.fall(time)
         return time + falling_time(z - level, rise, 0.5 * fall) if z > level else time
 
     def across_flat(self, time: float, horizon: float) -> tuple[float, float | None]:
-        """Past an edge that lies flat: until when, and when the table is touched meanwhile, if it is."""
+        """Past an edge that lies flat: until when, and when the table is touched meanwhile, if it
+        is.
+        """
         angle = ACROSS
         while self.at(time)[0] > 0.0:
             end = min(horizon, time + angle / self.tip.frequency)
@@ -155,7 +169,9 @@ def support_terms(shape: Surface, tip: Sequence[Scalar], plain: Sums) -> list[Sc
 
 
 class Opening(NamedTuple):
-    """A polynomial in time: the gap at the start of a flight, divided by the power of time that it has."""
+    """A polynomial in time: the gap at the start of a flight, divided by the power of time that it
+    has.
+    """
 
     terms: list[float]
 
@@ -179,7 +195,8 @@ class Opening(NamedTuple):
 def analytic_disc(
     tip: Tip, shape: Surface, time: float, ahead: float, angle: float
 ) -> tuple[float, float] | None:
-    """Radius of a disc of time centred `ahead` radii after `time` where h(c) is analytic, and of h(c).
+    """Radius of a disc of time centred `ahead` radii after `time` where h(c) is analytic, and of
+    h(c).
 
     None where it would be too narrow: an edge lies flat there, or almost.
     """

@@ -1,9 +1,9 @@
 """Power series in time whose coefficients are made when they are asked for.
 
-Equations of motion written in plain operators, evaluated on such series, give every coefficient of their own
-solution, each from those before it: Taylor's method (Moore 1966, Interval Analysis, chapter 11; Jorba and
-Zou 2005, Experimental Mathematics 14). The coefficients may be arrays, one number a launch, or expressions
-that are compiled for such arrays.
+Equations of motion written in plain operators, evaluated on such series, give every coefficient of
+their own solution, each from those before it: Taylor's method (Moore 1966, Interval Analysis,
+chapter 11; Jorba and Zou 2005, Experimental Mathematics 14). The coefficients may be arrays, one
+number a launch, or expressions that are compiled for such arrays.
 """
 
 from collections.abc import Callable, Sequence
@@ -56,8 +56,8 @@ class Series:
     Parameters
     ----------
     rule
-        From k to the coefficient of t^k; it is called once for every k, in increasing order, and may use
-        earlier coefficients of the series itself.
+        From k to the coefficient of t^k; it is called once for every k, in increasing order, and
+        may use earlier coefficients of the series itself.
     arithmetic
         How coefficients are added up.
     """
@@ -195,7 +195,9 @@ def is_exactly(value: object, number: float) -> bool:
 
 
 def solved(
-    series: list[Series], start: Sequence[Scalar], rates: Callable[[Sequence[Series]], Sequence[Any]]
+    series: list[Series],
+    start: Sequence[Scalar],
+    rates: Callable[[Sequence[Series]], Sequence[Any]],
 ) -> list[Series]:
     """Series that are unknown, made the solution of y' = rates(y) that starts at y = start."""
 

@@ -1,11 +1,13 @@
-"""How slip, or rolling, begins where the table cannot hold it: power series in time since the onset.
+"""How slip, or rolling, begins where the table cannot hold it: power series in time since the
+onset.
 
-In the words of `ending`, with zeta for the velocity that begins, it does so as zeta = t^p (s_0 + s_1 t +
-...) e(t) along e(0) = e_0. Where holding it has just reached the limit of what the table can, A(e_0) = 0 and
-p = 2; where that is inadmissible from the start, A = R e_0 and p = 1. For p = 2 the equation for e is stiff
-with the rate 1/s and has an irregular singular point at t = 0: the series of the slow solution is asymptotic,
-with coefficients that grow like k!, and is used up to a time at which its last terms are small. Solutions
-nearby decay to it like exp(-1/t), and an ordinary integrator goes on.
+In the words of `ending`, with zeta for the velocity that begins, it does so as zeta = t^p (s_0 +
+s_1 t + ...) e(t) along e(0) = e_0. Where holding it has just reached the limit of what the table
+can, A(e_0) = 0 and p = 2; where that is inadmissible from the start, A = R e_0 and p = 1. For p = 2
+the equation for e is stiff with the rate 1/s and has an irregular singular point at t = 0: the
+series of the slow solution is asymptotic, with coefficients that grow like k!, and is used up to a
+time at which its last terms are small. Solutions nearby decay to it like exp(-1/t), and an ordinary
+integrator goes on.
 """
 
 import math
@@ -21,13 +23,16 @@ from tippetop.mechanics.vectors import Scalar, solve
 from tippetop.mechanics.wrench import Slip
 
 LOST, SHORTER = 0.5, 0.9
-"""Part of what a speed grows by at first that it may lose, and the factor by which times are tried."""
+"""Part of what a speed grows by at first that it may lose, and the factor by which times are tried.
+"""
 
 
 class Onset(NamedTuple):
-    """The beginning of slip, or rolling, as polynomials in time: lists of coefficients, in increasing order.
+    """The beginning of slip, or rolling, as polynomials in time: lists of coefficients, in
+    increasing order.
 
-    The speed and the direction go up to some order, and the others to as many more as there are powers.
+    The speed and the direction go up to some order, and the others to as many more as there are
+    powers.
     """
 
     axis: tuple[list[Scalar], ...]
@@ -41,10 +46,11 @@ class Onset(NamedTuple):
     """2 where it starts from the limit of being held, 1 where it starts beyond it."""
 
     def valid_until(self, error: float) -> float:
-        """Time up to which the last two terms of each series are below an error relative to the first.
+        """Time up to which the last two terms of each series are below an error relative to the
+        first.
 
-        And up to which the speed, from what it grows by at first, has not lost as much as `LOST`: through its
-        end series go on with the friction of before.
+        And up to which the speed, from what it grows by at first, has not lost as much as `LOST`:
+        through its end series go on with the friction of before.
         """
         vectors = [self.axis, self.momentum, self.velocity, self.direction, (self.speed,)]
         times = [1e300]
@@ -67,7 +73,8 @@ class Onset(NamedTuple):
         """Coefficients of n, L, u where that is free, and zeta."""
         begun, count = [0.0] * self.power, len(self.speed)
         zeta = [
-            begun + [sum(map(mul, self.speed, row[k::-1])) for k in range(count)] for row in self.direction
+            begun + [sum(map(mul, self.speed, row[k::-1])) for k in range(count)]
+            for row in self.direction
         ]
         return [*self.axis, *self.momentum, *self.velocity, *zeta]
 
@@ -90,7 +97,9 @@ class Growth(Protocol):
 
 
 def turned_slopes(known: Growth, across: Sequence[Slip]) -> list[Slip]:
-    """Derivatives of A along directions across e_0, at the start: its order 1 is linear in that of e."""
+    """Derivatives of A along directions across e_0, at the start: its order 1 is linear in that of
+    e.
+    """
     known.turn(1, scaled(0.0, across[0]))
     straight, found = known.accelerations(1), list[Slip]()
     for b in across:
@@ -113,9 +122,9 @@ def onset(known: Growth, power: int, order: int) -> Onset:
 
     Notes
     -----
-    The k-th coefficients of y follow from those before. With j = k + power - 1 the unknowns in zeta' = A at
-    t^j are s_k and the part of e_j across e_0 (|e| = 1 gives the other); A is linear in e_j, with the
-    derivative G.
+    The k-th coefficients of y follow from those before. With j = k + power - 1 the unknowns in
+    zeta' = A at t^j are s_k and the part of e_j across e_0 (|e| = 1 gives the other); A is linear
+    in e_j, with the derivative G.
     """
     first = known.first
     across = tangents(first)
@@ -134,11 +143,14 @@ def onset(known: Growth, power: int, order: int) -> Onset:
         known.turn(j, turned)
         for row, number in zip(e, turned, strict=True):
             row.append(number)
-        # (k + power) zeta_k = A_j, where zeta_k has s_k e_0, known terms, and for power 1 also s_0 e_j.
+        # (k + power) zeta_k = A_j, where zeta_k has s_k e_0, known terms, and for power 1 also s_0
+        # e_j.
         rates = known.accelerations(j)
         rest = [a - factor * sum(map(mul, s, row[k:0:-1])) for a, row in zip(rates, e, strict=True)]
         lag = factor * s[0] if power == 1 else 0.0
-        matrix = [[g - lag if a == b else g for b, g in enumerate(row)] for a, row in enumerate(aside)]
+        matrix = [
+            [g - lag if a == b else g for b, g in enumerate(row)] for a, row in enumerate(aside)
+        ]
         parts = solve(matrix, [-sum(map(mul, b, rest)) for b in across])
         for part, b in zip(parts, across, strict=True):
             turned = [number + part * beside for number, beside in zip(turned, b, strict=True)]

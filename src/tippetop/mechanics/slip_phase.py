@@ -1,14 +1,15 @@
 """Slip from where it begins to where it ends, by collocation at Gauss's points in time.
 
-In the words of `ending`, xi = s e and xi' = A(y, e): away from s = 0 the direction e is so much faster than
-all else that it follows it, at the rate 1 / s, from the moment in which slip begins to that in which it ends.
-An implicit method of high order sees neither as special. Its unknowns are y and e at the points of a step;
-with y known, e is where what A adds up to goes along e: one linear equation a point by Newton's method. What
-follows for y is put in, and so on: the error of y falls as in Picard's iteration, by more each time. What is
-found is smooth where slip ends, and beyond: the end is where its polynomial s falls to zero.
+In the words of `ending`, xi = s e and xi' = A(y, e): away from s = 0 the direction e is so much
+faster than all else that it follows it, at the rate 1 / s, from the moment in which slip begins to
+that in which it ends. An implicit method of high order sees neither as special. Its unknowns are y
+and e at the points of a step; with y known, e is where what A adds up to goes along e: one linear
+equation a point by Newton's method. What follows for y is put in, and so on: the error of y falls
+as in Picard's iteration, by more each time. What is found is smooth where slip ends, and beyond:
+the end is where its polynomial s falls to zero.
 
-All numbers here have a value for each point of a step, which is one instruction's work; those of the whole
-step have the same for all.
+All numbers here have a value for each point of a step, which is one instruction's work; those of
+the whole step have the same for all.
 """
 
 import math
@@ -28,7 +29,9 @@ STAGES = 16
 """Points in a step: order 32 at its end."""
 
 PARTS = 3
-"""Parts of a step that stand for it in a solution: what is read off them needs fewer points in each."""
+"""Parts of a step that stand for it in a solution: what is read off them needs fewer points in
+each.
+"""
 
 ROOTS = 12
 """Newton's iterations for a point."""
@@ -54,10 +57,12 @@ class GaussPoints(NamedTuple):
     units: list[list[float]]
     """Lagrange's polynomials at the points."""
     terms: list[list[float]]
-    """Of Legendre's polynomial of every degree, what a value at each point adds to its coefficient."""
+    """Of Legendre's polynomial of every degree, what a value at each point adds to its coefficient.
+    """
     powers: list[list[list[float]]]
-    """For every part of a step, and Legendre's polynomial of every degree, the coefficients of its integral
-    in powers of what has passed of the part, from the first on."""
+    """For every part of a step, and Legendre's polynomial of every degree, the coefficients of its
+    integral in powers of what has passed of the part, from the first on.
+    """
 
 
 def gauss_points(stages: int) -> GaussPoints:
@@ -108,20 +113,31 @@ def _integral(k: int, x: float, at: Sequence[float]) -> float:
 
 
 def _in_powers(stages: int, part: int) -> list[list[float]]:
-    """Coefficients of the integrals of Legendre's polynomials in powers of what has passed of a part."""
+    """Coefficients of the integrals of Legendre's polynomials in powers of what has passed of a
+    part.
+    """
     begin, slope = 2.0 * part / PARTS - 1.0, 2.0 / PARTS
     none = [0.0] * stages
     rows = [[1.0, *none[1:]], [begin, slope, *none[2:]]]
     for k in range(1, stages - 1):
-        times = [begin * a + slope * b for a, b in zip(rows[k], [0.0, *rows[k][: stages - 1]], strict=True)]
-        rows.append([((2 * k + 1) * a - k * b) / (k + 1) for a, b in zip(times, rows[k - 1], strict=True)])
+        times = [
+            begin * a + slope * b
+            for a, b in zip(rows[k], [0.0, *rows[k][: stages - 1]], strict=True)
+        ]
+        rows.append(
+            [((2 * k + 1) * a - k * b) / (k + 1) for a, b in zip(times, rows[k - 1], strict=True)]
+        )
     return [[number / (PARTS * (power + 1)) for power, number in enumerate(row)] for row in rows]
 
 
 GAUSS = gauss_points(STAGES)
 
 CONSTANTS = [number for row in [*GAUSS.integrals, *GAUSS.units] for number in row]
-TERMS = [number for row in [*GAUSS.terms, *[row for part in GAUSS.powers for row in part]] for number in row]
+TERMS = [
+    number
+    for row in [*GAUSS.terms, *[row for part in GAUSS.powers for row in part]]
+    for number in row
+]
 """What a sweep, and `step_terms`, are given of the method: row after row."""
 
 
@@ -143,7 +159,9 @@ class StepRows(NamedTuple):
 
     @property
     def given(self) -> int:
-        """What is given of a step before the numbers of the top: y and xi at its start, and its length."""
+        """What is given of a step before the numbers of the top: y and xi at its start, and its
+        length.
+        """
         return self.size + 1
 
     @property
@@ -183,12 +201,17 @@ def sweep(
     Returns
     -------
     list
-        The unknowns; the rates of y and xi; the normal force; s; and the sum of the squares of all changes.
+        The unknowns; the rates of y and xi; the normal force; s; and the sum of the squares of all
+        changes.
     """
     layout = StepRows.of(ending)
     free, given = layout.free, layout.given
     last = given + kind.numbers
-    top, integrals, units = kind.top(tuple(p[given:last])), p[last : last + STAGES], p[last + STAGES :]
+    top, integrals, units = (
+        kind.top(tuple(p[given:last])),
+        p[last : last + STAGES],
+        p[last + STAGES :],
+    )
     way, step = (y[free], y[free + 1]), p[layout.size]
     across = (-way[1], way[0])
     rates, slopes, normal = _rates_and_slopes(y[:free], way, across, ending, top)
@@ -210,10 +233,10 @@ def sweep(
 def step_terms(y: Sequence[Scalar], p: Sequence[Scalar], points: Values) -> list[Scalar]:
     """What a step makes of numbers, from their rates y.
 
-    For every part of the step and every number, a row of the coefficients in powers of what has passed of the
-    part, from the first on; for every number, by how much it changes; and the sum of the squares of the last
-    two coefficients of the rates in Legendre's polynomials, times the step. p is the length of the step, and
-    `TERMS`.
+    For every part of the step and every number, a row of the coefficients in powers of what has
+    passed of the part, from the first on; for every number, by how much it changes; and the sum of
+    the squares of the last two coefficients of the rates in Legendre's polynomials, times the step.
+    p is the length of the step, and `TERMS`.
     """
     step, legendre_rows = p[0], p[1 : STAGES + 1]
     series = [tuple([step * points.total(rate * row) for row in legendre_rows]) for rate in y]
@@ -225,7 +248,9 @@ def step_terms(y: Sequence[Scalar], p: Sequence[Scalar], points: Values) -> list
     return [*found, *[terms[0] for terms in series], sum(squares[1:], squares[0])]
 
 
-def _moved(start: Slip, step: Scalar, rates: Slip, integrals: Sequence[Scalar], points: Values) -> Slip:
+def _moved(
+    start: Slip, step: Scalar, rates: Slip, integrals: Sequence[Scalar], points: Values
+) -> Slip:
     """Numbers at the points, from their rates there and where they begin."""
     found = []
     for begin, rate in zip(start, rates, strict=True):
@@ -236,8 +261,12 @@ def _moved(start: Slip, step: Scalar, rates: Slip, integrals: Sequence[Scalar], 
     return tuple(found)
 
 
-def _solved(columns: list[Scalar], right: Scalar, units: Sequence[Scalar], points: Values) -> Scalar:
-    """Solution of as many linear equations as there are points, by Gauss and Jordan's elimination."""
+def _solved(
+    columns: list[Scalar], right: Scalar, units: Sequence[Scalar], points: Values
+) -> Scalar:
+    """Solution of as many linear equations as there are points, by Gauss and Jordan's
+    elimination.
+    """
     diagonal: Scalar = 0.0
     for k, unit in enumerate(units):
         pivot = columns[k]
@@ -254,7 +283,8 @@ def _rates_and_slopes(
 ) -> tuple[Slip, Slip, Scalar]:
     """Rates of y and xi, their derivatives as the direction turns, and the normal force.
 
-    Friction that turns is another one that is added, and the contact responds to it as it does to gravity.
+    Friction that turns is another one that is added, and the contact responds to it as it does to
+    gravity.
     """
     here = Closing((y[0], y[1], y[2]), (y[3], y[4], y[5]), tuple(y[6:]), way, 0.0, 0.0)
     point, slip = ContactPoint.of(here.axis, here.momentum, top), slip_beside(here, ending, top)

@@ -1,7 +1,7 @@
 """The state of the body: no angle, no pole, nothing periodic.
 
-Position along the table, orientation about the axis and the work of the table move nothing: they are
-quadratures of the motion, found from its solution (see `tippetop.mechanics.quadratures`).
+Position along the table, orientation about the axis and the work of the table move nothing: they
+are quadratures of the motion, found from its solution (see `tippetop.mechanics.quadratures`).
 """
 
 from typing import NamedTuple, Self
@@ -32,7 +32,9 @@ class State(NamedTuple):
 
 
 class SlidingState(NamedTuple):
-    """The part of a `State` that is free while the body touches the table: height and sinking are not."""
+    """The part of a `State` that is free while the body touches the table: height and sinking are
+    not.
+    """
 
     axis: Vector
     momentum: Vector

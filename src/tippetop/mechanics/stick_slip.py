@@ -1,14 +1,14 @@
 """How slip ends, and whether and where it goes on, under a law that leaves the force at rest open.
 
-What slips is a velocity zeta: the slip v, or, where the law resists drilling too, (v, l w) with the law's
-length l and w = omega_z. Away from zeta = 0 the law depends on the direction e = zeta / s alone, s = |zeta|,
-and so do all accelerations: with y = (n, L),
+What slips is a velocity zeta: the slip v, or, where the law resists drilling too, (v, l w) with the
+law's length l and w = omega_z. Away from zeta = 0 the law depends on the direction e = zeta / s
+alone, s = |zeta|, and so do all accelerations: with y = (n, L),
 
     y' = Y(y, e),        zeta' = A(y, e) = R e + V,        s' = R,        s e' = V,        V.e = 0.
 
-How it comes to zero is said in `ending`. At zeta = 0 the wrench that keeps it zero decides: the body sticks
-if the limit surface admits it. Otherwise slip goes on in a direction in which it can, A = R e with R > 0 (see
-`slip_onset`).
+How it comes to zero is said in `ending`. At zeta = 0 the wrench that keeps it zero decides: the
+body sticks if the limit surface admits it. Otherwise slip goes on in a direction in which it can, A
+= R e with R > 0 (see `slip_onset`).
 """
 
 import math
@@ -16,7 +16,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from tippetop.mechanics.motion import angular_velocity, axial_spin, contact_swing
-from tippetop.mechanics.rolling import slip_length, velocity_without_slip, without_drilling, without_rolling
+from tippetop.mechanics.rolling import (
+    slip_length,
+    velocity_without_slip,
+    without_drilling,
+    without_rolling,
+)
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
@@ -59,7 +64,9 @@ def come_to_rest(state: SlidingState, top: Top, slip: bool, rolling: bool) -> Sl
         momentum = without_drilling(axis, momentum, top)
     if rolling:
         momentum = without_rolling(axis, momentum, top)
-    return SlidingState(axis, momentum, velocity_without_slip(axis, momentum, top) if slip else velocity)
+    return SlidingState(
+        axis, momentum, velocity_without_slip(axis, momentum, top) if slip else velocity
+    )
 
 
 def is_slipping(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:
@@ -80,7 +87,9 @@ def least_slip(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -
 
 
 def is_rolling(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Whether the body turns, by more than rounding, about anything but the vertical; as `is_slipping`."""
+    """Whether the body turns, by more than rounding, about anything but the vertical; as
+    `is_slipping`.
+    """
     measure = sum(abs(number) for number in momentum) / top.transverse_inertia + STILL
     x, y, _ = angular_velocity(axis, momentum, top)
     return (abs(x) > ROUNDING * measure) | (abs(y) > ROUNDING * measure)
@@ -106,18 +115,23 @@ def parting_guard(state: SlidingState, top: Top) -> Scalar:
 
 
 def is_near(state: SlidingState, top: Top) -> Scalar:
-    """Whether the end of slip is to be guarded from here on; a truth value of floats, or an array of them."""
+    """Whether the end of slip is to be guarded from here on; a truth value of floats, or an array
+    of them.
+    """
     slip = slip_of(*state, top)
     return inner(slip, slip) < NEAR * APART
 
 
 def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top) -> Scalar:
-    """Falls through zero where rolling ends soon, (rad/s)^2; for a sliding state and its time derivative.
+    """Falls through zero where rolling ends soon, (rad/s)^2; for a sliding state and its time
+    derivative.
 
     omega . n' = 0, so that the horizontal parts of omega and n' have the product -omega_z n_z'.
     """
     x, y, turning = angular_velocity(state.axis, state.momentum, top)
-    spin, spinning = (axial_spin(state.axis, momentum, top) for momentum in (state.momentum, rate.momentum))
+    spin, spinning = (
+        axial_spin(state.axis, momentum, top) for momentum in (state.momentum, rate.momentum)
+    )
     along = (spin - turning * state.axis[2]) * spinning - spin * turning * rate.axis[2]
     power = x * rate.momentum[0] + y * rate.momentum[1]
     excess = top.transverse_inertia - top.axial_inertia
@@ -126,12 +140,16 @@ def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top) ->
 
 
 def remaining(velocity: Slip, change: Slip) -> Scalar:
-    """Positive while a velocity, at its present rate of change, outlasts `HORIZON`: s (s + HORIZON R)."""
+    """Positive while a velocity, at its present rate of change, outlasts `HORIZON`: s (s + HORIZON
+    R).
+    """
     return inner(velocity, velocity) + HORIZON * inner(change, velocity)
 
 
 def branch_guard(slip: Slip, top: Top) -> Scalar:
-    """Positive as long as a branch of a law holds where it slips so, or in that direction, m^2/s^2."""
+    """Positive as long as a branch of a law holds where it slips so, or in that direction,
+    m^2/s^2.
+    """
     law: Any = top.friction
     return law.branch_guard(slip)
 

@@ -1,7 +1,7 @@
 """Surfaces of revolution, each given by its support function.
 
-The support function h(c) is the height of the centre of mass above the table while the surface touches it, as
-a function of c = cos(tilt). It determines the contact point: see `contact_vector`.
+The support function h(c) is the height of the centre of mass above the table while the surface
+touches it, as a function of c = cos(tilt). It determines the contact point: see `contact_vector`.
 """
 
 from typing import NamedTuple, Protocol, Self
@@ -9,7 +9,9 @@ from typing import NamedTuple, Protocol, Self
 from tippetop.mechanics.vectors import Scalar, Vector, power
 
 FLAT = 1e-3
-"""Sine of the tilt at which a body on its edge lies flat: below it, too few digits of 1 - c^2 remain."""
+"""Sine of the tilt at which a body on its edge lies flat: below it, too few digits of 1 - c^2
+remain.
+"""
 
 
 class Surface(Protocol):
@@ -84,9 +86,11 @@ class SphereSurface(NamedTuple):
 
 
 class SpheroidSurface(NamedTuple):
-    """A spheroid whose centre is `center` above the centre of mass along the axis: the spinning egg.
+    """A spheroid whose centre is `center` above the centre of mass along the axis: the spinning
+    egg.
 
-    With semi-axes `across` and `along` the axis, h = sqrt(across^2 (1 - c^2) + along^2 c^2) - center c.
+    With semi-axes `across` and `along` the axis, h = sqrt(across^2 (1 - c^2) + along^2 c^2) -
+    center c.
     """
 
     across: Scalar
@@ -117,7 +121,9 @@ class SpheroidSurface(NamedTuple):
 
     @property
     def proportions(self) -> tuple[Scalar, ...]:
-        """The semi-axis along the axis and the height of the centre, in units of the semi-axis across."""
+        """The semi-axis along the axis and the height of the centre, in units of the semi-axis
+        across.
+        """
         return (self.along / self.across, self.center / self.across)
 
     @classmethod
@@ -131,10 +137,11 @@ class SpheroidSurface(NamedTuple):
 
 
 class RingSurface(NamedTuple):
-    """A torus about the axis, whose middle is `center` above the centre of mass: the edge of a disk.
+    """A torus about the axis, whose middle is `center` above the centre of mass: the edge of a
+    disk.
 
-    With a circle of this radius in a tube, h = tube + radius sqrt(1 - c^2) - center c. Its derivatives are
-    infinite where c^2 = 1: there the body lies flat and touches all around.
+    With a circle of this radius in a tube, h = tube + radius sqrt(1 - c^2) - center c. Its
+    derivatives are infinite where c^2 = 1: there the body lies flat and touches all around.
     """
 
     radius: Scalar
@@ -179,7 +186,9 @@ class RingSurface(NamedTuple):
 
 
 def contact_vector(axis: Vector, surface: Surface) -> Vector:
-    """Vector from the centre of mass to the lowest point of the body, m: -h'(c) (n - c z) - h(c) z."""
+    """Vector from the centre of mass to the lowest point of the body, m: -h'(c) (n - c z) - h(c)
+    z.
+    """
     c = axis[2]
     slope = surface.slope(c)
     return (-slope * axis[0], -slope * axis[1], -surface.height(c))

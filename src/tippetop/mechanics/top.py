@@ -12,7 +12,9 @@ from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, scale
 
 
 class Top(NamedTuple):
-    """A body of revolution, the table's friction law and gravity: all that the equations of motion need."""
+    """A body of revolution, the table's friction law and gravity: all that the equations of motion
+    need.
+    """
 
     mass: Scalar
     transverse_inertia: Scalar
@@ -27,8 +29,8 @@ class Top(NamedTuple):
     def conserves_jellett(self) -> bool:
         """Whether Jellett's integral -L.a is constant on one contact, whatever the motion.
 
-        The contact force has no part in it on a sphere, because both its moment a x F and the change of a are
-        perpendicular to the other; a torque of the table has.
+        The contact force has no part in it on a sphere, because both its moment a x F and the
+        change of a are perpendicular to the other; a torque of the table has.
         """
         return self.surface.spherical and self.torque_free
 
@@ -43,7 +45,9 @@ class Top(NamedTuple):
         return self.friction.torque_free and not self.resists_rolling
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
-        """Force and torque per unit normal force at this slip velocity (m/s) and angular velocity (rad/s)."""
+        """Force and torque per unit normal force at this slip velocity (m/s) and angular velocity
+        (rad/s).
+        """
         force, torque = self.friction.traction(slip, angular_velocity)
         if self.rolling_resistance is not None:
             torque = add(torque, self.rolling_resistance.couple(angular_velocity))
@@ -61,11 +65,16 @@ class Top(NamedTuple):
     def each(self) -> tuple["Top", ...]:
         """The top with every one of its surfaces active in turn."""
         every = each_surface(self.surface)
-        return tuple(self._replace(surface=surface) for surface in every) if len(every) > 1 else (self,)
+        return (
+            tuple(self._replace(surface=surface) for surface in every)
+            if len(every) > 1
+            else (self,)
+        )
 
     @property
     def numbers(self) -> tuple[Scalar, ...]:
-        """The numbers that remain in natural units: inertias, proportions of the surface, friction law.
+        """The numbers that remain in natural units: inertias, proportions of the surface, friction
+        law.
 
         And the arm of rolling resistance, if there is any.
         """

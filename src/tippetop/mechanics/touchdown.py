@@ -1,33 +1,39 @@
 """The instant at which a free flight ends.
 
-The gap is G(t) = z + v t - g t^2/2 - h(c(t)), where the height c of the axis's tip is a sine in time.
+The gap is G(t) = z + v t - g t^2/2 - h(c(t)), where the height c of the axis's tip is a sine in
+time.
 
-*Start.* On a first interval G is its Taylor polynomial of degree 16, made by arithmetic of truncated power
-series on h and divided by t^k, where k coefficients vanish: what remains is free of cancellation, and has a
-simple root even for flights of picoseconds. After it, G is evaluated directly.
+*Start.* On a first interval G is its Taylor polynomial of degree 16, made by arithmetic of
+truncated power series on h and divided by t^k, where k coefficients vanish: what remains is free of
+cancellation, and has a simple root even for flights of picoseconds. After it, G is evaluated
+directly.
 
-*Bounds.* On a disc of complex time of radius rho, c stays in a disc that is known, and arithmetic of discs on
-h gives a disc of some radius r for h(c). By Cauchy's estimate, |G'''| <= 6 r / (rho^3 (1 - q)^4) within q rho
-of its centre. For the first polynomial the same estimate bounds the tail, below 2e-16 r.
+*Bounds.* On a disc of complex time of radius rho, c stays in a disc that is known, and arithmetic
+of discs on h gives a disc of some radius r for h(c). By Cauchy's estimate, |G'''| <= 6 r / (rho^3
+(1 - q)^4) within q rho of its centre. For the first polynomial the same estimate bounds the tail,
+below 2e-16 r.
 
-*Horizon.* A body of revolution reaches at least as low as the lower of the ends of its axis, h(c) >= |c|
-h(+-1): it has touched by the time at which the centre of mass falls as deep as that.
+*Horizon.* A body of revolution reaches at least as low as the lower of the ends of its axis, h(c)
+>= |c| h(+-1): it has touched by the time at which the centre of mass falls as deep as that.
 
-*Turns.* While the centre of mass is higher than the largest h(c) on the way there is nothing to search. The
-tip is back after every turn about L. So the search takes little more than the first turn and the last one,
-however many there are: within one the body touches, or its centre of mass passes that height.
+*Turns.* While the centre of mass is higher than the largest h(c) on the way there is nothing to
+search. The tip is back after every turn about L. So the search takes little more than the first
+turn and the last one, however many there are: within one the body touches, or its centre of mass
+passes that height.
 
-*Flat.* Where the tip passes a pole, the h of an edge has a kink, and no disc is wide enough. Every point of
-the body moves on a sine, and the gap is the least of their heights, so that G'' is bounded from above,
-whatever the shape: over an angle so small, G is nowhere below both its ends by more than rounding. Where that
-angle leads to no other height, as in a body that stays flat, it is doubled.
+*Flat.* Where the tip passes a pole, the h of an edge has a kink, and no disc is wide enough. Every
+point of the body moves on a sine, and the gap is the least of their heights, so that G'' is bounded
+from above, whatever the shape: over an angle so small, G is nowhere below both its ends by more
+than rounding. Where that angle leads to no other height, as in a body that stays flat, it is
+doubled.
 
-*Search.* With G, G', G'' at t and that bound on G''', a step [t, t + s] is passed only if the cubic below G
-is positive on it, or if G is surely falling or surely concave on it and positive at its end. If it is falling
-or concave, and not positive at its end, the step holds exactly one root, which is the first: it is found by
-bracketing. Otherwise s is halved. So no touch is passed over and none is invented, up to round-off: the gap
-is known within about 1e-16 of h, and a graze nearer than that counts as a touch. Any shape will do that is
-written in plain operators and is analytic on [-1, 1].
+*Search.* With G, G', G'' at t and that bound on G''', a step [t, t + s] is passed only if the cubic
+below G is positive on it, or if G is surely falling or surely concave on it and positive at its
+end. If it is falling or concave, and not positive at its end, the step holds exactly one root,
+which is the first: it is found by bracketing. Otherwise s is halved. So no touch is passed over and
+none is invented, up to round-off: the gap is known within about 1e-16 of h, and a graze nearer than
+that counts as a touch. Any shape will do that is written in plain operators and is analytic on [-1,
+1].
 """
 
 from enum import IntEnum
@@ -53,14 +59,20 @@ START = 10.0 ** (-16.0 / (DEGREE + 1))
 """Fraction of its disc on which that polynomial is used: its tail is below round-off there."""
 
 LOOKS = 10.0
-"""Looks for the highest gap per radian that the axis turns; between them, its rate is searched for a zero."""
+"""Looks for the highest gap per radian that the axis turns; between them, its rate is searched for
+a zero.
+"""
 
 MOST_DISCS = 100_000
-"""How many discs a flight is searched in at most: one that all but grazes the table may need any number."""
+"""How many discs a flight is searched in at most: one that all but grazes the table may need any
+number.
+"""
 
 
 class Start(IntEnum):
-    """How a flight starts: how many of gap, gap rate and gap acceleration are then zero by construction."""
+    """How a flight starts: how many of gap, gap rate and gap acceleration are then zero by
+    construction.
+    """
 
     AIRBORNE = 0
     REBOUND = 1
@@ -68,7 +80,9 @@ class Start(IntEnum):
     LIFT_OFF = 3
 
 
-def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBORNE) -> float | None:
+def touchdown(
+    state: State, top: Top, horizon: float, start: Start = Start.AIRBORNE
+) -> float | None:
     """Time of the first touch of the table after the start of a flight, s.
 
     Parameters
@@ -80,21 +94,22 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
     horizon
         How far to look, s; it may be infinite if there is gravity.
     start
-        What vanishes at the start: nothing (the gap is positive), the gap (a rebound), its rate too (a body
-        that is let go on the table), or its acceleration too (lift-off, where the normal force reaches zero).
-        What vanishes is taken as exactly zero, so that round-off in `state` can neither end a flight at once
-        nor lengthen it.
+        What vanishes at the start: nothing (the gap is positive), the gap (a rebound), its rate too
+        (a body that is let go on the table), or its acceleration too (lift-off, where the normal
+        force reaches zero). What vanishes is taken as exactly zero, so that round-off in `state`
+        can neither end a flight at once nor lengthen it.
 
     Returns
     -------
     float or None
-        The time, 0.0 if the body penetrates the table at once, None if it touches nowhere in (0, horizon].
+        The time, 0.0 if the body penetrates the table at once, None if it touches nowhere in (0,
+        horizon].
 
     Raises
     ------
     ArithmeticError
-        If the body turns so often until then that its turns are lost in rounding of time, or too often near
-        the table.
+        If the body turns so often until then that its turns are lost in rounding of time, or too
+        often near the table.
     """
     tip, _, ballistic = Separation.of(state, top)
     deepest = min(0.0, *(float(top.surface.height(c)) for c in (-1.0, 1.0)))
@@ -118,7 +133,10 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
             end, root = separation.across_flat(time, horizon)
         else:
             radius, spread = disc
-            angle, end = min(WIDEST, 2.0 * radius * tip.frequency), min(horizon, time + 0.5 * radius)
+            angle, end = (
+                min(WIDEST, 2.0 * radius * tip.frequency),
+                min(horizon, time + 0.5 * radius),
+            )
             root = first_root(separation.at, time, end, 6.0 * spread / (0.75**4 * radius**3))
         if root is not None:
             return root
@@ -131,7 +149,9 @@ def touchdown(state: State, top: Top, horizon: float, start: Start = Start.AIRBO
 def first_interval(
     tip: Tip, surface: Surface, ballistic: Triple, start: Start
 ) -> tuple[Opening, Triple, float]:
-    """The gap on a first interval, the flight with what vanishes at its start, and how long that is, s."""
+    """The gap on a first interval, the flight with what vanishes at its start, and how long that
+    is, s.
+    """
     disc = analytic_disc(tip, surface, 0.0, 0.0, WIDEST)
     if disc is None:
         raise Unsolved("the body lies flat at its start, where no one point is lowest")
@@ -145,7 +165,8 @@ def first_interval(
 def highest_gap(state: State, top: Top, duration: float) -> float:
     """The highest gap of a free flight that lasts some time, s; floats.
 
-    It is no further from the summit than the axis takes for a turn: a turn nearer the gap is larger.
+    It is no further from the summit than the axis takes for a turn: a turn nearer the gap is
+    larger.
     """
     everywhere = [Separation.of(state, one) for one in top.each]
     tip = everywhere[0].tip

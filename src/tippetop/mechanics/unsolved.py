@@ -2,4 +2,6 @@
 
 
 class Unsolved(ArithmeticError):
-    """There is no solution, or none is found; it says why, in words for those who launched the top."""
+    """There is no solution, or none is found; it says why, in words for those who launched the
+    top.
+    """

@@ -4,7 +4,9 @@ from math import nan
 from typing import Any, Protocol, TypeAlias
 
 Scalar: TypeAlias = Any
-"""A float, a NumPy array, a compiled expression or an algebraic symbol: whatever has + - * / and **."""
+"""A float, a NumPy array, a compiled expression or an algebraic symbol: whatever has + - * / and
+**.
+"""
 
 Row: TypeAlias = Any
 """Several of them: a sequence, or an array whose rows they are."""
@@ -56,12 +58,16 @@ def length(a: Vector) -> Scalar:
 
 
 def power(base: Scalar, exponent: float) -> Scalar:
-    """A power that is not whole; no number of a negative float, of which Python makes a complex number."""
+    """A power that is not whole; no number of a negative float, of which Python makes a complex
+    number.
+    """
     return nan if isinstance(base, float) and base < 0.0 else base**exponent
 
 
 def solve(matrix: list[list[Scalar]], right: list[Scalar]) -> list[Scalar]:
-    """Solution of a few linear equations, by elimination without pivots: nearly symmetric and definite."""
+    """Solution of a few linear equations, by elimination without pivots: nearly symmetric and
+    definite.
+    """
     if len(right) == 1:
         return [right[0] / matrix[0][0]]
     rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]

@@ -1,7 +1,9 @@
-"""The report's variables as a view of the state: singular where the axis is vertical, and only there.
+"""The report's variables as a view of the state: singular where the axis is vertical, and only
+there.
 
-With X the horizontal direction into which the axis leans, Y = z x X, 3 = n, 2 = Y and 1 = 2 x 3, the angular
-velocity is -phi' sin(theta) 1 + theta' 2 + omega3 3, where theta is the tilt and phi the azimuth of the axis.
+With X the horizontal direction into which the axis leans, Y = z x X, 3 = n, 2 = Y and 1 = 2 x 3,
+the angular velocity is -phi' sin(theta) 1 + theta' 2 + omega3 3, where theta is the tilt and phi
+the azimuth of the axis.
 """
 
 import math
@@ -34,7 +36,8 @@ def axis_sine(axis: Vector) -> Scalar:
 
 
 def precession_rate(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Precession phi' = (L_z - I3 omega3 c) / (I1 sin^2 theta), rad/s, from the horizontal parts alone.
+    """Precession phi' = (L_z - I3 omega3 c) / (I1 sin^2 theta), rad/s, from the horizontal parts
+    alone.
 
     L_z - (L.n) n_z = L_z s^2 - n_z (L_x n_x + L_y n_y), which does not cancel near the poles.
     """
@@ -44,8 +47,12 @@ def precession_rate(axis: Vector, momentum: Vector, top: Top) -> Scalar:
 
 
 def tilt_rate(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Rate of the tilt theta' = (n_x n_x' + n_y n_y') / (sin(theta) cos(theta)) = L.Y / I1, rad/s."""
-    return (momentum[1] * axis[0] - momentum[0] * axis[1]) / (axis_sine(axis) * top.transverse_inertia)
+    """Rate of the tilt theta' = (n_x n_x' + n_y n_y') / (sin(theta) cos(theta)) = L.Y / I1,
+    rad/s.
+    """
+    return (momentum[1] * axis[0] - momentum[0] * axis[1]) / (
+        axis_sine(axis) * top.transverse_inertia
+    )
 
 
 def slip_along_tilt(axis: Vector, slip: Horizontal) -> Horizontal:

@@ -14,7 +14,9 @@ ROUNDING = 1e-17
 
 
 class PrincipalDirection(NamedTuple):
-    """A direction in which slip, v' = coupling - mu stiffness v, is driven by friction along itself only."""
+    """A direction in which slip, v' = coupling - mu stiffness v, is driven by friction along itself
+    only.
+    """
 
     direction: Horizontal
     """A unit vector, horizontal."""
@@ -29,13 +31,14 @@ class PrincipalDirection(NamedTuple):
 class ViscousProcess(ImpactProcess):
     """An impact with viscous friction, in closed form.
 
-    With phi_1(x) = (1 - exp(-x)) / x and phi_(k+1) = (1/k! - phi_k) / x at x = mu stiffness p, the slip of a
-    mode is exp(-x) slip + coupling p phi_1, its impulse of friction -mu (slip p phi_1 + coupling p^2 phi_2),
-    and the integral of that over p is -mu (slip p^2 phi_2 + coupling p^3 phi_3).
+    With phi_1(x) = (1 - exp(-x)) / x and phi_(k+1) = (1/k! - phi_k) / x at x = mu stiffness p, the
+    slip of a mode is exp(-x) slip + coupling p phi_1, its impulse of friction -mu (slip p phi_1 +
+    coupling p^2 phi_2), and the integral of that over p is -mu (slip p^2 phi_2 + coupling p^3
+    phi_3).
 
-    One mode lies across the plane of n and z and has no coupling, so that the slope of the normal velocity,
-    M_nn - mu (coupling slip), is monotone with a positive limit: compression has one end, and the velocity
-    keeps growing after it.
+    One mode lies across the plane of n and z and has no coupling, so that the slope of the normal
+    velocity, M_nn - mu (coupling slip), is monotone with a positive limit: compression has one end,
+    and the velocity keeps growing after it.
     """
 
     mu: float
@@ -56,7 +59,9 @@ class ViscousProcess(ImpactProcess):
         return cls(body, law.mu, (mode(cosine, sine), mode(-sine, cosine)))
 
     def until(self, here: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
-        """The first impulse from a given one on at which the goal is not negative; without steps."""
+        """The first impulse from a given one on at which the goal is not negative; without
+        steps.
+        """
         return first_reach(lambda q: self.at(here[NORMAL] + q), goal, guess), 0
 
     def at(self, p: float) -> Impulse:

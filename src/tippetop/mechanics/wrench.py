@@ -1,4 +1,6 @@
-"""Forces and torques at the contact, and the slip that they resist: see `tippetop.mechanics.rolling`."""
+"""Forces and torques at the contact, and the slip that they resist: see
+`tippetop.mechanics.rolling`.
+"""
 
 from typing import NamedTuple, TypeAlias
 

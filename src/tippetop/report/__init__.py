@@ -1,1 +1,3 @@
-"""The report redone: its figures and its claims, each computed by its own method and by a converged one."""
+"""The report redone: its figures and its claims, each computed by its own method and by a converged
+one.
+"""

@@ -1,4 +1,6 @@
-"""Claims: what the report says, what its own method gives, what is true, and the rule that decides."""
+"""Claims: what the report says, what its own method gives, what is true, and the rule that
+decides.
+"""
 
 import math
 from collections.abc import Callable, Iterable, Mapping
@@ -26,12 +28,12 @@ class Verdict(Enum):
 
 
 RULE = (
-    "Every claim is compared with the converged value, which says whether it is true, and with what the "
-    "report's own method gives, where it gives anything: directly, or for one stated choice of what the "
-    "report leaves open; what is true is taken for the same choice, but a law has to be true for the "
-    "report's main launch. They agree within half a unit of the last printed digit unless the record says "
-    "otherwise. What the report does not say in words, but draws "
-    "or codes, is marked as implied."
+    "Every claim is compared with the converged value, which says whether it is true, and with what"
+    " the report's own method gives, where it gives anything: directly, or for one stated choice of"
+    " what the report leaves open; what is true is taken for the same choice, but a law has to be"
+    " true for the report's main launch. They agree within half a unit of the last printed digit"
+    " unless the record says otherwise. What the report does not say in words, but draws or codes,"
+    " is marked as implied."
 )
 
 
@@ -63,13 +65,16 @@ class Finding:
     """What else there is to know."""
     chosen: Value | None = None
     choice: str = ""
-    """What the report's method gives for one choice of what the report leaves open, and which choice."""
+    """What the report's method gives for one choice of what the report leaves open, and which
+    choice.
+    """
     reported: float | None = None
     """What the report's printed formula evaluates to, where the claim is a formula."""
     news: str = ""
     """What else is found that the report could not know, in a sentence; "" for nothing."""
     right: str = ""
-    """What is right where the claim is not, in a few words with values; "" where the claim says it."""
+    """What is right where the claim is not, in a few words with values; "" where the claim says it.
+    """
 
     @classmethod
     def unlisted(cls, converged: Value, note: str, *choices: Any, **others: Any) -> "Finding":
@@ -101,14 +106,18 @@ class Claim:
     text: str
     """What is claimed."""
     quote: str = ""
-    """What the report says, word for word and in its spelling; "" where it is not the report that says it."""
+    """What the report says, word for word and in its spelling; "" where it is not the report that
+    says it.
+    """
     printed: str = ""
-    """The number as printed, with its unit; "" where the claim is not a number or `Finding.reported` has
-    it."""
+    """The number as printed, with its unit; "" where the claim is not a number or
+    `Finding.reported` has it.
+    """
     unit: str | None = None
     """Unit of a number that is not printed; None if there is none."""
     formula: tuple[str, ...] = ()
-    """A formula as the report sets it apart, in TeX as far as matplotlib sets it, a string a line."""
+    """A formula as the report sets it apart, in TeX as far as matplotlib sets it, a string a line.
+    """
     formula_right: tuple[str, ...] = ()
     """What it should be; () where it is right."""
     figure: str | None = None
@@ -116,7 +125,8 @@ class Claim:
     implied: bool = False
     """Whether the report does not say it in words."""
     right: str = ""
-    """What is right where the claim is not, in a few words; "" where the converged value says it."""
+    """What is right where the claim is not, in a few words; "" where the converged value says it.
+    """
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -168,7 +178,9 @@ class Judgement:
     @property
     def verdict(self) -> Verdict:
         """What the values say; see `RULE`."""
-        given = [value for value in (self.finding.listing, self.finding.chosen) if value is not None]
+        given = [
+            value for value in (self.finding.listing, self.finding.chosen) if value is not None
+        ]
         theirs = any(map(self._agrees_with, given))
         if self._agrees_with(self.finding.converged):
             return Verdict.REPRODUCED if theirs or not given else Verdict.UPHELD
@@ -208,13 +220,16 @@ class Judgement:
 
 EXAMINERS: dict[str, Examiner] = {}
 """How claims are examined, by their names: those registered so far; take all from
-`tippetop.report.claims.registry`."""
+`tippetop.report.claims.registry`.
+"""
 
 
 def examines(
     claim: str, *needs: str, tolerance: Tolerance | None = None, **options: Any
 ) -> Callable[[Callable[..., Finding]], Callable[..., Finding]]:
-    """Register the decorated function, with some options, as what alone examines a claim; see `Examiner`."""
+    """Register the decorated function, with some options, as what alone examines a claim; see
+    `Examiner`.
+    """
 
     def register(examine: Callable[..., Finding]) -> Callable[..., Finding]:
         if claim in EXAMINERS:

@@ -42,7 +42,9 @@ EXPERIMENTS: dict[str, Experiment] = {}
 
 
 def experiment(name: str, title: str, cost: float) -> Callable[[Compute], Compute]:
-    """Register the decorated function as what does an experiment, which no other may; see `Experiment`."""
+    """Register the decorated function as what does an experiment, which no other may; see
+    `Experiment`.
+    """
 
     def register(compute: Compute) -> Compute:
         if name in EXPERIMENTS:
@@ -69,14 +71,17 @@ _ALONG = {
 def dataset(
     coordinates: Mapping[str, Any], attrs: Mapping[str, Any] | None = None, /, **variables: Any
 ) -> xr.Dataset:
-    """A dataset whose variables are told as values, unit, meaning and dimensions, as `variable` takes them.
+    """A dataset whose variables are told as values, unit, meaning and dimensions, as `variable`
+    takes them.
 
-    Coordinates are told as values, unit and meaning, or as values alone: words, or what `_ALONG` knows by
-    what it is, and perhaps what of, as in spin and spin_listing.
+    Coordinates are told as values, unit and meaning, or as values alone: words, or what `_ALONG`
+    knows by what it is, and perhaps what of, as in spin and spin_listing.
     """
     own = {name: told for name, told in coordinates.items() if isinstance(told, tuple)}
     kinds = {name: _ALONG.get(name.partition("_")[0]) for name in coordinates}
-    own |= {name: (coordinates[name], *kind) for name, kind in kinds.items() if kind and name not in own}
+    own |= {
+        name: (coordinates[name], *kind) for name, kind in kinds.items() if kind and name not in own
+    }
     return xr.Dataset(
         {name: variable(*told) for name, told in variables.items()},
         {**coordinates, **{name: variable(*told, name) for name, told in own.items()}},

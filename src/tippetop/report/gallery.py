@@ -37,8 +37,9 @@ class Plate:
     section: str
     """The section of the page that it belongs to; see `tippetop.report.outline`."""
     finding: str = ""
-    """What it finds out, in a few words, where that is news or one of the pictures that the page opens
-    with."""
+    """What it finds out, in a few words, where that is news or one of the pictures that the page
+    opens with.
+    """
 
     def dataset(self, data: Data) -> xr.Dataset:
         """The data behind the figure."""
@@ -78,7 +79,9 @@ DRAWN: dict[str, Draw] = {
     "fig07": partial(sweeps.flip_time_figure, reported=float(quoted.EXPONENT)),
     "fig08": partial(runs.tilt_figure, zoom=(12.8, 13.8)),
     "fig09": partial(runs.tilt_figure, zoom=(5.3, 5.8), inset=(0.6, 0.52, 0.38, 0.44)),
-    "fig10": partial(runs.energy_figure, reported=(float(quoted.ENERGY_TIME), float(quoted.ENERGY))),
+    "fig10": partial(
+        runs.energy_figure, reported=(float(quoted.ENERGY_TIME), float(quoted.ENERGY))
+    ),
     "fig11": runs.force_figure,
     "fig12": partial(runs.stopped_figure, reported_stop=float(quoted.STOP)),
     "fig13": runs.upright_figure,
@@ -111,6 +114,7 @@ DRAWN: dict[str, Draw] = {
 """How each figure is drawn from the merged data of its experiments."""
 
 PLATES: dict[str, Plate] = {
-    name: Plate(name, DRAWN[name], **{"needs": (name,), **fields}) for name, fields in told("figures").items()
+    name: Plate(name, DRAWN[name], **{"needs": (name,), **fields})
+    for name, fields in told("figures").items()
 }
 """Every figure by its name, in the order of the page."""

@@ -1,4 +1,6 @@
-"""The report's method, errors and all: its equations with theta modulo pi, by ode45 at default tolerances."""
+"""The report's method, errors and all: its equations with theta modulo pi, by ode45 at default
+tolerances.
+"""
 
 import math
 
@@ -15,16 +17,18 @@ VARIABLES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y
 
 
 def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) -> xr.Dataset:
-    """Run an eccentric sphere with viscous friction as the report's listing does: it never leaves the table.
+    """Run an eccentric sphere with viscous friction as the report's listing does: it never leaves
+    the table.
 
-    `unilateral` lets the lines count that set a negative normal force to zero (commented out in the report).
+    `unilateral` lets the lines count that set a negative normal force to zero (commented out in the
+    report).
 
     Returns
     -------
     xarray.Dataset
-        Over `time`, the points of output of ode45: the report's variables (theta modulo pi, as plotted),
-        `theta_integrated` without that, `normal_force` (2.15) and `energy` (4.1). Attributes: steps,
-        evaluations, failure (empty if none).
+        Over `time`, the points of output of ode45: the report's variables (theta modulo pi, as
+        plotted), `theta_integrated` without that, `normal_force` (2.15) and `energy` (4.1).
+        Attributes: steps, evaluations, failure (empty if none).
     """
     motion, start = listing_rates(problem, unilateral=unilateral), launch_state(problem)
     solution = ode45(lambda y: np.array(motion.rates(y.tolist(), ())), duration, start)
@@ -38,14 +42,20 @@ def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) 
         values["energy"] = published_energy(wrapped, top, np)
     counts = {"steps": solution.steps, "evaluations": solution.evaluations}
     variables = {name: ("time", value) for name, value in values.items()}
-    return xr.Dataset(variables, {"time": solution.times}, {**counts, "failure": solution.failure or ""})
+    return xr.Dataset(
+        variables, {"time": solution.times}, {**counts, "failure": solution.failure or ""}
+    )
 
 
-def listing_rates(problem: Problem, wrap: float | None = math.pi, *, unilateral: bool = False) -> Motion:
+def listing_rates(
+    problem: Problem, wrap: float | None = math.pi, *, unilateral: bool = False
+) -> Motion:
     """The right-hand side of the report's listing as a motion without parameters."""
     top = problem.top
     return Motion(
-        lambda y, _: published_rates(y, top, math, wrap, unilateral=unilateral), size=7, parameters=0
+        lambda y, _: published_rates(y, top, math, wrap, unilateral=unilateral),
+        size=7,
+        parameters=0,
     )
 
 
@@ -53,5 +63,12 @@ def launch_state(problem: Problem) -> Array:
     """The launch in the report's variables, shape (7,)."""
     launch = problem.launch
     return np.array(
-        [launch.tilt, launch.tilt_rate, launch.azimuth, launch.precession, launch.spin, *launch.slip]
+        [
+            launch.tilt,
+            launch.tilt_rate,
+            launch.azimuth,
+            launch.precession,
+            launch.spin,
+            *launch.slip,
+        ]
     )

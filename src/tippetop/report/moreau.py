@@ -1,9 +1,10 @@
 """Moreau's time-stepping for a top of several spheres, as Leine and Glocker followed theirs.
 
-A step of fixed length moves the top freely for its first half, gives all impulses of contact there at once,
-and moves it freely for the second half (Moreau 1988). A contact acts when its gap is not open at the middle,
-plastically, with friction of a patch that has an ellipsoidal limit surface. Events are known to a step, and
-what happens between two steps is lost. Plain numbers, and none of the equations of the package.
+A step of fixed length moves the top freely for its first half, gives all impulses of contact there
+at once, and moves it freely for the second half (Moreau 1988). A contact acts when its gap is not
+open at the middle, plastically, with friction of a patch that has an ellipsoidal limit surface.
+Events are known to a step, and what happens between two steps is lost. Plain numbers, and none of
+the equations of the package.
 """
 
 import math
@@ -41,7 +42,9 @@ class SphereTop(NamedTuple):
 
 
 class History(NamedTuple):
-    """What a method with a step knows: at every step, its tilt, rad, and which spheres had an impulse."""
+    """What a method with a step knows: at every step, its tilt, rad, and which spheres had an
+    impulse.
+    """
 
     step: float
     tilts: list[float]
@@ -49,7 +52,9 @@ class History(NamedTuple):
 
 
 def follow(body: SphereTop, tilt: float, spin: float, duration: float, step: float) -> History:
-    """Follow a top that is set down at this tilt (rad) and spin (rad/s) with its centre of mass at rest."""
+    """Follow a top that is set down at this tilt (rad) and spin (rad/s) with its centre of mass at
+    rest.
+    """
     axis = (math.sin(tilt), 0.0, math.cos(tilt))
     momentum = scale(body.I3 * spin, axis)
     height = max(ball.radius - ball.center * axis[2] for ball in body.balls)
@@ -57,7 +62,10 @@ def follow(body: SphereTop, tilt: float, spin: float, duration: float, step: flo
     held: list[list[float]] = [[0.0] * 4 for _ in body.balls]
     tilts, touching = [], []
     for _ in range(round(duration / step)):
-        axis, height = _turned(axis, momentum, 0.5 * step / body.I1), height + 0.5 * step * velocity[2]
+        axis, height = (
+            _turned(axis, momentum, 0.5 * step / body.I1),
+            height + 0.5 * step * velocity[2],
+        )
         velocity = (velocity[0], velocity[1], velocity[2] - step * body.gravity)
         arms = [
             add(scale(b.center, axis), (0.0, 0.0, -b.radius))
@@ -67,9 +75,14 @@ def follow(body: SphereTop, tilt: float, spin: float, duration: float, step: flo
         ]
         if any(arms):
             velocity, momentum = _impulses(body, axis, velocity, momentum, arms, held)
-        axis, height = _turned(axis, momentum, 0.5 * step / body.I1), height + 0.5 * step * velocity[2]
+        axis, height = (
+            _turned(axis, momentum, 0.5 * step / body.I1),
+            height + 0.5 * step * velocity[2],
+        )
         tilts.append(math.acos(max(-1.0, min(1.0, axis[2]))))
-        touching.append(tuple(arm is not None and one[3] > 0.0 for arm, one in zip(arms, held, strict=True)))
+        touching.append(
+            tuple(arm is not None and one[3] > 0.0 for arm, one in zip(arms, held, strict=True))
+        )
     return History(step, tilts, touching)
 
 
@@ -81,7 +94,8 @@ def _impulses(
     arms: Sequence[Triple | None],
     held: list[list[float]],
 ) -> tuple[Triple, Triple]:
-    """The velocities after the impulses, by rounds over the contacts; `held` starts and takes these.
+    """The velocities after the impulses, by rounds over the contacts; `held` starts and takes
+    these.
 
     Of each contact: along x, y, about z over the patch, and upwards.
     """

@@ -1,8 +1,10 @@
-"""MATLAB's ode45 as the report used it: Dormand-Prince 5(4) with that program's control of the step.
+"""MATLAB's ode45 as the report used it: Dormand-Prince 5(4) with that program's control of the
+step.
 
-SciPy's RK45 has the same formula but chooses the size of its steps otherwise: it weighs the error by its root
-mean square, ode45 by its largest component; and the two grow and shrink a step by different rules. At the
-default tolerance that is enough to move the instants of a sensitive motion by tenths of a second, hence both.
+SciPy's RK45 has the same formula but chooses the size of its steps otherwise: it weighs the error
+by its root mean square, ode45 by its largest component; and the two grow and shrink a step by
+different rules. At the default tolerance that is enough to move the instants of a sensitive motion
+by tenths of a second, hence both.
 """
 
 from collections.abc import Callable
@@ -41,7 +43,9 @@ class Solution:
     """Why it gave up, or None."""
 
 
-def dormand_prince_step(rates: Rates, state: Array, slope: Array, step: float) -> tuple[Array, Array]:
+def dormand_prince_step(
+    rates: Rates, state: Array, slope: Array, step: float
+) -> tuple[Array, Array]:
     """Take one step of the fifth-order formula, from a state and its rates, shape (size,).
 
     Returns the state at the end, shape (size,), and the rates at all stages, shape (7, size).
@@ -56,9 +60,14 @@ def dormand_prince_step(rates: Rates, state: Array, slope: Array, step: float) -
 
 
 def ode45(
-    rates: Rates, duration: float, start: Array, relative: float = RELATIVE, absolute: float = ABSOLUTE
+    rates: Rates,
+    duration: float,
+    start: Array,
+    relative: float = RELATIVE,
+    absolute: float = ABSOLUTE,
 ) -> Solution:
-    """Integrate y' = rates(y) as MATLAB's ode45 does (Shampine & Reichelt 1997), with tolerances per step.
+    """Integrate y' = rates(y) as MATLAB's ode45 does (Shampine & Reichelt 1997), with tolerances
+    per step.
 
     `start` is the state at time 0, shape (size,).
     """
@@ -66,7 +75,9 @@ def ode45(
     time, state = 0.0, np.array(start, dtype=float)
     slope = rates(state)
     evaluations, steps = 1, 0
-    pace = float(np.max(np.abs(slope) / np.maximum(np.abs(state), threshold))) / (0.8 * relative**0.2)
+    pace = float(np.max(np.abs(slope) / np.maximum(np.abs(state), threshold))) / (
+        0.8 * relative**0.2
+    )
     step = min(longest, 1.0 / pace) if pace > 0 else longest
     times, states = [time], [state]
 

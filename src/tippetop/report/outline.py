@@ -1,4 +1,6 @@
-"""The order of the page: the report's own sections, then ours, and the pictures that it opens with."""
+"""The order of the page: the report's own sections, then ours, and the pictures that it opens
+with.
+"""
 
 import tomllib
 from pathlib import Path
@@ -11,8 +13,9 @@ _TOLD = tomllib.loads(Path(__file__).with_name("outline.toml").read_text(encodin
 SECTIONS: dict[str, tuple[str, str]] = {
     one["name"]: (one["title"], one.get("words", "")) for one in _TOLD["sections"]
 }
-"""Titles and opening words of the page's sections, by what the report calls them; those without a claim or a
-figure are left out."""
+"""Titles and opening words of the page's sections, by what the report calls them; those without a
+claim or a figure are left out.
+"""
 
 OWN = ("Why", "Friction", "Real tops")
 """The sections that are not the report's."""

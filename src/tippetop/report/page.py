@@ -1,4 +1,6 @@
-"""The page: what was found, every figure and every claim, in one file that opens without a network."""
+"""The page: what was found, every figure and every claim, in one file that opens without a
+network.
+"""
 
 import base64
 import io
@@ -36,9 +38,10 @@ def render(
 ) -> str:
     """The page of some figures and claims as HTML.
 
-    The folder `figures` has SVG and PNG of these by name, which become part of the page. The `player` is a
-    run and what plays it, as `tippetop.report.playable` packs them; None for a page without. `quick` has it
-    say that the computations were coarse, `partial` what was asked for, when it was not everything.
+    The folder `figures` has SVG and PNG of these by name, which become part of the page. The
+    `player` is a run and what plays it, as `tippetop.report.playable` packs them; None for a page
+    without. `quick` has it say that the computations were coarse, `partial` what was asked for,
+    when it was not everything.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("tippetop.report", "."),
@@ -52,7 +55,9 @@ def render(
     claims = [worded(judgement, shown) for judgement in judgements]
     wrong = [verdict.name.lower() for verdict in (Verdict.CORRECTED, Verdict.EXPLAINED)]
     theirs = [claim for claim in claims if claim["section"] not in OWN]
-    counts, shown_counts = (Counter(claim["verdict"] for claim in some) for some in (theirs, claims))
+    counts, shown_counts = (
+        Counter(claim["verdict"] for claim in some) for some in (theirs, claims)
+    )
     parts: dict[str, Any] = {
         "errors": [claim for name in wrong for claim in theirs if claim["verdict"] == name],
         "sound": [claim for claim in theirs if claim["verdict"] not in wrong],
@@ -60,7 +65,9 @@ def render(
         "news": [claim for claim in claims if claim["news"]],
         "player": player,
         "sections": _sections(plates, claims, figures),
-        "experiments_done": _experiments(Selection(tuple(plates), tuple(one.claim for one in judgements))),
+        "experiments_done": _experiments(
+            Selection(tuple(plates), tuple(one.claim for one in judgements))
+        ),
         "unchecked": [] if partial else UNCHECKED,
     }
     return environment.get_template("page.html.j2").render(
@@ -69,9 +76,16 @@ def render(
         claims=claims,
         statements=len(theirs),
         others=len(claims) - len(theirs),
-        pictures=[] if partial else [_picture(PLATES[name], figures) for name in PICTURES if name in shown],
+        pictures=[]
+        if partial
+        else [_picture(PLATES[name], figures) for name in PICTURES if name in shown],
         verdicts=[
-            {"name": name, "count": counts[name], "shown": shown_counts[name], "meaning": verdict.value}
+            {
+                "name": name,
+                "count": counts[name],
+                "shown": shown_counts[name],
+                "meaning": verdict.value,
+            }
             for verdict in Verdict
             for name in (verdict.name.lower(),)
         ],
@@ -107,7 +121,9 @@ def _is_new(plate: Plate) -> bool:
     return plate.section in OWN or (bool(plate.finding) and not plate.id.startswith("fig"))
 
 
-def _sections(plates: Sequence[Plate], claims: Sequence[Worded], figures: Path) -> list[dict[str, Any]]:
+def _sections(
+    plates: Sequence[Plate], claims: Sequence[Worded], figures: Path
+) -> list[dict[str, Any]]:
     """The report's sections and ours that there is something in, each with its figures and claims.
 
     A claim stands beside its figure if that is in the same section, else after all figures.
@@ -120,7 +136,11 @@ def _sections(plates: Sequence[Plate], claims: Sequence[Worded], figures: Path) 
         rest = [claim for claim in inside if claim["figure"] not in names]
         if drawn or rest:
             shown = [_shown(plate, figures, claims, key) for plate in drawn]
-            named = {"id": "section-" + key.replace(" ", "-").lower(), "title": title, "words": words}
+            named = {
+                "id": "section-" + key.replace(" ", "-").lower(),
+                "title": title,
+                "words": words,
+            }
             found.append({**named, "figures": shown, "claims": rest})
     return found
 
@@ -151,7 +171,9 @@ def _picture(plate: Plate, figures: Path) -> dict[str, str]:
 
 
 def _experiments(chosen: Selection) -> list[dict[str, Any]]:
-    """The experiments, as the page comes to them, with the figures drawn from each and the claims decided."""
+    """The experiments, as the page comes to them, with the figures drawn from each and the claims
+    decided.
+    """
     return [
         {
             "id": one.id,
@@ -175,11 +197,14 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
         "implied": claim.implied,
         "quote": claim.quote,
         "is_code": claim.id.startswith("listing"),
-        "formula": {"printed": claim.formula, "right": claim.formula_right} if claim.formula else None,
+        "formula": {"printed": claim.formula, "right": claim.formula_right}
+        if claim.formula
+        else None,
         "place": claim.source.place,
         "section": section_of(claim.source.section),
         # Sections of ours mark so the statements that are the report's nevertheless.
-        "of_others": section_of(claim.source.section) in OWN and ": the report" not in claim.source.section,
+        "of_others": section_of(claim.source.section) in OWN
+        and ": the report" not in claim.source.section,
         "needs": claim.needs,
         "right": finding.right or claim.right or (_number(finding.converged) + unit),
         "text": claim.text + (" (implied)" if claim.implied else ""),
@@ -194,7 +219,9 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
         "note": finding.note,
         "news": finding.news,
         "figure": figure if figure in shown else None,
-        "figure_title": PLATES[figure].title.partition(":")[0] if figure in shown and figure else None,
+        "figure_title": PLATES[figure].title.partition(":")[0]
+        if figure in shown and figure
+        else None,
     }
 
 

@@ -1,4 +1,6 @@
-"""Numbers that the report prints and that more than one figure or claim needs, each with its place."""
+"""Numbers that the report prints and that more than one figure or claim needs, each with its
+place.
+"""
 
 SPIN, TILT, MU = 155.0, 0.1, 0.3
 """The report's main launch, rad/s and rad, and its friction, s/m (section 3.1)."""
@@ -19,13 +21,16 @@ ABNORMAL_SPIN = "170"
 """omega_a, rad/s (section 3.2)."""
 
 EXPONENT, NORMAL_FRICTION = "-0.985", (0.2, 1.0)
-"""The power of mu in the flip time, and the range of mu, s/m, that it is for (section 3.3, Fig. 7)."""
+"""The power of mu in the flip time, and the range of mu, s/m, that it is for (section 3.3, Fig. 7).
+"""
 
 ROUGH_FRICTION = 100.0
 """The friction of Fig. 8, s/m."""
 
 ENERGY, ENERGY_TIME, FALL = "0.06", "6", "15"
-"""The energy at 175 rad/s, J, when it is reached, s, and the fall to compare, R (section 4, Fig. 10)."""
+"""The energy at 175 rad/s, J, when it is reached, s, and the fall to compare, R (section 4, Fig.
+10).
+"""
 
 STOP = "5.62"
 """When the run at 175 rad/s is stopped "before" it flies, s (section 4, Fig. 12)."""

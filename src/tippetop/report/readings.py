@@ -1,4 +1,5 @@
-"""What is read off a run: when it has turned over, where phi' changes sign, when the table begins to pull.
+"""What is read off a run: when it has turned over, where phi' changes sign, when the table begins
+to pull.
 
 All functions take the times and values of a run that is sampled finely enough to show them.
 """
@@ -16,7 +17,9 @@ SHOWN = 0.01
 
 
 def flip_time(times: Array, theta: Array, within: float = SETTLED) -> float:
-    """The first time at which theta is within this of its last value (the report's section 3.3), s."""
+    """The first time at which theta is within this of its last value (the report's section 3.3),
+    s.
+    """
     return float(times[np.argmax(np.abs(theta - theta[-1]) < within)])
 
 

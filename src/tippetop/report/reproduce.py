@@ -1,4 +1,6 @@
-"""Redo the report: compute what its figures and claims need, judge, draw, and write a folder with a page."""
+"""Redo the report: compute what its figures and claims need, judge, draw, and write a folder with a
+page.
+"""
 
 import json
 import os
@@ -64,12 +66,12 @@ def reproduce(
 ) -> Reproduction:
     """Redo the report's figures and examine its claims, all or `only` one; see `select`.
 
-    The folder gets index.html, claims.json, figures/ and data/, once all is computed. A `quick` run has
-    coarser sweeps and fewer samples, and its results say so. Without a number of `workers` there are as many
-    processes as processors, 2 at most.
+    The folder gets index.html, claims.json, figures/ and data/, once all is computed. A `quick` run
+    has coarser sweeps and fewer samples, and its results say so. Without a number of `workers`
+    there are as many processes as processors, 2 at most.
 
-    Raises `InvalidInput` if there is no such figure or claim; `FileTrouble` if there are results already, or
-    the folder cannot be written.
+    Raises `InvalidInput` if there is no such figure or claim; `FileTrouble` if there are results
+    already, or the folder cannot be written.
     """
     began = time.monotonic()
     folder = Path(folder)
@@ -121,7 +123,9 @@ def _unseen(chosen: Selection) -> list[str]:
 
 def _tasks(chosen: Selection, quick: bool, stage: Path) -> list[Task]:
     share = 0.3 if quick else 1.0
-    computing = [Task(one.id, one.cost * share, _compute, (one.id, quick)) for one in chosen.experiments]
+    computing = [
+        Task(one.id, one.cost * share, _compute, (one.id, quick)) for one in chosen.experiments
+    ]
     drawing = [
         Task(f"figure {plate.id}", 0.8, _draw, (plate.id, stage, quick), plate.needs)
         for plate in chosen.plates
@@ -153,7 +157,9 @@ def _staging(folder: Path) -> Iterator[Path]:
         folder.parent.mkdir(parents=True, exist_ok=True)
         if folder.exists() and not folder.is_dir():
             raise FileTrouble(f"{folder} is not a folder")
-        stage = TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.", ignore_cleanup_errors=True)
+        stage = TemporaryDirectory(
+            dir=folder.parent, prefix=f".{folder.name}.", ignore_cleanup_errors=True
+        )
     with stage as name:
         for part in (FIGURES, DATA):
             (Path(name) / part).mkdir()

@@ -23,15 +23,18 @@ class Selection:
     @property
     def experiments(self) -> tuple[Experiment, ...]:
         """The experiments needed, in the order of the page."""
-        needs = chain(*(plate.needs for plate in self.plates), *(claim.needs for claim in self.claims))
+        needs = chain(
+            *(plate.needs for plate in self.plates), *(claim.needs for claim in self.claims)
+        )
         return tuple(EXPERIMENTS[name] for name in dict.fromkeys(needs))
 
 
 def select(only: str | None = None) -> Selection:
-    """Choose what to redo: everything, or `only` the figure (fig06; 6 will do) or claim of this name.
+    """Choose what to redo: everything, or `only` the figure (fig06; 6 will do) or claim of this
+    name.
 
-    With a figure come the claims that can be decided from its data; with a claim, the figure that shows it if
-    it needs nothing more. Raises `InvalidInput` if there is no such figure or claim.
+    With a figure come the claims that can be decided from its data; with a claim, the figure that
+    shows it if it needs nothing more. Raises `InvalidInput` if there is no such figure or claim.
     """
     if only is None:
         return Selection(tuple(PLATES.values()), tuple(CLAIMS.values()))
@@ -39,7 +42,9 @@ def select(only: str | None = None) -> Selection:
     if name in PLATES:
         plate = PLATES[name]
         shown = (claim for claim in CLAIMS.values() if claim.figure == name)
-        return Selection((plate,), tuple(claim for claim in shown if set(claim.needs) <= set(plate.needs)))
+        return Selection(
+            (plate,), tuple(claim for claim in shown if set(claim.needs) <= set(plate.needs))
+        )
     if name in CLAIMS:
         claim = CLAIMS[name]
         shown_in = PLATES.get(claim.figure or "")

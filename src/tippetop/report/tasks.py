@@ -1,4 +1,6 @@
-"""Work for several processes: experiments and drawings, handed out as soon as what they need is there."""
+"""Work for several processes: experiments and drawings, handed out as soon as what they need is
+there.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -28,9 +30,9 @@ def carry_out(
 ) -> dict[str, Any]:
     """Do the tasks, the longest first, in so many processes, and return their results by name.
 
-    With one worker all is done in this process. `progress` is told the cost done, the cost of all, and the
-    name of the task that was done last. Raises `Unavailable` if the process of a task was killed again and
-    again.
+    With one worker all is done in this process. `progress` is told the cost done, the cost of all,
+    and the name of the task that was done last. Raises `Unavailable` if the process of a task was
+    killed again and again.
     """
     total, done = sum(task.cost for task in tasks), 0.0
     costs = {task.name: task.cost for task in tasks}
@@ -42,7 +44,9 @@ def carry_out(
         for task in waiting:
             if all(name in results for name in task.after):
                 waiting.remove(task)
-                return Job(task.name, task.call, (*task.arguments, *(results[name] for name in task.after)))
+                return Job(
+                    task.name, task.call, (*task.arguments, *(results[name] for name in task.after))
+                )
         return None
 
     for name, result in shared(longest, workers):

@@ -13,11 +13,13 @@ _MODULES = (quoted, readings, dry, flights, patches, real, runs, theory, theory_
 def told(name: str) -> dict[str, Any]:
     """The tables of a file of this folder, with what stands in braces in their texts filled in.
 
-    That is a constant of `quoted`, `readings` or the experiments, such as {dry.SPIN:g}, or one of the words
-    that the file itself explains.
+    That is a constant of `quoted`, `readings` or the experiments, such as {dry.SPIN:g}, or one of
+    the words that the file itself explains.
     """
     tables = tomllib.loads(Path(__file__).with_name(f"{name}.toml").read_text(encoding="utf-8"))
-    names = {module.__name__.rpartition(".")[2]: module for module in _MODULES} | tables.pop("words", {})
+    names = {module.__name__.rpartition(".")[2]: module for module in _MODULES} | tables.pop(
+        "words", {}
+    )
 
     def filled(value: Any) -> Any:
         return (
@@ -28,4 +30,6 @@ def told(name: str) -> dict[str, Any]:
             else value
         )
 
-    return {key: {name: filled(value) for name, value in table.items()} for key, table in tables.items()}
+    return {
+        key: {name: filled(value) for name, value in table.items()} for key, table in tables.items()
+    }

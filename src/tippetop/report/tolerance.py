@@ -13,7 +13,9 @@ class Tolerance(NamedTuple):
 
 
 READ = Tolerance(
-    0.25, "1 % of the 20 s of the plot that the time is read off, and half a unit of the last printed digit"
+    0.25,
+    "1 % of the 20 s of the plot that the time is read off, and half a unit of the last printed"
+    " digit",
 )
 ARRIVED = Tolerance(SETTLED, f"the report's own measure of having arrived, {SETTLED:g} rad")
 PLOTTED = Tolerance(SHOWN, "1 %: what a plot can show")

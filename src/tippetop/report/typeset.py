@@ -1,4 +1,6 @@
-"""Formulas set for a page: those in the plain words of claims and captions, and those that stand apart."""
+"""Formulas set for a page: those in the plain words of claims and captions, and those that stand
+apart.
+"""
 
 import re
 from collections.abc import Sequence
@@ -22,7 +24,8 @@ _LETTERS = {
     "theta": "θ",
 }
 _NAMES = "|".join((*_LETTERS, "xi", "I", "R", "Y", "f", "g", "t", "m", "s", "v"))
-# A name by itself, not inside a longer word or a name with dashes, with its index, primes and power.
+# A name by itself, not inside a longer word or a name with dashes, with its index, primes and
+# power.
 _SYMBOL = re.compile(
     rf"(?<![\w.-])(?P<name>{_NAMES})(?P<index>\d|_\w+)?(?P<primes>'{{0,2}})(?:\^(?P<power>-?[\d.]*\d))?(?![\w'-])"
 )
@@ -36,7 +39,9 @@ def typeset(text: str) -> Markup:
 
 
 def _symbol(found: re.Match[str]) -> str:
-    name, index, primes, power = (found[part] or "" for part in ("name", "index", "primes", "power"))
+    name, index, primes, power = (
+        found[part] or "" for part in ("name", "index", "primes", "power")
+    )
     if name not in _LETTERS and not (index or power):
         return found[0]
     letter = _LETTERS.get(name, name)
@@ -59,7 +64,9 @@ _PENS = {
 
 
 def formula(lines: Sequence[str]) -> Markup:
-    """Lines of TeX, as far as matplotlib sets it, as drawings in the color of the text around them."""
+    """Lines of TeX, as far as matplotlib sets it, as drawings in the color of the text around
+    them.
+    """
     return Markup("").join(_line(line) for line in lines)
 
 

@@ -1,7 +1,7 @@
 """Sweeps: what becomes of many launches, over grids or random draws of any of a problem's numbers.
 
-`sweep` sweeps fields of a problem over values. `Sweep` says what to compute, `compute` does it in memory, and
-`fill` in a `Store`, which survives whatever happens to the program.
+`sweep` sweeps fields of a problem over values. `Sweep` says what to compute, `compute` does it in
+memory, and `fill` in a `Store`, which survives whatever happens to the program.
 """
 
 from tippetop.catalogue import SWEPT as SWEPT

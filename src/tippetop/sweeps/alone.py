@@ -21,7 +21,9 @@ from tippetop.theory.prediction import is_held
 
 
 def is_alone(launches: Launches) -> bool:
-    """Whether there are no batches, which LLVM compiles, or they know nothing of their bodies or rules."""
+    """Whether there are no batches, which LLVM compiles, or they know nothing of their bodies or
+    rules.
+    """
     example = launches.kind.example
     return not has_llvm() or launches.own is not None or isinstance(example.surface, Hull)
 
@@ -44,11 +46,16 @@ def follow(
     tolerance: float,
     settled: float | None = None,
 ) -> tuple[Ends, Tally]:
-    """What a launch comes to: followed from a top, a state, a time and what follows, or until it settles."""
+    """What a launch comes to: followed from a top, a state, a time and what follows, or until it
+    settles.
+    """
     top, state, time = begin
     method = make_integrator(None, max(tolerance, TOLERANCES[default_name()]))
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
-    segments, recorder = trajectory.segments(), Recorder(top, state, 0.0, np.empty(0), start.energy_lost)
+    segments, recorder = (
+        trajectory.segments(),
+        Recorder(top, state, 0.0, np.empty(0), start.energy_lost),
+    )
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
     for block in in_blocks(segments):
         recorder.take(block)
@@ -57,7 +64,9 @@ def follow(
     return tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events), tally
 
 
-def until_settled(trajectory: Trajectory, segments: Iterator[Segment], closeness: float) -> Iterator[Segment]:
+def until_settled(
+    trajectory: Trajectory, segments: Iterator[Segment], closeness: float
+) -> Iterator[Segment]:
     """The segments of a trajectory up to the first step at whose start the tilt is held."""
     for segment in segments:
         knots, terms = segment.solution.knots, segment.solution.terms

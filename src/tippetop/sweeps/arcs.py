@@ -1,6 +1,8 @@
-"""How far polynomials of many launches are followed: until a guard falls through zero, or they serve no more.
+"""How far polynomials of many launches are followed: until a guard falls through zero, or they
+serve no more.
 
-LLVM compiles what is usual of it. It knows nothing of what moves, so that it serves all motions of a size.
+LLVM compiles what is usual of it. It knows nothing of what moves, so that it serves all motions of
+a size.
 """
 
 from collections.abc import Callable, Sequence
@@ -25,7 +27,9 @@ class Arcs(NamedTuple):
     after: Array
     """States at the end, shape (size, n)."""
     least: Array
-    """Least values of the first guard, of the third number of the state, and of minus that, shape (3, n)."""
+    """Least values of the first guard, of the third number of the state, and of minus that, shape
+    (3, n).
+    """
     whole: Array
     span: Array
     """How far the polynomials serve, and how far they are followed, shape (n,)."""
@@ -35,7 +39,9 @@ class Arcs(NamedTuple):
     """Not 0 where that is not sure, or happens what is waited for."""
 
     def look_closer(self, jet: Jet, counts: Array) -> Indices:
-        """Find out where there is doubt, by guards that count, shape (guards, n); return where that is."""
+        """Find out where there is doubt, by guards that count, shape (guards, n); return where that
+        is.
+        """
         which = np.flatnonzero(self.doubt)
         if len(which):
             whole = self.whole[which]
@@ -52,10 +58,13 @@ class Arcs(NamedTuple):
 def arcs(jet: Jet, step: Array, longest: Array, pauses: Array) -> Arcs:
     """Follow polynomials of n launches as far as they serve, `step`, shape (n,).
 
-    Where that is 0 it is found, `longest` at most. What to pause for, shape (guards + 3, n): see `Layout`.
+    Where that is 0 it is found, `longest` at most. What to pause for, shape (guards + 3, n): see
+    `Layout`.
     """
     (size, terms, count), guards = jet.state.shape, len(jet.guards)
-    given = np.concatenate((jet.state.reshape(-1, count), jet.guards.reshape(-1, count), [step, longest]))
+    given = np.concatenate(
+        (jet.state.reshape(-1, count), jet.guards.reshape(-1, count), [step, longest])
+    )
     found = np.empty((size + 7, count + -count % LANES))
     _code(size, terms - 1, guards)(padded(given), padded(pauses), found)
     return Arcs(*np.split(found[:, :count], (size, size + 3))[:2], *found[size + 3 :, :count])
@@ -73,7 +82,9 @@ def _code(size: int, order: int, guards: int) -> Callable[..., None]:
     return compiled(rows, cut + guards * order + 2, guards + 3, effort=0)
 
 
-def arc(jet: Jet, steps: Sequence[Scalar], pauses: Sequence[Scalar], plain: Arithmetic) -> list[Scalar]:
+def arc(
+    jet: Jet, steps: Sequence[Scalar], pauses: Sequence[Scalar], plain: Arithmetic
+) -> list[Scalar]:
     """What `arcs` finds of one launch."""
     (state, falls), (step, longest) = jet, steps
     whole = plain.choose(plain.below(0.0, step), step, step_size(state, longest, plain))
@@ -82,7 +93,10 @@ def arc(jet: Jet, steps: Sequence[Scalar], pauses: Sequence[Scalar], plain: Arit
         # Few looks are enough: what they leave in doubt is looked at closer.
         fall, unsure = first_fall(terms, whole, LOOKS, plain)
         earlier = (1.0 - plain.below(span, fall)) * count
-        span, fallen = plain.choose(earlier, fall, span), plain.choose(earlier, float(number), fallen)
+        span, fallen = (
+            plain.choose(earlier, fall, span),
+            plain.choose(earlier, float(number), fallen),
+        )
         doubt += unsure * count
     after = [horner(terms, span) for terms in state]
     floor, ceiling = extremes(state[2], span, plain)

@@ -34,7 +34,9 @@ def _no_word(value: Any) -> Any:
 
 
 class Entry(Part):
-    """A part of a grid: its fields may also be given in their order, and by the names they have in Python."""
+    """A part of a grid: its fields may also be given in their order, and by the names they have in
+    Python.
+    """
 
     model_config = ConfigDict(populate_by_name=True)
 
@@ -50,7 +52,9 @@ class Entry(Part):
     def written(cls, field: str, table: Mapping[str, Any]) -> Self:
         """The entry of a field, from the table of its others."""
         if "field" in table:
-            raise InvalidInput(f"{field}.field", table["field"], "no field: it is the name of the table")
+            raise InvalidInput(
+                f"{field}.field", table["field"], "no field: it is the name of the table"
+            )
         return cls(**{"field": field} | dict(table))
 
 
@@ -62,7 +66,9 @@ class Axis(Entry):
     @classmethod
     def of(cls, field: str, entry: Any) -> "Axis":
         """The axis that is written as a list, or an array, or a table."""
-        if isinstance(entry, list | tuple | range) or (isinstance(entry, np.ndarray) and entry.ndim):
+        if isinstance(entry, list | tuple | range) or (
+            isinstance(entry, np.ndarray) and entry.ndim
+        ):
             entry = {"values": tuple(entry)}
         if not isinstance(entry, Mapping):
             raise InvalidInput(field, entry, "a list of values, or { from, to, count, spacing }")
@@ -99,7 +105,9 @@ class Spaced(Axis):
         given = f"{self.first:g} to {self.last:g}"
         if self.count > 1 and self.first == self.last:
             raise InvalidInput("", given, "a first and a last value that differ")
-        if self.spacing == "geometric" and not (self.first > 0 < self.last or self.first < 0 > self.last):
+        if self.spacing == "geometric" and not (
+            self.first > 0 < self.last or self.first < 0 > self.last
+        ):
             raise InvalidInput("", given, "ends of one sign, neither 0, if geometric")
         apart = self.last - self.first
         if self.spacing == "geometric":
@@ -115,7 +123,9 @@ class Spaced(Axis):
 
     def at(self, places: Flat) -> Array:
         """Some of the values, by their places, without making the others."""
-        inner = between(self.first, self.last, places / max(self.count - 1, 1), self.spacing == "geometric")
+        inner = between(
+            self.first, self.last, places / max(self.count - 1, 1), self.spacing == "geometric"
+        )
         return np.where((places == self.count - 1) & (self.count > 1), self.last, inner)
 
 
@@ -127,7 +137,9 @@ def between(first: float, last: float, shares: Array, geometric: bool) -> Array:
 class Listed(Axis):
     """These values: "values" where they are written."""
 
-    numbers: tuple[Annotated[Number, BeforeValidator(_no_word)], ...] = Field(alias="values", min_length=1)
+    numbers: tuple[Annotated[Number, BeforeValidator(_no_word)], ...] = Field(
+        alias="values", min_length=1
+    )
 
     @model_validator(mode="after")
     def _differ(self) -> Self:

@@ -1,7 +1,8 @@
 """The cells of a sweep as arrays of launches, and which of them cannot be.
 
-No problem is built for a cell: the fields that change are put into the base problem as arrays, and the
-mechanics makes arrays of them. What a problem would refuse is refused here by the same limits, cell by cell.
+No problem is built for a cell: the fields that change are put into the base problem as arrays, and
+the mechanics makes arrays of them. What a problem would refuse is refused here by the same limits,
+cell by cell.
 """
 
 from collections.abc import Iterator, Mapping
@@ -82,7 +83,9 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     for field in values:
         if field not in known:
             raise InvalidInput("field", field, "one of " + one_of(field, list(known)))
-    if problem.launch.velocity is not None and any(field.startswith("launch.slip.") for field in values):
+    if problem.launch.velocity is not None and any(
+        field.startswith("launch.slip.") for field in values
+    ):
         raise InvalidInput(
             "field", "launch.slip", "no slip where launch.velocity is given, which determines it"
         )
@@ -97,7 +100,9 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
             touch = contact(*sliding, top)
             lifted = spread(filled.launch.gap, count) > 0.0
             fault[(~(touch.delassus > 0.0) & slips(start, top)) | lifted] = Fault.NO_CONTACT_FORCE
-        fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = Fault.NO_SUCH_BODY
+        fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = (
+            Fault.NO_SUCH_BODY
+        )
         for field, numbers in values.items():
             fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
         for part in (*filled.body.shapes, filled.friction, filled.contact):
@@ -112,7 +117,9 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
 
 
 def numeric_fields(part: Part, prefix: str = "") -> Iterator[tuple[str, list[Any]]]:
-    """Names of all fields that are numbers, with dots, and the limits that each was declared with."""
+    """Names of all fields that are numbers, with dots, and the limits that each was declared
+    with.
+    """
     for name, info in type(part).model_fields.items():
         for path, value in _each(getattr(part, name), f"{prefix}{name}").items():
             if isinstance(value, Part):
@@ -136,7 +143,11 @@ def put(part: PartType, values: Mapping[str, Array], prefix: str = "") -> PartTy
 
 def _each(value: Any, path: str) -> dict[str, Any]:
     """A field by its name with dots, or what is in it by theirs if it is a tuple."""
-    return {f"{path}.{k}": one for k, one in enumerate(value)} if isinstance(value, tuple) else {path: value}
+    return (
+        {f"{path}.{k}": one for k, one in enumerate(value)}
+        if isinstance(value, tuple)
+        else {path: value}
+    )
 
 
 def single_part(part: PartType, cell: int) -> PartType:
@@ -158,11 +169,15 @@ def single_part(part: PartType, cell: int) -> PartType:
                 return float(value[cell])
         return value
 
-    return type(part)(**{name: single(getattr(part, name), name) for name in type(part).model_fields})
+    return type(part)(
+        **{name: single(getattr(part, name), name) for name in type(part).model_fields}
+    )
 
 
 def refused(part: Part, count: int) -> NDArray[np.bool_]:
-    """The cells that a part refuses by rules of its own, beyond its numbers' limits, shape (count,)."""
+    """The cells that a part refuses by rules of its own, beyond its numbers' limits, shape
+    (count,).
+    """
     found = np.zeros(count, dtype=bool)
     rules = type(part).__pydantic_decorators__
     changes = any(isinstance(getattr(part, name), np.ndarray) for name in type(part).model_fields)
@@ -190,10 +205,11 @@ _LIMITS = {"gt": np.greater, "ge": np.greater_equal, "lt": np.less, "le": np.les
 
 
 def launch_state(problem: Problem, fault: NDArray[np.int8]) -> State:
-    """The states at launch in SI of a problem with arrays for fields, every number of shape (count,).
+    """The states at launch in SI of a problem with arrays for fields, every number of shape
+    (count,).
 
-    Of a body of several surfaces, another one may be lowest in every cell: those are launched one by one, and
-    the ones that are refused get a fault.
+    Of a body of several surfaces, another one may be lowest in every cell: those are launched one
+    by one, and the ones that are refused get a fault.
     """
     count = len(fault)
     if not isinstance(problem.top.surface, Hull):

@@ -1,8 +1,9 @@
 """What follows on lanes where a guard falls through zero, a flight ends or a launch begins.
 
-Lift-off, flights and impacts without restitution, the bulk of it, are done for all lanes at once, with the
-equations of a single launch. Everything else goes through the transitions of a single launch, lane by lane; a
-lane that enters a mode which only a single launch knows is followed alone to its end.
+Lift-off, flights and impacts without restitution, the bulk of it, are done for all lanes at once,
+with the equations of a single launch. Everything else goes through the transitions of a single
+launch, lane by lane; a lane that enters a mode which only a single launch knows is followed alone
+to its end.
 """
 
 import numpy as np
@@ -30,9 +31,11 @@ FLIGHT_LIMIT = 50_000
 
 
 class Crossings:
-    """Transitions of launches under way, which end when they reach a band of n_z if they are `banded`.
+    """Transitions of launches under way, which end when they reach a band of n_z if they are
+    `banded`.
 
-    The tolerance is that of the integrator of launches that are followed alone: relative error per step.
+    The tolerance is that of the integrator of launches that are followed alone: relative error per
+    step.
     """
 
     def __init__(self, slots: Slots, tolerance: float, banded: bool) -> None:
@@ -69,7 +72,9 @@ class Crossings:
             modes = [self.slots.launches.sliding(int(cell)) for cell in cells]
             transitions = [
                 mode.follow(str(name), float(moment), single(state, i))
-                for i, (mode, name, moment) in enumerate(zip(modes, names[ending], time[ending], strict=True))
+                for i, (mode, name, moment) in enumerate(
+                    zip(modes, names[ending], time[ending], strict=True)
+                )
             ]
             self._enter(lanes[ending], time[ending], state, transitions)
         if other.any():
@@ -94,7 +99,9 @@ class Crossings:
             cells = slots.cell[lanes]
             horizon = slots.end[lanes] - time
             numbers = launches.numbers[:, cells]
-            flown = fly_all(state, launches.kind, numbers, horizon, vanishing, (slots.tip, lanes, time))
+            flown = fly_all(
+                state, launches.kind, numbers, horizon, vanishing, (slots.tip, lanes, time)
+            )
             ends.flights[cells] += 1
             ends.airborne[cells] += flown.duration
             ends.highest_gap[cells] = np.fmax(ends.highest_gap[cells], flown.highest_gap)
@@ -102,15 +109,21 @@ class Crossings:
             over = ~flown.landed & (flown.duration >= horizon)
             time = np.where(over, slots.end[lanes], time + flown.duration)
             slots.retire(lanes[over], picked(flown.state, over), time[over], Outcome.COMPLETED)
-            slots.retire(lanes[flown.lost], picked(flown.state, flown.lost), time[flown.lost], Outcome.FAILED)
+            slots.retire(
+                lanes[flown.lost], picked(flown.state, flown.lost), time[flown.lost], Outcome.FAILED
+            )
             spent = ~over & (~flown.landed | (ends.flights[cells] >= FLIGHT_LIMIT))
             which = spent & ~flown.lost
-            slots.retire(lanes[which], picked(flown.state, which), time[which], Outcome.TOO_MANY_PHASES)
+            slots.retire(
+                lanes[which], picked(flown.state, which), time[which], Outcome.TOO_MANY_PHASES
+            )
             landed = flown.landed & ~spent
             lanes, time, state = lanes[landed], time[landed], picked(flown.state, landed)
             lanes, state, time, vanishing = self._land(lanes, state, time)
 
-    def _land(self, lanes: Indices, state: State, time: Array) -> tuple[Indices, State, Array, Indices]:
+    def _land(
+        self, lanes: Indices, state: State, time: Array
+    ) -> tuple[Indices, State, Array, Indices]:
         """Collide with the table; return the lanes that fly again, as `_fly` takes them."""
         slots = self.slots
         cells, launches = slots.cell[lanes], slots.launches
@@ -128,12 +141,20 @@ class Crossings:
         slots.ends.struck[cells[sliding]] += np.broadcast_to(taken, sliding.shape)[sliding]
         others = np.flatnonzero(~sliding)
         transitions = [
-            launches.rules(int(cells[i])).touchdown(float(time[i]), single(state, i)) for i in others.tolist()
+            launches.rules(int(cells[i])).touchdown(float(time[i]), single(state, i))
+            for i in others.tolist()
         ]
-        return self._enter(lanes[others], time[others], picked(state, others), transitions, fly=False)
+        return self._enter(
+            lanes[others], time[others], picked(state, others), transitions, fly=False
+        )
 
     def _enter(
-        self, lanes: Indices, time: Array, state: State, transitions: list[Transition], fly: bool = True
+        self,
+        lanes: Indices,
+        time: Array,
+        state: State,
+        transitions: list[Transition],
+        fly: bool = True,
     ) -> tuple[Indices, State, Array, Indices]:
         """Put lanes where transitions lead from their states.
 
@@ -167,7 +188,9 @@ class Crossings:
 
     def _settle(self, lane: Indices, transition: Transition, time: Array) -> None:
         """Let a top slide, or end its run."""
-        state = State.unpack([np.array([number], dtype=float) for number in transition.state.pack()])
+        state = State.unpack(
+            [np.array([number], dtype=float) for number in transition.state.pack()]
+        )
         if isinstance(transition.then, Outcome):
             self.slots.retire(lane, state, time, transition.then)
         else:
@@ -183,7 +206,12 @@ class Crossings:
 
     def _follow_alone(self, lane: int, time: float, state: State, transition: Transition) -> None:
         """Follow one launch from a transition in a state to its end as a single launch is."""
-        slots, ends, cell, where = self.slots, self.slots.ends, self.slots.cell[[lane]], np.array([lane])
+        slots, ends, cell, where = (
+            self.slots,
+            self.slots.ends,
+            self.slots.cell[[lane]],
+            np.array([lane]),
+        )
         begin = slots.launches.rules(int(slots.cell[lane])).top, state, time
         found, tally = follow(begin, transition, float(slots.end[lane]), self.tolerance)
         for name in ("flights", "airborne", "struck", "drilled", "rolled"):

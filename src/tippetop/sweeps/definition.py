@@ -20,7 +20,9 @@ from tippetop.validation import Number, Part, Positive, in_order
 
 DEFAULT_TOLERANCE = 1e-9
 SETTLED_RANGE = (1e-6, 1e-2)
-"""Tilts, rad, that may count as settled: above rounding, and small enough that nothing more happens."""
+"""Tilts, rad, that may count as settled: above rounding, and small enough that nothing more
+happens.
+"""
 LEAST_TOLERANCE = float(np.finfo(float).eps)
 
 MOST_CELLS_A_TASK = 4096
@@ -36,8 +38,9 @@ Task: TypeAlias = tuple[int, ...]
 class Sweep(Part):
     """What to compute, over a `grid` of cells, which is either `axes` or `draws`.
 
-    Raises `InvalidInput` if a field is none, the duration is not positive, or the tolerance is out of range;
-    or if runs are to end when they have settled, and the tops do not conserve Jellett's integral.
+    Raises `InvalidInput` if a field is none, the duration is not positive, or the tolerance is out
+    of range; or if runs are to end when they have settled, and the tops do not conserve Jellett's
+    integral.
     """
 
     problem: Problem
@@ -51,10 +54,13 @@ class Sweep(Part):
     """Relative error per step."""
     settled: Annotated[Number | None, Field(ge=SETTLED_RANGE[0], le=SETTLED_RANGE[1])] = None
     """A run ends once its energy holds the tilt within this for good, rad (see
-    `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration."""
+    `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration.
+    """
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
-        fields = in_order(type(self), ("problem", "grid", "duration", "tolerance", "settled"), values, fields)
+        fields = in_order(
+            type(self), ("problem", "grid", "duration", "tolerance", "settled"), values, fields
+        )
         grid = fields.pop("grid", None)
         if grid is not None:
             kind = "axes" if isinstance(grid, Product) else "draws"
@@ -86,7 +92,9 @@ class Sweep(Part):
 
     @cached_property
     def chunk(self) -> tuple[int, ...]:
-        """How many cells of every dimension make a task; it does not depend on who computes them."""
+        """How many cells of every dimension make a task; it does not depend on who computes
+        them.
+        """
         target = min(max(self.cells // TASKS, LEAST_CELLS_A_TASK), MOST_CELLS_A_TASK)
         chunk = list(self.grid.shape)
         while math.prod(chunk) > target and max(chunk) > 1:
@@ -111,7 +119,9 @@ class Sweep(Part):
         return np.ravel_multi_index(np.ix_(*ranges), self.grid.shape)
 
     def describe(self) -> dict[str, Any]:
-        """The sweep as plain numbers and words, as in a file: ``Sweep(**description)`` is the sweep."""
+        """The sweep as plain numbers and words, as in a file: ``Sweep(**description)`` is the
+        sweep.
+        """
         return self.model_dump(mode="json", by_alias=True, exclude_none=True)
 
     @classmethod
@@ -129,4 +139,6 @@ class Sweep(Part):
 
 def is_sweep(fields: Mapping[str, Any]) -> bool:
     """Whether the tables of a TOML file are those of a sweep rather than of a problem."""
-    return bool({"axes", "draws", "duration"} & set(fields)) or isinstance(fields.get("problem"), dict | str)
+    return bool({"axes", "draws", "duration"} & set(fields)) or isinstance(
+        fields.get("problem"), dict | str
+    )

@@ -41,7 +41,10 @@ def locked(path: Path) -> Iterator[None]:
 def clear_away(path: Path) -> None:
     """Remove what programs left that were killed while they made this store."""
     for folder in path.parent.iterdir():
-        if re.fullmatch(rf"\.{re.escape(path.name)}\.\w{{8}}", folder.name) and (folder / ".lock").exists():
+        if (
+            re.fullmatch(rf"\.{re.escape(path.name)}\.\w{{8}}", folder.name)
+            and (folder / ".lock").exists()
+        ):
             with suppress(FileTrouble), locked(folder):
                 shutil.rmtree(folder, ignore_errors=True)
 

@@ -29,12 +29,16 @@ from tippetop.sweeps.launches import Launches
 from tippetop.sweeps.stepper import stepper
 
 LANES_AT_ONCE = 2048
-"""Launches that are followed together: enough to make little of Python's part, few enough for the cache."""
+"""Launches that are followed together: enough to make little of Python's part, few enough for the
+cache.
+"""
 
 
 @np.errstate(all="ignore")  # what is no number is told by outcomes
 def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
-    """Every variable of `tippetop.catalogue.SWEPT` for cells counted row by row, each of shape (n,)."""
+    """Every variable of `tippetop.catalogue.SWEPT` for cells counted row by row, each of shape
+    (n,).
+    """
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
     count = len(numbers)
     found = {name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}
@@ -67,8 +71,9 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
 def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     """Call launches inaccurate that are off what every motion keeps where they end.
 
-    What goes off stays off, so that the end tells of all before. Of the work of friction nothing is known but
-    the energy that is gone: the axis is what goes off first, by steps that keep their balance to rounding.
+    What goes off stays off, so that the end tells of all before. Of the work of friction nothing is
+    known but the energy that is gone: the axis is what goes off first, by steps that keep their
+    balance to rounding.
     """
     top, end = launches.top, ends.state
     monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
@@ -79,7 +84,9 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
 
 @lru_cache
 def swept_motion(kind: Kind) -> Motion:
-    """Equations of motion of sliding, and the work of drilling and of rolling if the law has a torque."""
+    """Equations of motion of sliding, and the work of drilling and of rolling if the law has a
+    torque.
+    """
     sliding = sliding_motion(kind, guarded=True)
     if kind.example.torque_free:
         return sliding

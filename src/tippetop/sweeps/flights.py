@@ -1,9 +1,9 @@
 """Flights of many tops at once, and whether tops in contact slide on.
 
-A flight is closed: the axis turns about the constant angular momentum and the centre of mass falls, so that
-the gap is a known function of time. Its first zero is found piece by piece, on Taylor polynomials that are
-exact to rounding there. What vanishes at the start of a flight (`tippetop.mechanics.touchdown.Start`) is
-divided out.
+A flight is closed: the axis turns about the constant angular momentum and the centre of mass falls,
+so that the gap is a known function of time. Its first zero is found piece by piece, on Taylor
+polynomials that are exact to rounding there. What vanishes at the start of a flight
+(`tippetop.mechanics.touchdown.Start`) is divided out.
 """
 
 from collections.abc import Callable
@@ -34,7 +34,17 @@ from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import highest_gap
 from tippetop.mechanics.view import axis_sine
 from tippetop.sweeps.launches import Flags, Indices, single
-from tippetop.sweeps.pieces import LEFT, STATE, TIME, VANISHING, WANTED, Piece, divided, flight_terms, pieces
+from tippetop.sweeps.pieces import (
+    LEFT,
+    STATE,
+    TIME,
+    VANISHING,
+    WANTED,
+    Piece,
+    divided,
+    flight_terms,
+    pieces,
+)
 from tippetop.sweeps.stepper import NumPyArithmetic
 from tippetop.sweeps.tip import TipMotion
 
@@ -52,7 +62,9 @@ class Flown(NamedTuple):
     landed: Flags
     """Whether it ended on the table rather than at the horizon."""
     lost: Flags
-    """Whether it could not be followed, and is as it began: its polynomials are no numbers, or no pieces."""
+    """Whether it could not be followed, and is as it began: its polynomials are no numbers, or no
+    pieces.
+    """
     state: State
     """The states at the end."""
     highest_gap: Array
@@ -70,9 +82,9 @@ def fly_all(
 ) -> Flown:
     """Fly until the table is touched, for the `horizon` at most: all of shape (n,).
 
-    The tops are told by their dimensionless numbers, shape (kind.numbers, n); of gap, gap rate and gap
-    acceleration so many are `vanishing` at the start. Given is also what follows the tip of the axis, under
-    which numbers, and the times at the start.
+    The tops are told by their dimensionless numbers, shape (kind.numbers, n); of gap, gap rate and
+    gap acceleration so many are `vanishing` at the start. Given is also what follows the tip of the
+    axis, under which numbers, and the times at the start.
     """
     tip, launches, begun = seen
     time, highest = np.zeros_like(horizon), np.zeros_like(horizon)
@@ -124,7 +136,8 @@ def fly_all(
 class Turns(NamedTuple):
     """What of flights of many turns need not be looked at: all of shape (n,).
 
-    After a turn all has been seen of the tip's motion, and a turn nearer the summit the gap is larger.
+    After a turn all has been seen of the tip's motion, and a turn nearer the summit the gap is
+    larger.
     """
 
     period: Array
@@ -138,7 +151,9 @@ class Turns(NamedTuple):
     def of(cls, state: State, top: Top, horizon: Array) -> "Turns":
         """Those of flights from some states on, for so long at most."""
         period: Array = np.asarray(2.0 * np.pi / Tip.of(state, top).frequency)
-        return cls(period, np.clip(state.velocity[2] / top.gravity, 0.0, horizon), np.zeros_like(period))
+        return cls(
+            period, np.clip(state.velocity[2] / top.gravity, 0.0, horizon), np.zeros_like(period)
+        )
 
     def leap(self, time: Array, flying: Flags, separation: Callable[[int], Separation]) -> Array:
         """Times at which flights go on, of those that still fly, given the gap of each."""
@@ -148,7 +163,9 @@ class Turns(NamedTuple):
         for i in np.flatnonzero(turned & (self.clear == 0.0)).tolist():
             gap = separation(i)
             self.clear[i] = gap.clear_until(float(time[i]), gap.level)
-        goal = np.where(time < self.summit, np.minimum(self.clear, self.summit - self.period), self.clear)
+        goal = np.where(
+            time < self.summit, np.minimum(self.clear, self.summit - self.period), self.clear
+        )
         leaps = turned & (np.abs(time - self.summit) > self.period)
         return np.where(leaps, np.maximum(goal, time), time)
 

@@ -1,7 +1,7 @@
 """What a sweep goes over: axes that cross, or draws at random, over fields of a problem.
 
-Both are written as tables by fields, the same in TOML, in JSON and on the command line; draws are a table
-``{ count, seed, fields }`` with ranges ``{ from, to, law }``.
+Both are written as tables by fields, the same in TOML, in JSON and on the command line; draws are a
+table ``{ count, seed, fields }`` with ranges ``{ from, to, law }``.
 """
 
 import math
@@ -35,7 +35,9 @@ class Product(Entry):
     def _crosses(self) -> Self:
         _check_fields("axes", self.dimensions)
         if math.prod(self.shape) > MOST_CELLS:
-            raise InvalidInput("axes", " x ".join(map(str, self.shape)), f"at most {MOST_CELLS} cells")
+            raise InvalidInput(
+                "axes", " x ".join(map(str, self.shape)), f"at most {MOST_CELLS} cells"
+            )
         return self
 
     @classmethod
@@ -97,7 +99,9 @@ class Range(Entry):
     def _can_be_drawn_from(self) -> Self:
         given, logarithmic = f"{self.low:g} to {self.high:g}", self.law == "log-uniform"
         if self.low > self.high or (logarithmic and self.low <= 0):
-            raise InvalidInput("", given, "a low end and no lower high one" + ", both above 0" * logarithmic)
+            raise InvalidInput(
+                "", given, "a low end and no lower high one" + ", both above 0" * logarithmic
+            )
         return self
 
     @classmethod
@@ -128,9 +132,9 @@ class Draws(Entry):
     3
     """
 
-    ranges: Annotated[tuple[Range, ...], BeforeValidator(lambda given: _read("fields", given, Range.of))] = (
-        Field(alias="fields")
-    )
+    ranges: Annotated[
+        tuple[Range, ...], BeforeValidator(lambda given: _read("fields", given, Range.of))
+    ] = Field(alias="fields")
     count: Count
     seed: Annotated[Whole, Field(ge=0)] = 0
 
@@ -201,11 +205,15 @@ def _pairs(table: Any) -> bool:
 
 
 def _flattened(name: str, table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Fields and what stands there, in their order: keys may be dotted keys of TOML, or strings with dots."""
+    """Fields and what stands there, in their order: keys may be dotted keys of TOML, or strings
+    with dots.
+    """
     for key, value in table.items():
         field = f"{prefix}{key}"
         if "" in field.split("."):
-            raise InvalidInput(name, field, "names with single dots between them, such as launch.spin")
+            raise InvalidInput(
+                name, field, "names with single dots between them, such as launch.spin"
+            )
         if isinstance(value, Mapping) and not {"from", "values", "to"} & set(value):
             if field.count(".") >= DEEPEST:
                 raise InvalidInput(name, value, f"tables nested at most {DEEPEST} deep")

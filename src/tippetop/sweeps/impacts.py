@@ -1,8 +1,9 @@
 """Impacts of many tops at once.
 
-An impact without restitution ends where the contact point stops sinking. Its equations, in which the normal
-impulse plays the part of time (see `tippetop.mechanics.impact`), are solved piece by piece by polynomials, as
-those of sliding are; where another branch of the law takes over, a piece ends.
+An impact without restitution ends where the contact point stops sinking. Its equations, in which
+the normal impulse plays the part of time (see `tippetop.mechanics.impact`), are solved piece by
+piece by polynomials, as those of sliding are; where another branch of the law takes over, a piece
+ends.
 """
 
 import numpy as np
@@ -27,7 +28,8 @@ TINY = 1e-150
 
 
 def collide(state: State, top: Top) -> tuple[State, Flags]:
-    """States after impacts without restitution, and which of them are to be had; the others are unchanged.
+    """States after impacts without restitution, and which of them are to be had; the others are
+    unchanged.
 
     Left out are tops whose contact point does not sink, and impacts too stiff for this method.
     """
@@ -37,7 +39,9 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
     longest = top.mass * length(point) + TINY
     moving = np.array(np.broadcast_arrays(*state.momentum, *state.velocity))
     numbers = np.array(np.broadcast_arrays(*top.numbers, *state.axis))
-    pauses = np.repeat([[1.0] for _ in motion.guards] + [[0.0], [np.inf], [-np.inf]], moving.shape[1], axis=1)
+    pauses = np.repeat(
+        [[1.0] for _ in motion.guards] + [[0.0], [np.inf], [-np.inf]], moving.shape[1], axis=1
+    )
     struck = np.zeros(moving.shape[1], dtype=bool)
     after, work = moving.copy(), np.flatnonzero(point[2] < 0.0)
     for _ in range(MOST_PIECES):
@@ -48,7 +52,9 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
         found.look_closer(jet, pauses[:, work])
         after[:, work], ended, branched = found.after, found.fallen == 0.0, found.fallen == 1.0
         if branched.any():
-            numbers[: kind.numbers, work[branched]] = others(kind, numbers[: kind.numbers, work[branched]])
+            numbers[: kind.numbers, work[branched]] = others(
+                kind, numbers[: kind.numbers, work[branched]]
+            )
         struck[work[ended]] = True
         work = work[~ended & (branched | (found.span > 0.0))]
     after[:, ~struck] = moving[:, ~struck]

@@ -1,9 +1,9 @@
 """Many launches followed at once, one a lane, each at its own time and with its own steps.
 
-A lane waits before a step in which something may happen: a guard may fall through zero, the top may turn
-over, a band of tilts may be reached. When waiting has cost enough, the lanes that wait are looked at
-together, exactly, and go on: after that step if nothing came of it, else where `tippetop.sweeps.crossings`
-leads. Lanes at their end are taken out.
+A lane waits before a step in which something may happen: a guard may fall through zero, the top may
+turn over, a band of tilts may be reached. When waiting has cost enough, the lanes that wait are
+looked at together, exactly, and go on: after that step if nothing came of it, else where
+`tippetop.sweeps.crossings` leads. Lanes at their end are taken out.
 """
 
 import numpy as np
@@ -24,14 +24,17 @@ from tippetop.sweeps.tip import FORCE
 from tippetop.theory.prediction import is_held
 
 LOST = 4.0
-"""Steps of all lanes that are lost to waiting, in all, before the lanes that wait are looked at: to look at
-some costs Python as much as several steps of all."""
+"""Steps of all lanes that are lost to waiting, in all, before the lanes that wait are looked at: to
+look at some costs Python as much as several steps of all.
+"""
 
 WINDOW = 64
 """Steps between checkpoints of the states, from which a part of the run can be done again."""
 
 SHORTEST, ROUNDED = 1e-13, float(np.finfo(float).eps)
-"""Step, in natural units and over the time left, both of which it is below where a motion is singular."""
+"""Step, in natural units and over the time left, both of which it is below where a motion is
+singular.
+"""
 
 CROWDED = 0.75
 """Share of lanes at work below which the others are taken out."""
@@ -40,10 +43,10 @@ CROWDED = 0.75
 class Lanes:
     """Launches under way, by Taylor's method for sliding tops of their kind, and otherwise alone.
 
-    The tolerance is that of the integrator of launches that are followed alone: relative error per step. A
-    launch ends when n_z reaches its own `band`, the least and the largest of shape (n,), and once its tilt is
-    held within `settled`, rad. Launches that are not at the start are `resumed`: numbers of the motion and
-    times left, shape (size + 1, n).
+    The tolerance is that of the integrator of launches that are followed alone: relative error per
+    step. A launch ends when n_z reaches its own `band`, the least and the largest of shape (n,),
+    and once its tilt is held within `settled`, rad. Launches that are not at the start are
+    `resumed`: numbers of the motion and times left, shape (size + 1, n).
     """
 
     def __init__(
@@ -57,7 +60,10 @@ class Lanes:
     ) -> None:
         self.tolerance, self.banded, self.settled = tolerance, band is not None, settled
         self.slots = slots = Slots(launches, stepper, band)
-        self.crossings, self.checkpoints = Crossings(slots, tolerance, band is not None), list[Checkpoint]()
+        self.crossings, self.checkpoints = (
+            Crossings(slots, tolerance, band is not None),
+            list[Checkpoint](),
+        )
         self._launched = slots.alive.copy()
         if resumed is None:
             lanes = np.arange(len(slots.cell))
@@ -118,7 +124,8 @@ class Lanes:
         closer = found.look_closer(jet, numbers[layout.counts])
         if len(closer):
             pressing, tip = (
-                Polynomials(terms[:, closer], found.span[closer]) for terms in (jet.guards[0], jet.state[2])
+                Polynomials(terms[:, closer], found.span[closer])
+                for terms in (jet.guards[0], jet.state[2])
             )
             slots.tip.take(FORCE, lanes[closer], pressing)
             slots.tip.see(lanes[closer], begun[closer], tip)
@@ -130,7 +137,9 @@ class Lanes:
         slots.held[lanes] = 0.0
         some = found.fallen >= 0.0
         if some.any():
-            self.crossings.fall(lanes[some], begun[some] + span[some], found.fallen[some].astype(np.intp))
+            self.crossings.fall(
+                lanes[some], begun[some] + span[some], found.fallen[some].astype(np.intp)
+            )
         slots.numbers[layout.turns, lanes] = np.isnan(slots.tip.turned[lanes])
         if self.banded:
             slots.rows[layout.left, ~np.isnan(slots.tip.reached)] = 0.0
@@ -140,14 +149,19 @@ class Lanes:
         slots, layout = self.slots, self.slots.layout
         cells, (_, down, up) = slots.cell[recorded], slots.tip.lately[:, recorded]
         if not self.banded:
-            self.checkpoints.append(Checkpoint(cells, begun[: layout.left + 1, recorded], down, -up))
+            self.checkpoints.append(
+                Checkpoint(cells, begun[: layout.left + 1, recorded], down, -up)
+            )
         slots.tip.put_aside()
         ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
         if len(ended):
             slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)
         shortest = np.minimum(SHORTEST, ROUNDED * slots.left)
         singular, many = slots.rows[layout.taken] < shortest, slots.rows[layout.steps] >= STEP_LIMIT
-        for lost, outcome in ((singular, Outcome.FAILED), (~singular & many, Outcome.TOO_MANY_STEPS)):
+        for lost, outcome in (
+            (singular, Outcome.FAILED),
+            (~singular & many, Outcome.TOO_MANY_STEPS),
+        ):
             which = np.flatnonzero(slots.alive & lost)
             slots.retire(which, slots.whole(which), slots.time(which), outcome)
         if self.settled is not None:
@@ -162,7 +176,9 @@ class Lanes:
         slots, layout = self.slots, self.slots.layout
         steps = slots.rows[layout.steps, lanes]
         taken = steps - begun[layout.steps, lanes]
-        lanes, taken = (some[steps // PATIENCE > (steps - taken) // PATIENCE] for some in (lanes, taken))
+        lanes, taken = (
+            some[steps // PATIENCE > (steps - taken) // PATIENCE] for some in (lanes, taken)
+        )
         if not len(lanes):
             return
         step = (begun[layout.left, lanes] - slots.left[lanes]) / taken
@@ -182,9 +198,11 @@ class Lanes:
 
 
 def arrivals(followed: Lanes, band: tuple[Array, Array]) -> Array:
-    """First times at which n_z is in a band, shape (n,); nan where it never is while a lane slides or flies.
+    """First times at which n_z is in a band, shape (n,); nan where it never is while a lane slides
+    or flies.
 
-    The window in which that happens is known from the checkpoints; it is done again, up to that moment.
+    The window in which that happens is known from the checkpoints; it is done again, up to that
+    moment.
     """
     slots = followed.slots
     launches, size = slots.launches, slots.layout.size
@@ -193,7 +211,9 @@ def arrivals(followed: Lanes, band: tuple[Array, Array]) -> Array:
     rows = np.zeros((size + 1, count))
     low, high = band
     for index, checkpoint in enumerate(followed.checkpoints):
-        meets = (checkpoint.down <= high[checkpoint.cells]) & (checkpoint.up >= low[checkpoint.cells])
+        meets = (checkpoint.down <= high[checkpoint.cells]) & (
+            checkpoint.up >= low[checkpoint.cells]
+        )
         fresh = meets & (window[checkpoint.cells] < 0)
         window[checkpoint.cells[fresh]] = index
         rows[:, checkpoint.cells[fresh]] = checkpoint.rows[:, fresh]

@@ -84,7 +84,9 @@ class Launches:
 
 
 def branched(top: Top, state: State) -> Top:
-    """Tops in these states with the branch of their law that holds there, where it is made of branches."""
+    """Tops in these states with the branch of their law that holds there, where it is made of
+    branches.
+    """
     if not is_branched(top.friction):
         return top
     return on_numbered_branch(top, slip_of(*along_table(state), top))

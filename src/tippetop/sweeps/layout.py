@@ -1,8 +1,9 @@
-"""How a sweep is laid out on disk: a Zarr group that says what it holds, with a checksum over all of it.
+"""How a sweep is laid out on disk: a Zarr group that says what it holds, with a checksum over all
+of it.
 
-The grid's values are coordinates, every variable is an array over the grid, and a task is one chunk of each.
-Every chunk ends in a checksum, and the group's metadata, in which those of all arrays are repeated, hold a
-digest of themselves: what is damaged is seen when it is read.
+The grid's values are coordinates, every variable is an array over the grid, and a task is one chunk
+of each. Every chunk ends in a checksum, and the group's metadata, in which those of all arrays are
+repeated, hold a digest of themselves: what is damaged is seen when it is read.
 """
 
 import hashlib
@@ -35,7 +36,10 @@ class Status(IntEnum):
     DONE = 1
 
 
-CONTENTS = {"status": Variable("whether the cell is computed", dtype="int8", flags=meanings(Status)), **SWEPT}
+CONTENTS = {
+    "status": Variable("whether the cell is computed", dtype="int8", flags=meanings(Status)),
+    **SWEPT,
+}
 """What a sweep's dataset has over the grid."""
 
 _alone = Lock()
@@ -74,7 +78,8 @@ def lay_out(path: Path, sweep: Sweep) -> None:
             compressors=checked,
         )
     with _alone, warnings.catch_warnings():
-        # Zarr warns that readers other than Python's may pass over this; they then read every array's own.
+        # Zarr warns that readers other than Python's may pass over this; they then read every
+        # array's own.
         warnings.simplefilter("ignore")
         zarr.consolidate_metadata(path)
     metadata = json.loads((path / METADATA).read_text(encoding="utf-8"))
@@ -84,7 +89,10 @@ def lay_out(path: Path, sweep: Sweep) -> None:
 
 def _plain(attributes: dict[str, Any]) -> dict[str, Any]:
     """Attributes with lists for arrays, as JSON has them."""
-    return {name: value.tolist() if hasattr(value, "tolist") else value for name, value in attributes.items()}
+    return {
+        name: value.tolist() if hasattr(value, "tolist") else value
+        for name, value in attributes.items()
+    }
 
 
 def layout_attributes(sweep: Sweep) -> dict[str, Any]:
@@ -109,7 +117,9 @@ def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
 
 def _coordinates(sweep: Sweep) -> dict[str, str]:
     """Coordinates that are not dimensions are named by the CF attribute."""
-    others = [name for name, (dimension, _) in sweep.grid.coordinates().items() if name != dimension]
+    others = [
+        name for name, (dimension, _) in sweep.grid.coordinates().items() if name != dimension
+    ]
     return {"coordinates": " ".join(others)} if others else {}
 
 
@@ -128,7 +138,9 @@ def read_metadata(path: Path) -> dict[str, Any]:
         data = (path / METADATA).read_bytes()
     except OSError as error:
         if not _has_every_array(path):
-            raise FileTrouble(f"{path} cannot be read: {error.strerror}; there is no sweep in it") from None
+            raise FileTrouble(
+                f"{path} cannot be read: {error.strerror}; there is no sweep in it"
+            ) from None
         data = b""
     try:
         metadata = json.loads(data)
@@ -144,7 +156,8 @@ def read_metadata(path: Path) -> dict[str, Any]:
         )
     if whole != _digest(metadata):
         raise FileTrouble(
-            f"{path} is damaged: its {METADATA} is not as it was written; start afresh with {OVERWRITE}"
+            f"{path} is damaged: its {METADATA} is not as it was written; start afresh with"
+            f" {OVERWRITE}"
         )
     return dict(metadata)
 
@@ -163,30 +176,34 @@ def mend_metadata(path: Path) -> None:
 
 
 def refuse_existing(path: Path, overwrite: bool) -> None:
-    """Raise `FileTrouble` if something is where a store is to be made, and may not be overwritten."""
+    """Raise `FileTrouble` if something is where a store is to be made, and may not be
+    overwritten.
+    """
     refuse_overwriting(path, overwrite, f"finished with {RESUME}, and ")
 
 
 def kept_sweep(path: Path) -> Sweep:
     """The sweep that a store holds, to go on with it.
 
-    Raises `FileTrouble` as `read_metadata` does, and if it was made by another version, also by one of the
-    same name that had other flags.
+    Raises `FileTrouble` as `read_metadata` does, and if it was made by another version, also by one
+    of the same name that had other flags.
     """
     metadata = read_metadata(path)
     attributes, arrays = metadata["attributes"], metadata["consolidated_metadata"]["metadata"]
     version = attributes["tippetop_version"]
     if version != __version__:
         raise FileTrouble(
-            f"{path} was made by version {version} of tippetop, and this is {__version__}, whose results may "
-            f"differ; finish it with that version, or start afresh with {OVERWRITE}"
+            f"{path} was made by version {version} of tippetop, and this is {__version__}, whose"
+            f" results may differ; finish it with that version, or start afresh with {OVERWRITE}"
         )
     for name, kind in CONTENTS.items():
-        if arrays.get(name, {}).get("attributes", {}).get("flag_meanings", "") != " ".join(kind.flags):
+        if arrays.get(name, {}).get("attributes", {}).get("flag_meanings", "") != " ".join(
+            kind.flags
+        ):
             raise FileTrouble(
-                f"{path} was made by a version that tells {name} by other words than this one, whose results "
-                f"may differ; what is done can still be read: choose {OTHER_OUT}, or start afresh with "
-                f"{OVERWRITE}"
+                f"{path} was made by a version that tells {name} by other words than this one,"
+                f" whose results may differ; what is done can still be read: choose {OTHER_OUT}, or"
+                f" start afresh with {OVERWRITE}"
             )
     return Sweep(**json.loads(attributes["sweep"]))
 
@@ -203,7 +220,9 @@ def may_be_replaced(path: Path) -> bool:
 
 
 def _has_every_array(path: Path) -> bool:
-    """Whether a folder that does not say what it holds is a sweep all the same: it has all that one has."""
+    """Whether a folder that does not say what it holds is a sweep all the same: it has all that one
+    has.
+    """
     return all((path / name).is_dir() for name in CONTENTS)
 
 
@@ -213,8 +232,8 @@ def refuse_another(path: Path, kept: Sweep, sweep: Sweep) -> None:
     if difference is not None:
         name, there, here = difference
         raise FileTrouble(
-            f"{path} holds another sweep and cannot be resumed: {name} is {short(there)} in it, and "
-            f"{short(here)} here; choose {OTHER_OUT}, or start afresh with {OVERWRITE}"
+            f"{path} holds another sweep and cannot be resumed: {name} is {short(there)} in it, and"
+            f" {short(here)} here; choose {OTHER_OUT}, or start afresh with {OVERWRITE}"
         )
 
 

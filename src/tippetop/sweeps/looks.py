@@ -1,4 +1,5 @@
-"""Where polynomials of many launches at once fall to zero, and how low they come: by looks in a step.
+"""Where polynomials of many launches at once fall to zero, and how low they come: by looks in a
+step.
 
 It is written in plain operators and a few choices, for arrays and for what is compiled.
 """
@@ -10,11 +11,14 @@ from tippetop.mechanics.series import Arithmetic, horner
 from tippetop.mechanics.vectors import Scalar
 
 NEWTON, BRACKETED = 3, 8
-"""Improvements of a least value, by Newton's method from the least look, which cube its small distance, and
-of a zero between two looks."""
+"""Improvements of a least value, by Newton's method from the least look, which cube its small
+distance, and of a zero between two looks.
+"""
 
 NEAR = 1e-9
-"""Last improvement of a zero, over it, beyond which it is not found: the next would be the square of that."""
+"""Last improvement of a zero, over it, beyond which it is not found: the next would be the square
+of that.
+"""
 
 TINY = 1e-300
 """Stands for zero where a number that is zero is to count as below it."""
@@ -27,7 +31,9 @@ def looked_at(terms: Sequence[Scalar], taken: Scalar, looks: int) -> list[Scalar
 
 
 def slack(terms: Sequence[Scalar], taken: Scalar, looks: int, plain: Arithmetic) -> Scalar:
-    """How far a polynomial may go beyond its looks: between two by (interval)^2 / 8 max |f''| at most."""
+    """How far a polynomial may go beyond its looks: between two by (interval)^2 / 8 max |f''| at
+    most.
+    """
     part = taken * (1.0 / looks)
     bends = [float(k * (k - 1)) * plain.size(terms[k]) for k in range(2, len(terms))]
     return part * part * (1.0 / 8.0) * horner(bends, taken)
@@ -47,7 +53,9 @@ def lowest(values: Sequence[Scalar], plain: Arithmetic) -> Scalar:
     return least
 
 
-def may_fall(terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> Scalar:
+def may_fall(
+    terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic
+) -> Scalar:
     """Whether a guard may fall through zero in a step, given its looks."""
     return plain.below(lowest(values, plain) - slack(terms, taken, len(values) - 1, plain), TINY)
 
@@ -57,8 +65,8 @@ def first_fall(
 ) -> tuple[Scalar, Scalar]:
     """Where in a step a polynomial first falls through zero, and whether that is not told.
 
-    It is inf where no look is below zero. It is not told where the polynomial begins there, or may dip
-    between looks before it falls, or where its zero is not found in a few improvements.
+    It is inf where no look is below zero. It is not told where the polynomial begins there, or may
+    dip between looks before it falls, or where its zero is not found in a few improvements.
     """
     values, part = looked_at(terms, whole, looks), whole * (1.0 / looks)
     falls = high = late = 0.0 * whole
@@ -67,7 +75,9 @@ def first_fall(
         under = plain.below(values[k], TINY)
         falls, high = plain.choose(under, under, falls), plain.choose(under, part * float(k), high)
         before = plain.choose(under, values[k - 1], before)
-        nearest = plain.choose(under + late, math.inf + 0.0 * whole, plain.least(values[k], nearest))
+        nearest = plain.choose(
+            under + late, math.inf + 0.0 * whole, plain.least(values[k], nearest)
+        )
         late = under
     nearest = plain.choose(late, nearest, plain.least(values[0], nearest))
     slopes = [float(k) * terms[k] for k in range(1, len(terms))]
@@ -94,12 +104,17 @@ def first_fall(
 def least_value(
     terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic
 ) -> Scalar:
-    """The least value of a polynomial in a step, given its looks, from the least of which it is sought."""
+    """The least value of a polynomial in a step, given its looks, from the least of which it is
+    sought.
+    """
     part = taken * (1.0 / (len(values) - 1))
     least, place = values[0], 0.0 * taken
     for look, value in enumerate(values[1:], start=1):
         lower = plain.below(value, least)
-        least, place = plain.choose(lower, value, least), plain.choose(lower, part * float(look), place)
+        least, place = (
+            plain.choose(lower, value, least),
+            plain.choose(lower, part * float(look), place),
+        )
     slopes = [float(k) * terms[k] for k in range(1, len(terms))]
     bends = [float(k) * slopes[k] for k in range(1, len(slopes))]
     low, high = -plain.least(0.0 * part, part - place), plain.least(place + part, taken)

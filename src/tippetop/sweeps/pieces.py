@@ -1,7 +1,9 @@
-"""A piece of a flight of many tops at once: how far it goes, whether the table is touched, how high it leads.
+"""A piece of a flight of many tops at once: how far it goes, whether the table is touched, how high
+it leads.
 
-Within a piece the gap is a Taylor polynomial that is exact to rounding. LLVM compiles all that is usual of
-it. Where something is doubtful, or happens that is asked for, the polynomials are to be looked at.
+Within a piece the gap is a Taylor polynomial that is exact to rounding. LLVM compiles all that is
+usual of it. Where something is doubtful, or happens that is asked for, the polynomials are to be
+looked at.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,12 +28,16 @@ from tippetop.sweeps.stepper import NODES, compiled, padded
 from tippetop.sweeps.stride import CLOSER_LOOKS, LOOKS, extremes, met, step_size
 
 STATE, TIME, LEFT, VANISHING, WANTED, GIVEN = slice(10), 10, 11, 12, slice(13, 16), 16
-"""Rows of what is given, and how many: the state at the start of the flight, the time since then and what is
-left, how many of gap, gap rate and gap acceleration vanish now, and what is wanted (see `met`)."""
+"""Rows of what is given, and how many: the state at the start of the flight, the time since then
+and what is left, how many of gap, gap rate and gap acceleration vanish now, and what is wanted (see
+`met`).
+"""
 
 
 BESIDE = 0.5
-"""Part of the angle to flat that an edge turns in a piece at most: in one plane, series see no kink there."""
+"""Part of the angle to flat that an edge turns in a piece at most: in one plane, series see no kink
+there.
+"""
 
 
 class Piece(NamedTuple):
@@ -62,7 +68,9 @@ class NodeFunctions:
 
 
 def pieces(kind: Kind, given: Array, numbers: Array) -> Piece:
-    """The pieces that begin as given, of shape (GIVEN, n), of tops with these numbers, (kind.numbers, n)."""
+    """The pieces that begin as given, of shape (GIVEN, n), of tops with these numbers,
+    (kind.numbers, n).
+    """
     count = given.shape[1]
     start, parameters = padded(given), padded(numbers)
     found = np.empty((len(Piece._fields), start.shape[1]))
@@ -90,13 +98,16 @@ def piece(top: Top, given: Sequence[Any], plain: Arithmetic) -> Piece:
     highest = -least_value(depth, looked_at(depth, span, LOOKS), span, plain)
     if is_edge(top.surface):
         doubt += 1.0 - plain.below(0.0, reach)
-    return Piece(span, touches, doubt + met(floor, ceiling, given[WANTED], plain), highest, floor, ceiling)
+    return Piece(
+        span, touches, doubt + met(floor, ceiling, given[WANTED], plain), highest, floor, ceiling
+    )
 
 
 def flight_terms(
     state: State, left: Scalar, top: Top, plain: Arithmetic
 ) -> tuple[list[Scalar], list[Scalar], Scalar]:
-    """Polynomials of n_z and of the gap in flight, and how far they serve, all that is left at most.
+    """Polynomials of n_z and of the gap in flight, and how far they serve, all that is left at
+    most.
 
     That is 0 where an edge lies flat, or almost.
     """
@@ -118,5 +129,7 @@ def divided(terms: Sequence[Scalar], vanishing: Scalar, plain: Arithmetic) -> li
     found = list(terms)
     for most in range(int(max(Start))):
         more, following = plain.below(most + 0.5, vanishing), [*found[1:], 0.0 * found[0]]
-        found = [plain.choose(more, after, here) for here, after in zip(found, following, strict=True)]
+        found = [
+            plain.choose(more, after, here) for here, after in zip(found, following, strict=True)
+        ]
     return found

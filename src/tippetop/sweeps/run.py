@@ -71,8 +71,8 @@ def fill(
 ) -> Progress:
     """Compute what is missing in a store; for workers, scheduler and callback see `sweep`.
 
-    Raises `FileTrouble` if the store cannot be written, or another process fills it; it stays good, and
-    another call goes on where this one ended.
+    Raises `FileTrouble` if the store cannot be written, or another process fills it; it stays good,
+    and another call goes on where this one ended.
     """
     with store.held():
         return _carry_out(store.sweep, store.remaining(), store.write, workers, scheduler, callback)
@@ -90,7 +90,9 @@ def compute(
     The variables of `tippetop.catalogue.SWEPT` and `status` are over the grid.
     """
     shape, grid = sweep.grid.shape, sweep.grid
-    arrays = {name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in CONTENTS.items()}
+    arrays = {
+        name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in CONTENTS.items()
+    }
 
     def keep(task: Task, found: Found) -> None:
         region = sweep.region(task)
@@ -99,7 +101,9 @@ def compute(
 
     _carry_out(sweep, sweep.tasks, keep, workers, scheduler, callback)
     arrays["status"][...] = Status.DONE
-    data = {name: (grid.dimensions, arrays[name], kind.attributes) for name, kind in CONTENTS.items()}
+    data = {
+        name: (grid.dimensions, arrays[name], kind.attributes) for name, kind in CONTENTS.items()
+    }
     coordinates = {
         name: ((along,), values, coordinate_attributes(sweep, name))
         for name, (along, values) in grid.coordinates().items()
@@ -121,7 +125,8 @@ def sweep(
     scheduler: str | None = None,
     callback: Callback | None = None,
 ) -> xr.Dataset:
-    """See what becomes of many launches: ``sweep(problem, {"launch.spin": np.linspace(0, 250, 200)})``.
+    """See what becomes of many launches: ``sweep(problem, {"launch.spin": np.linspace(0, 250,
+    200)})``.
 
     Parameters
     ----------
@@ -129,15 +134,15 @@ def sweep(
         The problem whose fields are changed.
     over
         Fields, named with dots, and their values in SI units: arrays, lists, or tables such as
-        ``{"from": 0.05, "to": 1, "count": 40, "spacing": "geometric"}``, of which all combinations are
-        launched; or `Draws`.
+        ``{"from": 0.05, "to": 1, "count": 40, "spacing": "geometric"}``, of which all combinations
+        are launched; or `Draws`.
     duration
         Length of every run, s.
     tolerance
         Relative error per step.
     settled
-        A run ends once its energy holds the tilt within this for good, rad; None to follow every run for its
-        whole duration.
+        A run ends once its energy holds the tilt within this for good, rad; None to follow every
+        run for its whole duration.
     out
         Folder of a Zarr store to keep the sweep in; in memory if left out.
     overwrite
@@ -154,21 +159,23 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        What became of every launch, over the grid: its outcome, final tilt, spin and precession, when it
-        turned over, its flights, forces and losses, each with its SI unit. That of a store is read when used.
+        What became of every launch, over the grid: its outcome, final tilt, spin and precession,
+        when it turned over, its flights, forces and losses, each with its SI unit. That of a store
+        is read when used.
 
     Raises
     ------
     InvalidInput
-        If there is no such field, or it cannot have such values; if `overwrite` or `resume` is asked for
-        without `out`, or both are.
+        If there is no such field, or it cannot have such values; if `overwrite` or `resume` is
+        asked for without `out`, or both are.
     FileTrouble
         If there is something at `out` already, or it cannot be written.
 
     Examples
     --------
     >>> import tippetop as tt
-    >>> found = tt.sweep(tt.presets.report_problem(), {"launch.spin": [10.0, 50.0, 155.0]}, duration=20.0)
+    >>> spins = {"launch.spin": [10.0, 50.0, 155.0]}
+    >>> found = tt.sweep(tt.presets.report_problem(), spins, duration=20.0)
     >>> [round(float(tilt), 2) for tilt in found["final_theta"]]
     [0.0, 1.5, 3.14]
     """
@@ -180,7 +187,9 @@ def sweep(
         if asked and out is None:
             raise InvalidInput(field, asked, "False, unless out says where the sweep is kept")
     if overwrite and resume:
-        raise InvalidInput("overwrite", overwrite, "False with resume=True, which keeps what is there")
+        raise InvalidInput(
+            "overwrite", overwrite, "False with resume=True, which keeps what is there"
+        )
     if out is None:
         return compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
     with need_workers(chosen, workers, scheduler) as cluster:

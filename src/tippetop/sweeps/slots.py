@@ -47,7 +47,9 @@ class Slots:
         How the tip of the axis moves.
     """
 
-    def __init__(self, launches: Launches, stepper: Stepper, band: tuple[Array, Array] | None) -> None:
+    def __init__(
+        self, launches: Launches, stepper: Stepper, band: tuple[Array, Array] | None
+    ) -> None:
         count, layout = len(launches), stepper.layout
         lanes = count + -count % LANES
         self.launches, self.stepper, self.layout = launches, stepper, layout
@@ -109,7 +111,9 @@ class Slots:
             self._put(lanes, branched(self.tops(lanes), state))
 
     def choose_branch(self) -> None:
-        """Let tops that slide on somewhere on their way follow the branch of their law that holds there."""
+        """Let tops that slide on somewhere on their way follow the branch of their law that holds
+        there.
+        """
         if is_branched(self.launches.kind.example.friction):
             lanes = np.arange(len(self.cell))
             self._put(lanes, branched(self.tops(lanes), self.whole(lanes)))
@@ -141,7 +145,9 @@ class Slots:
             kept[cells] = number
         fine = np.all(np.isfinite(np.array(np.broadcast_arrays(*state.pack()))), axis=0)
         ends.time[cells] = time
-        ends.outcome[cells] = np.where(fine, OUTCOMES.index(outcome), OUTCOMES.index(Outcome.FAILED))
+        ends.outcome[cells] = np.where(
+            fine, OUTCOMES.index(outcome), OUTCOMES.index(Outcome.FAILED)
+        )
         ends.steps[cells] = self.rows[self.layout.steps, lanes]
         if self.layout.size == LOSSES.stop:
             drilled, rolled = -self.rows[LOSSES][:, lanes]

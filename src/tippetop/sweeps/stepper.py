@@ -51,7 +51,8 @@ class Stepper:
         self.motion, self.order, self.layout = motion, order, Layout.of(motion)
 
     def step(self, before: Array, after: Array, numbers: Array) -> None:
-        """Take a step from the rows of `before` to those of `after`, both of shape (layout.rows, n).
+        """Take a step from the rows of `before` to those of `after`, both of shape (layout.rows,
+        n).
 
         The numbers have shape (layout.numbers, n). A launch with no time left stays as it is.
         """
@@ -102,7 +103,9 @@ def compiled(
     with deferred():
         from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - optional, slow to import
 
-    return machine_code({"made": record(function, size, parameters, more)}, ABREAST, **options)["made"]
+    return machine_code({"made": record(function, size, parameters, more)}, ABREAST, **options)[
+        "made"
+    ]
 
 
 def _count(motion: Motion, order: int) -> int:
@@ -110,7 +113,9 @@ def _count(motion: Motion, order: int) -> int:
     return motion.size * (order + 1) + len(motion.guards) * order
 
 
-def _expanded(made: Callable[..., None], start: Array, numbers: Array, motion: Motion, order: int) -> Jet:
+def _expanded(
+    made: Callable[..., None], start: Array, numbers: Array, motion: Motion, order: int
+) -> Jet:
     """The polynomials of a motion that compiled code makes, coefficients one after another."""
     count, whole = start.shape[1], padded(start)
     terms = np.empty((_count(motion, order), whole.shape[1]))

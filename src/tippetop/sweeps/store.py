@@ -1,8 +1,10 @@
-"""Where a sweep is kept: a Zarr store that is always whole, whatever becomes of the program that fills it.
+"""Where a sweep is kept: a Zarr store that is always whole, whatever becomes of the program that
+fills it.
 
-The array `status` alone says what is done: its chunk is written last, once the others are on disk, and every
-chunk is written beside its place and then moved there. So a program that dies, or a machine, even in the
-middle of a write, loses only the tasks under way. What is lost or damaged later is found, and done again.
+The array `status` alone says what is done: its chunk is written last, once the others are on disk,
+and every chunk is written beside its place and then moved there. So a program that dies, or a
+machine, even in the middle of a write, loses only the tasks under way. What is lost or damaged
+later is found, and done again.
 """
 
 import json
@@ -46,7 +48,8 @@ class Store:
 
         self.path, self.sweep = path, sweep
         with in_words(path, "opened"):
-            # What is nowhere but where nothing is known has to be written too, to be seen to be there.
+            # What is nowhere but where nothing is known has to be written too, to be seen to be
+            # there.
             with zarr.config.set({"array.write_empty_chunks": True}):
                 self._arrays = dict(zarr.open_group(path, mode="r+").arrays())
             self._identity = identity(path)
@@ -55,8 +58,8 @@ class Store:
     def create(cls, path: Path | str, sweep: Sweep, overwrite: bool = False) -> "Store":
         """Make an empty store, whole from the moment it is there.
 
-        Raises `FileTrouble` if something is there already and `overwrite` is false, or it is no sweep or
-        being filled, or it cannot be written; `Unavailable` if zarr is not installed.
+        Raises `FileTrouble` if something is there already and `overwrite` is false, or it is no
+        sweep or being filled, or it cannot be written; `Unavailable` if zarr is not installed.
         """
         need_zarr()
         path = path_of(path)
@@ -87,8 +90,8 @@ class Store:
     def resume(cls, path: Path | str, sweep: Sweep | None = None) -> "Store":
         """Open a store to finish it.
 
-        Raises `FileTrouble` if there is no store, or it is of another sweep than `sweep`, or made by another
-        version.
+        Raises `FileTrouble` if there is no store, or it is of another sweep than `sweep`, or made
+        by another version.
         """
         need_zarr()
         path = path_of(path)
@@ -105,9 +108,11 @@ class Store:
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Keep other processes from filling the store meanwhile, and mend what is around its results.
+        """Keep other processes from filling the store meanwhile, and mend what is around its
+        results.
 
-        Raises `FileTrouble` if another process fills it or has replaced it, or it cannot be written.
+        Raises `FileTrouble` if another process fills it or has replaced it, or it cannot be
+        written.
         """
         self._check_identity()
         with locked(self.path):
@@ -126,7 +131,9 @@ class Store:
                 )
 
     def _mend(self) -> None:
-        """Write again what is missing or damaged of the arrays' own metadata, and of the coordinates."""
+        """Write again what is missing or damaged of the arrays' own metadata, and of the
+        coordinates.
+        """
         mend_metadata(self.path)
         for name, (_, values) in self.sweep.grid.coordinates().items():
             if self._lost(name, [(0,)]):
@@ -160,15 +167,17 @@ class Store:
         if not _can_be_read(array, ...):
             for task in tasks:
                 places = zip(task, array.chunks, strict=True)
-                if not _can_be_read(array, tuple(slice(k * size, (k + 1) * size) for k, size in places)):
+                if not _can_be_read(
+                    array, tuple(slice(k * size, (k + 1) * size) for k, size in places)
+                ):
                     lost.add(task)
         return lost
 
     def write(self, task: Task, variables: Mapping[str, NDArray[Any]]) -> None:
         """Keep what a task found, and, once that is on disk, note that it is done.
 
-        Raises `FileTrouble` if it cannot be written, and then the store stays good; or if it was replaced
-        meanwhile.
+        Raises `FileTrouble` if it cannot be written, and then the store stays good; or if it was
+        replaced meanwhile.
         """
         region = self.sweep.region(task)
         shape = tuple(part.stop - part.start for part in region)
@@ -182,11 +191,14 @@ class Store:
 
     def _bring_chunks_to_disk(self, names: Iterable[str], task: Task) -> None:
         chunks = [self._chunk(name, task) for name in names]
-        folders = {folder for chunk in chunks for folder in chunk.parents if self.path in folder.parents}
+        folders = {
+            folder for chunk in chunks for folder in chunk.parents if self.path in folder.parents
+        }
         bring_to_disk([*chunks, *folders])
 
     def dataset(self) -> xr.Dataset:
-        """The store as a dataset, read when it is used; what is damaged then raises an error of Zarr's.
+        """The store as a dataset, read when it is used; what is damaged then raises an error of
+        Zarr's.
 
         Raises `FileTrouble` if something is missing.
         """
@@ -229,7 +241,8 @@ def read_sweep(path: Path | str, names: Collection[str] | None = None) -> xr.Dat
     --------
     >>> import tippetop as tt
     >>> spins = {"launch.spin": [50.0, 155.0]}
-    >>> found = tt.sweep(tt.presets.report_problem(), spins, duration=0.1, out="spins.zarr", workers=1)
+    >>> problem = tt.presets.report_problem()
+    >>> found = tt.sweep(problem, spins, duration=0.1, out="spins.zarr", workers=1)
     >>> tt.read_sweep("spins.zarr").equals(found)
     True
     """
@@ -243,7 +256,9 @@ def read_sweep(path: Path | str, names: Collection[str] | None = None) -> xr.Dat
 def need_zarr() -> None:
     """Raise `Unavailable` if zarr is not installed."""
     if find_spec("zarr") is None:
-        raise Unavailable("a sweep is kept in a Zarr store; install it with: pip install 'tippetop[sweep]'")
+        raise Unavailable(
+            "a sweep is kept in a Zarr store; install it with: pip install 'tippetop[sweep]'"
+        )
 
 
 def _can_be_read(array: Any, region: Any) -> bool:
@@ -262,4 +277,6 @@ def _damage_in_words(path: Path) -> Iterator[None]:
     except FileTrouble:
         raise
     except (OSError, ValueError, RuntimeError, KeyError, TypeError) as error:
-        raise FileTrouble(f"{path} is damaged and cannot be read ({error}); {RESUME} mends it") from None
+        raise FileTrouble(
+            f"{path} is damaged and cannot be read ({error}); {RESUME} mends it"
+        ) from None

@@ -1,17 +1,18 @@
 """One step of Taylor's method for many launches at once, with what happens inside it.
 
-The equations of motion and guards of a contact mode, in plain operators, are evaluated on power series.
-LLVM compiles the whole step, with its dense output, into one function that works on eight launches an
-instruction; without it launches are followed one by one. Order and step size are chosen much as by heyoka's
-integrators (Biscani and Izzo 2021, MNRAS 504; Jorba and Zou 2005, Experimental Mathematics 14):
-the order p from the tolerance, and the step from the last two coefficients, so that what is left out is below
-the tolerance. What is left out of all numbers is compared with all of them, by the roots of their squares; so
-a spin or slip that is large would let the axis go astray, and what is left out of that is compared with no
-more than `FAST`, and less beyond `FASTER`. Heyoka compares the largest numbers, and in a single launch
-the guards with them, where `tippetop.integrators.taylor` cuts steps that are too long for any.
+The equations of motion and guards of a contact mode, in plain operators, are evaluated on power
+series. LLVM compiles the whole step, with its dense output, into one function that works on eight
+launches an instruction; without it launches are followed one by one. Order and step size are chosen
+much as by heyoka's integrators (Biscani and Izzo 2021, MNRAS 504; Jorba and Zou 2005, Experimental
+Mathematics 14): the order p from the tolerance, and the step from the last two coefficients, so
+that what is left out is below the tolerance. What is left out of all numbers is compared with all
+of them, by the roots of their squares; so a spin or slip that is large would let the axis go
+astray, and what is left out of that is compared with no more than `FAST`, and less beyond `FASTER`.
+Heyoka compares the largest numbers, and in a single launch the guards with them, where
+`tippetop.integrators.taylor` cuts steps that are too long for any.
 
-A launch's step depends on nothing but its own numbers: arrays are filled up to a multiple of `LANES`, so that
-every launch is computed by the same instructions wherever it stands in them.
+A launch's step depends on nothing but its own numbers: arrays are filled up to a multiple of
+`LANES`, so that every launch is computed by the same instructions wherever it stands in them.
 """
 
 import math
@@ -26,13 +27,18 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.looks import TINY, first_fall, least_value, looked_at, lower_bound, may_fall
 
 LOOKS, CLOSER_LOOKS = 12, 32
-"""Intervals of a step at whose ends n_z and guards are looked at, and of what may be longer than a step."""
+"""Intervals of a step at whose ends n_z and guards are looked at, and of what may be longer than a
+step.
+"""
 
 FAST = 10.0
-"""Size of the state, in natural units, beyond which a top is so fast that its axis needs more care."""
+"""Size of the state, in natural units, beyond which a top is so fast that its axis needs more care.
+"""
 
 FASTER = 1e3
-"""Size beyond which it needs yet more, as the square: by so much what the axis is off changes the force."""
+"""Size beyond which it needs yet more, as the square: by so much what the axis is off changes the
+force.
+"""
 
 LANES = 16
 """Arrays are filled up to a multiple of this many launches."""
@@ -41,14 +47,14 @@ LANES = 16
 class Layout(NamedTuple):
     """Which row holds what, for a motion of some size with some guards.
 
-    A step brings the first rows up to date: the numbers of the motion, the time that is left to go and the
-    steps taken. The others tell of the step: the time it may take, whether something may happen in it, the
-    least values of the first guard, of n_z and of -n_z in it, and whether it ended earlier, where another
-    branch of the law takes over. Where something else may happen it was not taken, those values are inf, and
-    no time is left: the launch waits.
+    A step brings the first rows up to date: the numbers of the motion, the time that is left to go
+    and the steps taken. The others tell of the step: the time it may take, whether something may
+    happen in it, the least values of the first guard, of n_z and of -n_z in it, and whether it
+    ended earlier, where another branch of the law takes over. Where something else may happen it
+    was not taken, those values are inf, and no time is left: the launch waits.
 
-    What to pause for is in rows after the parameters: whether each guard counts, whether the top is yet to
-    turn over, and the least and the largest n_z of a band (inf and -inf for none).
+    What to pause for is in rows after the parameters: whether each guard counts, whether the top is
+    yet to turn over, and the least and the largest n_z of a band (inf and -inf for none).
     """
 
     size: int
@@ -71,8 +77,9 @@ class Layout(NamedTuple):
     counts: slice
     turns: int
     band: slice
-    """Rows, after the parameters, of which guards count, of whether the top is yet to turn over, and of the
-    band."""
+    """Rows, after the parameters, of which guards count, of whether the top is yet to turn over,
+    and of the band.
+    """
     numbers: int
     """How many rows of parameters and of what to pause for there are."""
     branch: int | None
@@ -84,7 +91,11 @@ class Layout(NamedTuple):
         size, guards, parameters = motion.size, len(motion.guards), motion.parameters
         kept, turns = size + 2, parameters + guards
         pause, changed, numbers = kept + 1, kept + 5, turns + 3
-        least, counts, band = slice(kept + 2, changed), slice(parameters, turns), slice(turns + 1, numbers)
+        least, counts, band = (
+            slice(kept + 2, changed),
+            slice(parameters, turns),
+            slice(turns + 1, numbers),
+        )
         row = (size, size + 1, kept, kept, pause, least, changed, changed + 1)
         names = [guard.name for guard in motion.guards]
         branch = names.index(BRANCH) if BRANCH in names else None
@@ -92,7 +103,9 @@ class Layout(NamedTuple):
 
 
 class Jet(NamedTuple):
-    """Coefficients of polynomials in time, in increasing order, which may be arrays of n launches."""
+    """Coefficients of polynomials in time, in increasing order, which may be arrays of n
+    launches.
+    """
 
     state: Any
     """Those of the state, size x (order + 1)."""
@@ -101,11 +114,17 @@ class Jet(NamedTuple):
 
 
 def expansion(
-    motion: Motion, order: int, start: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
+    motion: Motion,
+    order: int,
+    start: Sequence[Scalar],
+    numbers: Sequence[Scalar],
+    plain: Arithmetic,
 ) -> Jet:
     """The polynomials of a step: coefficients of the solution and of the guards."""
     parameters = numbers[: motion.parameters]
-    y = solved([SharedSeries(unknown, plain) for _ in start], start, lambda y: motion.rates(y, parameters))
+    y = solved(
+        [SharedSeries(unknown, plain) for _ in start], start, lambda y: motion.rates(y, parameters)
+    )
     guards = [guard.value(y, parameters) for guard in motion.guards]
     return Jet(
         [series.up_to(order)[: order + 1] for series in y],
@@ -116,7 +135,9 @@ def expansion(
 def stride(
     layout: Layout, jet: Jet, before: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
 ) -> list[Scalar]:
-    """What `Stepper.step` makes of the rows that are kept, by the polynomials from there: all rows."""
+    """What `Stepper.step` makes of the rows that are kept, by the polynomials from there: all
+    rows.
+    """
     left, steps = before[layout.size :]
     counts, wanted = numbers[layout.counts], numbers[layout.turns :]
     state, falls = jet
@@ -133,7 +154,9 @@ def stride(
     stays = [plain.choose(goes, new, old) for old, new in zip(before, after, strict=True)]
     stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
     force = least_value(falls[0], pressing, taken, plain)
-    least = [plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)]
+    least = [
+        plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)
+    ]
     return [*stays, whole, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
 
 
@@ -159,9 +182,9 @@ def later_guards(
 ) -> tuple[Scalar, Scalar, Scalar]:
     """What a step is because of all guards but the first, as far as they count.
 
-    Of the step that may be taken, and of which guard is of the law's branch, it makes the step that is taken,
-    whether that ends where another branch of the law takes over, and whether a guard may fall in it. Only
-    where that of the branch comes near zero is it looked at.
+    Of the step that may be taken, and of which guard is of the law's branch, it makes the step that
+    is taken, whether that ends where another branch of the law takes over, and whether a guard may
+    fall in it. Only where that of the branch comes near zero is it looked at.
     """
     whole, branch = step
     none = 0.0 * whole
@@ -171,18 +194,29 @@ def later_guards(
         if number != branch:
             events += near * count
             continue
-        need, (change, doubt) = near * plain.below(0.0, whole), first_fall(terms, whole, LOOKS, plain)
-        found, usual = (plain.least(change, whole), plain.below(change, whole), doubt), (whole, none, none)
-        taken, changes, doubt = (plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True))
+        need, (change, doubt) = (
+            near * plain.below(0.0, whole),
+            first_fall(terms, whole, LOOKS, plain),
+        )
+        found, usual = (
+            (plain.least(change, whole), plain.below(change, whole), doubt),
+            (whole, none, none),
+        )
+        taken, changes, doubt = (
+            plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True)
+        )
         events += doubt
     return taken, changes, events
 
 
-def step_size(state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic, axis: int = 0) -> Scalar:
-    """Step for which the last terms of the polynomials are below the tolerance, or all that is left.
+def step_size(
+    state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic, axis: int = 0
+) -> Scalar:
+    """Step for which the last terms of the polynomials are below the tolerance, or all that is
+    left.
 
-    They are compared with the state; the first, as many as are of the axis, with `FAST` at most, and with
-    less beyond `FASTER`. The step is 0 where they are no numbers.
+    They are compared with the state; the first, as many as are of the axis, with `FAST` at most,
+    and with less beyond `FASTER`. The step is 0 where they are no numbers.
     """
     order = len(state[0]) - 1
 

@@ -57,7 +57,8 @@ def compute_region(
 ) -> Found:
     """Compute a region of the cells from parameters: this is all that a worker is sent.
 
-    The modules are those in which the sweep's own kinds of parts are defined, in whoever asks for it.
+    The modules are those in which the sweep's own kinds of parts are defined, in whoever asks for
+    it.
 
     Raises `Unavailable` if the worker has another version of this package, or lacks a module.
     """
@@ -67,7 +68,9 @@ def compute_region(
         for name in modules:
             import_module(name)
     except ImportError as error:
-        raise Unavailable(f"a worker cannot import the module of a part of the problem: {error}") from None
+        raise Unavailable(
+            f"a worker cannot import the module of a part of the problem: {error}"
+        ) from None
     sweep = _sweep(description)
     # Compiled functions have one set of buffers; a worker with several threads takes turns.
     with _turn:
@@ -80,9 +83,14 @@ def _sweep(description: str) -> Sweep:
 
 
 def results(
-    sweep: Sweep, tasks: Sequence[Task], workers: int | None = None, scheduler: str | Cluster | None = None
+    sweep: Sweep,
+    tasks: Sequence[Task],
+    workers: int | None = None,
+    scheduler: str | Cluster | None = None,
 ) -> Iterator[tuple[Task, Found]]:
-    """Compute tasks of a sweep and give what they found as it comes, in any order; see `need_workers`."""
+    """Compute tasks of a sweep and give what they found as it comes, in any order; see
+    `need_workers`.
+    """
     modules = _modules(sweep, workers, scheduler)
     if HERE in modules:
         workers = 1
@@ -93,19 +101,23 @@ def results(
         return
     jobs = (Job(task, compute_region, call) for task, call in calls.items())
     try:
-        yield from shared(lambda: next(jobs, None), min(workers or processors(), max(len(tasks), 1)))
+        yield from shared(
+            lambda: next(jobs, None), min(workers or processors(), max(len(tasks), 1))
+        )
     except Unavailable as error:
         raise Unavailable(f"{error}; {KEPT}") from None
 
 
 @contextmanager
-def need_workers(sweep: Sweep, workers: int | None, scheduler: str | None) -> Iterator[Cluster | None]:
+def need_workers(
+    sweep: Sweep, workers: int | None, scheduler: str | None
+) -> Iterator[Cluster | None]:
     """See that there is someone to compute, before anything is written; for both see `sweep`.
 
     Gives the cluster, connected to, that takes the place of the scheduler's address meanwhile.
 
-    Raises `InvalidInput` if the number of workers is not positive, or there is no scheduler at the address;
-    `Unavailable` if dask.distributed is needed and not installed.
+    Raises `InvalidInput` if the number of workers is not positive, or there is no scheduler at the
+    address; `Unavailable` if dask.distributed is needed and not installed.
     """
     _modules(sweep, workers, scheduler)
     with nullcontext() if scheduler is None else _cluster(scheduler) as cluster:
@@ -122,8 +134,8 @@ def _modules(sweep: Sweep, workers: int | None, scheduler: str | Cluster | None)
         raise InvalidInput(
             "workers" if scheduler is None else "scheduler",
             workers if scheduler is None else scheduler,
-            "this process alone, with workers = 1: the problem has parts that the script itself defines, and "
-            "that other processes can import only from a module",
+            "this process alone, with workers = 1: the problem has parts that the script itself"
+            " defines, and that other processes can import only from a module",
         )
     return tuple(sorted(modules))
 
@@ -133,11 +145,17 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _share_with_cluster(scheduler: str | Cluster, calls: Mapping[Task, Call]) -> Iterator[tuple[Task, Found]]:
-    """Hand tasks to a cluster, a few ahead of every worker; it does those of workers that died again."""
+def _share_with_cluster(
+    scheduler: str | Cluster, calls: Mapping[Task, Call]
+) -> Iterator[tuple[Task, Found]]:
+    """Hand tasks to a cluster, a few ahead of every worker; it does those of workers that died
+    again.
+    """
     waiting = deque(calls)
     running: dict[Future[Found], Task] = {}
-    with nullcontext(scheduler) if isinstance(scheduler, Cluster) else _cluster(scheduler) as cluster:
+    with (
+        nullcontext(scheduler) if isinstance(scheduler, Cluster) else _cluster(scheduler)
+    ) as cluster:
         address, client = cluster
         executor = client.get_executor(retries=RESTARTS)
         most = AHEAD * _workers(client)
@@ -161,13 +179,19 @@ def _share_with_cluster(scheduler: str | Cluster, calls: Mapping[Task, Call]) ->
 
 
 def _is_of_cluster(error: Exception) -> bool:
-    """Whether the cluster failed, not a task: the library stumbles over results of workers that are lost."""
+    """Whether the cluster failed, not a task: the library stumbles over results of workers that are
+    lost.
+    """
     *_, (innermost, _) = walk_tb(error.__traceback__)
     where = (type(error).__module__, innermost.f_globals.get("__name__", ""))
-    return isinstance(error, CancelledError) or any(name.startswith("distributed") for name in where)
+    return isinstance(error, CancelledError) or any(
+        name.startswith("distributed") for name in where
+    )
 
 
-def _first_done(client: Any, address: str, running: Mapping[Future[Found], Task]) -> set[Future[Found]]:
+def _first_done(
+    client: Any, address: str, running: Mapping[Future[Found], Task]
+) -> set[Future[Found]]:
     """Wait until one is done, as long as there is somebody to do it."""
     alone = 0.0
     while True:
@@ -186,7 +210,9 @@ def _first_done(client: Any, address: str, running: Mapping[Future[Found], Task]
                 "the cluster at %s has no workers; the sweep waits for some, %g s", address, LONELY
             )
         if time.monotonic() - alone >= LONELY:
-            raise Unavailable(f"the cluster at {address} has had no workers for {LONELY:g} s; {KEPT}")
+            raise Unavailable(
+                f"the cluster at {address} has had no workers for {LONELY:g} s; {KEPT}"
+            )
 
 
 def _workers(client: Any) -> int:

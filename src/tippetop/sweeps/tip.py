@@ -1,4 +1,6 @@
-"""How the tip of the axis moves on the way, and how hard the table presses: first times, and least values."""
+"""How the tip of the axis moves on the way, and how hard the table presses: first times, and least
+values.
+"""
 
 from dataclasses import dataclass, fields
 
@@ -18,8 +20,9 @@ class TipMotion:
     """The motion of the tip of the axis, n_z, and the normal force, for n launches."""
 
     turned: Array
-    """First time at which n_z falls through zero, which is when the top turns over; nan before. A top that
-    starts beyond a right angle turns over when it passes it from below."""
+    """First time at which n_z falls through zero, which is when the top turns over; nan before. A
+    top that starts beyond a right angle turns over when it passes it from below.
+    """
     low: Array
     high: Array
     """A band of n_z that is waited for, or nan."""
@@ -27,7 +30,9 @@ class TipMotion:
     """First time at which n_z is in the band; nan before."""
     early: Array
     lately: Array
-    """The least values before they were last put aside, and since, shape (3, n); inf where there are none."""
+    """The least values before they were last put aside, and since, shape (3, n); inf where there
+    are none.
+    """
 
     @classmethod
     def of(cls, count: int) -> "TipMotion":
@@ -52,12 +57,15 @@ class TipMotion:
         """
         waits = np.isnan(self.reached[launches]) & ~np.isnan(self.low[launches])
         low, high = (
-            np.where(waits, edge[launches], far) for edge, far in ((self.low, np.inf), (self.high, -np.inf))
+            np.where(waits, edge[launches], far)
+            for edge, far in ((self.low, np.inf), (self.high, -np.inf))
         )
         return np.array([np.isnan(self.turned[launches]), low, high])
 
     def put(self, least: Array) -> None:
-        """Take in the least values of a step of every launch, shape (3, n); inf for those that took none."""
+        """Take in the least values of a step of every launch, shape (3, n); inf for those that took
+        none.
+        """
         np.fmin(self.lately, least, out=self.lately)
 
     def put_of(self, launches: Indices, least: Array) -> None:
@@ -65,7 +73,9 @@ class TipMotion:
         self.lately[:, launches] = np.fmin(self.lately[:, launches], least)
 
     def take(self, which: int, lanes: Indices, polynomials: Polynomials) -> None:
-        """Take in polynomials of what may be least on some lanes; a lane may be there several times."""
+        """Take in polynomials of what may be least on some lanes; a lane may be there several
+        times.
+        """
         np.fmin.at(self.lately[which], lanes, polynomials.lowest)
         lower = np.flatnonzero(polynomials.floor <= self.least[which, lanes])
         if len(lower):

@@ -1,1 +1,3 @@
-"""What can be known of a top without simulating it: steady states, their stability, the slow flow."""
+"""What can be known of a top without simulating it: steady states, their stability, the slow
+flow.
+"""

@@ -1,4 +1,6 @@
-"""Critical spins as the equations of motion show them: in spectra of vertical spins, and in runs that end."""
+"""Critical spins as the equations of motion show them: in spectra of vertical spins, and in runs
+that end.
+"""
 
 import math
 from collections.abc import Callable
@@ -19,10 +21,12 @@ _SEARCH = 1.05
 
 
 def critical_spin_from_spectrum(kind: SteadyKind, top: Top) -> float:
-    """Axial spin at which the growth rate of a vertical spin vanishes, rad/s; inf where it never does.
+    """Axial spin at which the growth rate of a vertical spin vanishes, rad/s; inf where it never
+    does.
 
-    Nothing but the equations of motion and their derivatives enters: no energy, no Jellett's integral. The
-    growth rate is sampled over spins up to 10^4 sqrt(g / size), and its first zero is refined.
+    Nothing but the equations of motion and their derivatives enters: no energy, no Jellett's
+    integral. The growth rate is sampled over spins up to 10^4 sqrt(g / size), and its first zero is
+    refined.
     """
     unit = 1.0 / float(natural_units(top).time)
     spins = unit * np.geomspace(1e-2, 1e4, 241)
@@ -39,28 +43,33 @@ def critical_spin_from_spectrum(kind: SteadyKind, top: Top) -> float:
 
 
 def growth_rates_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -> Array:
-    """Growth rates, 1/s, of the vertical spins with the Jellett's integrals of launches with these spins."""
+    """Growth rates, 1/s, of the vertical spins with the Jellett's integrals of launches with these
+    spins.
+    """
     per_spin = vertical_spin(kind, problem.top, 1.0).jellett
-    return vertical_growth_rates(kind, problem.top, jellett_line(problem).at(np.asarray(spins)) / per_spin)
+    return vertical_growth_rates(
+        kind, problem.top, jellett_line(problem).at(np.asarray(spins)) / per_spin
+    )
 
 
 def apparent_critical_spins(problem: Problem, window: float, visible: float) -> CriticalSpins:
     """Critical spins as runs of finite length show them, rad/s.
 
-    Near its threshold a vertical spin attracts or repels slowly. A run that ends `visible` away from the
-    vertical passes for one that goes elsewhere: so the upright spin seems to be left below its threshold
-    (or above, if launches have time to come closer than that even at it), and the inverted spin seems to be
-    reached only above its own.
+    Near its threshold a vertical spin attracts or repels slowly. A run that ends `visible` away
+    from the vertical passes for one that goes elsewhere: so the upright spin seems to be left below
+    its threshold (or above, if launches have time to come closer than that even at it), and the
+    inverted spin seems to be reached only above its own.
 
-    The launch is near theta = 0, and its spin does not matter; `window` is the length of the runs, s, and
-    `visible` the least distance from the vertical that is told from none, rad. Raises `InvalidInput` if this
-    is not between 0 and the launch's tilt, or the window is not positive.
+    The launch is near theta = 0, and its spin does not matter; `window` is the length of the runs,
+    s, and `visible` the least distance from the vertical that is told from none, rad. Raises
+    `InvalidInput` if this is not between 0 and the launch's tilt, or the window is not positive.
 
     Notes
     -----
-    The upright spin: the launch is followed in the linear motion about the upright spin. The inverted spin:
-    a distance of 1 rad at the start of the window is let decay at the growth rate of the inverted spin; the
-    time of turning over is not counted, so this is a lower bound of the bias.
+    The upright spin: the launch is followed in the linear motion about the upright spin. The
+    inverted spin: a distance of 1 rad at the start of the window is let decay at the growth rate of
+    the inverted spin; the time of turning over is not counted, so this is a lower bound of the
+    bias.
     """
     if not 0.0 < visible < problem.launch.tilt:
         raise InvalidInput("visible", visible, "a distance between 0 and the launch's tilt")

@@ -1,11 +1,13 @@
 """The slow flow: how a little friction carries a top from its launch to its steady state.
 
-For small mu the tilt nutates as on a smooth table, lambda is constant, and what else the nutation leaves
-alone, L3 and the energy, drifts at a rate proportional to mu: by friction's torque and power averaged over
-one nutation (`tippetop.theory.dissipation`). Time enters only as mu t, which is why the time to turn over
-goes as 1 / mu. The nutation dies away, and what is left follows the precessions of the smooth table.
+For small mu the tilt nutates as on a smooth table, lambda is constant, and what else the nutation
+leaves alone, L3 and the energy, drifts at a rate proportional to mu: by friction's torque and power
+averaged over one nutation (`tippetop.theory.dissipation`). Time enters only as mu t, which is why
+the time to turn over goes as 1 / mu. The nutation dies away, and what is left follows the
+precessions of the smooth table.
 
-It is the limit of runs only while the nutation needs no pull of a table that pushes: beyond, they fly.
+It is the limit of runs only while the nutation needs no pull of a table that pushes: beyond, they
+fly.
 """
 
 import math
@@ -36,13 +38,18 @@ class SlowFlow:
     """mu t, s^2/m, increasing, shape (n,)."""
     tilt_low: Array
     tilt_high: Array
-    """Least and largest tilt of the nutation at that time, rad, shape (n,): equal once it has died away."""
+    """Least and largest tilt of the nutation at that time, rad, shape (n,): equal once it has died
+    away.
+    """
     final_tilt: float
-    """Tilt of the steady state the flow ends in, rad; nan if it cannot be followed that far: it ends where
-    a table that only pushes does not hold so wide a nutation."""
+    """Tilt of the steady state the flow ends in, rad; nan if it cannot be followed that far: it
+    ends where a table that only pushes does not hold so wide a nutation.
+    """
 
     def tilts(self, mu_times: Array) -> tuple[Array, Array]:
-        """Least and largest tilt at these values of mu t (s^2/m), rad: nan outside those followed."""
+        """Least and largest tilt at these values of mu t (s^2/m), rad: nan outside those
+        followed.
+        """
         low, high = (
             PchipInterpolator(self.mu_time, tilts, extrapolate=False)(mu_times)
             for tilts in (self.tilt_low, self.tilt_high)
@@ -57,17 +64,18 @@ TOLERANCE = 1e-9
 def averaged_flow(
     problem: Problem, distance: float = 1e-6, samples: int = 200, tolerance: float = TOLERANCE
 ) -> SlowFlow:
-    """The slow flow of a launch of an eccentric sphere with viscous friction; the size of mu does not matter.
+    """The slow flow of a launch of an eccentric sphere with viscous friction; the size of mu does
+    not matter.
 
-    The horizontal velocity of its centre of mass has no part: it dies away by itself, unless one nutation
-    brings the axis round just once (Limits in docs/theory/slow.md).
+    The horizontal velocity of its centre of mass has no part: it dies away by itself, unless one
+    nutation brings the axis round just once (Limits in docs/theory/slow.md).
 
-    The flow is followed to a `distance` from the final tilt, rad. Each of its parts, from one pole, and if it
-    comes nearer, the other, is given at so many `samples` at least. The `tolerance` is the error of the
-    logarithms of the amplitudes in a step.
+    The flow is followed to a `distance` from the final tilt, rad. Each of its parts, from one pole,
+    and if it comes nearer, the other, is given at so many `samples` at least. The `tolerance` is
+    the error of the logarithms of the amplitudes in a step.
 
-    Raises `InvalidInput` if the body is no eccentric sphere, its friction is not viscous, the launch is
-    exactly vertical, or a setting is not possible.
+    Raises `InvalidInput` if the body is no eccentric sphere, its friction is not viscous, the
+    launch is exactly vertical, or a setting is not possible.
     """
     if not is_whole(samples) or samples < 2:
         raise InvalidInput("samples", samples, "a whole number, at least 2")
@@ -99,7 +107,9 @@ def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
             "friction", "one that is not viscous", "viscous friction; no other slip averages out"
         )
     if problem.launch.tilt in (0.0, math.pi) and problem.launch.tilt_rate == 0.0:
-        raise InvalidInput("launch.tilt", problem.launch.tilt, "a tilted launch: a vertical spin is steady")
+        raise InvalidInput(
+            "launch.tilt", problem.launch.tilt, "a tilted launch: a vertical spin is steady"
+        )
     jellett = jellett_of_launch(problem)
     stable = [state.tilt for state in stable_by_energy(steady_states(top, jellett))]
     goals = Goals(stable, distance, problem.contact.liftoff != "ignore")
@@ -114,7 +124,8 @@ def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
 
 
 def nutation_of_launch(problem: Problem) -> Nutation:
-    """The nutation that a launch of an eccentric sphere would keep on a smooth table, in natural units.
+    """The nutation that a launch of an eccentric sphere would keep on a smooth table, in natural
+    units.
 
     Raises `InvalidInput` if the body is of another shape.
     """
@@ -126,8 +137,8 @@ def nutation_of_launch(problem: Problem) -> Nutation:
 def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
     """Limit for small mu of mu times the flip time, s^2/m.
 
-    The flip time is the first at which the tilt is within `distance` (rad) of its end. Raises `InvalidInput`
-    as `averaged_flow`, and if the flow cannot be followed to its end.
+    The flip time is the first at which the tilt is within `distance` (rad) of its end. Raises
+    `InvalidInput` as `averaged_flow`, and if the flow cannot be followed to its end.
     """
     stages = _stages(problem, distance, TOLERANCE)
     final = stages[-1].final_tilt
@@ -145,15 +156,23 @@ def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
 def _no_end(problem: Problem, stages: list[Stage]) -> InvalidInput:
     """The refusal of a launch whose slow flow is not followed to its end."""
     if stages[0].begin.grazes:
-        other = "one further from the unstable vertical: here rounding decides how the nutation begins"
+        other = (
+            "one further from the unstable vertical: here rounding decides how the nutation begins"
+        )
         return InvalidInput("launch.tilt", problem.launch.tilt, other)
     pulled = stages[-1].pulled
-    launch = "one that needs a pull of the table" if pulled else "one whose nutation is not seen to die away"
+    launch = (
+        "one that needs a pull of the table"
+        if pulled
+        else "one whose nutation is not seen to die away"
+    )
     return InvalidInput("launch", launch, "one whose nutation dies away without a pull")
 
 
 def _first_near(stage: Stage, final: float, distance: float) -> float | None:
-    """First time at which a nutation is near its end, which it may pass long before it has died away."""
+    """First time at which a nutation is near its end, which it may pass long before it has died
+    away.
+    """
 
     def away(times: Array) -> Array:
         """How far the end is outside of the nutation, beyond what is near."""
@@ -173,7 +192,8 @@ def _first_near(stage: Stage, final: float, distance: float) -> float | None:
 
     shares = np.linspace(stage.knots[:-1], stage.knots[1:], _PER_STEP, endpoint=False).T.ravel()
     times = np.append(shares, stage.knots[-1])
-    # It may be near for an instant only: where it goes through a vertical, or its middle through the end.
+    # It may be near for an instant only: where it goes through a vertical, or its middle through
+    # the end.
     for through in (apart, beyond):
         ahead = through(times) > 0.0
         turns = np.flatnonzero(ahead[:-1] != ahead[1:])
@@ -194,7 +214,9 @@ def _first_near(stage: Stage, final: float, distance: float) -> float | None:
 
 
 def local_exponent(mu: Array, flip_time: Array) -> Array:
-    """Exponent d ln t / d ln mu along a table of flip times, shape (n,): -1 where t goes as 1 / mu."""
+    """Exponent d ln t / d ln mu along a table of flip times, shape (n,): -1 where t goes as 1 /
+    mu.
+    """
     return np.asarray(np.gradient(np.log(flip_time), np.log(mu)))
 
 

@@ -1,12 +1,13 @@
 """Exact derivatives of the mechanics, by a step along the imaginary axis.
 
-The mechanics is written in plain operators, so it runs on complex numbers unchanged, and f(x + i h) = f(x) +
-i h f'(x) + O(h^2). With a step whose square is nothing beside any number, the imaginary part over h is the
-derivative to rounding: nothing is subtracted, and no formula is written a second time (Squire and Trapp, SIAM
-Review 40 (1998) 110-112).
+The mechanics is written in plain operators, so it runs on complex numbers unchanged, and f(x + i h)
+= f(x) + i h f'(x) + O(h^2). With a step whose square is nothing beside any number, the imaginary
+part over h is the derivative to rounding: nothing is subtracted, and no formula is written a second
+time (Squire and Trapp, SIAM Review 40 (1998) 110-112).
 
-Only analytic operations serve: sums, products, quotients, powers, sin, cos and the like. An absolute value
-drops the step, so that it is refused; a root of a negative number is not a number, as in real numbers.
+Only analytic operations serve: sums, products, quotients, powers, sin, cos and the like. An
+absolute value drops the step, so that it is refused; a root of a negative number is not a number,
+as in real numbers.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,7 +29,9 @@ class _Moved(np.ndarray):
     def __array_ufunc__(self, ufunc: Any, method: Any, *inputs: Any, **settings: Any) -> Any:
         """Do an operation if it keeps the derivative."""
         if ufunc in _NOT_ANALYTIC:
-            raise TypeError(f"{ufunc.__name__} cannot be differentiated: use analytic operations only")
+            raise TypeError(
+                f"{ufunc.__name__} cannot be differentiated: use analytic operations only"
+            )
         if "out" in settings:
             settings["out"] = tuple(np.asarray(place) for place in settings["out"])
         plain = [np.asarray(number) for number in inputs]
@@ -41,7 +44,8 @@ class _Moved(np.ndarray):
 
 
 def derivative(function: Callable[[Any], Any], at: Any) -> Array:
-    """Derivative of a function of one number, at a number or at an array of them, of whose shape it is.
+    """Derivative of a function of one number, at a number or at an array of them, of whose shape it
+    is.
 
     Raises `TypeError` where the function takes an absolute value, or another that is not analytic.
     """
@@ -52,8 +56,9 @@ def derivative(function: Callable[[Any], Any], at: Any) -> Array:
 def jacobian(function: Callable[[list[Any]], Sequence[Any]], point: Sequence[Any]) -> Array:
     """Matrix of the derivatives of a function at a point, or at many points at once.
 
-    The function takes k numbers and returns r of them, by plain operators only; the point is k numbers, or k
-    arrays of one shape. Shape (*shape, r, k): the derivative of each result by each variable.
+    The function takes k numbers and returns r of them, by plain operators only; the point is k
+    numbers, or k arrays of one shape. Shape (*shape, r, k): the derivative of each result by each
+    variable.
 
     Raises `TypeError` where the function takes an absolute value, or another that is not analytic.
     """
@@ -61,6 +66,7 @@ def jacobian(function: Callable[[list[Any]], Sequence[Any]], point: Sequence[Any
     directions = np.eye(len(values)).reshape(len(values), len(values), *(1,) * (values.ndim - 1))
     moved = values[:, None] + 1j * STEP * directions
     rows = [
-        np.broadcast_to(np.imag(result), moved.shape[1:]) for result in function(list(moved.view(_Moved)))
+        np.broadcast_to(np.imag(result), moved.shape[1:])
+        for result in function(list(moved.view(_Moved)))
     ]
     return np.moveaxis(np.stack(rows) / STEP, (0, 1), (-2, -1))

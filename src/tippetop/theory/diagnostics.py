@@ -1,7 +1,8 @@
 """What a run says about the theory: gyroscopic balance, constants of the smooth table, envelope.
 
-All functions take the axis n and the angular momentum L about the centre of mass (kg m^2/s) of a run, shape
-(n, 3), and have no singularity where the axis is vertical, except for quantities that are infinite there.
+All functions take the axis n and the angular momentum L about the centre of mass (kg m^2/s) of a
+run, shape (n, 3), and have no singularity where the axis is vertical, except for quantities that
+are infinite there.
 """
 
 import numpy as np
@@ -17,8 +18,9 @@ from tippetop.theory import nutation
 def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:
     """Xi = I1 phi' cos(theta) - I3 omega3, kg m^2/s, shape (n,); nan where the axis is vertical.
 
-    A spinning body is in gyroscopic balance where xi is small beside I3 omega3: its nutation is then fast,
-    and its tilt moves slowly (Moffatt and Shimomura 2002; Ueda, Sasaki and Watanabe 2005).
+    A spinning body is in gyroscopic balance where xi is small beside I3 omega3: its nutation is
+    then fast, and its tilt moves slowly (Moffatt and Shimomura 2002; Ueda, Sasaki and Watanabe
+    2005).
     """
     n, L = _vector(axis), _vector(momentum)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -28,7 +30,8 @@ def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:
 
 
 def smooth_constants(axis: Array, momentum: Array, top: Top) -> nutation.Constants:
-    """What a smooth table would leave alone from each instant on: L_z, L3 and energy as arrays, shape (n,).
+    """What a smooth table would leave alone from each instant on: L_z, L3 and energy as arrays,
+    shape (n,).
 
     The energy is that without the horizontal motion of the centre of mass, for a body on the table.
     """
@@ -36,13 +39,16 @@ def smooth_constants(axis: Array, momentum: Array, top: Top) -> nutation.Constan
 
 
 def potential_at(index: int, axis: Array, momentum: Array, top: Top, tilts: Array) -> Array:
-    """Effective potential, J, of these tilts (rad, between 0 and pi, shape (k,)) at one instant of a run."""
+    """Effective potential, J, of these tilts (rad, between 0 and pi, shape (k,)) at one instant of
+    a run.
+    """
     values = smooth_constants(axis[index : index + 1], momentum[index : index + 1], top)
     return np.asarray(nutation.effective_potential(np.asarray(tilts, dtype=float), values, top, np))
 
 
 def nutation_envelope(axis: Array, momentum: Array, top: Top) -> tuple[Array, Array]:
-    """Least and largest tilt of the nutation that a smooth table would leave the top in, rad, shape (n,).
+    """Least and largest tilt of the nutation that a smooth table would leave the top in, rad, shape
+    (n,).
 
     Raises `InvalidInput` if the body is not an eccentric sphere.
     """

@@ -1,4 +1,6 @@
-"""What a little friction takes from a nutation, on average: torque, power, decay of its amplitudes."""
+"""What a little friction takes from a nutation, on average: torque, power, decay of its
+amplitudes.
+"""
 
 import math
 from typing import NamedTuple
@@ -7,7 +9,9 @@ from tippetop.theory.nutation import Amplitudes, Numbers, Orbit, excess_slope, o
 
 
 class Dissipation(NamedTuple):
-    """What friction takes from a nutation, on average, per unit of friction coefficient, in natural units."""
+    """What friction takes from a nutation, on average, per unit of friction coefficient, in natural
+    units.
+    """
 
     axial: float
     """Rate of L3."""
@@ -16,10 +20,11 @@ class Dissipation(NamedTuple):
 
 
 class AmplitudeRates(NamedTuple):
-    """How friction changes a nutation, on average, per unit of friction coefficient, in natural units.
+    """How friction changes a nutation, on average, per unit of friction coefficient, in natural
+    units.
 
-    Jellett's integral and the amplitudes leave two choices of the third root, which can meet: it is followed
-    too.
+    Jellett's integral and the amplitudes leave two choices of the third root, which can meet: it is
+    followed too.
     """
 
     fast: float
@@ -30,32 +35,38 @@ class AmplitudeRates(NamedTuple):
 
 
 def phases(path: Orbit) -> tuple[float, ...]:
-    """Cosines of as many equidistant phases psi between 0 and pi as an average over the nutation needs.
+    """Cosines of as many equidistant phases psi between 0 and pi as an average over the nutation
+    needs.
 
-    The error falls as exp(-2 n kappa) for n phases, with cosh(kappa) the distance of the third root from the
-    middle of the nutation over its half-width; as many are taken as make it 1e-12, at most 64.
+    The error falls as exp(-2 n kappa) for n phases, with cosh(kappa) the distance of the third root
+    from the middle of the nutation over its half-width; as many are taken as make it 1e-12, at most
+    64.
     """
     reach = abs(path.far - path.middle) / path.half if path.half > 0.0 else math.inf
     kappa = math.acosh(reach) if reach > 1.0 else 0.0
     return _PHASES[
-        max(2, min(_MOST_PHASES, math.ceil(_DIGITS / (2.0 * kappa)))) if kappa > 0.0 else _MOST_PHASES
+        max(2, min(_MOST_PHASES, math.ceil(_DIGITS / (2.0 * kappa))))
+        if kappa > 0.0
+        else _MOST_PHASES
     ]
 
 
 _MOST_PHASES = 64
 _DIGITS = 12.0 * math.log(10.0)
 _PHASES = tuple(
-    tuple(math.cos((j + 0.5) * math.pi / count) for j in range(count)) for count in range(_MOST_PHASES + 1)
+    tuple(math.cos((j + 0.5) * math.pi / count) for j in range(count))
+    for count in range(_MOST_PHASES + 1)
 )
 
 
 def mean_dissipation(path: Orbit, numbers: Numbers) -> Dissipation:
-    """What friction takes from a nutation on average: torque about the axis and power, per unit of friction.
+    """What friction takes from a nutation on average: torque about the axis and power, per unit of
+    friction.
 
-    The centre of mass rests horizontally, as it does on average: its own motion decays as exp(-mu g t) and
-    turns with no nutation. Then the slip is (omega x a) along the table, v_X = -h theta' and s v_Y = s^2
-    omega3 - (L_z - L3 c)(c - alpha) / I1, and the torque about the axis is -mu N s v_Y. N is that of the
-    smooth table, 1 + z'' with z = 1 - alpha c.
+    The centre of mass rests horizontally, as it does on average: its own motion decays as exp(-mu g
+    t) and turns with no nutation. Then the slip is (omega x a) along the table, v_X = -h theta' and
+    s v_Y = s^2 omega3 - (L_z - L3 c)(c - alpha) / I1, and the torque about the axis is -mu N s v_Y.
+    N is that of the smooth table, 1 + z'' with z = 1 - alpha c.
     """
     I1, I3, alpha = numbers
     middle, half, far, excess, axial, _ = path
@@ -77,7 +88,9 @@ def mean_dissipation(path: Orbit, numbers: Numbers) -> Dissipation:
 
 
 def least_reaction(path: Orbit, numbers: Numbers) -> float:
-    """Least reaction of the table over a nutation, in weights: negative where it would have to pull."""
+    """Least reaction of the table over a nutation, in weights: negative where it would have to
+    pull.
+    """
     places = (path.middle + path.half * cosine for cosine in (1.0, *phases(path), -1.0))
     return min(_motion(p, path, numbers).reaction for p in places)
 
@@ -100,16 +113,21 @@ def _motion(p: float, path: Orbit, numbers: Numbers) -> _Motion:
     room = path.swing - alpha * p
     rate_squared = (2.0 * sine_squared * room - about * about / I1) / inertia
     acceleration = (
-        2.0 * c * room - alpha * sine_squared - about * path.axial / I1 - rate_squared * alpha * alpha * c
+        2.0 * c * room
+        - alpha * sine_squared
+        - about * path.axial / I1
+        - rate_squared * alpha * alpha * c
     ) / inertia
     return _Motion(inertia, rate_squared, 1.0 + alpha * acceleration)
 
 
-def amplitude_rates(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> AmplitudeRates:
+def amplitude_rates(
+    pair: Amplitudes, root: float, jellett: float, numbers: Numbers
+) -> AmplitudeRates:
     """Rates of a nutation's amplitudes per unit of friction coefficient, in natural units.
 
-    The rates of L3 and of the energy, at constant Jellett's integral, carried over by differentiating the sum
-    of the cubic's roots, the sum of their products in pairs, and L_z - L3.
+    The rates of L3 and of the energy, at constant Jellett's integral, carried over by
+    differentiating the sum of the cubic's roots, the sum of their products in pairs, and L_z - L3.
     """
     I1, I3, alpha = numbers
     path = orbit_of_amplitudes(pair, root, jellett, numbers)

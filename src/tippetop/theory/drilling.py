@@ -1,12 +1,14 @@
 """Drilling: what the table's torque takes from a top that stands, and how long that top can stand.
 
-A torque M about the vertical changes Jellett's integral of a sphere at the rate lambda' = M h, h the height
-of the centre of mass. Under Contensou's friction with a patch of radius R a steady state, which has no
-slip, feels M = -(3 pi / 16) mu m g R, whatever its spin and for both pressures: lambda' is a slow clock. A
-vertical spin loses |M| / I3 per second, exactly, and stands until too little is left for stability.
+A torque M about the vertical changes Jellett's integral of a sphere at the rate lambda' = M h, h
+the height of the centre of mass. Under Contensou's friction with a patch of radius R a steady
+state, which has no slip, feels M = -(3 pi / 16) mu m g R, whatever its spin and for both pressures:
+lambda' is a slow clock. A vertical spin loses |M| / I3 per second, exactly, and stands until too
+little is left for stability.
 
-The torque takes from the vertical part of L alone, so that L leans the more the less of it is left: while the
-spin is stable, a small tilt decays as its eigenvalue says and grows as 1 / omega3, which is often quicker.
+The torque takes from the vertical part of L alone, so that L leans the more the less of it is left:
+while the spin is stable, a small tilt decays as its eigenvalue says and grows as 1 / omega3, which
+is often quicker.
 """
 
 import math
@@ -32,7 +34,8 @@ from tippetop.theory.thresholds import critical_spin, stands
 
 
 def spin_rate(steady: SteadyState[float], top: Top) -> float:
-    """Rate omega3' of the axial spin that drilling takes from a vertical spin, rad/s^2; 0 without drilling.
+    """Rate omega3' of the axial spin that drilling takes from a vertical spin, rad/s^2; 0 without
+    drilling.
 
     Raises `InvalidInput` if friction has no linear motion about a vertical spin.
     """
@@ -44,20 +47,21 @@ def spin_rate(steady: SteadyState[float], top: Top) -> float:
 
 
 def standing_time(problem: Problem) -> float:
-    """How long drilling lets a vertical spin stand, s: until it is stable no longer, or turns no more.
+    """How long drilling lets a vertical spin stand, s: until it is stable no longer, or turns no
+    more.
 
-    Exact for a launch at tilt 0 or pi, which the torque of drilling alone changes. For any other launch of an
-    eccentric sphere it is the time of the inverted spin with its Jellett's integral: how long it could stand
-    if it turned over at once. inf without drilling, and 0 where the spin is not stable to begin with, or the
-    centre of mass is not above the table. A small tilt may grow meanwhile, but hardly more than as
-    1 / omega3.
+    Exact for a launch at tilt 0 or pi, which the torque of drilling alone changes. For any other
+    launch of an eccentric sphere it is the time of the inverted spin with its Jellett's integral:
+    how long it could stand if it turned over at once. inf without drilling, and 0 where the spin is
+    not stable to begin with, or the centre of mass is not above the table. A small tilt may grow
+    meanwhile, but hardly more than as 1 / omega3.
 
     Raises
     ------
     InvalidInput
-        If there is no linear motion about a vertical spin: a dry point rubs, rolling is resisted, or nothing
-        spins. If a body other than an eccentric sphere is not launched at tilt 0 or pi, or it has several
-        surfaces.
+        If there is no linear motion about a vertical spin: a dry point rubs, rolling is resisted,
+        or nothing spins. If a body other than an eccentric sphere is not launched at tilt 0 or pi,
+        or it has several surfaces.
 
     Examples
     --------
@@ -83,8 +87,8 @@ def standing_time(problem: Problem) -> float:
 def time_to_stand(steady: SteadyState[float], top: Top) -> float:
     """How long drilling lets a vertical spin stand, s; see `standing_time`.
 
-    Raises `InvalidInput` if it is another steady state, there is no linear motion about it, or a torque
-    changes with the spin.
+    Raises `InvalidInput` if it is another steady state, there is no linear motion about it, or a
+    torque changes with the spin.
     """
     if steady.kind not in VERTICAL_SPINS:
         raise InvalidInput("kind", steady.kind.value, "a vertical spin")

@@ -1,17 +1,20 @@
-"""Which tops turn over: a map of the eccentric sphere by gamma = I1 / I3 and alpha, its eccentricity.
+"""Which tops turn over: a map of the eccentric sphere by gamma = I1 / I3 and alpha, its
+eccentricity.
 
-The stable steady states are the minima over the tilt of the least energy at a given Jellett's integral. For
-the eccentric sphere everything about them follows from D(c) = alpha - (1 - gamma) c, c = cos(theta):
+The stable steady states are the minima over the tilt of the least energy at a given Jellett's
+integral. For the eccentric sphere everything about them follows from D(c) = alpha - (1 - gamma) c,
+c = cos(theta):
 
 - There is a steady precession at this tilt where D > 0.
-- Its Jellett's integral is lambda^2 = m g R^3 I3 alpha P^2 / D with P = gamma (1 - c^2) + (c - alpha)^2.
-- P' = -2 D, so that lambda turns back where 3 D^2 = gamma (1 - gamma - alpha^2): a fold. The precession is
-  stable where D is larger than there, and everywhere if gamma >= 1 - alpha^2.
+- Its Jellett's integral is lambda^2 = m g R^3 I3 alpha P^2 / D with P = gamma (1 - c^2) + (c -
+  alpha)^2.
+- P' = -2 D, so that lambda turns back where 3 D^2 = gamma (1 - gamma - alpha^2): a fold. The
+  precession is stable where D is larger than there, and everywhere if gamma >= 1 - alpha^2.
 
-Three groups follow from the sign of D at the two ends: gamma = 1 - alpha and gamma = 1 + alpha are their
-boundaries (Ebenfeld and Scheck 1995; Ueda, Sasaki and Watanabe 2005; Ciocci, Malengier, Langerock and
-Grimonprez 2012). Where the fold is divides them further, into six kinds; the letters are not those of the
-last of these papers, whose IIb is IIa here.
+Three groups follow from the sign of D at the two ends: gamma = 1 - alpha and gamma = 1 + alpha are
+their boundaries (Ebenfeld and Scheck 1995; Ueda, Sasaki and Watanabe 2005; Ciocci, Malengier,
+Langerock and Grimonprez 2012). Where the fold is divides them further, into six kinds; the letters
+are not those of the last of these papers, whose IIb is IIa here.
 """
 
 import math
@@ -52,20 +55,30 @@ class Group(StrEnum):
 
     @property
     def coexistence(self) -> bool:
-        """Whether two steady states are stable at some spins, so that the launch decides between them."""
+        """Whether two steady states are stable at some spins, so that the launch decides between
+        them.
+        """
         return self not in (Group.IIA, Group.III)
 
 
 _DESCRIPTIONS = {
-    Group.IA: "never inverts: the upright spin is stable at any spin; from some spin on, a tilted "
-    "precession or the inverted spin is stable beside it",
-    Group.IB: "never inverts: the upright spin is stable at any spin; from some spin on, the inverted "
-    "spin is stable beside it, and no precession is",
+    Group.IA: (
+        "never inverts: the upright spin is stable at any spin; from some spin on, a tilted "
+        "precession or the inverted spin is stable beside it"
+    ),
+    Group.IB: (
+        "never inverts: the upright spin is stable at any spin; from some spin on, the inverted "
+        "spin is stable beside it, and no precession is"
+    ),
     Group.IIA: "inverts completely, and gradually: one steady state is stable at every spin",
-    Group.IIB: "inverts completely, with a jump: over a range of spins, the upright spin and another state "
-    "are both stable",
-    Group.IIC: "inverts completely, in one jump: no precession is stable, and over a range of spins both "
-    "vertical spins are",
+    Group.IIB: (
+        "inverts completely, with a jump: over a range of spins, the upright spin and another state"
+        " are both stable"
+    ),
+    Group.IIC: (
+        "inverts completely, in one jump: no precession is stable, and over a range of spins both "
+        "vertical spins are"
+    ),
     Group.III: "stops part-way: it leaves the upright spin, but the inverted spin is never stable",
 }
 
@@ -82,7 +95,8 @@ class Fold(NamedTuple):
 def classify(gamma: float, alpha: float) -> Group:
     """Group of the eccentric sphere with inertia ratio gamma = I1 / I3 and eccentricity alpha.
 
-    Raises `InvalidInput` if alpha is not between 0 and 1, or gamma is less than 1/2, as for no body.
+    Raises `InvalidInput` if alpha is not between 0 and 1, or gamma is less than 1/2, as for no
+    body.
     """
     if not 0.0 < alpha < 1.0:
         raise InvalidInput("alpha", alpha, "a number greater than 0 and less than 1")
@@ -99,7 +113,9 @@ def classify(gamma: float, alpha: float) -> Group:
 
 
 def classify_top(top: Top) -> Group:
-    """Group of an eccentric sphere; `InvalidInput` if the top does not conserve Jellett's integral."""
+    """Group of an eccentric sphere; `InvalidInput` if the top does not conserve Jellett's
+    integral.
+    """
     require_jellett(top)
     return classify(inertia_ratio(top), eccentricity(top))
 
@@ -115,12 +131,16 @@ def eccentricity(top: Top) -> float:
 
 
 def upright_boundary(alpha: float) -> float:
-    """Gamma of the boundary between groups I and II: below it the upright spin is stable at any spin."""
+    """Gamma of the boundary between groups I and II: below it the upright spin is stable at any
+    spin.
+    """
     return 1.0 - alpha
 
 
 def inverted_boundary(alpha: float) -> float:
-    """Gamma of the boundary between groups II and III: above it the inverted spin is stable at no spin."""
+    """Gamma of the boundary between groups II and III: above it the inverted spin is stable at no
+    spin.
+    """
     return 1.0 + alpha
 
 
@@ -133,10 +153,11 @@ def jump_boundary(alpha: float) -> float:
 
 
 def precession_boundaries(alpha: float) -> tuple[float, float]:
-    """Gammas between which no precession is stable (groups Ib and IIc), where the fold leaves at theta = pi.
+    """Gammas between which no precession is stable (groups Ib and IIc), where the fold leaves at
+    theta = pi.
 
-    The roots of 4 gamma^2 - (1 + alpha)(7 - alpha) gamma + 3 (1 + alpha)^2; (nan, nan) where there are none,
-    for alpha > 7 - 4 sqrt(3) = 0.0718.
+    The roots of 4 gamma^2 - (1 + alpha)(7 - alpha) gamma + 3 (1 + alpha)^2; (nan, nan) where there
+    are none, for alpha > 7 - 4 sqrt(3) = 0.0718.
     """
     discriminant = 1.0 - 14.0 * alpha + alpha**2
     if discriminant < 0.0:
@@ -146,16 +167,18 @@ def precession_boundaries(alpha: float) -> tuple[float, float]:
 
 
 def equal_thresholds(alpha: float) -> float:
-    """Gamma in group II at which both vertical spins change stability together, lambda_up = lambda_down.
+    """Gamma in group II at which both vertical spins change stability together, lambda_up =
+    lambda_down.
 
-    Below it the upright spin outlasts the coming of the inverted one, so that a top that leaves it turns over
-    completely at once.
+    Below it the upright spin outlasts the coming of the inverted one, so that a top that leaves it
+    turns over completely at once.
     """
     return (1.0 - alpha**2) * (1.0 + 3.0 * alpha**2) / (1.0 + 6.0 * alpha**2 + alpha**4)
 
 
 def fold(top: Top) -> Fold | None:
-    """The fold of the branch of steady precessions of an eccentric sphere, or None if it has none inside.
+    """The fold of the branch of steady precessions of an eccentric sphere, or None if it has none
+    inside.
 
     Raises `InvalidInput` if the top does not conserve Jellett's integral.
     """
@@ -181,5 +204,7 @@ def coexistence(top: Top) -> tuple[float, float] | None:
 
 
 def _fold_measure(gamma: float, alpha: float) -> float:
-    """D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 where there is none and every D is larger."""
+    """D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 where there is none and every D is
+    larger.
+    """
     return math.sqrt(max(gamma * (1.0 - gamma - alpha**2) / 3.0, 0.0))

@@ -1,20 +1,22 @@
-"""Nutation of an eccentric sphere on a smooth table: its constants, its turning points, its two amplitudes.
+"""Nutation of an eccentric sphere on a smooth table: its constants, its turning points, its two
+amplitudes.
 
-Without friction L_z, L3 = L.n and the energy are constant, and the tilt swings between two turning points.
-In units of mass, radius and gravity, with p = 1 - cos(theta), q = L_z - L3 and e the energy above that of
-the axial spin and of theta = 0,
+Without friction L_z, L3 = L.n and the energy are constant, and the tilt swings between two turning
+points. In units of mass, radius and gravity, with p = 1 - cos(theta), q = L_z - L3 and e the energy
+above that of the axial spin and of theta = 0,
 
-    (I1 + alpha^2 s^2) p'^2 / 2 = s^2 (e - alpha p) - (q + L3 p)^2 / (2 I1) = alpha (p - p1)(p2 - p)(p3 - p),
+    (I1 + alpha^2 s^2) p'^2 / 2 = s^2 (e - alpha p) - (q + L3 p)^2 / (2 I1) = alpha (p - p1)(p2 -
+    p)(p3 - p),
 
-with s^2 = p (2 - p) and p1 <= p2 <= 2 <= p3. The substitution p = (p1 + p2)/2 + (p2 - p1)/2 cos(psi) makes
-time a smooth function of the phase psi down to p1 = p2, and averages over a nutation converge exponentially
-with equidistant phases.
+with s^2 = p (2 - p) and p1 <= p2 <= 2 <= p3. The substitution p = (p1 + p2)/2 + (p2 - p1)/2
+cos(psi) makes time a smooth function of the phase psi down to p1 = p2, and averages over a nutation
+converge exponentially with equidistant phases.
 
-The tilt swings as if the axis were the sum of two circular motions, a fast and a slow one, as it is near
-theta = 0: sin(theta/2) at the turning points is the sum and the difference of two amplitudes, whose squares
-are named `fast` and `slow` here. They stay good where one of them vanishes (a steady precession of a smooth
-table) and where they are equal (a nutation through the vertical), and near theta = 0 friction makes them grow
-or decay exponentially.
+The tilt swings as if the axis were the sum of two circular motions, a fast and a slow one, as it is
+near theta = 0: sin(theta/2) at the turning points is the sum and the difference of two amplitudes,
+whose squares are named `fast` and `slow` here. They stay good where one of them vanishes (a steady
+precession of a smooth table) and where they are equal (a nutation through the vertical), and near
+theta = 0 friction makes them grow or decay exponentially.
 """
 
 import math
@@ -89,20 +91,26 @@ def natural_constants(values: Constants, top: Top) -> Constants:
     """The constants in units of mass, radius and gravity."""
     units = natural_units(top)
     momentum = units.angular_momentum
-    return Constants(values.vertical / momentum, values.axial / momentum, values.energy / units.energy)
+    return Constants(
+        values.vertical / momentum, values.axial / momentum, values.energy / units.energy
+    )
 
 
 def numbers_of(top: Top) -> Numbers:
-    """The dimensionless numbers of an eccentric sphere; `InvalidInput` if the top is of another shape."""
+    """The dimensionless numbers of an eccentric sphere; `InvalidInput` if the top is of another
+    shape.
+    """
     require_sphere(top)
     transverse, axial = top.numbers[:2]
     return Numbers(float(transverse), float(axial), eccentricity(top))
 
 
 def effective_potential(tilt: Scalar, values: Constants, top: Top, functions: Functions) -> Scalar:
-    """Potential energy, J, in which the tilt (rad) moves on a smooth table: any shape, 0 < tilt < pi.
+    """Potential energy, J, in which the tilt (rad) moves on a smooth table: any shape, 0 < tilt <
+    pi.
 
-    (L_z - L3 c)^2 / (2 I1 s^2) + L3^2 / (2 I3) + m g h(c); the tilt swings where it is below the energy.
+    (L_z - L3 c)^2 / (2 I1 s^2) + L3^2 / (2 I3) + m g h(c); the tilt swings where it is below the
+    energy.
     """
     s, c = functions.sin(tilt), functions.cos(tilt)
     turning = (values.vertical - values.axial * c) ** 2 / (2.0 * top.transverse_inertia * s**2)
@@ -121,7 +129,9 @@ def orbit(values: Constants, numbers: Numbers) -> Orbit:
 
 
 def orbit_of_angles(angles: Angles, numbers: Numbers) -> Orbit:
-    """The nutation that a motion belongs to, both in natural units: without cancellation near theta = 0."""
+    """The nutation that a motion belongs to, both in natural units: without cancellation near theta
+    = 0.
+    """
     I1, I3, alpha = numbers
     sine_squared = math.sin(angles.tilt) ** 2
     p = 2.0 * math.sin(0.5 * angles.tilt) ** 2
@@ -135,9 +145,9 @@ def orbit_of_angles(angles: Angles, numbers: Numbers) -> Orbit:
 def _orbit(excess: Scalar, axial: Scalar, swing: Scalar, numbers: Numbers) -> Orbit:
     """The nutation with these constants of `Orbit`.
 
-    Newton's method from beyond the root that is off the others converges to it monotonically, and the other
-    two follow without cancellation. Constants that rounding has put beyond those of a steady precession give
-    it.
+    Newton's method from beyond the root that is off the others converges to it monotonically, and
+    the other two follow without cancellation. Constants that rounding has put beyond those of a
+    steady precession give it.
     """
     I1, _, alpha = numbers
     total = (swing + axial**2 / (2.0 * I1)) / alpha + 2.0
@@ -155,7 +165,9 @@ def _orbit(excess: Scalar, axial: Scalar, swing: Scalar, numbers: Numbers) -> Or
 
 
 def amplitudes(path: Orbit) -> Amplitudes:
-    """The two amplitudes of a nutation, or of arrays of them: the fast one is the larger where L_z > L3."""
+    """The two amplitudes of a nutation, or of arrays of them: the fast one is the larger where L_z
+    > L3.
+    """
     apart = np.copysign(np.sqrt(np.maximum(path.middle**2 - path.half**2, 0.0)), path.excess)
     return Amplitudes((path.middle + apart) / 4.0, (path.middle - apart) / 4.0)
 
@@ -168,11 +180,12 @@ def turning_tilts(pair: Amplitudes) -> tuple[Scalar, Scalar]:
 
 
 def orbit_of_amplitudes(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> Orbit:
-    """The nutation with these amplitudes and this Jellett's integral, sqrt(|p3|) near `root`; natural units.
+    """The nutation with these amplitudes and this Jellett's integral, sqrt(|p3|) near `root`;
+    natural units.
 
-    L_z - L3 and L3 are linear in r = sqrt(|p3|), and eliminating the energy from the coefficients of the
-    cubic leaves a quadratic equation for r. Newton's method improves the root given, the less the closer the
-    other one is, and smoothly so: a flow may pass where the two meet.
+    L_z - L3 and L3 are linear in r = sqrt(|p3|), and eliminating the energy from the coefficients
+    of the cubic leaves a quadratic equation for r. Newton's method improves the root given, the
+    less the closer the other one is, and smoothly so: a flow may pass where the two meet.
     """
     I1, _, alpha = numbers
     difference = pair.fast - pair.slow
@@ -205,7 +218,9 @@ _CLOSE = 1e-3
 
 
 def upside_down(path: Orbit, numbers: Numbers) -> Orbit:
-    """The same nutation of the turned top: p = 1 + cos(theta). Near theta = pi its amplitudes stay good."""
+    """The same nutation of the turned top: p = 1 + cos(theta). Near theta = pi its amplitudes stay
+    good.
+    """
     return Orbit(
         2.0 - path.middle,
         path.half,

@@ -1,7 +1,9 @@
-"""The slow flow while the top nutates: the two amplitudes of the nutation grow or decay by friction.
+"""The slow flow while the top nutates: the two amplitudes of the nutation grow or decay by
+friction.
 
-Near a vertical the logarithms of the amplitudes are linear in time, so that a few large steps of a method of
-high order are enough. The amplitudes are those about the pole that the nutation is nearer to.
+Near a vertical the logarithms of the amplitudes are linear in time, so that a few large steps of a
+method of high order are enough. The amplitudes are those about the pole that the nutation is nearer
+to.
 """
 
 import math
@@ -34,10 +36,12 @@ class Nutation(NamedTuple):
     turned: bool
     """Whether it is theta = pi."""
     log_scale: float = 0.0
-    """Logarithm of what the amplitudes are of those of `orbit`: for nutations so narrow that their squares
-    are no numbers. They are linear."""
+    """Logarithm of what the amplitudes are of those of `orbit`: for nutations so narrow that their
+    squares are no numbers. They are linear.
+    """
     log_share: float = 0.0
-    """The same of the smaller amplitude alone, where it is too small beside the other for its rate."""
+    """The same of the smaller amplitude alone, where it is too small beside the other for its rate.
+    """
 
     @property
     def point(self) -> Array:
@@ -61,7 +65,10 @@ class Nutation(NamedTuple):
     @property
     def tilts(self) -> tuple[float, float]:
         """Its turning tilts, rad."""
-        near, far = max(self.orbit.middle - self.orbit.half, 0.0), self.orbit.middle + self.orbit.half
+        near, far = (
+            max(self.orbit.middle - self.orbit.half, 0.0),
+            self.orbit.middle + self.orbit.half,
+        )
         scale = math.exp(0.5 * self.log_scale)
         low, high = (2.0 * scale * math.asin(math.sqrt(min(0.5 * p, 1.0))) for p in (near, far))
         return (math.pi - high, math.pi - low) if self.turned else (low, high)
@@ -78,7 +85,9 @@ def launched(angles: Angles, numbers: Numbers) -> Nutation:
     wider = _NARROW / width if 0.0 < width < _NARROW else 1.0
     wide = angles._replace(tilt=wider * angles.tilt, tilt_rate=wider * angles.tilt_rate)
     orbit = orbit_of_angles(wide, numbers)
-    if numbers.alpha < 0.0 and not orbit.far < -_APART:  # where it just passes or just reaches the pole
+    if (
+        numbers.alpha < 0.0 and not orbit.far < -_APART
+    ):  # where it just passes or just reaches the pole
         middle = max(seen.middle, seen.half, _APART)
         return Nutation(seen._replace(middle=middle, far=min(seen.far, -(_APART**2))), turned)
     return Nutation(orbit, turned, -2.0 * math.log(wider))
@@ -138,7 +147,8 @@ class Stage(NamedTuple):
 def follow_nutation(
     begin: Nutation, jellett: float, numbers: Numbers, goals: Goals, tolerance: float
 ) -> Stage:
-    """Follow the amplitudes until the nutation is steady, is nearer to the other pole, or needs a pull.
+    """Follow the amplitudes until the nutation is steady, is nearer to the other pole, or needs a
+    pull.
 
     The `tolerance` is the error in a step, of the logarithms.
     """
@@ -154,7 +164,9 @@ def follow_nutation(
     knots, pieces = [0.0], []
     final, done, pulled = math.nan, True, False
     for _ in range(_MOST_STEPS):
-        seen = orbit_of_amplitudes(_amplitudes_of(solver.y), float(solver.y[2]), jellett, seen_numbers)
+        seen = orbit_of_amplitudes(
+            _amplitudes_of(solver.y), float(solver.y[2]), jellett, seen_numbers
+        )
         pulled = goals.unilateral and least_reaction(seen, seen_numbers) < 0.0
         if pulled:
             break
@@ -170,7 +182,9 @@ def follow_nutation(
         pieces.append(solver.dense_output())
     share = min(0.0, -abs(solver.y[0] - solver.y[1]) - math.log(_LEAST_AMPLITUDE))
     path = OdeSolution(knots, pieces) if pieces else None
-    return Stage(np.array(knots), path, begin, Nutation(seen, turned, log_share=share), final, done, pulled)
+    return Stage(
+        np.array(knots), path, begin, Nutation(seen, turned, log_share=share), final, done, pulled
+    )
 
 
 _FAR_FROM_POLE = 1.3
@@ -193,7 +207,9 @@ _ROUNDING = 1e-12
 
 
 def _rates(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> AmplitudeRates:
-    """Rates of the amplitudes; not a number where there is no nutation, so that the step is made smaller."""
+    """Rates of the amplitudes; not a number where there is no nutation, so that the step is made
+    smaller.
+    """
     if math.sqrt(pair.fast) + math.sqrt(pair.slow) <= 1.0 + _ROUNDING:
         with suppress(ValueError, ZeroDivisionError):
             return amplitude_rates(pair, root, jellett, numbers)
@@ -201,9 +217,11 @@ def _rates(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> A
 
 
 def _amplitudes_of(y: Array) -> Amplitudes:
-    """The amplitudes with these logarithms, neither taken so small that its rate would be lost in rounding.
+    """The amplitudes with these logarithms, neither taken so small that its rate would be lost in
+    rounding.
 
-    The logarithmic rate of a small amplitude does not depend on its size, nor do those of two small ones.
+    The logarithmic rate of a small amplitude does not depend on its size, nor do those of two small
+    ones.
     """
     lift = max(0.0, _NARROWEST - max(y[0], y[1]))
     fast, slow = math.exp(min(y[0] + lift, 0.0)), math.exp(min(y[1] + lift, 0.0))

@@ -1,10 +1,10 @@
 """Where a launch ends: the stable steady states that have its Jellett's integral.
 
-Friction without drilling torque leaves lambda alone and takes energy as long as there is slip, in flight
-and in impacts too. So a run ends in a steady state with the lambda of its launch, and a stable one unless
-it was put exactly on another. Where two are stable, energy may decide: the tilt can only move where the
-least energy that goes with lambda is below what is left, and a steady state behind a barrier higher than
-that is out of reach.
+Friction without drilling torque leaves lambda alone and takes energy as long as there is slip, in
+flight and in impacts too. So a run ends in a steady state with the lambda of its launch, and a
+stable one unless it was put exactly on another. Where two are stable, energy may decide: the tilt
+can only move where the least energy that goes with lambda is below what is left, and a steady state
+behind a barrier higher than that is out of reach.
 
 This holds while the table only pushes. A bilateral contact that pulls can give energy.
 """
@@ -66,15 +66,16 @@ class Prediction:
 def predict(problem: Problem) -> Prediction:
     """The steady states a launch of an eccentric sphere can end in.
 
-    Of a body of several surfaces it tells the end on the one that it is launched on, if that is a sphere and
-    the energy keeps the others off the table. A launch exactly on an unstable steady state, such as one at
-    tilt 0 with no perturbation, stays there; the prediction is for one beside it.
+    Of a body of several surfaces it tells the end on the one that it is launched on, if that is a
+    sphere and the energy keeps the others off the table. A launch exactly on an unstable steady
+    state, such as one at tilt 0 with no perturbation, stays there; the prediction is for one beside
+    it.
 
     Raises
     ------
     InvalidInput
-        If Jellett's integral is not conserved, a dry point rubs, there is no friction, or another surface of
-        the body can touch.
+        If Jellett's integral is not conserved, a dry point rubs, there is no friction, or another
+        surface of the body can touch.
 
     Examples
     --------
@@ -101,12 +102,13 @@ def predict(problem: Problem) -> Prediction:
 
 
 def _on_one_of_several(problem: Problem, hull: Hull) -> Prediction:
-    """The end on the surface of the launch, where the energy of the launch keeps all others off the table.
+    """The end on the surface of the launch, where the energy of the launch keeps all others off the
+    table.
 
-    Jellett's integral holds on one surface. When another touches, it begins anew with a number that the
-    whole motion decides. So does, with more energy than that takes, whether it touches at all: only where
-    friction is weak does the tilt follow a path that the theory knows, and how far it nods beside that path
-    goes with the launch and the friction.
+    Jellett's integral holds on one surface. When another touches, it begins anew with a number that
+    the whole motion decides. So does, with more energy than that takes, whether it touches at all:
+    only where friction is weak does the tilt follow a path that the theory knows, and how far it
+    nods beside that path goes with the launch and the friction.
     """
     alone = on_surface(problem, hull.active)
     found = predict(alone)
@@ -117,9 +119,9 @@ def _on_one_of_several(problem: Problem, hull: Hull) -> Prediction:
         if needed <= available:
             shown = f"one whose surface {number} can touch, at a tilt of {tilt:.4g} rad"
             accepted = (
-                f"one surface, or a launch of less than the {needed:.4g} J that this takes; it has "
-                f"{available:.4g} J, with which the whole motion decides whether that surface touches, and "
-                "with what Jellett's integral the top goes on then: run it instead"
+                f"one surface, or a launch of less than the {needed:.4g} J that this takes; it has"
+                f" {available:.4g} J, with which the whole motion decides whether that surface"
+                " touches, and with what Jellett's integral the top goes on then: run it instead"
             )
             raise InvalidInput("body.shape", shown, accepted)
     low, high = tilts_held(hull, problem.launch.tilt)
@@ -146,13 +148,17 @@ def tilts_held(hull: Hull, tilt: float) -> tuple[float, float]:
 
 
 def nearest(tilts: Iterable[float], tilt: float) -> tuple[float, float]:
-    """The last of some tilts up to one, and the first above it, rad; 0 and pi where there is none."""
+    """The last of some tilts up to one, and the first above it, rad; 0 and pi where there is
+    none.
+    """
     below, above = [at for at in tilts if at <= tilt], [at for at in tilts if at > tilt]
     return max(below, default=0.0), min(above, default=math.pi)
 
 
 def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:
-    """The tilts next to one, rad, at which another surface touches beside the active one, and its number."""
+    """The tilts next to one, rad, at which another surface touches beside the active one, and its
+    number.
+    """
     found: dict[float, int] = {}
     for number, other in enumerate(hull.each):
         if number != hull.active:
@@ -162,7 +168,9 @@ def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:
 
 
 def _meetings(one: Hull, other: Hull) -> list[float]:
-    """The tilts at which two surfaces touch together, rad, and change places, however soon again."""
+    """The tilts at which two surfaces touch together, rad, and change places, however soon
+    again.
+    """
 
     def gap(at: float) -> float:
         return float(one.height(math.cos(at)) - other.height(math.cos(at)))
@@ -171,19 +179,26 @@ def _meetings(one: Hull, other: Hull) -> list[float]:
 
 
 def steady_launch(problem: Problem) -> SteadyState[float] | None:
-    """The steady state that a launch is exactly on, to rounding, or None: nothing but its azimuth changes.
+    """The steady state that a launch is exactly on, to rounding, or None: nothing but its azimuth
+    changes.
 
     Raises `InvalidInput` if it turns too fast for the theory.
     """
     top, launch, start = problem.top, problem.launch, problem.start()
     jellett, units = jellett_of_launch(problem), natural_units(top)
     if launch.tilt in (0.0, math.pi):
-        steady = vertical_spin(SteadyKind.INVERTED if launch.tilt else SteadyKind.UPRIGHT, top, launch.spin)
+        steady = vertical_spin(
+            SteadyKind.INVERTED if launch.tilt else SteadyKind.UPRIGHT, top, launch.spin
+        )
         rates = [launch.tilt_rate]
     else:
         c = start.axis[2]
         level = abs(top.surface.slope(c)) <= ROUNDING * units.length
-        steady = level_spin(top, launch.precession) if level else precession_at(launch.tilt, jellett, top)
+        steady = (
+            level_spin(top, launch.precession)
+            if level
+            else precession_at(launch.tilt, jellett, top)
+        )
         gyroscopic = gyroscopic_reaction(c, top) * steady.precession**2
         unbalanced = 0.0 if level else (gyroscopic - weight_moment(c, top)) / units.inertia
         rates = [
@@ -200,10 +215,12 @@ def steady_launch(problem: Problem) -> SteadyState[float] | None:
 
 
 def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
-    """Whether the energy that is left holds an eccentric sphere's tilt within `closeness`, rad, for good.
+    """Whether the energy that is left holds an eccentric sphere's tilt within `closeness`, rad, for
+    good.
 
-    It does where the least energy that goes with Jellett's integral is above it on both sides: the tilt
-    cannot pass there, and a stable steady state lies between. Beyond a vertical axis there is nothing to bar.
+    It does where the least energy that goes with Jellett's integral is above it on both sides: the
+    tilt cannot pass there, and a stable steady state lies between. Beyond a vertical axis there is
+    nothing to bar.
 
     Every number of the states is of shape (n,); the top has numbers or arrays of that shape.
     """
@@ -211,13 +228,16 @@ def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
     left, integral = energy(state, top), jellett(state, top)
     below, above = tilt - closeness, tilt + closeness
     bars_below = (below < 0.0) | (least_energy(np.maximum(below, 0.0), integral, top, np) > left)
-    bars_above = (above > math.pi) | (least_energy(np.minimum(above, math.pi), integral, top, np) > left)
+    bars_above = (above > math.pi) | (
+        least_energy(np.minimum(above, math.pi), integral, top, np) > left
+    )
     held: NDArray[np.bool_] = bars_below & bars_above
     return held
 
 
 def stable_by_energy(states: list[SteadyState[float]]) -> list[SteadyState[float]]:
-    """Those of all steady states with one Jellett's integral, by their tilts, that are minima of the energy.
+    """Those of all steady states with one Jellett's integral, by their tilts, that are minima of
+    the energy.
 
     They are the extrema of the least energy over the tilt, which are minima and maxima in turn.
     """
@@ -239,7 +259,8 @@ def _by_energy(states: list[SteadyState[float]]) -> tuple[SteadyState[float], ..
 
 
 def _reach(states: list[SteadyState[float]], tilt: float, available: float) -> tuple[float, float]:
-    """Tilts between the nearest barriers on both sides: steady states with more energy than is available.
+    """Tilts between the nearest barriers on both sides: steady states with more energy than is
+    available.
 
     A minimum of the energy is between them, the lowest if nothing else.
     """

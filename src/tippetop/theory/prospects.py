@@ -1,4 +1,6 @@
-"""What a toy can be expected to do, from its body alone: does it turn over, and can it stand on its stem."""
+"""What a toy can be expected to do, from its body alone: does it turn over, and can it stand on its
+stem.
+"""
 
 import math
 from dataclasses import dataclass
@@ -27,15 +29,19 @@ from tippetop.theory.thresholds import (
 
 @dataclass(frozen=True)
 class StemTest:
-    """What it takes to stand on a stem: the inverted spin of the sphere at its tip holds above this."""
+    """What it takes to stand on a stem: the inverted spin of the sphere at its tip holds above
+    this.
+    """
 
     jellett: float
     """Jellett's integral about the tip, -L.a, kg m^3/s; inf if nothing is enough."""
     spin: float
     """The axial spin that goes with it when the axis is vertical, rad/s."""
     launch: float
-    """Spin of launches, rad/s, that rise slowly on the sphere and have this integral when the tip first
-    touches; nan where something else touches before it. What is lost while both touch comes on top."""
+    """Spin of launches, rad/s, that rise slowly on the sphere and have this integral when the tip
+    first touches; nan where something else touches before it. What is lost while both touch comes
+    on top.
+    """
 
 
 @dataclass(frozen=True)
@@ -47,7 +53,8 @@ class Touch:
     surface: int
     """Number of that surface."""
     spin: float
-    """Least spin of launches, rad/s, whose end on the sphere alone is beyond; inf if there is none."""
+    """Least spin of launches, rad/s, whose end on the sphere alone is beyond; inf if there is none.
+    """
 
 
 @dataclass(frozen=True)
@@ -68,11 +75,15 @@ class Prospects:
     """What it takes to stand on the sphere at the other end; None if there is none."""
 
 
-def prospects(body: Body, shapes: list[Shape], gravity: float = 9.8, tilt: float = 0.1) -> Prospects | None:
-    """What a toy can be expected to do; None if it does not lie on a sphere, below the centre of that.
+def prospects(
+    body: Body, shapes: list[Shape], gravity: float = 9.8, tilt: float = 0.1
+) -> Prospects | None:
+    """What a toy can be expected to do; None if it does not lie on a sphere, below the centre of
+    that.
 
-    Of the body count its mass and moments of inertia; its surfaces are given from the one it stands on
-    upright to the one it stands on inverted. `gravity` is in m/s^2, `tilt` that of the launches meant, rad.
+    Of the body count its mass and moments of inertia; its surfaces are given from the one it stands
+    on upright to the one it stands on inverted. `gravity` is in m/s^2, `tilt` that of the launches
+    meant, rad.
     """
     sphere = shapes[0]
     if isinstance(sphere, Sphere) and 0.0 < sphere.center < sphere.radius:
@@ -88,7 +99,11 @@ def prospects(body: Body, shapes: list[Shape], gravity: float = 9.8, tilt: float
     group = classify(body.I1 / body.I3, sphere.eccentricity)
     surfaces = (problem.top.surface, *(shape.surface for shape in shapes[1:]))
     touch = _touch(problem, surfaces, group)
-    stem = _stem(problem, surfaces, touch) if isinstance(shapes[-1], Sphere) and len(shapes) > 1 else None
+    stem = (
+        _stem(problem, surfaces, touch)
+        if isinstance(shapes[-1], Sphere) and len(shapes) > 1
+        else None
+    )
     return Prospects(sphere.eccentricity, group, critical_spins(problem), tilt, touch, stem)
 
 
@@ -97,8 +112,11 @@ def _touch(problem: Problem, surfaces: tuple[Surface, ...], group: Group) -> Tou
     beyond = [at for at in ends if at > problem.launch.tilt]
     if not beyond:
         return None
-    # From upright it rises along the steady precessions once they have no stable one before this tilt.
-    needed = max(critical_jellett(SteadyKind.UPRIGHT, problem.top), branch_jellett(beyond[0], problem.top))
+    # From upright it rises along the steady precessions once they have no stable one before this
+    # tilt.
+    needed = max(
+        critical_jellett(SteadyKind.UPRIGHT, problem.top), branch_jellett(beyond[0], problem.top)
+    )
     spin = jellett_line(problem).spin_at(needed if group.leaves_upright else math.inf)
     return Touch(beyond[0], ends[beyond[0]], spin)
 
@@ -109,14 +127,18 @@ def _stem(problem: Problem, surfaces: tuple[Surface, ...], touch: Touch | None) 
     least, launch = critical_jellett(inverted, top), math.nan
     if touch is not None and touch.surface == len(surfaces) - 1:
         share = _handed_over(touch.tilt, problem.top, surfaces[-1])
-        launch = max(touch.spin, jellett_line(problem).spin_at(least / share) if share > 0.0 else math.inf)
+        launch = max(
+            touch.spin, jellett_line(problem).spin_at(least / share) if share > 0.0 else math.inf
+        )
     return StemTest(least, critical_spin(inverted, top), launch)
 
 
 def _handed_over(tilt: float, top: Top, other: Surface) -> float:
-    """Jellett's integral about another surface, of the motion that has the least energy with that of one: 1.
+    """Jellett's integral about another surface, of the motion that has the least energy with that
+    of one: 1.
 
-    That motion, L along I a, is the precession without slip, to which a rise comes the closer the slower.
+    That motion, L along I a, is the precession without slip, to which a rise comes the closer the
+    slower.
     """
     axis: Vector = (math.sin(tilt), 0.0, math.cos(tilt))
     arm, new = contact_vector(axis, top.surface), contact_vector(axis, other)

@@ -9,7 +9,9 @@ from tippetop.mechanics.top import Top
 def require_one_surface(top: Top) -> None:
     """Refuse a body of several surfaces, with `InvalidInput`."""
     if isinstance(top.surface, Hull):
-        raise InvalidInput("body.shape", "several surfaces", "one of them at a time, for the theory to tell")
+        raise InvalidInput(
+            "body.shape", "several surfaces", "one of them at a time, for the theory to tell"
+        )
 
 
 def require_sphere(top: Top) -> None:
@@ -26,24 +28,32 @@ def require_jellett(top: Top) -> None:
     require_sphere(top)
     if top.rolling_resistance is not None:
         arm = top.rolling_resistance.length
-        raise InvalidInput("rolling_resistance", arm, "0: with it Jellett's integral is not conserved")
+        raise InvalidInput(
+            "rolling_resistance", arm, "0: with it Jellett's integral is not conserved"
+        )
     if not top.conserves_jellett:
         raise InvalidInput(
-            "friction", "one with a torque", "friction without torque, which conserves Jellett's integral"
+            "friction",
+            "one with a torque",
+            "friction without torque, which conserves Jellett's integral",
         )
 
 
 def require_creep(top: Top) -> None:
-    """Refuse friction that is not proportional to small slip about a vertical spin, with `InvalidInput`.
+    """Refuse friction that is not proportional to small slip about a vertical spin, with
+    `InvalidInput`.
 
-    There is no linear motion then: a point on dry friction sticks, and rolls for ever whatever is stable, and
-    resistance to rolling holds an axis that hardly moves. A patch on dry friction does creep, by drilling.
-    A body of several surfaces is refused too, and one that lies flat when its axis is vertical.
+    There is no linear motion then: a point on dry friction sticks, and rolls for ever whatever is
+    stable, and resistance to rolling holds an axis that hardly moves. A patch on dry friction does
+    creep, by drilling. A body of several surfaces is refused too, and one that lies flat when its
+    axis is vertical.
     """
     require_one_surface(top)
     if is_edge(top.surface):
         raise InvalidInput(
-            "body.shape", "one that lies flat", "a shape that touches in one point when its axis is vertical"
+            "body.shape",
+            "one that lies flat",
+            "a shape that touches in one point when its axis is vertical",
         )
     if top.rolling_resistance is not None:
         arm = top.rolling_resistance.length
@@ -54,6 +64,6 @@ def require_creep(top: Top) -> None:
         raise InvalidInput(
             "friction",
             "dry friction of a point",
-            "viscous, regularized or Contensou friction, by which slip never ends while the top spins; on "
-            "this one it sticks, and may roll for ever in a state that is not stable",
+            "viscous, regularized or Contensou friction, by which slip never ends while the top"
+            " spins; on this one it sticks, and may roll for ever in a state that is not stable",
         )

@@ -1,4 +1,6 @@
-"""Rolling steadily while the centre of mass is at rest: disks, hurricane balls, and any other body."""
+"""Rolling steadily while the centre of mass is at rest: disks, hurricane balls, and any other
+body.
+"""
 
 import math
 from typing import NamedTuple
@@ -18,7 +20,8 @@ class RestingCenter(NamedTuple):
 
 
 def resting_center(tilt: float, top: Top) -> RestingCenter | None:
-    """How a body of revolution rolls at this tilt (rad) while its centre of mass is at rest; floats.
+    """How a body of revolution rolls at this tilt (rad) while its centre of mass is at rest;
+    floats.
 
     Returns
     -------
@@ -27,14 +30,14 @@ def resting_center(tilt: float, top: Top) -> RestingCenter | None:
 
     Notes
     -----
-    The table bears the weight alone, and the angular velocity lies along the contact vector, whose components
-    along the axis n and across it, towards the vertical, are a_n and a_e. With L going round at the rate
-    Omega, Omega z x L = a x m g z gives
+    The table bears the weight alone, and the angular velocity lies along the contact vector, whose
+    components along the axis n and across it, towards the vertical, are a_n and a_e. With L going
+    round at the rate Omega, Omega z x L = a x m g z gives
 
         Omega^2 s (I3 s a_n / a_e - I1 c) = m g (a_e c - a_n s),        omega3 = Omega s a_n / a_e.
 
-    For a thin disk of radius R this is Omega^2 = 4 g / (R s), and for two balls that touch, cos(theta) =
-    2/5 - g / (Omega^2 R).
+    For a thin disk of radius R this is Omega^2 = 4 g / (R s), and for two balls that touch,
+    cos(theta) = 2/5 - g / (Omega^2 R).
     """
     s, c = math.sin(tilt), math.cos(tilt)
     lowest = lowest_surface(top.surface, c)

@@ -1,8 +1,10 @@
-"""All roots of a smooth function between two bounds, by Chebyshev series that follow it piece by piece.
+"""All roots of a smooth function between two bounds, by Chebyshev series that follow it piece by
+piece.
 
-A piece on which a series of low degree is not the function to rounding is halved. The roots of a series lie
-between those of its derivative, one at most between two, and so from degree to degree: none is missed,
-however close two of them are (Boyd, *Solving Transcendental Equations*, 2014, chapter 3). Plain operators.
+A piece on which a series of low degree is not the function to rounding is halved. The roots of a
+series lie between those of its derivative, one at most between two, and so from degree to degree:
+none is missed, however close two of them are (Boyd, *Solving Transcendental Equations*, 2014,
+chapter 3). Plain operators.
 """
 
 import math
@@ -18,8 +20,12 @@ ROUNDING = 1e-13
 """What the last terms of a series may be, relative to the largest value there is."""
 
 
-def roots_between(function: Callable[[float], float], low: float, high: float, noise: float) -> list[float]:
-    """Roots of a function between two bounds, at which it is not asked, in order; values to `noise` are 0."""
+def roots_between(
+    function: Callable[[float], float], low: float, high: float, noise: float
+) -> list[float]:
+    """Roots of a function between two bounds, at which it is not asked, in order; values to `noise`
+    are 0.
+    """
     least = max(noise, ROUNDING * largest(series_of(function, low, high)))
     found: list[float] = []
     waiting = [(low, high, 0)]
@@ -37,13 +43,17 @@ def roots_between(function: Callable[[float], float], low: float, high: float, n
 
 
 def series_of(function: Callable[[float], float], low: float, high: float) -> list[float]:
-    """Coefficients of the Chebyshev series that is the function at Chebyshev's points of a piece."""
+    """Coefficients of the Chebyshev series that is the function at Chebyshev's points of a
+    piece.
+    """
     count = DEGREE + 1
     angles = [math.pi * (place + 0.5) / count for place in range(count)]
     values = [function(low + 0.5 * (high - low) * (1.0 + math.cos(angle))) for angle in angles]
     found = []
     for term in range(count):
-        total = sum(value * math.cos(term * angle) for value, angle in zip(values, angles, strict=True))
+        total = sum(
+            value * math.cos(term * angle) for value, angle in zip(values, angles, strict=True)
+        )
         found.append((2.0 if term else 1.0) / count * total)
     return found
 

@@ -1,16 +1,18 @@
 """Linear stability of the steady states, in a frame that turns with the precession.
 
-A steady precession is an equilibrium of the equations of motion written in the frame that turns about the
-vertical at its rate phi'. There the linear motion has constant coefficients, and its eigenvalues decide.
-Three of them mean nothing: that the axis is a unit vector takes one away, and two are zero whatever the
-parameters, those of the turned and of the neighbouring steady states. They are divided out exactly, because
-together they form a Jordan block, whose eigenvalues rounding would spread over 1e-8 of the others.
+A steady precession is an equilibrium of the equations of motion written in the frame that turns
+about the vertical at its rate phi'. There the linear motion has constant coefficients, and its
+eigenvalues decide. Three of them mean nothing: that the axis is a unit vector takes one away, and
+two are zero whatever the parameters, those of the turned and of the neighbouring steady states.
+They are divided out exactly, because together they form a Jordan block, whose eigenvalues rounding
+would spread over 1e-8 of the others.
 
 The Jacobian is that of `tippetop.mechanics.motion.sliding_rates` itself, differentiated exactly.
 
-A vertical spin that drills loses spin, but no more to first order when it is disturbed: its spectrum is that
-of the spin it has, and drilling makes dry friction viscous there, with mu_viscous = (3 pi / 8) mu / (R omega)
-for a patch of radius R with Hertz's pressure and mu / (rho omega) for an ellipsoidal limit surface.
+A vertical spin that drills loses spin, but no more to first order when it is disturbed: its
+spectrum is that of the spin it has, and drilling makes dry friction viscous there, with mu_viscous
+= (3 pi / 8) mu / (R omega) for a patch of radius R with Hertz's pressure and mu / (rho omega) for
+an ellipsoidal limit surface.
 """
 
 import math
@@ -56,13 +58,15 @@ NEUTRAL = {
     SteadyKind.PRECESSION: (TURNED, NEIGHBOUR),
     SteadyKind.LEVEL: (TURNED, NEIGHBOUR),
 }
-"""The zero eigenvalues of each kind of steady state, by their motion: not counted in a `Spectrum`."""
+"""The zero eigenvalues of each kind of steady state, by their motion: not counted in a `Spectrum`.
+"""
 
 ROUNDING = 1e-12
 """Growth rates below this fraction of the largest eigenvalue are taken for zero."""
 
 SLOWEST = 1e-6
-"""Spin in natural units from which on a dry patch drills; with less, all but friction is rounding."""
+"""Spin in natural units from which on a dry patch drills; with less, all but friction is rounding.
+"""
 
 
 @dataclass(frozen=True)
@@ -72,8 +76,9 @@ class Spectrum:
     eigenvalues: Complex
     """1/s, by decreasing real part: 5 for a precession, 6 for a vertical spin."""
     frame_rate: float
-    """Angular velocity of the frame about the vertical, rad/s: in another frame the imaginary parts of a
-    vertical spin's eigenvalues shift by the difference."""
+    """Angular velocity of the frame about the vertical, rad/s: in another frame the imaginary parts
+    of a vertical spin's eigenvalues shift by the difference.
+    """
     neutral: tuple[str, ...]
     """Names of the zero eigenvalues that were divided out, which are those of symmetry."""
 
@@ -100,12 +105,12 @@ class Spectrum:
 def spectrum(steady: SteadyState[float], top: Top, frame_rate: float | None = None) -> Spectrum:
     """Eigenvalues of the linear motion about a steady state; here the top's friction matters.
 
-    It is that in a frame which turns about the vertical at `frame_rate`, rad/s; if this is None, at the
-    state's precession, which for a vertical spin is 0: a frame at rest. Only a vertical spin is steady in
-    other frames; for other states `frame_rate` is ignored.
+    It is that in a frame which turns about the vertical at `frame_rate`, rad/s; if this is None, at
+    the state's precession, which for a vertical spin is 0: a frame at rest. Only a vertical spin is
+    steady in other frames; for other states `frame_rate` is ignored.
 
-    Raises `InvalidInput` if there is no linear motion: friction of a point is dry, rolling is resisted, or
-    the top drills on anything but a vertical spin, or on one that hardly turns.
+    Raises `InvalidInput` if there is no linear motion: friction of a point is dry, rolling is
+    resisted, or the top drills on anything but a vertical spin, or on one that hardly turns.
     """
     rate = steady.precession
     if frame_rate is not None and steady.kind in VERTICAL_SPINS:
@@ -114,7 +119,8 @@ def spectrum(steady: SteadyState[float], top: Top, frame_rate: float | None = No
 
 
 def eigenvalues(steady: SteadyState[Scalar], top: Top, frame_rate: Scalar = None) -> Complex:
-    """Eigenvalues about n steady states of one kind, 1/s, by decreasing real part, shape (n, 5 or 6).
+    """Eigenvalues about n steady states of one kind, 1/s, by decreasing real part, shape (n, 5 or
+    6).
 
     As of a `spectrum`; nan where there is no such state.
     """
@@ -124,7 +130,9 @@ def eigenvalues(steady: SteadyState[Scalar], top: Top, frame_rate: Scalar = None
         for each in np.broadcast_arrays(steady.tilt, steady.precession, steady.spin, frame)
     )
     exists = np.isfinite(precession)
-    linear = _linear(steady.kind, tilt[exists], precession[exists], spin[exists], frame[exists], top)
+    linear = _linear(
+        steady.kind, tilt[exists], precession[exists], spin[exists], frame[exists], top
+    )
     values: Complex = np.linalg.eigvals(linear.matrix).astype(complex) / linear.units.time
     order = np.lexsort((values.imag, -values.real))
     found = np.full((tilt.size, values.shape[-1]), complex(math.nan, math.nan))
@@ -138,7 +146,8 @@ def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
 
 
 def linear_tilts(steady: SteadyState[float], top: Top, start: SlidingState, times: Array) -> Array:
-    """Distance of the axis from the vertical in the linear motion about a vertical spin, rad, shape (n,).
+    """Distance of the axis from the vertical in the linear motion about a vertical spin, rad, shape
+    (n,).
 
     It starts in a state close to this, SI; the times after it, s, are of shape (n,).
     """
@@ -156,19 +165,25 @@ def linear_tilts(steady: SteadyState[float], top: Top, start: SlidingState, time
 
 
 class _Linear(NamedTuple):
-    """Linear motion about n steady states in natural units: its matrix, on a basis of what counts."""
+    """Linear motion about n steady states in natural units: its matrix, on a basis of what
+    counts.
+    """
 
     basis: Array
     matrix: Array
     units: Units
 
 
-def _linear(kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top) -> _Linear:
+def _linear(
+    kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top
+) -> _Linear:
     """Linear motion about n steady states of one kind, shapes (n, 8, k) and (n, k, k)."""
     units = Units(*(float(unit) for unit in natural_units(top)))
     if kind not in VERTICAL_SPINS and not top.friction.torque_free:
         raise InvalidInput(
-            "friction", "one with a torque", "friction without torque; no precession is steady under it"
+            "friction",
+            "one with a torque",
+            "friction without torque; no precession is steady under it",
         )
     scaled = natural(drilling(top, spin))
     angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))
@@ -183,17 +198,20 @@ def _linear(kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame
 
 
 def drilling(top: Top, turning: Array) -> Top:
-    """The top with the branch of its law that holds where it hardly slips and turns at these rates, rad/s.
+    """The top with the branch of its law that holds where it hardly slips and turns at these rates,
+    rad/s.
 
-    Raises `InvalidInput` if friction has no linear motion about a vertical spin, or it hardly turns on dry
-    friction.
+    Raises `InvalidInput` if friction has no linear motion about a vertical spin, or it hardly turns
+    on dry friction.
     """
     require_creep(top)
     if not is_set_valued(top.friction):
         return top
     slowest, time = float(np.min(np.abs(turning))), float(natural_units(top).time)
     if slowest * time < SLOWEST:
-        accepted = f"at least {SLOWEST / time:.2g} rad/s: without drilling dry friction lets it stick"
+        accepted = (
+            f"at least {SLOWEST / time:.2g} rad/s: without drilling dry friction lets it stick"
+        )
         raise InvalidInput("spin", slowest, accepted)
     return on_branch(top, (0.0, 0.0, 1.0))
 
@@ -211,12 +229,16 @@ def _rates_in_frame(top: Top, frame: Array) -> Callable[[Sequence[Any]], list[An
 
 
 def _turned(y: Sequence[Scalar]) -> tuple[Scalar, ...]:
-    """Products z x n, z x L and z x u: how the 8 numbers change as the state turns about the vertical."""
+    """Products z x n, z x L and z x u: how the 8 numbers change as the state turns about the
+    vertical.
+    """
     return (-y[1], y[0], 0.0, -y[4], y[3], 0.0, -y[7], y[6])
 
 
 def _meaningless(kind: SteadyKind, angles: Angles, point: list[Array], top: Top) -> Array:
-    """The directions to divide out, shape (n, 8, 2 or 3): off the unit sphere, and the neutral ones."""
+    """The directions to divide out, shape (n, 8, 2 or 3): off the unit sphere, and the neutral
+    ones.
+    """
     zero = np.zeros_like(point[0])
     off_sphere = [*point[:3], *[zero] * 5]
     if kind in VERTICAL_SPINS:
@@ -225,16 +247,21 @@ def _meaningless(kind: SteadyKind, angles: Angles, point: list[Array], top: Top)
         directions = [off_sphere, list(_turned(point)), [*[zero] * 5, zero + 1.0, zero, zero]]
     else:
         directions = [off_sphere, list(_turned(point)), _along_branch(angles, top)]
-    columns = [np.stack([number + zero for number in direction], axis=-1) for direction in directions]
+    columns = [
+        np.stack([number + zero for number in direction], axis=-1) for direction in directions
+    ]
     return np.stack(columns, axis=-1)
 
 
 def _along_branch(angles: Angles, top: Top) -> list[Array]:
-    """Derivative of the steady precession by its tilt, that of its rate from the balance of the moments."""
+    """Derivative of the steady precession by its tilt, that of its rate from the balance of the
+    moments.
+    """
 
     def unbalanced(tilt: Array) -> Scalar:
         return (
-            weight_moment(np.cos(tilt), top) - gyroscopic_reaction(np.cos(tilt), top) * angles.precession**2
+            weight_moment(np.cos(tilt), top)
+            - gyroscopic_reaction(np.cos(tilt), top) * angles.precession**2
         )
 
     steepness = 2.0 * weight_moment(np.cos(angles.tilt), top) / angles.precession

@@ -1,12 +1,14 @@
 """Steady states of a body of revolution on a table: no slip, no friction, constant tilt.
 
-In a steady precession the axis turns about the vertical at the rate phi' with constant tilt and axial spin
-omega3, the centre of mass rests and the contact point does not slip. That slip vanishes gives
-omega3 = phi' (c + h' / (h - h' c)), and the balance of the moments phi'^2 (I3 omega3 / phi' - I1 c) = m g h',
-with c = cos(theta) and the support function h(c). For the eccentric sphere these are equation (2.17) of the
-report, omega3 = phi' (c - alpha), and phi'^2 = m g R alpha / (I1 c + I3 (alpha - c)).
+In a steady precession the axis turns about the vertical at the rate phi' with constant tilt and
+axial spin omega3, the centre of mass rests and the contact point does not slip. That slip vanishes
+gives omega3 = phi' (c + h' / (h - h' c)), and the balance of the moments phi'^2 (I3 omega3 / phi' -
+I1 c) = m g h', with c = cos(theta) and the support function h(c). For the eccentric sphere these
+are equation (2.17) of the report, omega3 = phi' (c - alpha), and phi'^2 = m g R alpha / (I1 c + I3
+(alpha - c)).
 
-Friction does not enter: the same states serve every friction law. What counts them is Jellett's integral.
+Friction does not enter: the same states serve every friction law. What counts them is Jellett's
+integral.
 """
 
 import math
@@ -56,8 +58,9 @@ class SteadyState(Generic[Number]):
     tilt: Number
     """theta, rad."""
     precession: Number
-    """phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning; nan, as what
-    follows, where nothing precesses steadily at this tilt."""
+    """phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning;
+    nan, as what follows, where nothing precesses steadily at this tilt.
+    """
     spin: Number
     """Axial spin omega3, rad/s."""
     jellett: Number
@@ -78,7 +81,9 @@ class RollingPrecession(NamedTuple):
 
 
 def rolling_precession(tilt: Scalar, top: Top, functions: Functions) -> RollingPrecession:
-    """The precession without slip at a tilt, rad, leaning along x: L = phi' I1 (z - c n) + I3 omega3 n."""
+    """The precession without slip at a tilt, rad, leaning along x: L = phi' I1 (z - c n) + I3
+    omega3 n.
+    """
     axis = (functions.sin(tilt), 0.0, functions.cos(tilt))
     along = scale(gyroscopic_reaction(axis[2], top), axis)
     momentum = add(scale(top.transverse_inertia, VERTICAL), along)
@@ -86,18 +91,24 @@ def rolling_precession(tilt: Scalar, top: Top, functions: Functions) -> RollingP
 
 
 def rolling_spin(c: Scalar, surface: Surface) -> Scalar:
-    """Ratio omega3 / phi' of a precession without slip, c + h' / (h - h' c): (2.17) for the sphere."""
+    """Ratio omega3 / phi' of a precession without slip, c + h' / (h - h' c): (2.17) for the
+    sphere.
+    """
     slope = surface.slope(c)
     return c + slope / (surface.height(c) - slope * c)
 
 
 def gyroscopic_reaction(c: Scalar, top: Top) -> Scalar:
-    """Gyroscopic moment of a precession without slip, I3 omega3 / phi' - I1 c, in phi'^2 sin(theta)."""
+    """Gyroscopic moment of a precession without slip, I3 omega3 / phi' - I1 c, in phi'^2
+    sin(theta).
+    """
     return top.axial_inertia * rolling_spin(c, top.surface) - top.transverse_inertia * c
 
 
 def weight_moment(c: Scalar, top: Top) -> Scalar:
-    """Moment of the table's support over sin(theta), m g h', J: what the gyroscopic moment balances."""
+    """Moment of the table's support over sin(theta), m g h', J: what the gyroscopic moment
+    balances.
+    """
     return top.mass * top.gravity * top.surface.slope(c)
 
 
@@ -120,7 +131,9 @@ def precession_branch(top: Top, tilts: Array) -> SteadyState[Array]:
 
 
 def branch_jellett(tilt: float, top: Top) -> float:
-    """Size of Jellett's integral of the steady precession at a tilt, kg m^3/s; inf where there is none."""
+    """Size of Jellett's integral of the steady precession at a tilt, kg m^3/s; inf where there is
+    none.
+    """
     rolling = rolling_precession(tilt, top, math)
     try:
         squared = precession_rate_squared(rolling.axis[2], top)
@@ -134,7 +147,9 @@ def vertical_spin(kind: SteadyKind, top: Top, spin: Number) -> SteadyState[Numbe
     c = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
     still = 0.0 * abs(spin)
     tilt = still if kind is SteadyKind.UPRIGHT else still + math.pi
-    return _steady(kind, tilt, still, spin, (0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top)
+    return _steady(
+        kind, tilt, still, spin, (0.0, 0.0, c), (0.0, 0.0, c * top.axial_inertia * spin), top
+    )
 
 
 def level_spin(top: Top, precession: float) -> SteadyState[float]:
@@ -144,21 +159,25 @@ def level_spin(top: Top, precession: float) -> SteadyState[float]:
 
 
 def steady_states(top: Top, jellett: float) -> list[SteadyState[float]]:
-    """All steady states with this Jellett's integral lambda, kg m^3/s, by increasing tilt, whatever friction.
+    """All steady states with this Jellett's integral lambda, kg m^3/s, by increasing tilt, whatever
+    friction.
 
-    For an eccentric sphere it is conserved, and these are all the states a motion can end in; for other
-    shapes it only labels them.
+    For an eccentric sphere it is conserved, and these are all the states a motion can end in; for
+    other shapes it only labels them.
 
     Notes
     -----
-    With lambda = phi' Lambda(theta), a steady precession is a root of lambda^2 (I3 omega3/phi' - I1 c) -
-    m g h' Lambda^2, which is regular everywhere (a polynomial of degree 4 in c for the eccentric sphere).
+    With lambda = phi' Lambda(theta), a steady precession is a root of lambda^2 (I3 omega3/phi' - I1
+    c) - m g h' Lambda^2, which is regular everywhere (a polynomial of degree 4 in c for the
+    eccentric sphere).
     """
     units = [vertical_spin(kind, top, 1.0) for kind in VERTICAL_SPINS]
     # Where the centre of mass is on the table, no spin about the vertical has any of it.
     least = NO_JELLETT * top.axial_inertia * top.surface.size
     vertical = [
-        vertical_spin(unit.kind, top, jellett / unit.jellett) for unit in units if abs(unit.jellett) > least
+        vertical_spin(unit.kind, top, jellett / unit.jellett)
+        for unit in units
+        if abs(unit.jellett) > least
     ]
     between = [precession_at(tilt, jellett, top) for tilt in _precession_tilts(top, jellett)]
     if has_level_spin(top):
@@ -184,15 +203,19 @@ def jellett_of_launch(problem: Problem) -> float:
     for name in ("spin", "tilt_rate", "precession"):
         rate = getattr(problem.launch, name)
         if abs(rate) > fastest:
-            raise InvalidInput(f"launch.{name}", rate, f"at most {fastest:.3g} rad/s, for the theory to tell")
+            raise InvalidInput(
+                f"launch.{name}", rate, f"at most {fastest:.3g} rad/s, for the theory to tell"
+            )
     return float(jellett(problem.start(), problem.top))
 
 
 def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) -> Scalar:
-    """Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^3/s) can have.
+    """Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^3/s) can
+    have.
 
-    lambda^2 / (2 a.I a) + m g h: its minima over the tilt are the stable steady states, because friction only
-    takes energy and leaves lambda alone (Bou-Rabee, Marsden and Romero 2004; Ebenfeld and Scheck 1995).
+    lambda^2 / (2 a.I a) + m g h: its minima over the tilt are the stable steady states, because
+    friction only takes energy and leaves lambda alone (Bou-Rabee, Marsden and Romero 2004; Ebenfeld
+    and Scheck 1995).
     """
     axis = (functions.sin(tilt), 0.0, functions.cos(tilt))
     potential = energy(_at_rest(axis, (0.0, 0.0, 0.0), top), top)
@@ -220,9 +243,14 @@ def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState[float]:
     return _precession(tilt, jellett / rolling.jellett, rolling, top)
 
 
-def _precession(tilt: Number, rate: Number, rolling: RollingPrecession, top: Top) -> SteadyState[Number]:
+def _precession(
+    tilt: Number, rate: Number, rolling: RollingPrecession, top: Top
+) -> SteadyState[Number]:
     """The steady precession at this tilt and rate, of which that without slip is known."""
-    spin, momentum = rate * rolling_spin(rolling.axis[2], top.surface), scale(rate, rolling.momentum)
+    spin, momentum = (
+        rate * rolling_spin(rolling.axis[2], top.surface),
+        scale(rate, rolling.momentum),
+    )
     return _steady(SteadyKind.PRECESSION, tilt, rate, spin, rolling.axis, momentum, top)
 
 
@@ -241,15 +269,21 @@ def _steady(
 
 
 FASTEST = 1e8
-"""Angular velocity in natural units beyond which the theory says nothing: beside it, weight is rounding."""
+"""Angular velocity in natural units beyond which the theory says nothing: beside it, weight is
+rounding.
+"""
 
 
 def _precession_tilts(top: Top, jellett: float) -> list[float]:
-    """Tilts of the steady precessions with this Jellett's integral, roots of a balance smooth in c."""
+    """Tilts of the steady precessions with this Jellett's integral, roots of a balance smooth in
+    c.
+    """
     scaled, square = natural(top), (jellett / float(natural_units(top).jellett)) ** 2
 
     def balance(c: float) -> float:
-        supported = weight_moment(c, scaled) * rolling_precession(math.acos(c), scaled, math).jellett ** 2
+        supported = (
+            weight_moment(c, scaled) * rolling_precession(math.acos(c), scaled, math).jellett ** 2
+        )
         return float((square * gyroscopic_reaction(c, scaled) - supported) / (1.0 + square))
 
     inertias = scaled.transverse_inertia + scaled.axial_inertia

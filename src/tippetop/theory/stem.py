@@ -26,8 +26,8 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
     Returns
     -------
     float
-        lambda = -L.a, kg m^3/s, with the contact vector a of the tip: 0 where the top stands at rest,
-        infinite where it stands at no spin.
+        lambda = -L.a, kg m^3/s, with the contact vector a of the tip: 0 where the top stands at
+        rest, infinite where it stands at no spin.
 
     Raises
     ------
@@ -36,8 +36,9 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
 
     Notes
     -----
-    While the tip alone touches, lambda is constant, as for any sphere. With the tip's radius r, and its
-    centre zeta above the centre of mass along the axis, spinning upright is stable under friction where
+    While the tip alone touches, lambda is constant, as for any sphere. With the tip's radius r, and
+    its centre zeta above the centre of mass along the axis, spinning upright is stable under
+    friction where
 
         lambda > sqrt(m g I3 zeta / (r (zeta + r (1 - I1 / I3)))) (r + zeta)^2,
 
@@ -61,7 +62,9 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
         raise InvalidInput("surface", surface, f"a whole number from 0 to {len(body.shapes) - 1}")
     tip = body.shapes[surface].surface
     if not tip.spherical:
-        raise InvalidInput("surface", surface, "that of a sphere; Jellett's integral holds for no other")
+        raise InvalidInput(
+            "surface", surface, "that of a sphere; Jellett's integral holds for no other"
+        )
     if tip.slope(0.0) >= 0.0:
         return 0.0
     alone = Top(body.mass, body.I1, body.I3, tip, ViscousLaw(1.0), gravity)
@@ -69,5 +72,7 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
 
 
 def jellett_about(surface: int, axis: Vector, momentum: Vector, top: Top) -> float:
-    """Jellett's integral -L.a about one of a top's surfaces, whether it touches or not, kg m^3/s; floats."""
+    """Jellett's integral -L.a about one of a top's surfaces, whether it touches or not, kg m^3/s;
+    floats.
+    """
     return -float(dot(momentum, contact_vector(axis, each_surface(top.surface)[surface])))

@@ -1,13 +1,14 @@
 """Critical spins: where a vertical spin gains or loses its stability.
 
-A vertical spin changes stability where the branch of steady precessions reaches the vertical, so its critical
-Jellett's integral is the limit of the branch at the pole:
+A vertical spin changes stability where the branch of steady precessions reaches the vertical, so
+its critical Jellett's integral is the limit of the branch at the pole:
 
     lambda_up   = sqrt(m g R^3 I3 alpha) (1 - alpha)^2 / sqrt(alpha + gamma - 1)     at theta = 0,
     lambda_down = sqrt(m g R^3 I3 alpha) (1 + alpha)^2 / sqrt(1 + alpha - gamma)     at theta = pi
 
-for the eccentric sphere, gamma = I1 / I3. Friction does not enter. The same numbers come out of the spectrum
-of the vertical spin, with friction, as the zeros of its growth rate: see `tippetop.theory.apparent`.
+for the eccentric sphere, gamma = I1 / I3. Friction does not enter. The same numbers come out of the
+spectrum of the vertical spin, with friction, as the zeros of its growth rate: see
+`tippetop.theory.apparent`.
 """
 
 import math
@@ -35,18 +36,23 @@ class CriticalSpins:
     """Spins of a launch, rad/s, at which the two vertical spins change stability."""
 
     upright: float
-    """omega_c1: an eccentric sphere launched with more spin leaves theta = 0; inf if it never does."""
+    """omega_c1: an eccentric sphere launched with more spin leaves theta = 0; inf if it never does.
+    """
     inverted: float
     """omega_c2: launched with more spin it stays at theta = pi once there; inf if it never does."""
 
 
 def critical_jellett(kind: SteadyKind, top: Top) -> float:
-    """Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never does.
+    """Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never
+    does.
 
-    Nor does it where the centre of mass is not above the table: as of one of two balls on top of the other.
-    An eccentric sphere's upright spin is stable below, lambda_up, and its inverted one above, lambda_down.
+    Nor does it where the centre of mass is not above the table: as of one of two balls on top of
+    the other. An eccentric sphere's upright spin is stable below, lambda_up, and its inverted one
+    above, lambda_down.
     """
-    return branch_jellett(vertical_spin(kind, top, 0.0).tilt, top) if stands(kind, top) else math.inf
+    return (
+        branch_jellett(vertical_spin(kind, top, 0.0).tilt, top) if stands(kind, top) else math.inf
+    )
 
 
 def stands(kind: SteadyKind, top: Top) -> bool:
@@ -56,18 +62,22 @@ def stands(kind: SteadyKind, top: Top) -> bool:
 
 
 def critical_spin(kind: SteadyKind, top: Top) -> float:
-    """Axial spin at which a vertical spin changes stability, by formula, rad/s; inf where it never does."""
+    """Axial spin at which a vertical spin changes stability, by formula, rad/s; inf where it never
+    does.
+    """
     critical = critical_jellett(kind, top)
-    return critical if math.isinf(critical) else critical / abs(vertical_spin(kind, top, 1.0).jellett)
+    return (
+        critical if math.isinf(critical) else critical / abs(vertical_spin(kind, top, 1.0).jellett)
+    )
 
 
 def critical_spins(problem: Problem) -> CriticalSpins:
     """Critical spins of a launch: with its tilt and its rates, and any axial spin.
 
-    The Jellett's integral of a launch is linear in its spin; for one at rest in tilt it is
-    R I3 spin (cos(tilt) - alpha). Its sign does not matter, and the larger of
-    the two spins is returned. Where it is not conserved, they are those of the vertical spins themselves:
-    under Contensou's friction, which takes spin from them, they change stability when that is left.
+    The Jellett's integral of a launch is linear in its spin; for one at rest in tilt it is R I3
+    spin (cos(tilt) - alpha). Its sign does not matter, and the larger of the two spins is returned.
+    Where it is not conserved, they are those of the vertical spins themselves: under Contensou's
+    friction, which takes spin from them, they change stability when that is left.
 
     Raises
     ------
@@ -86,7 +96,9 @@ def critical_spins(problem: Problem) -> CriticalSpins:
     if not problem.top.conserves_jellett:
         return CriticalSpins(*(critical_spin(kind, problem.top) for kind in VERTICAL_SPINS))
     line = jellett_line(problem)
-    return CriticalSpins(*(line.spin_at(critical_jellett(kind, problem.top)) for kind in VERTICAL_SPINS))
+    return CriticalSpins(
+        *(line.spin_at(critical_jellett(kind, problem.top)) for kind in VERTICAL_SPINS)
+    )
 
 
 class JellettLine(NamedTuple):
@@ -110,7 +122,9 @@ def jellett_line(problem: Problem) -> JellettLine:
     """Jellett's integral over the spin of a launch whose other numbers are kept."""
     still = {"spin": 0.0, "tilt_rate": 0.0, "precession": 0.0}
     at_rest, per_spin = (
-        jellett_of_launch(problem.model_copy(update={"launch": problem.launch.model_copy(update=changes)}))
+        jellett_of_launch(
+            problem.model_copy(update={"launch": problem.launch.model_copy(update=changes)})
+        )
         for changes in ({"spin": 0.0}, {**still, "spin": 1.0})
     )
     return JellettLine(at_rest, per_spin)

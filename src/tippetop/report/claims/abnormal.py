@@ -1,4 +1,6 @@
-"""Claims about what the report calls abnormal: launches faster than omega_a, and what becomes of them."""
+"""Claims about what the report calls abnormal: launches faster than omega_a, and what becomes of
+them.
+"""
 
 import numpy as np
 import xarray as xr
@@ -16,11 +18,12 @@ def _(run: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     return Finding(
         not float(run["largest_energy_listing"]) > launch,
         max(rises) <= ROUNDED * launch,
-        "On a table that only pushes it never rises, neither here nor in any launch of the figure flights: "
-        f"the largest change from sample to sample is {max(rises):.0e} J. At 175 rad/s the top loses "
-        f"{1e3 * (launch - float(run['energy_flight'][-1])):.1f} mJ of {1e3 * launch:.1f} mJ, "
-        f"{1e3 * impacts:.2f} mJ of them in impacts. By the report's method and (4.1) it exceeds that of the "
-        "launch: that is how the report knows that something is wrong.",
+        "On a table that only pushes it never rises, neither here nor in any launch of the figure"
+        f" flights: the largest change from sample to sample is {max(rises):.0e} J. At 175 rad/s"
+        f" the top loses {1e3 * (launch - float(run['energy_flight'][-1])):.1f} mJ of"
+        f" {1e3 * launch:.1f} mJ, {1e3 * impacts:.2f} mJ of them in impacts. By the report's method"
+        " and (4.1) it exceeds that of the launch: that is how the report knows that something is"
+        " wrong.",
     )
 
 
@@ -40,11 +43,11 @@ def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dat
     return Finding(
         bool(np.isfinite(run["zero_of_force_listing"])),
         bool(np.isfinite(huge).all()),
-        f"At the report's tilt and friction every launch of the scan above {ABNORMAL_SPIN} rad/s, up to "
-        f"{own['spin'][-1]:g} rad/s, leaves the table within 20 s; the onset is "
-        f"{sweep['lift_off_onset']:.2f} rad/s. For other launches it is lower: {at_tilt:.0f} rad/s at a "
-        f"tilt of {at_tilt['tilt']:.2f} rad, {at_mu:.0f} rad/s at mu = {at_mu['mu']:.2g} s/m in longer "
-        f"runs.{never}",
+        f"At the report's tilt and friction every launch of the scan above {ABNORMAL_SPIN} rad/s,"
+        f" up to {own['spin'][-1]:g} rad/s, leaves the table within 20 s; the onset is"
+        f" {sweep['lift_off_onset']:.2f} rad/s. For other launches it is lower: {at_tilt:.0f} rad/s"
+        f" at a tilt of {at_tilt['tilt']:.2f} rad, {at_mu:.0f} rad/s at mu = {at_mu['mu']:.2g} s/m"
+        f" in longer runs.{never}",
     )
 
 
@@ -59,17 +62,21 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
     return Finding(
         cured,
         turned and float(sweep["lift_off_onset"]) <= lost,
-        f"The abnormal point is {'no' if turned else 'still a'} property of the top. On a table that pulls, "
-        f"launches from {lost:g} rad/s on end anywhere; on one that only pushes, those from {spins[0]:g} to "
-        f"{spins[-1]:g} rad/s end within {np.abs(true - np.pi).max():.1g} rad of pi after "
-        f"{sweep.attrs['window_s']:g} s, and those up to {flights['spin'][-1]:g} rad/s within "
-        f"{np.abs(flights['final_theta_flight'].values - np.pi).max():.1g} rad after "
-        f"{flights.attrs['window_s']:g} s. The report's listing has three lines commented out that set a "
-        f"negative normal force to zero; without and with them its method ends, by spin, at {ends}.",
-        news="Three lines of its own listing, commented out, would have cured the abnormal point: they set a "
-        "negative normal force to zero, which is close to letting the top hop, for the hops are low."
-        if cured
-        else "",
+        f"The abnormal point is {'no' if turned else 'still a'} property of the top. On a table"
+        f" that pulls, launches from {lost:g} rad/s on end anywhere; on one that only pushes, those"
+        f" from {spins[0]:g} to {spins[-1]:g} rad/s end within {np.abs(true - np.pi).max():.1g} rad"
+        f" of pi after {sweep.attrs['window_s']:g} s, and those up to {flights['spin'][-1]:g} rad/s"
+        f" within {np.abs(flights['final_theta_flight'].values - np.pi).max():.1g} rad after"
+        f" {flights.attrs['window_s']:g} s. The report's listing has three lines commented out that"
+        " set a negative normal force to zero; without and with them its method ends, by spin, at"
+        f" {ends}.",
+        news=(
+            "Three lines of its own listing, commented out, would have cured the abnormal point:"
+            " they set a negative normal force to zero, which is close to letting the top hop, for"
+            " the hops are low."
+            if cured
+            else ""
+        ),
     )
 
 
@@ -77,20 +84,24 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
 def _(listing: xr.Dataset, sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     theirs = _inverting(listing, "_listing", float(ABNORMAL_SPIN))
     ours = _inverting(sweep, "", float(sweep["lift_off_onset"]))
-    turned = _turned(ours) and all(_turned(run["final_theta_flight"]) for run in (flights, bouncing))
+    turned = _turned(ours) and all(
+        _turned(run["final_theta_flight"]) for run in (flights, bouncing)
+    )
     flights = flights.isel(restitution=0)
     flying = flights.sel(spin=flights["flights"] > 0)
     share = 100 * flying["airborne_time"] / flying["last_touchdown"]
-    columns = (each.values for each in (flying["spin"], flying["flights"], share, flying["turning_time"]))
+    columns = (
+        each.values for each in (flying["spin"], flying["flights"], share, flying["turning_time"])
+    )
     described = listed("{:g}: {:.0f}, {:.0f} %, {:.1f} s", *columns, between="; ")
     return Finding(
         _turned(theirs),
         turned,
-        "The model is a whole sphere: it has no stem to spin on; with one, see the figure real-stems. "
-        f"On a table that only pushes {'all' if turned else 'not all'} launches tried up to "
-        f"{flights['spin'][-1]:g} rad/s turn over. Without rebound, by spin in rad/s, the number of "
-        "flights, the part of the time until the last touchdown that is spent in the air, and when the axis "
-        f"passes the horizontal: {described}.",
+        "The model is a whole sphere: it has no stem to spin on; with one, see the figure"
+        f" real-stems. On a table that only pushes {'all' if turned else 'not all'} launches tried"
+        f" up to {flights['spin'][-1]:g} rad/s turn over. Without rebound, by spin in rad/s, the"
+        " number of flights, the part of the time until the last touchdown that is spent in the"
+        f" air, and when the axis passes the horizontal: {described}.",
     )
 
 

@@ -9,13 +9,15 @@ from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION, SPIN
 from tippetop.report.tolerance import ROUNDING
 
 _SAME = 1e-6
-"""Difference of tilts, rad, and of energies, relative, far above rounding and far below any motion."""
+"""Difference of tilts, rad, and of energies, relative, far above rounding and far below any motion.
+"""
 
 _OVER = np.pi / 2
 
 _DRY = (0.1, 1.0)
-"""Coefficients of Coulomb friction that dry solids have, from polished to rough ones; the claim dry-normal-mu
-tells them."""
+"""Coefficients of Coulomb friction that dry solids have, from polished to rough ones; the claim
+dry-normal-mu tells them.
+"""
 
 
 @examines("dry-tilting-rate")
@@ -26,13 +28,14 @@ def _(data: xr.Dataset) -> Finding:
     needed, shown = float(data["needed_main"]), data["held"].values
     return Finding.unlisted(
         not rolls,
-        f"At {data.attrs['spin_rad_per_s']:g} rad/s and {data.attrs['tilt_rad']:g} rad the report's top "
-        f"needs mu = {needed:.5f} to roll. On mu = {shown.min():.5f} to {shown.max():g} it does the same "
-        f"for {float(data['time'][-1]):g} s: it never slips, its tilt is at most {float(held.max()):.4f} "
-        f"rad and its energy is kept to {float(data['lost_held'].max()):.0e}. On 0.1 % less than it needs "
-        f"it slips after {1e3 * float(data['held_below']):.1f} ms. The law has its place while a "
-        "top slips, for there friction goes as mu; judged is one that is set down without slip, as the "
-        "report's are.",
+        f"At {data.attrs['spin_rad_per_s']:g} rad/s and {data.attrs['tilt_rad']:g} rad the report's"
+        f" top needs mu = {needed:.5f} to roll. On mu = {shown.min():.5f} to {shown.max():g} it"
+        f" does the same for {float(data['time'][-1]):g} s: it never slips, its tilt is at most"
+        f" {float(held.max()):.4f} rad and its energy is kept to"
+        f" {float(data['lost_held'].max()):.0e}. On 0.1 % less than it needs it slips after"
+        f" {1e3 * float(data['held_below']):.1f} ms. The law has its place while a top slips, for"
+        " there friction goes as mu; judged is one that is set down without slip, as the report's"
+        " are.",
     )
 
 
@@ -46,11 +49,11 @@ def _(data: xr.Dataset) -> Finding:
     return Finding(
         bool(window["theta_stepped"].sel(step=COHEN_STEP, method="nearest").max() > _OVER),
         bool(data["theta"].max() > _OVER),
-        f"With steps of {1e3 * COHEN_STEP:g} ms the classical Runge-Kutta method gives {ends[0]:.2f}, "
-        f"{ends[1]:.2f} and {ends[2]:.2f} rad at 1, 1.5 and 2 s. Largest tilts within "
-        f"{float(data['time'][-1]):g} s by the step (rad): {tilts}. Exactly, slip ends after "
-        f"{float(data['sticks']):.6f} s, the top rolls from then on, and its tilt is at most "
-        f"{float(data['theta'].max()):.3f} rad.",
+        f"With steps of {1e3 * COHEN_STEP:g} ms the classical Runge-Kutta method gives"
+        f" {ends[0]:.2f}, {ends[1]:.2f} and {ends[2]:.2f} rad at 1, 1.5 and 2 s. Largest tilts"
+        f" within {float(data['time'][-1]):g} s by the step (rad): {tilts}. Exactly, slip ends"
+        f" after {float(data['sticks']):.6f} s, the top rolls from then on, and its tilt is at most"
+        f" {float(data['theta'].max()):.3f} rad.",
     )
 
 
@@ -60,9 +63,9 @@ def _(data: xr.Dataset) -> Finding:
     return Finding(
         least > 0.0,
         bool(not np.isfinite(data["sticks"]) or data["slips_again"] > 0),
-        f"Steps of {1e3 * COHEN_STEP:g} ms jump over the end of slip: the least slip speed at any of them "
-        f"is {1e3 * least:.1f} mm/s. Exactly it is zero from {float(data['sticks']):.6f} s on, where the "
-        f"energy is kept to {float(data['energy_kept']):.0e}.",
+        f"Steps of {1e3 * COHEN_STEP:g} ms jump over the end of slip: the least slip speed at any"
+        f" of them is {1e3 * least:.1f} mm/s. Exactly it is zero from {float(data['sticks']):.6f} s"
+        f" on, where the energy is kept to {float(data['energy_kept']):.0e}.",
     )
 
 
@@ -71,11 +74,11 @@ def _(data: xr.Dataset) -> Finding:
     eps, times = data["eps"].values, data["turning_time"].values
     return Finding.unlisted(
         bool(np.isfinite(data["exact_turns"])),
-        f"Smoothed below eps = {eps[0]:g} m/s, friction of mu = {data.attrs['mu']:g} turns the top over "
-        f"in {times[0]:.2f} s, below {eps[-1]:g} m/s in {times[-1]:.2f} s; there the time goes as eps to "
-        f"the power {float(data['last_exponent']):.2f}. On the law itself the tilt is at most "
-        f"{float(data['highest']):.4f} rad for {float(data['followed']):g} s: to let eps go to zero and "
-        "to wait are not to be exchanged.",
+        f"Smoothed below eps = {eps[0]:g} m/s, friction of mu = {data.attrs['mu']:g} turns the top"
+        f" over in {times[0]:.2f} s, below {eps[-1]:g} m/s in {times[-1]:.2f} s; there the time"
+        f" goes as eps to the power {float(data['last_exponent']):.2f}. On the law itself the tilt"
+        f" is at most {float(data['highest']):.4f} rad for {float(data['followed']):g} s: to let"
+        " eps go to zero and to wait are not to be exchanged.",
         bool(np.isfinite(times).all()),
         "the friction is smoothed",
     )
@@ -86,16 +89,18 @@ def _(data: xr.Dataset) -> Finding:
     turned = data["turning_time"].notnull()
     fast = data.isel(spin=-1)
     quickest = fast.isel(radius=int(fast["turning_time"].argmin("radius")))
-    never = fast["radius"].where(fast["turning_time"].isnull() & (fast["radius"] > quickest["radius"]))
+    never = fast["radius"].where(
+        fast["turning_time"].isnull() & (fast["radius"] > quickest["radius"])
+    )
     slowest = float(data["spin"].where(turned.any("radius")).min())
     return Finding.unlisted(
         bool(np.isfinite(data["theirs_turns"])),
-        f"Their top passes the horizontal after {float(data['theirs_turns']):.5f} s (ellipsoidal limit "
-        f"surface). The report's, on mu = {data.attrs['mu']:g} at {float(fast['spin']):g} rad/s, is "
-        f"quickest of those tried with a patch of {1e3 * float(quickest['radius']):.2g} mm, "
-        f"{float(quickest['turning_time']):.2f} s, and does not turn over with one of "
-        f"{1e3 * float(never.min()):.2g} mm or more: drilling takes the spin first. Within "
-        f"{data.attrs['window_s']:g} s it takes at least {slowest:.0f} rad/s at the spins tried.",
+        f"Their top passes the horizontal after {float(data['theirs_turns']):.5f} s (ellipsoidal"
+        f" limit surface). The report's, on mu = {data.attrs['mu']:g} at {float(fast['spin']):g}"
+        f" rad/s, is quickest of those tried with a patch of {1e3 * float(quickest['radius']):.2g}"
+        f" mm, {float(quickest['turning_time']):.2f} s, and does not turn over with one of"
+        f" {1e3 * float(never.min()):.2g} mm or more: drilling takes the spin first. Within"
+        f" {data.attrs['window_s']:g} s it takes at least {slowest:.0f} rad/s at the spins tried.",
     )
 
 
@@ -107,10 +112,11 @@ def _(data: xr.Dataset) -> Finding:
     worst = data["growth_ratio"].values.ravel()
     return Finding.unlisted(
         float(worst[np.abs(worst - 1.0).argmax()]),
-        "The coefficient is (3 pi / 8) mu / (R omega) with Hertz's pressure and mu / (rho omega) with an "
-        "ellipsoidal limit surface. How well it stands for the whole way, by the ratio of the times to "
-        f"the horizontal, over {float(data['coefficient'][0]):g} to {float(data['coefficient'][-1]):g} "
-        f"s/m: {spans}. On little friction the slip outgrows the limit; on much, drilling takes spin.",
+        "The coefficient is (3 pi / 8) mu / (R omega) with Hertz's pressure and mu / (rho omega)"
+        " with an ellipsoidal limit surface. How well it stands for the whole way, by the ratio of"
+        f" the times to the horizontal, over {float(data['coefficient'][0]):g} to"
+        f" {float(data['coefficient'][-1]):g} s/m: {spans}. On little friction the slip outgrows"
+        " the limit; on much, drilling takes spin.",
     )
 
 
@@ -120,9 +126,9 @@ def _(data: xr.Dataset, run: xr.Dataset) -> Finding:
     return Finding(
         _is_dry(theirs),
         _is_dry(ours),
-        f"Slipping at {float(run['largest_slip']):.2f} m/s, a top with these coefficients has as much "
-        f"friction as on dry friction of {ours[0]:.2f} to {ours[1]:.2f}. Normal for fast slip, they are low "
-        f"for slow slip. {_surfaces(data)}",
+        f"Slipping at {float(run['largest_slip']):.2f} m/s, a top with these coefficients has as"
+        f" much friction as on dry friction of {ours[0]:.2f} to {ours[1]:.2f}. Normal for fast"
+        f" slip, they are low for slow slip. {_surfaces(data)}",
     )
 
 
@@ -136,8 +142,8 @@ def _(data: xr.Dataset) -> Finding:
     slowest = float((data["hertz_coefficient"].max() / ROUGH_FRICTION) * SPIN)
     return Finding.unlisted(
         bool((data["hertz_coefficient"] < ROUGH_FRICTION).all()),
-        f"{_surfaces(data)} None reaches {ROUGH_FRICTION:g} s/m there, but the coefficient goes as one over "
-        f"the spin: below {slowest:.0f} rad/s the hardest of these does.",
+        f"{_surfaces(data)} None reaches {ROUGH_FRICTION:g} s/m there, but the coefficient goes as"
+        f" one over the spin: below {slowest:.0f} rad/s the hardest of these does.",
     )
 
 
@@ -148,7 +154,7 @@ def _surfaces(data: xr.Dataset) -> str:
     )
     each = listed("{} {:.0f} µm and {:.0f} s/m", names, 1e6 * radii, coefficients)
     return (
-        "Dry friction of mu = 0.3 on the elastic patch under the weight of the report's top, table of the "
-        f"same material, creeps at {SPIN:g} rad/s as viscous friction would with this "
-        f"coefficient: {each}."
+        "Dry friction of mu = 0.3 on the elastic patch under the weight of the report's top, table"
+        f" of the same material, creeps at {SPIN:g} rad/s as viscous friction would with this"
+        f" coefficient: {each}."
     )

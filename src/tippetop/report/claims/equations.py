@@ -31,16 +31,19 @@ def _largest_miss(check: xr.Dataset, words: str) -> Finding:
 
 
 @examines(
-    "eq-2.7", "printed-equations", tolerance=Tolerance(1e-9, "far below the torque, far above rounding")
+    "eq-2.7",
+    "printed-equations",
+    tolerance=Tolerance(1e-9, "far below the torque, far above rounding"),
 )
 def _(check: xr.Dataset) -> Finding:
     return Finding(
         *both(check, "torque"),
-        f"Turned round, a x F has {check['torque_turned']:.4e} N m: wrong still, because F counts the "
-        "weight, which acts at the centre of mass and has no torque about it. Without the weight it is "
-        f"{check['torque_corrected']:.4e} N m, as (2.8) and the run have it. In the printed order the "
-        f"contact force would do work at {1e3 * float(check['power_printed']):+.2f} mW where friction takes "
-        f"{1e3 * float(check['power']):+.2f} mW.",
+        f"Turned round, a x F has {check['torque_turned']:.4e} N m: wrong still, because F counts"
+        " the weight, which acts at the centre of mass and has no torque about it. Without the"
+        f" weight it is {check['torque_corrected']:.4e} N m, as (2.8) and the run have it. In the"
+        " printed order the contact force would do work at"
+        f" {1e3 * float(check['power_printed']):+.2f} mW where friction takes"
+        f" {1e3 * float(check['power']):+.2f} mW.",
         reported=float(check["torque_printed"]),
     )
 
@@ -53,10 +56,10 @@ def _(check: xr.Dataset) -> Finding:
 def _(check: xr.Dataset) -> Finding:
     return Finding(
         *both(check, "precession"),
-        "An I1 stands too much in the numerator. Read as I1 over the bracket it gives "
-        f"{check['precession_printed']:.4g}, read as a factor "
-        f"{check['precession_printed_product']:.4g} (in wrong units either way); the listing has the "
-        f"right equation. {TRANSCRIBED}",
+        "An I1 stands too much in the numerator. Read as I1 over the bracket it gives"
+        f" {check['precession_printed']:.4g}, read as a factor"
+        f" {check['precession_printed_product']:.4g} (in wrong units either way); the listing has"
+        f" the right equation. {TRANSCRIBED}",
         reported=float(check["precession_printed"]),
     )
 
@@ -69,7 +72,7 @@ def _(run: xr.Dataset) -> Finding:
     share = float(difference[k]) / launch
     return Finding.unlisted(
         abs(share),
-        "(4.1) leaves out what slip adds to the velocity of the centre of mass. At "
-        f"{run['time'][k]:.2f} s it is {1e3 * float(difference[k]):+.3f} mJ off, {100 * share:+.1f} % "
-        "of the energy at launch.",
+        "(4.1) leaves out what slip adds to the velocity of the centre of mass. At"
+        f" {run['time'][k]:.2f} s it is {1e3 * float(difference[k]):+.3f} mJ off,"
+        f" {100 * share:+.1f} % of the energy at launch.",
     )

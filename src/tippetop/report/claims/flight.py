@@ -16,9 +16,10 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         float(run["least_force_listing"]) < 0,
         float(run["least_force"]) < 0,
-        f"First at {run['lift_off_time']:.4f} s. On a table that pulls, the force reaches "
-        f"{run['least_force']:.2f} N within 20 s, {run['least_force_listing']:.2f} N by the "
-        "report's method. A table that only pushes lets go there: its force is never less than zero.",
+        f"First at {run['lift_off_time']:.4f} s. On a table that pulls, the force reaches"
+        f" {run['least_force']:.2f} N within 20 s, {run['least_force_listing']:.2f} N by the"
+        " report's method. A table that only pushes lets go there: its force is never less than"
+        " zero.",
     )
 
 
@@ -35,12 +36,15 @@ def _(run: xr.Dataset) -> Finding:
         + _listed(theirs, weight)
         + "; the full energy of the converged motion, on a table that pulls as well, gains "
         + _listed(ours, weight)
-        + f". On a table that only pushes it gains {rounded(gained)} J after {_NAMED}, and falls by "
+        + f". On a table that only pushes it gains {rounded(gained)} J after {_NAMED}, and"
+        " falls by "
         f"{1e3 * float(kept[0] - kept[-1]):.1f} mJ instead.",
         theirs[_NAMED],
         f"the gain is counted from {_NAMED}, the time that the report names",
-        right=f"{'nothing' if gained <= ROUNDED * kept[0] else f'{gained:.4f} J'}; on a table that pulls, as "
-        f"in the report, {ours[_NAMED]:.4f} J",
+        right=(
+            f"{'nothing' if gained <= ROUNDED * kept[0] else f'{gained:.4f} J'}; on a table that"
+            f" pulls, as in the report, {ours[_NAMED]:.4f} J"
+        ),
     )
 
 
@@ -48,7 +52,9 @@ _NAMED = f"{ENERGY_TIME} s"
 
 
 def _gains(run: xr.Dataset, suffix: str) -> dict[str, float]:
-    """The rise to the largest energy from the launch, from the named time, and from the lowest before, J."""
+    """The rise to the largest energy from the launch, from the named time, and from the lowest
+    before, J.
+    """
     energy, times = run[f"energy{suffix}"].values, run[f"time{suffix}"].values
     top = int(np.argmax(energy))
     since = {
@@ -76,8 +82,8 @@ def _(run: xr.Dataset) -> Finding:
     fall = float(ENERGY) / _weight(run)
     return Finding.unlisted(
         fall,
-        "So much for the arithmetic. What it is there to show, that the energy could grow by a fall, is "
-        "judged apart (fig10-by-falling).",
+        "So much for the arithmetic. What it is there to show, that the energy could grow by a"
+        " fall, is judged apart (fig10-by-falling).",
     )
 
 
@@ -88,14 +94,17 @@ def _(run: xr.Dataset) -> Finding:
     none = change < 1e-6 * work  # far above rounding, far below any part of it
     return Finding.unlisted(
         not none,
-        "The report argues that the top cannot gain the energy, because it would have to fall so far. But "
-        "(4.1) counts the height already, as m g R (1 - alpha cos theta): what falls turns one part of its "
-        f"energy into another. In its flights the top falls by up to {1e3 * height:.2f} mm, by which its "
-        f"weight does {1e6 * work:.0f} µJ of work, and its energy changes by {rounded(change)} J. What the "
-        "report concludes, that a growing energy is not physical, is right for a simpler reason: neither "
-        "the weight nor a table that only pushes nor friction adds to it.",
-        right=f"a fall of any height changes the energy by {'nothing' if none else f'{change:.1e} J'}: "
-        "(4.1) counts the height already",
+        "The report argues that the top cannot gain the energy, because it would have to fall so"
+        " far. But (4.1) counts the height already, as m g R (1 - alpha cos theta): what falls"
+        " turns one part of its energy into another. In its flights the top falls by up to"
+        f" {1e3 * height:.2f} mm, by which its weight does {1e6 * work:.0f} µJ of work, and its"
+        f" energy changes by {rounded(change)} J. What the report concludes, that a growing energy"
+        " is not physical, is right for a simpler reason: neither the weight nor a table that only"
+        " pushes nor friction adds to it.",
+        right=(
+            "a fall of any height changes the energy by"
+            f" {'nothing' if none else f'{change:.1e} J'}: (4.1) counts the height already"
+        ),
     )
 
 
@@ -109,19 +118,22 @@ def _kept_in_flight(run: xr.Dataset) -> tuple[float, float]:
 @examines("fig10-impossible", "run-175")
 def _(run: xr.Dataset) -> Finding:
     energy, launch = run["energy"], float(run["launch_energy"])
-    largest_rise = float(np.diff(energy.sel(time=slice(None, float(run["lift_off_time"]))).values).max())
+    largest_rise = float(
+        np.diff(energy.sel(time=slice(None, float(run["lift_off_time"]))).values).max()
+    )
     after = run["normal_force"].sel(time=slice(float(run["lift_off_time"]), None))
     rising = np.diff(energy.sel(time=after["time"]).values) > ROUNDED * launch
     pulled = (after.values[1:] < 0) | (after.values[:-1] < 0)
     only = "only there" if not (rising & ~pulled).any() else "not only there"
     return Finding.unlisted(
         largest_rise <= ROUNDED * launch and not (rising & ~pulled).any(),
-        f"Up to lift-off the energy never rises (largest change from sample to sample {largest_rise:.1e} J). "
-        f"Later the force is negative at {100 * float((after < 0).mean()):.0f} % of the samples, and {only} "
-        "does the energy rise: friction -mu g_n v then pushes along the slip instead of against it. On a "
-        f"table that only pushes it falls to {run['energy_flight'][-1]:.4f} J. Formula (4.1) swings with "
-        "every nutation, before lift-off too, because it leaves out slip. Gravity is no exception: its work "
-        "is in the energy already (fig10-by-falling).",
+        "Up to lift-off the energy never rises (largest change from sample to sample"
+        f" {largest_rise:.1e} J). Later the force is negative at"
+        f" {100 * float((after < 0).mean()):.0f} % of the samples, and {only} does the energy rise:"
+        " friction -mu g_n v then pushes along the slip instead of against it. On a table that"
+        f" only pushes it falls to {run['energy_flight'][-1]:.4f} J. Formula (4.1) swings with"
+        " every nutation, before lift-off too, because it leaves out slip. Gravity is no"
+        " exception: its work is in the energy already (fig10-by-falling).",
     )
 
 
@@ -131,16 +143,20 @@ ROUNDED = 1e-12
 
 @examines("fig12-stop-time", "run-175")
 def _(run: xr.Dataset) -> Finding:
-    stop, theirs, ours = float(STOP), float(run["zero_of_force_listing"]), float(run["lift_off_time"])
+    stop, theirs, ours = (
+        float(STOP),
+        float(run["zero_of_force_listing"]),
+        float(run["lift_off_time"]),
+    )
     visible = float(run["visible_pull_listing"])
     return Finding(
         stop < theirs,
         stop < ours,
-        f"Converged, the force falls through zero at {ours:.3f} s, {stop - ours:.2f} s before the stop, and "
-        f"there the top leaves the table. By the report's method it does so at {theirs:.3f} s, where a plot "
-        f"does not show it yet: the pull passes 1 % of the largest force only at {visible:.3f} s. Nor is "
-        f"there a need to stop: after {run['flights']:.0f} flights the top slides on from "
-        f"{run['last_touchdown']:.2f} s.",
+        f"Converged, the force falls through zero at {ours:.3f} s, {stop - ours:.2f} s before the"
+        " stop, and there the top leaves the table. By the report's method it does so at"
+        f" {theirs:.3f} s, where a plot does not show it yet: the pull passes 1 % of the largest"
+        f" force only at {visible:.3f} s. Nor is there a need to stop: after {run['flights']:.0f}"
+        f" flights the top slides on from {run['last_touchdown']:.2f} s.",
     )
 
 
@@ -151,10 +167,10 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         bool(theirs.min() < visible < theirs.max()),
         bool(ours.min() < visible < ours.max()),
-        "Both words are qualitative; a motion is taken for smooth while a plot does not show its swings. "
-        f"In the first second a swing of the tilt takes it {ours[0]:.3f} rad, less than the "
-        f"{visible:.2f} rad that a plot from 0 to pi shows; by second {np.argmax(ours) + 1:.0f} it takes it "
-        f"{ours.max():.2f} rad.",
+        "Both words are qualitative; a motion is taken for smooth while a plot does not show its"
+        f" swings. In the first second a swing of the tilt takes it {ours[0]:.3f} rad, less than"
+        f" the {visible:.2f} rad that a plot from 0 to pi shows; by second"
+        f" {np.argmax(ours) + 1:.0f} it takes it {ours.max():.2f} rad.",
     )
 
 
@@ -172,9 +188,9 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         bool(min(theirs) == theirs[2] < 0),
         bool(min(ours) == ours[2] < 0),
-        "Where the force is first negative at 175 rad/s, the terms of the numerator, in parts of the first "
-        f"(the weight), are 1, {ours[1] / ours[0]:.2f} (the turning axis) and {ours[2] / ours[0]:.2f} (the "
-        "spin). The third alone is negative there.",
+        "Where the force is first negative at 175 rad/s, the terms of the numerator, in parts of"
+        f" the first (the weight), are 1, {ours[1] / ours[0]:.2f} (the turning axis) and"
+        f" {ours[2] / ours[0]:.2f} (the spin). The third alone is negative there.",
     )
 
 
@@ -195,9 +211,9 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         not float(run["least_force_listing"]) < 0,
         not np.isfinite(float(run["lift_off_time"])),
-        f"It leaves the table at {run['lift_off_time']:.3f} s; on a table that pulls the force falls "
-        f"to {run['least_force']:.3f} N. The report's method also finds a pull, from "
-        f"{run['zero_of_force_listing']:.2f} s on. {_hopping(run)}",
+        f"It leaves the table at {run['lift_off_time']:.3f} s; on a table that pulls the force"
+        f" falls to {run['least_force']:.3f} N. The report's method also finds a pull, from"
+        f" {run['zero_of_force_listing']:.2f} s on. {_hopping(run)}",
     )
 
 
@@ -205,17 +221,18 @@ def _(run: xr.Dataset) -> Finding:
 def _(run: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(run["highest_gap"]) > PLOTTED.value * float(REPORT.surface.size),
-        f"It leaves the table first after {run['lift_off_time']:.2f} s, and rises higher than the 1 % of its "
-        f"radius that a drawing could show. {_hopping(run)} That the motion is hard to discuss, as the "
-        "report has it, does not keep it from being computed.",
+        f"It leaves the table first after {run['lift_off_time']:.2f} s, and rises higher than the 1"
+        f" % of its radius that a drawing could show. {_hopping(run)} That the motion is hard to"
+        " discuss, as the report has it, does not keep it from being computed.",
     )
 
 
 def _hopping(run: xr.Dataset) -> str:
     """How a launch goes on when the table only pushes, in a sentence."""
     return (
-        f"When the table only pushes, the top makes {int(run['flights'])} flights, the highest of "
-        f"{1e3 * float(run['highest_gap']):.2f} mm, with {run['airborne_time']:.2f} s in the air "
-        f"until the last touchdown at {run['last_touchdown']:.2f} s; its axis passes the horizontal "
-        f"at {run['turning_time']:.1f} s, and it ends at {run['final_theta_flight']:.3f} rad."
+        f"When the table only pushes, the top makes {int(run['flights'])} flights, the highest of"
+        f" {1e3 * float(run['highest_gap']):.2f} mm, with {run['airborne_time']:.2f} s in the air"
+        f" until the last touchdown at {run['last_touchdown']:.2f} s; its axis passes the"
+        f" horizontal at {run['turning_time']:.1f} s, and it ends at"
+        f" {run['final_theta_flight']:.3f} rad."
     )

@@ -11,8 +11,9 @@ from tippetop.report.quoted import EXPONENT
 from tippetop.report.tolerance import ARRIVED, PLOTTED, TRANSCRIBED, WHOLE, half_last_digit
 
 _LOST = 0.1
-"""Relative departure from the law that counts as losing it: more than its scatter over a decade below; the
-claim fig07-inverse tells it."""
+"""Relative departure from the law that counts as losing it: more than its scatter over a decade
+below; the claim fig07-inverse tells it.
+"""
 
 
 @examines("sec3-friction", "friction-extremes")
@@ -23,10 +24,12 @@ def _(data: xr.Dataset) -> Finding:
     some = listed("{:.2f} s at {:g} s/m", times[turns], mu[turns])
     none = " and ".join(f"{m:g} s/m" for m in mu[~turns])
     return Finding.unlisted(
-        not turns[0] and bool((np.diff(times[fastest:][turns[fastest:]]) > 0).all()) and not turns[-1],
-        f"The axis of the main launch first passes the horizontal after {some}; within "
-        f"{data.attrs['window_s']:g} s it does not at {none}. Much friction hinders: the slip that turns the "
-        "top over is soon gone, and a rolling top turns slowly.",
+        not turns[0]
+        and bool((np.diff(times[fastest:][turns[fastest:]]) > 0).all())
+        and not turns[-1],
+        f"The axis of the main launch first passes the horizontal after {some}; within"
+        f" {data.attrs['window_s']:g} s it does not at {none}. Much friction hinders: the slip that"
+        " turns the top over is soon gone, and a rolling top turns slowly.",
     )
 
 
@@ -37,12 +40,13 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     given = sum(abs(fit - float(EXPONENT)) <= half_last_digit(EXPONENT).value for fit in fits)
     return Finding(
         *both(times, "exponent"),
-        "Judged as a law, at Fig. 4's spin, "
-        f"{times.attrs['spin_rad_per_s']:g} rad/s, in steps of {_step(times['mu']):.2g} s/m; the report "
-        f"gives neither. Of {len(fits)} fits by its method, at this and other spins and steps, "
-        f"{given or 'none'} give{'s' if given == 1 else ''} {EXPONENT}: they have {min(fits):.2f} to "
-        f"{max(fits):.2f}, and the nearest is {nearest.exponent:.4f} ({nearest.converged:.4f} converged). A "
-        "law it is not: the time jumps as the last swings about pi miss or meet the 0.01 rad (why-exponent).",
+        f"Judged as a law, at Fig. 4's spin, {times.attrs['spin_rad_per_s']:g} rad/s, in steps of"
+        f" {_step(times['mu']):.2g} s/m; the report gives neither. Of {len(fits)} fits by its"
+        f" method, at this and other spins and steps, {given or 'none'}"
+        f" give{'s' if given == 1 else ''} {EXPONENT}: they have {min(fits):.2f} to"
+        f" {max(fits):.2f}, and the nearest is {nearest.exponent:.4f} ({nearest.converged:.4f}"
+        " converged). A law it is not: the time jumps as the last swings about pi miss or meet the"
+        " 0.01 rad (why-exponent).",
         nearest.exponent,
         f"fitted at {nearest.spin:g} rad/s in steps of {nearest.step:g} s/m",
     )
@@ -53,20 +57,26 @@ def _(times: xr.Dataset, others: xr.Dataset, onsets: xr.Dataset) -> Finding:
     # The least spin that leaves the table with any friction of the range, between those scanned.
     scanned = onsets["onset"].isel(window=-1)
     onset = float(np.interp(np.log(times["mu"]), np.log(scanned["mu"]), scanned).min())
-    runs = {float(one["spin"]): one for one in (others.isel(spin=k) for k in range(others.sizes["spin"]))}
+    runs = {
+        float(one["spin"]): one
+        for one in (others.isel(spin=k) for k in range(others.sizes["spin"]))
+    }
     runs[times.attrs["spin_rad_per_s"]] = times
     theirs, ours = (
         {each: _scatter(run[f"turning_time{suffix}"]) for each, run in runs.items()}
         for suffix in ("_listing", "")
     )
-    off = listed("{:.0f} % at {:g} rad/s", [100 * ours[each] for each in sorted(ours)], sorted(ours))
+    off = listed(
+        "{:.0f} % at {:g} rad/s", [100 * ours[each] for each in sorted(ours)], sorted(ours)
+    )
     staying = [each for each in ours if each < onset]
     return Finding(
         bool(staying) and max(theirs[each] for each in staying) < _LOST,
         bool(staying) and max(ours[each] for each in staying) < _LOST,
-        "Taken for the time at which the axis first passes the horizontal, which does not jump. Converged, "
-        f"mu t departs from its mean over this range by up to: {off}. From {onset:.0f} rad/s on a launch "
-        "leaves the table with some friction of the range and no longer counts (a table that pulls).",
+        "Taken for the time at which the axis first passes the horizontal, which does not jump."
+        f" Converged, mu t departs from its mean over this range by up to: {off}. From {onset:.0f}"
+        " rad/s on a launch leaves the table with some friction of the range and no longer counts"
+        " (a table that pulls).",
     )
 
 
@@ -90,7 +100,9 @@ _FITTED = 5
 
 
 def _fits(times: xr.Dataset, others: xr.Dataset) -> list[_Fit]:
-    """All fits: that of the main spin, and those of others with every value of mu, and with every second."""
+    """All fits: that of the main spin, and those of others with every value of mu, and with every
+    second.
+    """
     suffixes = ("_listing", "")
     main = (float(times[f"exponent{suffix}"]) for suffix in suffixes)
     fits = [_Fit(float(times.attrs["spin_rad_per_s"]), _step(times["mu"]), *main)]
@@ -99,7 +111,11 @@ def _fits(times: xr.Dataset, others: xr.Dataset) -> list[_Fit]:
             some = others.isel(spin=k, mu=slice(None, None, every))
             rows = (some[f"flip_time{suffix}"].values for suffix in suffixes)
             fits.append(
-                _Fit(float(spin), _step(some["mu"]), *(power_law(some["mu"].values, row)[1] for row in rows))
+                _Fit(
+                    float(spin),
+                    _step(some["mu"]),
+                    *(power_law(some["mu"].values, row)[1] for row in rows),
+                )
             )
     return [fit for fit in fits if np.isfinite(fit.exponent)]
 
@@ -118,8 +134,9 @@ def _(wide: xr.Dataset) -> Finding:
     named = listed("{:.2f} s/m at {:g} rad/s", first, wide["spin_wide"].values, between=" and ")
     return Finding.unlisted(
         bool(float(beyond.max()) > _LOST),
-        f"Beyond 1 s/m mu t departs by up to a factor {1 + float(beyond.max()):.1f}. By the report's "
-        f"definition it does so earlier, too: it is first off by more than {100 * _LOST:.0f} % at {named}.",
+        f"Beyond 1 s/m mu t departs by up to a factor {1 + float(beyond.max()):.1f}. By the"
+        " report's definition it does so earlier, too: it is first off by more than"
+        f" {100 * _LOST:.0f} % at {named}.",
     )
 
 
@@ -130,16 +147,19 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         theirs > 0.5,
         ours > 0.5,
-        "theta is a polar angle and cannot exceed pi; that the top nutates around it means that its axis "
-        "goes round the pole, with the precession in the same sense where it is nearest to pi as where it "
-        f"is farthest. At 155 rad/s (the spin of Fig. 8 is not given) it does so in {100 * ours:.0f} % of "
-        f"the nutations of 20 s after turning over, until {last:.1f} s; from then on the tilt swings below "
-        f"pi, between {late.min():.3f} and {late.max():.3f} rad, beside the pole.",
+        "theta is a polar angle and cannot exceed pi; that the top nutates around it means that"
+        " its axis goes round the pole, with the precession in the same sense where it is nearest"
+        " to pi as where it is farthest. At 155 rad/s (the spin of Fig. 8 is not given) it does so"
+        f" in {100 * ours:.0f} % of the nutations of 20 s after turning over, until {last:.1f} s;"
+        f" from then on the tilt swings below pi, between {late.min():.3f} and {late.max():.3f}"
+        " rad, beside the pole.",
     )
 
 
 def _nearest_to_pi(run: xr.Dataset, suffix: str) -> tuple[np.ndarray, np.ndarray]:
-    """When the tilt is largest in the nutations beyond the horizontal, s, and the precession there, rad/s."""
+    """When the tilt is largest in the nutations beyond the horizontal, s, and the precession there,
+    rad/s.
+    """
     times, theta = run[f"time{suffix}"].values, run[f"theta{suffix}"].values
     rising = np.diff(theta) > 0
     peaks = np.flatnonzero(rising[:-1] & ~rising[1:]) + 1
@@ -148,7 +168,9 @@ def _nearest_to_pi(run: xr.Dataset, suffix: str) -> tuple[np.ndarray, np.ndarray
 
 
 def _round_the_pole(run: xr.Dataset, suffix: str) -> tuple[float, float]:
-    """The part of the nutations in which the axis goes round the pole, and when it does so last, s."""
+    """The part of the nutations in which the axis goes round the pole, and when it does so last,
+    s.
+    """
     times, precession = _nearest_to_pi(run, suffix)
     round_it = precession > 0
     return float(round_it.mean()), float(times[round_it][-1])
@@ -156,12 +178,15 @@ def _round_the_pole(run: xr.Dataset, suffix: str) -> tuple[float, float]:
 
 @examines("fig08-rapid", "run-mu-100")
 def _(run: xr.Dataset) -> Finding:
-    theirs, ours = (float(np.median(np.diff(_nearest_to_pi(run, suffix)[0]))) for suffix in ("_listing", ""))
+    theirs, ours = (
+        float(np.median(np.diff(_nearest_to_pi(run, suffix)[0]))) for suffix in ("_listing", "")
+    )
     shown = PLOTTED.value * float(run["time"][-1])
     return Finding(
         theirs < shown,
         ours < shown,
-        f"A nutation takes {ours:.3f} s, {1 / ours:.0f} a second; a plot of 20 s shows {shown:.2g} s.",
+        f"A nutation takes {ours:.3f} s, {1 / ours:.0f} a second; a plot of 20 s shows"
+        f" {shown:.2g} s.",
     )
 
 
@@ -170,8 +195,9 @@ def _(later: xr.Dataset) -> Finding:
     swing = later["swing"]
     return Finding.unlisted(
         float(swing[-1]),
-        f"20 s are too short for it: there the tilt still swings by {swing[0]:.3f} rad. Converged swings in "
-        f"the second before: {listed('{:.4f} rad at {:g} s', swing.values, swing['end'].values)}.",
+        f"20 s are too short for it: there the tilt still swings by {swing[0]:.3f} rad. Converged"
+        " swings in the second before:"
+        f" {listed('{:.4f} rad at {:g} s', swing.values, swing['end'].values)}.",
     )
 
 
@@ -181,8 +207,18 @@ def _(block: xr.Dataset) -> Finding:
     return Finding.unlisted(distance, f"It comes to rest after {1e3 * distance:.3f} mm.")
 
 
-_LENGTH: dict[str, Any] = {"tolerance": WHOLE, "quantity": "length", "others": "centimetres", "wrong": "m/s"}
-_TIME: dict[str, Any] = {"tolerance": WHOLE, "quantity": "time", "others": "tenths", "wrong": "m s^2"}
+_LENGTH: dict[str, Any] = {
+    "tolerance": WHOLE,
+    "quantity": "length",
+    "others": "centimetres",
+    "wrong": "m/s",
+}
+_TIME: dict[str, Any] = {
+    "tolerance": WHOLE,
+    "quantity": "time",
+    "others": "tenths",
+    "wrong": "m s^2",
+}
 
 
 @examines("eq-2.7-mu-unit", "units", **_LENGTH, correct="s/m")

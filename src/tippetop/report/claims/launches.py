@@ -1,4 +1,6 @@
-"""Claims about single launches: Figs. 4 and 5, Appendix C, and Table 1, whose inertias Fig. 5 decides."""
+"""Claims about single launches: Figs. 4 and 5, Appendix C, and Table 1, whose inertias Fig. 5
+decides.
+"""
 
 import math
 
@@ -22,17 +24,19 @@ def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     return Finding(
         float(theirs[0]),
         float(ours[k]),
-        "The report does not say how it read the time. By the definition of section 3.3 (within "
-        f"{SETTLED:g} rad of the last tilt) it is {run['arrives']:.2f} s. One threshold has to serve "
-        f"for both figures: {within:.3f} rad comes nearest to both of their times, with {ours[k]:.2f} s "
-        "here.",
+        "The report does not say how it read the time. By the definition of section 3.3 (within"
+        f" {SETTLED:g} rad of the last tilt) it is {run['arrives']:.2f} s. One threshold has to"
+        f" serve for both figures: {within:.3f} rad comes nearest to both of their times, with"
+        f" {ours[k]:.2f} s here.",
         float(theirs[k]),
         f"arrived is within {within:.3f} rad of the last tilt, for Figs. 4 and 5",
     )
 
 
 def _common_threshold(*runs: xr.Dataset) -> int:
-    """Which distance from the last tilt brings the report's method nearest to both times that it prints."""
+    """Which distance from the last tilt brings the report's method nearest to both times that it
+    prints.
+    """
     figures = {"run-155": "fig04", "run-50": "fig05"}
     misses = [
         abs(run["arrival_time_listing"].values - float(TURNED_AT[figures[run.attrs["experiment"]]]))
@@ -42,19 +46,25 @@ def _common_threshold(*runs: xr.Dataset) -> int:
 
 
 @examines(
-    "fig04-first-reversal", "run-155", tolerance=READ, name="quiet_start",
+    "fig04-first-reversal",
+    "run-155",
+    tolerance=READ,
+    name="quiet_start",
     meant="the last before the long calm",
-)  # fmt: skip
+)
 @examines(
-    "fig04-second-reversal", "run-155", tolerance=READ, name="quiet_end",
+    "fig04-second-reversal",
+    "run-155",
+    tolerance=READ,
+    name="quiet_end",
     meant="the first after the long calm",
-)  # fmt: skip
+)
 @examines("fig05-reversal", "run-50", tolerance=READ, name="last_reversal", meant="the last")
 def _(run: xr.Dataset, *, name: str, meant: str) -> Finding:
     return Finding(
         *both(run, name),
-        f"The precession changes sign {run['reversals']:.0f} times in 20 s, with the nutation, last at "
-        f"{run['last_reversal']:.2f} s; the one meant is {meant}.",
+        f"The precession changes sign {run['reversals']:.0f} times in 20 s, with the nutation, last"
+        f" at {run['last_reversal']:.2f} s; the one meant is {meant}.",
     )
 
 
@@ -63,7 +73,8 @@ def _(run: xr.Dataset) -> Finding:
     left = math.pi - float(run["end_theta"])
     return Finding(
         *both(run, "end_theta"),
-        f"After 20 s the axis is still {1e3 * left:.2f} mrad from the vertical; the rest decays slowly.",
+        f"After 20 s the axis is still {1e3 * left:.2f} mrad from the vertical; the rest decays"
+        " slowly.",
     )
 
 
@@ -73,21 +84,23 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         float(run["end_slip_listing"] / run["largest_slip_listing"]),
         float(run["end_slip"] / run["largest_slip"]),
-        f"The slip speed falls from at most {run['largest_slip']:.3f} m/s to {run['end_slip']:.1e} m/s "
-        "after 20 s.",
+        f"The slip speed falls from at most {run['largest_slip']:.3f} m/s to {run['end_slip']:.1e}"
+        " m/s after 20 s.",
     )
 
 
 @examines("sec3-omega-smooth", "run-155", "run-50", tolerance=PLOTTED)
 def _(*runs: xr.Dataset) -> Finding:
     theirs, ours, other = (
-        [_detour(run[name].values) for run in runs] for name in ("omega3_listing", "omega3", "phi_dot")
+        [_detour(run[name].values) for run in runs]
+        for name in ("omega3_listing", "omega3", "phi_dot")
     )
     return Finding(
         max(theirs),
         max(ours),
-        "The axial spin only falls, but for ripples: friction acts on it through the slip across the lean. "
-        f"The precession, by contrast, goes {other[0]:.0f} and {other[1]:.1f} times its range to and fro.",
+        "The axial spin only falls, but for ripples: friction acts on it through the slip across"
+        f" the lean. The precession, by contrast, goes {other[0]:.0f} and {other[1]:.1f} times its"
+        " range to and fro.",
     )
 
 
@@ -102,7 +115,8 @@ def _(run: xr.Dataset) -> Finding:
     since = float(run["time"].values[np.flatnonzero(away)[-1] + 1])
     return Finding(
         *both(run, "end_theta"),
-        f"The nutation of the launch dies away: from {since:.2f} s on the tilt stays below {SETTLED:g} rad.",
+        f"The nutation of the launch dies away: from {since:.2f} s on the tilt stays below"
+        f" {SETTLED:g} rad.",
     )
 
 
@@ -122,11 +136,11 @@ def _(slow: xr.Dataset) -> Finding:
     return Finding(
         _stays_upright(slow, "_listing"),
         _stays_upright(slow, ""),
-        "The sentence has two readings. The report calls theta the nutation angle, and judged is that it "
-        f"does not grow: launched at {TILT:g} rad at {spins} rad/s, it is never more than "
-        f"{float(slow['highest'].max()):.3f} rad and ends at {ends}. In the usual sense, of the axis nodding "
-        "up and down, the top does nutate, and only friction lets it die away: it makes "
-        f"{swings} swings of more than {SETTLED:g} rad.",
+        "The sentence has two readings. The report calls theta the nutation angle, and judged is"
+        f" that it does not grow: launched at {TILT:g} rad at {spins} rad/s, it is never more than"
+        f" {float(slow['highest'].max()):.3f} rad and ends at {ends}. In the usual sense, of the"
+        " axis nodding up and down, the top does nutate, and only friction lets it die away: it"
+        f" makes {swings} swings of more than {SETTLED:g} rad.",
     )
 
 
@@ -137,7 +151,9 @@ def _stays_upright(slow: xr.Dataset, suffix: str) -> bool:
 
 
 _DISPLAYED = Tolerance(
-    0.00055, "half a unit of the last printed digit, of a number read with the four decimals MATLAB displays"
+    0.00055,
+    "half a unit of the last printed digit, of a number read with the four decimals MATLAB"
+    " displays",
 )
 
 
@@ -153,14 +169,17 @@ def _(run: xr.Dataset, windows: xr.Dataset, other: xr.Dataset) -> Finding:
     return Finding(
         _miss({key: float(run[f"end_{key}_listing"]) for key in END_OF_FIG_5}),
         _miss(end),
-        "The report does not say when its end was, and the top has not settled then: of runs "
-        f"{tried}, the one of {chosen['window']:g} s comes nearest to all three numbers by its method. "
-        f"Converged they are {_triple(then)} at {chosen['window']:g} s, so that the report's are right to "
-        f"{_miss(then):.4f}, and {_triple(end)} after {duration:.0f} s. With the inertias of Table 1 as "
-        f"printed they would be {_triple(other_end)}.",
+        "The report does not say when its end was, and the top has not settled then: of runs"
+        f" {tried}, the one of {chosen['window']:g} s comes nearest to all three numbers by its"
+        f" method. Converged they are {_triple(then)} at {chosen['window']:g} s, so that the"
+        f" report's are right to {_miss(then):.4f}, and {_triple(end)} after {duration:.0f} s. With"
+        f" the inertias of Table 1 as printed they would be {_triple(other_end)}.",
         _miss({key: float(chosen[f"{key}_after_listing"]) for key in END_OF_FIG_5}),
         f"the run was cut short at {chosen['window']:g} s",
-        right=f"cut short at {chosen['window']:g} s; the end, after {duration:.0f} s, is {_triple(end)}",
+        right=(
+            f"cut short at {chosen['window']:g} s; the end, after {duration:.0f} s, is"
+            f" {_triple(end)}"
+        ),
     )
 
 
@@ -173,7 +192,9 @@ def _triple(state: dict[str, float]) -> str:
     return "(" + ", ".join(f"{value:.4f}" for value in state.values()) + ")"
 
 
-@examines("table-1-inertia", "run-50", "run-50-table-1", tolerance=Tolerance(1e-6, "fractions are exact"))
+@examines(
+    "table-1-inertia", "run-50", "run-50-table-1", tolerance=Tolerance(1e-6, "fractions are exact")
+)
 def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     unit = REPORT.mass * float(REPORT.surface.size) ** 2
     runs = {"listing": (run, REPORT), "table": (other, REPORT_TABLE_1)}
@@ -185,8 +206,8 @@ def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     return Finding(
         REPORT.I1 / unit,
         runs[right][1].I1 / unit,
-        "The value is the one whose converged end state is nearest to Fig. 5's: the largest difference in "
-        f"(theta, phi', omega) is {misses['listing']:.3f} with the listing's inertias "
-        f"and {misses['table']:.3f} with those of the table.",
+        "The value is the one whose converged end state is nearest to Fig. 5's: the largest"
+        f" difference in (theta, phi', omega) is {misses['listing']:.3f} with the listing's"
+        f" inertias and {misses['table']:.3f} with those of the table.",
         reported=REPORT_TABLE_1.I1 / unit,
     )

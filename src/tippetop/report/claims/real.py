@@ -7,10 +7,14 @@ from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.tolerance import ROUNDING, Tolerance
 
 _READ = Tolerance(
-    0.13, "1 % of the 8 s of the plot that the time is read off, and half a unit of the last printed digit"
+    0.13,
+    "1 % of the 8 s of the plot that the time is read off, and half a unit of the last printed"
+    " digit",
 )
 
-_THIN = Tolerance(0.02, "2 %: the disk of the toy has a thickness, and the formula is for one that has none")
+_THIN = Tolerance(
+    0.02, "2 %: the disk of the toy has a thickness, and the formula is for one that has none"
+)
 
 
 @examines("real-leine-stem", tolerance=_READ, event="stem", printed=1.5)
@@ -23,9 +27,10 @@ def _(data: xr.Dataset, *, event: str, printed: float) -> Finding:
     failing = [str(name) for name in pressures[(misses > _READ.value).values]]
     return Finding.unlisted(
         float(times[0]),
-        "The paper does not say which pressure in the patch its figure is for. Judged is the ellipsoidal "
-        "limit surface, the law of a code of its authors; it misses by "
-        f"{float(misses[0]):.3f} s. By the pressure: {listed('{:.4f} s ({})', times.values, pressures)}. "
+        "The paper does not say which pressure in the patch its figure is for. Judged is the"
+        " ellipsoidal limit surface, the law of a code of its authors; it misses by"
+        f" {float(misses[0]):.3f} s. By the pressure:"
+        f" {listed('{:.4f} s ({})', times.values, pressures)}. "
         + (f"Too far off would be: {', '.join(failing)}. " if failing else "")
         + f"Energy and work balance to {float(data['energy_error'].max()):.0e} of the energy.",
     )
@@ -36,7 +41,14 @@ def _(data: xr.Dataset) -> Finding:
     events = ("stem", "back", "both", "apart")
     off = {name: data[name] - data[f"exact_{name}"] for name in (*events, "final_theta")}
     goes = all(abs(float(off[name][-1])) < 0.5 * abs(float(off[name][0])) for name in events)
-    columns = (1e3 * data["step"], off["stem"], off["back"], off["both"], data["strikes"], off["final_theta"])
+    columns = (
+        1e3 * data["step"],
+        off["stem"],
+        off["back"],
+        off["both"],
+        data["strikes"],
+        off["final_theta"],
+    )
     steps = listed(
         "{:g} ms: {:+.4f}, {:+.3f}, {:+.3f} s, {:.0f} strikes, {:+.3f} rad",
         *(column.values for column in columns),
@@ -44,11 +56,11 @@ def _(data: xr.Dataset) -> Finding:
     )
     return Finding.unlisted(
         goes,
-        "By its step, how far off are the stem's first touch, the fall back on the sphere and the beginning "
-        "of double contact, of how many strikes the rocking before this consists, and how far off the tilt "
-        f"is after 8 s: {steps}. There are {int(data['exact_strikes'])} strikes above the bound at which "
-        "the rocking is cut off; those closer together than a step are one to it, so that both surfaces rest "
-        "on the table too early.",
+        "By its step, how far off are the stem's first touch, the fall back on the sphere and the"
+        " beginning of double contact, of how many strikes the rocking before this consists, and"
+        f" how far off the tilt is after 8 s: {steps}. There are {int(data['exact_strikes'])}"
+        " strikes above the bound at which the rocking is cut off; those closer together than a"
+        " step are one to it, so that both surfaces rest on the table too early.",
     )
 
 
@@ -59,11 +71,11 @@ def _(data: xr.Dataset) -> Finding:
     share = (data["jellett"] / data["jellett_needed"]).values
     return Finding.unlisted(
         bool((stands == enough).all()),
-        f"{int(stands.sum())} of {len(stands)} stems of the report's top, whose tips have radii of "
-        f"{1e3 * float(data['radius'].min()):g} to {1e3 * float(data['radius'].max()):g} mm, are stood upon "
-        f"after {data.attrs['window_s']:g} s. Jellett's integral is {share.min():.3f} to {share.max():.3f} "
-        "of the least as they touch. It does not change while the tip alone touches, and a top that lacks it "
-        "falls back.",
+        f"{int(stands.sum())} of {len(stands)} stems of the report's top, whose tips have radii of"
+        f" {1e3 * float(data['radius'].min()):g} to {1e3 * float(data['radius'].max()):g} mm, are"
+        f" stood upon after {data.attrs['window_s']:g} s. Jellett's integral is {share.min():.3f}"
+        f" to {share.max():.3f} of the least as they touch. It does not change while the tip alone"
+        " touches, and a top that lacks it falls back.",
     )
 
 
@@ -73,8 +85,8 @@ def _(data: xr.Dataset) -> Finding:
     tilts = listed("{:g} rad/s: {:.3f}", data["rate"].values, final.values, between="; ")
     return Finding.unlisted(
         float(final.isel(rate=-1)) > np.pi - 0.1,
-        f"Tilt after {float(data['time'][-1]):g} s, rad, by the rate at launch: {tilts}. Viscous friction "
-        f"of {data.attrs['mu_s_per_m']:g} s/m.",
+        f"Tilt after {float(data['time'][-1]):g} s, rad, by the rate at launch: {tilts}. Viscous"
+        f" friction of {data.attrs['mu_s_per_m']:g} s/m.",
     )
 
 

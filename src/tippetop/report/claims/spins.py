@@ -10,8 +10,8 @@ from tippetop.report.tolerance import Tolerance
 
 _STEP = Tolerance(
     0.1,
-    "a unit of the last printed digit: a scan in such steps has the threshold between two spins, and may "
-    "print either",
+    "a unit of the last printed digit: a scan in such steps has the threshold between two spins,"
+    " and may print either",
 )
 
 
@@ -19,15 +19,29 @@ _NEEDED = ("final-tilt-listing", "critical-spins", "why-critical")
 
 
 @examines(
-    "fig06-c1", *_NEEDED, tolerance=_STEP, name="upright", printed=CRITICAL_SPINS[0],
+    "fig06-c1",
+    *_NEEDED,
+    tolerance=_STEP,
+    name="upright",
+    printed=CRITICAL_SPINS[0],
     change="the upright spin loses its stability",
-)  # fmt: skip
+)
 @examines(
-    "fig06-c2", *_NEEDED, tolerance=_STEP, name="inverted", printed=CRITICAL_SPINS[1],
+    "fig06-c2",
+    *_NEEDED,
+    tolerance=_STEP,
+    name="inverted",
+    printed=CRITICAL_SPINS[1],
     change="the inverted spin gains stability",
-)  # fmt: skip
+)
 def _(
-    listing: xr.Dataset, sweep: xr.Dataset, theory: xr.Dataset, *, name: str, printed: str, change: str
+    listing: xr.Dataset,
+    sweep: xr.Dataset,
+    theory: xr.Dataset,
+    *,
+    name: str,
+    printed: str,
+    change: str,
 ) -> Finding:
     theirs, chosen = listing[f"critical_{name}_listing"], _common_margin(listing)
     given = float(theirs.sel(margin_listing=chosen))
@@ -38,19 +52,21 @@ def _(
     return Finding(
         float(theirs[-1]),
         float(exact["critical_launch"]),
-        f"There {change}, at {exact['critical_formula']:.4f} rad/s of vertical spin by formula, and "
-        f"{same} by the spectrum of the linear motion. Runs show it the better the "
-        f"longer they are: {windows}. The report's 20 s are too short for a launch near the threshold to "
-        f"settle. It does not say which tilt counted as settled: {chosen:.4f} rad comes nearest to both "
-        f"its critical spins. What is left is {abs(given - float(printed)):.3f} rad/s, of "
-        f"the {_STEP.value:g} rad/s that are a step of such a scan.",
+        f"There {change}, at {exact['critical_formula']:.4f} rad/s of vertical spin by formula, and"
+        f" {same} by the spectrum of the linear motion. Runs show it the better the longer they"
+        f" are: {windows}. The report's 20 s are too short for a launch near the threshold to"
+        f" settle. It does not say which tilt counted as settled: {chosen:.4f} rad comes nearest to"
+        f" both its critical spins. What is left is {abs(given - float(printed)):.3f} rad/s, of the"
+        f" {_STEP.value:g} rad/s that are a step of such a scan.",
         given,
         f"settled is within {chosen:.4f} rad, for both critical spins",
     )
 
 
 def _common_margin(listing: xr.Dataset) -> float:
-    """What must have counted as settled for the report's method to come nearest to both its spins, rad."""
+    """What must have counted as settled for the report's method to come nearest to both its spins,
+    rad.
+    """
     misses = [
         abs(listing[f"critical_{name}_listing"].values - float(printed))
         for name, printed in zip(("upright", "inverted"), CRITICAL_SPINS, strict=True)
@@ -69,7 +85,7 @@ def _(listing: xr.Dataset, sweep: xr.Dataset) -> Finding:
     return Finding(
         float(listing["lost_listing"]),
         lost,
-        f"The values are the first spins that end more than {TURNED:g} rad from pi, on a table that pulls. "
-        f"What Fig. 6 shows begins later than its cause: from {onset:.2f} rad/s on the table would have to "
-        "pull within 20 s. On one that only pushes there is no such point.",
+        f"The values are the first spins that end more than {TURNED:g} rad from pi, on a table that"
+        f" pulls. What Fig. 6 shows begins later than its cause: from {onset:.2f} rad/s on the"
+        " table would have to pull within 20 s. On one that only pushes there is no such point.",
     )

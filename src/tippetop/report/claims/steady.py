@@ -18,10 +18,10 @@ def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
     theirs = max(float(run["end_slip_listing"] / run["largest_slip_listing"]) for run in runs)
     return Finding.unlisted(
         float(left.max()),
-        f"After {steady.attrs['duration_s']:g} s, for {steady.sizes['body']} bodies. After the 20 s of "
-        f"Figs. 4 and 5 the report's method has at most {theirs:.0e} of the largest slip left. That "
-        "friction would otherwise slow the top down is the reason, and the right one: it takes energy "
-        "wherever there is slip.",
+        f"After {steady.attrs['duration_s']:g} s, for {steady.sizes['body']} bodies. After the 20 s"
+        f" of Figs. 4 and 5 the report's method has at most {theirs:.0e} of the largest slip left."
+        " That friction would otherwise slow the top down is the reason, and the right one: it"
+        " takes energy wherever there is slip.",
     )
 
 
@@ -30,8 +30,8 @@ def _(steady: xr.Dataset) -> Finding:
     left = np.maximum(steady["residual_216"].values, steady["phi_ddot"].values)
     return Finding.unlisted(
         float(left.max()),
-        f"The largest of {len(left)} bodies after {steady.attrs['duration_s']:g} s; "
-        f"{left[0]:.1e} for the report's. The second line, phi'' = 0, is counted in parts of phi'^2.",
+        f"The largest of {len(left)} bodies after {steady.attrs['duration_s']:g} s; {left[0]:.1e}"
+        " for the report's. The second line, phi'' = 0, is counted in parts of phi'^2.",
     )
 
 
@@ -39,7 +39,9 @@ _ALPHA = float(REPORT.surface.proportions[0])
 
 
 def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
-    """How far three numbers that satisfy (2.17) may miss it when each is rounded to three decimals, rad/s."""
+    """How far three numbers that satisfy (2.17) may miss it when each is rounded to three decimals,
+    rad/s.
+    """
     return 0.0005 * (abs(phi_dot * math.sin(theta)) + abs(math.cos(theta) - _ALPHA) + 1.0)
 
 
@@ -53,15 +55,17 @@ def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
 )
 def _(run: xr.Dataset) -> Finding:
     listed, ours = (
-        float(left_of_217(**{name: run[f"end_{name}{suffix}"] for name in END_OF_FIG_5}, alpha=_ALPHA))
+        float(
+            left_of_217(**{name: run[f"end_{name}{suffix}"] for name in END_OF_FIG_5}, alpha=_ALPHA)
+        )
         for suffix in ("_listing", "")
     )
     quoted = float(left_of_217(**END_OF_FIG_5, alpha=_ALPHA))
     return Finding(
         listed,
         ours,
-        f"The three numbers that the report quotes leave {quoted:+.4f} rad/s, almost all of it the rounding "
-        "of theta and phi'. Its method and the converged motion are taken after 20 s.",
+        f"The three numbers that the report quotes leave {quoted:+.4f} rad/s, almost all of it the"
+        " rounding of theta and phi'. Its method and the converged motion are taken after 20 s.",
         reported=quoted,
     )
 
@@ -74,8 +78,8 @@ def _(states: xr.Dataset) -> Finding:
     shown = ", ".join(f"{spin:g}" for spin in inside["run_spin"].values)
     return Finding.unlisted(
         float(left.max()),
-        f"In runs of {states.attrs['long_run_s']:g} s launched at {shown} rad/s, which end at tilts from "
-        f"{inside['run_end'].min():.2f} to {inside['run_end'].max():.2f} rad.",
+        f"In runs of {states.attrs['long_run_s']:g} s launched at {shown} rad/s, which end at tilts"
+        f" from {inside['run_end'].min():.2f} to {inside['run_end'].max():.2f} rad.",
     )
 
 
@@ -85,24 +89,26 @@ def _(run: xr.Dataset) -> Finding:
     left = left_of_217(late["theta"], late["phi_dot"], late["omega3"], _ALPHA)
     return Finding.unlisted(
         float((abs(left) / abs(late["omega3"])).max()),
-        "Judged, as (2.14) is, over all the states in which the report's top can end. theta = 0 is one, and "
-        "an exception too: the derivation divides by sin(theta). An upright top spins steadily at any "
-        f"omega3, and what is left of its nutation turns at {late['phi_dot'].mean():.2f} rad/s where (2.17) "
-        f"would have {float(late['omega3'].mean()) / (1.0 - _ALPHA):.2f} rad/s.",
+        "Judged, as (2.14) is, over all the states in which the report's top can end. theta = 0 is"
+        " one, and an exception too: the derivation divides by sin(theta). An upright top spins"
+        " steadily at any omega3, and what is left of its nutation turns at"
+        f" {late['phi_dot'].mean():.2f} rad/s where (2.17) would have"
+        f" {float(late['omega3'].mean()) / (1.0 - _ALPHA):.2f} rad/s.",
     )
 
 
 @examines("eq-2.14-no-nutation", "why-groups", "steady-bodies")
 def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
-    # The bracket over I3 is alpha + (gamma - 1) cos(theta): it has a zero where |gamma - 1| reaches alpha.
+    # The bracket over I3 is alpha + (gamma - 1) cos(theta): it has a zero where |gamma - 1| reaches
+    # alpha.
     bracket = chart["top_alpha"] - abs(chart["top_gamma"] - 1.0)
     listed, tilting = float(bracket[0]), float(steady["theta_dot"].max())
     return Finding.unlisted(
         listed > 0 and tilting < STEADY.value,
-        "Judged, as (2.17) is, over all the states in which the report's top can end: there the bracket is "
-        f"at least {listed:.2f} I3, and theta' is at most {rounded(tilting)} phi'. In general (2.14) leaves "
-        "two other ways: omega3 = 0, and a zero of the bracket, at cos(theta) = alpha / (1 - I1/I3), for "
-        "tops with |I1/I3 - 1| of alpha or more.",
+        "Judged, as (2.17) is, over all the states in which the report's top can end: there the"
+        f" bracket is at least {listed:.2f} I3, and theta' is at most {rounded(tilting)} phi'. In"
+        " general (2.14) leaves two other ways: omega3 = 0, and a zero of the bracket, at"
+        " cos(theta) = alpha / (1 - I1/I3), for tops with |I1/I3 - 1| of alpha or more.",
     )
 
 
@@ -120,8 +126,8 @@ def _(steady: xr.Dataset) -> Finding:
     slowest = min(float(abs(rate).min()) for rate in (precession, rotation))
     return Finding.unlisted(
         slowest,
-        "A misprint for omega3' = 0, which holds: in the steady states of "
-        f"{steady.sizes['body']} bodies it is at most {steady['omega3_rate'].max():.0e} rad/s². No angle "
-        "phi_3 is introduced, and read as printed it would be wrong of any: the precession and the rotation "
-        f"about the axis both go on, at {slowest:.2f} rad/s and more. {TRANSCRIBED}",
+        f"A misprint for omega3' = 0, which holds: in the steady states of {steady.sizes['body']}"
+        f" bodies it is at most {steady['omega3_rate'].max():.0e} rad/s². No angle phi_3 is"
+        " introduced, and read as printed it would be wrong of any: the precession and the"
+        f" rotation about the axis both go on, at {slowest:.2f} rad/s and more. {TRANSCRIBED}",
     )

@@ -1,4 +1,6 @@
-"""Why things are as the report finds them: its statements against steady states and the slow flow."""
+"""Why things are as the report finds them: its statements against steady states and the slow
+flow.
+"""
 
 import numpy as np
 import xarray as xr
@@ -10,18 +12,26 @@ from tippetop.report.readings import SETTLED
 from tippetop.report.tolerance import Tolerance, rounded
 
 _NEAR_LIMIT = 1e-3
-"""Relative distance from the limit that counts as there: the tolerance of the report's own method."""
+"""Relative distance from the limit that counts as there: the tolerance of the report's own method.
+"""
 
 
-@examines("why-final-tilt", tolerance=Tolerance(1e-6, "far below what the report's figures can show"))
+@examines(
+    "why-final-tilt", tolerance=Tolerance(1e-6, "far below what the report's figures can show")
+)
 def _(states: xr.Dataset) -> Finding:
-    quoted = states.isel(run=[int(np.argmin(abs(states["run_spin"].values - s))) for s in QUOTED_SPINS])
+    quoted = states.isel(
+        run=[int(np.argmin(abs(states["run_spin"].values - s))) for s in QUOTED_SPINS]
+    )
     spins, tilts, ends = (quoted[f"run_{name}"].values for name in ("spin", "predicted", "end"))
-    each = listed("{:g} rad/s: {:.6f} rad ({} off)", spins, tilts, map(rounded, ends - tilts), between="; ")
+    each = listed(
+        "{:g} rad/s: {:.6f} rad ({} off)", spins, tilts, map(rounded, ends - tilts), between="; "
+    )
     return Finding.unlisted(
         _tilt_miss(states),
-        "Friction leaves Jellett's integral lambda alone, and only one stable steady state has the lambda of "
-        f"the launch. Predicted from lambda, against runs of {states.attrs['long_run_s']:g} s: {each}.",
+        "Friction leaves Jellett's integral lambda alone, and only one stable steady state has the"
+        " lambda of the launch. Predicted from lambda, against runs of"
+        f" {states.attrs['long_run_s']:g} s: {each}.",
     )
 
 
@@ -48,10 +58,10 @@ def _(states: xr.Dataset, chart: xr.Dataset, listing: xr.Dataset) -> Finding:
     return Finding(
         theirs,
         as_said,
-        f"With {upright:.2f} and {inverted:.2f} rad/s for the critical spins. It is so because this top is "
-        f"in group {group}: at every spin one steady state is stable. A top with I1 / I3 = "
-        f"{states.attrs['inertia_ratio_jump']:g} has two at {both} of {states.sizes['run_jump']} launches, "
-        "and its launch decides between them.",
+        f"With {upright:.2f} and {inverted:.2f} rad/s for the critical spins. It is so because this"
+        f" top is in group {group}: at every spin one steady state is stable. A top with I1 / I3 ="
+        f" {states.attrs['inertia_ratio_jump']:g} has two at {both} of {states.sizes['run_jump']}"
+        " launches, and its launch decides between them.",
     )
 
 
@@ -60,12 +70,13 @@ def _(times: xr.Dataset) -> Finding:
     misses = _law_misses(times)
     return Finding.unlisted(
         max(misses) < _NEAR_LIMIT,
-        "Weak friction acts on a nutation that it hardly disturbs: averaged over one, its torque and power "
-        "are proportional to mu, so that mu t is the only time there is. The averaged flow has mu t_flip = "
-        f"{times['limit_arrival']:.4f} s²/m at {times.attrs['spin_rad_per_s']:g} rad/s without one "
-        f"full run; runs at mu = {times['mu_flip'][0]:g} s/m differ from it by {misses[0]:.1e} of it, "
-        f"and by {misses[1]:.1e} in the time to pi/2. The rule is one for small mu and says nothing of mu "
-        "near 1 s/m.",
+        "Weak friction acts on a nutation that it hardly disturbs: averaged over one, its torque"
+        " and power are proportional to mu, so that mu t is the only time there is. The averaged"
+        f" flow has mu t_flip = {times['limit_arrival']:.4f} s²/m at"
+        f" {times.attrs['spin_rad_per_s']:g} rad/s without one full run; runs at mu ="
+        f" {times['mu_flip'][0]:g} s/m differ from it by {misses[0]:.1e} of it, and by"
+        f" {misses[1]:.1e} in the time to pi/2. The rule is one for small mu and says nothing of mu"
+        " near 1 s/m.",
     )
 
 
@@ -77,7 +88,9 @@ def _(times: xr.Dataset) -> Finding:
 )
 def _(times: xr.Dataset, wide: xr.Dataset) -> Finding:
     some = times.sel(mu_flip=[0.1, 0.3, 1.0, 3.0], method="nearest")
-    local = listed("{:.3f} at {:.2g}", some["exponent_crossing_time"].values, some["mu_flip"].values)
+    local = listed(
+        "{:.3f} at {:.2g}", some["exponent_crossing_time"].values, some["mu_flip"].values
+    )
     exponents, spins = wide["small_exponent"].values, wide["spin_wide"].values
     fitted = listed("{:.4f} at {:g} rad/s", exponents, spins, between=" and ")
     here = times.sel(mu_flip=0.01, method="nearest")
@@ -95,9 +108,9 @@ def _(theory: xr.Dataset, states: xr.Dataset, times: xr.Dataset) -> Finding:
     known = spectral < _NEAR_LIMIT and tilt < SETTLED and law < _NEAR_LIMIT
     return Finding.unlisted(
         not known,
-        "Without a simulation one has the critical spins, the final tilt (runs differ from it by at most "
-        f"{tilt:.0e} rad) and for small mu the time to turn over (by {law:.0e} of it). The single swings of "
-        "a launch do take a simulation.",
+        "Without a simulation one has the critical spins, the final tilt (runs differ from it by"
+        f" at most {tilt:.0e} rad) and for small mu the time to turn over (by {law:.0e} of it). The"
+        " single swings of a launch do take a simulation.",
     )
 
 

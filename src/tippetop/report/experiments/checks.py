@@ -14,7 +14,9 @@ from tippetop.run import simulate
 
 @experiment("units", "the units of Table 1", 0.3)
 def _units(quick: bool) -> xr.Dataset:
-    """The same launch in metres and seconds and in other units, by the units that Table 1 may mean."""
+    """The same launch in metres and seconds and in other units, by the units that Table 1 may
+    mean.
+    """
     report = report_problem()
     seconds = 2.0
     length, time = np.array([-1, 1]), np.array([-2, 2])
@@ -29,7 +31,9 @@ def _units(quick: bool) -> xr.Dataset:
 
 
 def _in_tenths(problem: Problem, power: int) -> Problem:
-    """The problem with every time in tenths of a second, if g has this power of time in its unit."""
+    """The problem with every time in tenths of a second, if g has this power of time in its
+    unit.
+    """
     unit = 10.0
     times = {"friction.mu": MU * unit, "launch.spin": problem.launch.spin / unit}
     return problem.replace({**times, "gravity": problem.gravity * unit**power})
@@ -58,9 +62,12 @@ def _block(quick: bool) -> xr.Dataset:
     """How far a block slides on the table of Fig. 8 when it starts with 1 m/s."""
     mu, gravity = 100.0, report_problem().gravity
     law = ViscousFriction(mu=mu).law
-    # Equal steps of speed: dx = v dv / v', exact by the midpoint rule because v' is proportional to v.
+    # Equal steps of speed: dx = v dv / v', exact by the midpoint rule because v' is proportional to
+    # v.
     edges = np.linspace(1.0, 0.0, 1001)
     speeds = 0.5 * (edges[:-1] + edges[1:])
     slowing = gravity * np.array([law.traction((v, 0.0), (0.0, 0.0, 0.0)).force[0] for v in speeds])
     distance = float(np.sum(speeds * np.diff(edges) / slowing))
-    return dataset({}, {"mu_s_per_m": mu, "speed_m_per_s": 1.0}, distance=(distance, "m", "distance to rest"))
+    return dataset(
+        {}, {"mu_s_per_m": mu, "speed_m_per_s": 1.0}, distance=(distance, "m", "distance to rest")
+    )

@@ -1,4 +1,6 @@
-"""Dry friction of a point: tops that roll, Cohen's top step by step, and what smoothing makes of it."""
+"""Dry friction of a point: tops that roll, Cohen's top step by step, and what smoothing makes of
+it.
+"""
 
 import math
 from dataclasses import replace
@@ -29,10 +31,13 @@ SLIPPERY = 0.028
 """One that does not quite hold the report's top at its main launch."""
 
 ROLLED = 1.5
-"""How long tops are followed to find the most friction they need, s: several periods of their nutation."""
+"""How long tops are followed to find the most friction they need, s: several periods of their
+nutation.
+"""
 
 WITHOUT_COMPILING: Any = {"integrator": "dop853", "tolerance": 1e-11}
-"""How single runs are followed: compiling what a top that slips and sticks takes would cost more."""
+"""How single runs are followed: compiling what a top that slips and sticks takes would cost more.
+"""
 
 COHEN = Problem(
     body=presets.COHEN,
@@ -59,9 +64,11 @@ def with_friction(problem: Problem, friction: object) -> Problem:
 
 
 def friction_needed(spin: float, tilt: float) -> float:
-    """The least mu on which the report's top, set down without slip, rolls for ever; nan where none does.
+    """The least mu on which the report's top, set down without slip, rolls for ever; nan where none
+    does.
 
-    The largest ratio of friction and normal force on the way, a parabola through the sample nearest to it.
+    The largest ratio of friction and normal force on the way, a parabola through the sample nearest
+    to it.
     """
     # It holds every top of the map, and lets no contact force be inconsistent.
     problem = with_friction(report_problem(spin, tilt), CoulombFriction(mu=1.4))
@@ -77,7 +84,9 @@ def friction_needed(spin: float, tilt: float) -> float:
 
 @experiment("dry-rolling", "the friction that rolling needs", 4.0)
 def _rolling(quick: bool) -> xr.Dataset:
-    """How much friction rolling needs, and what a launch does with a little more and with a little less."""
+    """How much friction rolling needs, and what a launch does with a little more and with a little
+    less.
+    """
     spins = np.linspace(10.0, 250.0, 5 if quick else 17)
     tilts = np.array([0.1, 0.2, 0.8] if quick else [0.05, 0.1, 0.2, 0.4, 0.8])
     least = np.array([[friction_needed(float(s), float(t)) for s in spins] for t in tilts])
@@ -85,7 +94,10 @@ def _rolling(quick: bool) -> xr.Dataset:
     main = report_problem(SPIN, TILT)
     times = np.linspace(0.0, 20.0, 2001)
     coefficients = [1.001 * needed, *((1.0,) if quick else (0.3, 1.0))]
-    held = [simulate(with_friction(main, CoulombFriction(mu=mu)), 20.0, times=times) for mu in coefficients]
+    held = [
+        simulate(with_friction(main, CoulombFriction(mu=mu)), 20.0, times=times)
+        for mu in coefficients
+    ]
     lost = [float(abs(run["energy_lost"] / run["energy_start"])) for run in held]
     slips_held = [len(happenings(run, "slip")) for run in held]
     less = with_friction(main, CoulombFriction(mu=0.999 * needed))
@@ -112,7 +124,8 @@ def _rolling(quick: bool) -> xr.Dataset:
 
 
 def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
-    """A sliding top followed by the classical Runge-Kutta method with fixed step, whatever its slip does.
+    """A sliding top followed by the classical Runge-Kutta method with fixed step, whatever its slip
+    does.
 
     In natural units, every number of shape (steps + 1,).
     """
@@ -155,7 +168,9 @@ def _cohen(quick: bool) -> xr.Dataset:
 
 
 def turning_time(problem: Problem, window: float) -> float:
-    """When the axis first passes the horizontal, s; nan if it has not in the window, or until it sticks."""
+    """When the axis first passes the horizontal, s; nan if it has not in the window, or until it
+    sticks.
+    """
     return float(simulate(problem, window, samples=2, phase_limit=1)["turns_over"])
 
 
@@ -165,10 +180,14 @@ def _smoothed(quick: bool) -> xr.Dataset:
     windows = np.maximum(4.0, 0.02 / eps)
     base = report_problem(SMOOTHED_SPIN)
     times = [
-        turning_time(with_friction(base, RegularizedCoulombFriction(mu=SMOOTHED, eps=float(e))), float(w))
+        turning_time(
+            with_friction(base, RegularizedCoulombFriction(mu=SMOOTHED, eps=float(e))), float(w)
+        )
         for e, w in zip(eps, windows, strict=True)
     ]
-    exact = simulate(with_friction(base, CoulombFriction(mu=SMOOTHED)), float(windows.max()), samples=2001)
+    exact = simulate(
+        with_friction(base, CoulombFriction(mu=SMOOTHED)), float(windows.max()), samples=2001
+    )
     turns, slopes = float(exact["turns_over"]), np.diff(np.log(times)) / np.diff(np.log(eps))
     return dataset(
         {"eps": (eps, "m s-1", "slip speed below which friction falls to zero")},

@@ -1,4 +1,6 @@
-"""The report's printed equations, put to numbers: of motion, of rotation, and of the steady state."""
+"""The report's printed equations, put to numbers: of motion, of rotation, and of the steady
+state.
+"""
 
 import math
 from typing import Any
@@ -28,7 +30,9 @@ _STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / (12.0 * _STEP)
 
 @experiment("printed-equations", "the equations of section 2.2 along a run", 0.3)
 def _printed(quick: bool) -> xr.Dataset:
-    """The equations of section 2.2 as printed, as listed and as they are, at instants of the main run."""
+    """The equations of section 2.2 as printed, as listed and as they are, at instants of the main
+    run.
+    """
     problem = on_table(report_problem())
     top = problem.top
     times = (_INSTANTS[:, None] + _STEP * np.arange(-2, 3)).ravel()
@@ -73,7 +77,11 @@ def _at_one_instant(
     return {
         "torque_printed": (torque["printed"], "N m", "second component of F x a, as (2.7) has it"),
         "torque_listing": (by_listing, "N m", "second component of L' by (2.8)"),
-        "torque": (float(_STENCIL @ momentum @ turning), "N m", "second component of L' of the run"),
+        "torque": (
+            float(_STENCIL @ momentum @ turning),
+            "N m",
+            "second component of L' of the run",
+        ),
         "torque_turned": (torque["turned"], "N m", "second component of a x F, F with the weight"),
         "torque_corrected": (torque["corrected"], "N m", "second component of a x F without it"),
         "power_printed": (torque["power_printed"], "W", "power of the contact force with F x a"),
@@ -90,8 +98,12 @@ def _at_one_instant(
 
 
 def _arm_miss(now: xr.Dataset, top: Top) -> float:
-    """How far the report's a = R (sin(theta) 1 + (alpha - cos(theta)) 3) is from the contact vector, in R."""
-    axis, momentum, velocity = (_vector(now, name) for name in ("axis", "angular_momentum", "velocity"))
+    """How far the report's a = R (sin(theta) 1 + (alpha - cos(theta)) 3) is from the contact
+    vector, in R.
+    """
+    axis, momentum, velocity = (
+        _vector(now, name) for name in ("axis", "angular_momentum", "velocity")
+    )
     R, alpha = published_parameters(top)[3:5]
     three = np.array(axis)
     c, s = three[2], math.hypot(*axis[:2])
@@ -105,13 +117,18 @@ def _arm_height(theta: Array, top: Top) -> Array:
     """The vertical part of the report's a, m."""
     _, _, _, R, alpha, _, _ = published_parameters(top)
     s, c = np.sin(theta), np.cos(theta)
-    # Axis 1 is a right angle from the body's axis, in its vertical plane: its height is -sin(theta).
+    # Axis 1 is a right angle from the body's axis, in its vertical plane: its height is
+    # -sin(theta).
     return np.asarray(R * (-s * s + (alpha - c) * c))
 
 
 def _torques(now: xr.Dataset, top: Top) -> dict[str, Any]:
-    """The contact torque about axis 2 by (2.7) and corrected, and the power that either order of it has."""
-    axis, momentum, velocity = (_vector(now, name) for name in ("axis", "angular_momentum", "velocity"))
+    """The contact torque about axis 2 by (2.7) and corrected, and the power that either order of it
+    has.
+    """
+    axis, momentum, velocity = (
+        _vector(now, name) for name in ("axis", "angular_momentum", "velocity")
+    )
     touch = contact(axis, momentum, (velocity[0], velocity[1]), top)
     normal = touch.normal_force
     force: Vector = (normal * touch.traction.force[0], normal * touch.traction.force[1], normal)
@@ -136,7 +153,9 @@ def _vector(now: xr.Dataset, name: str) -> Vector:
 
 @experiment("steady-bodies", "steady states of several bodies", 0.5)
 def _steady(quick: bool) -> xr.Dataset:
-    """Where several bodies end up between upright and inverted, and how well (2.16) and (2.17) hold there."""
+    """Where several bodies end up between upright and inverted, and how well (2.16) and (2.17) hold
+    there.
+    """
     m, R = REPORT.mass, float(REPORT.surface.size)
     tops = [
         ("the report's", REPORT, 50.0),
@@ -157,7 +176,10 @@ def _steady(quick: bool) -> xr.Dataset:
         y = [float(end[name]) for name in VARIABLES]
         rates = published_rates(y, problem.top, math)
         speed = float(body.surface.size) * abs(y[4])
-        slip = [math.hypot(*pair) / size for pair, size in ((y[5:], speed), (rates[5:], speed * abs(y[3])))]
+        slip = [
+            math.hypot(*pair) / size
+            for pair, size in ((y[5:], speed), (rates[5:], speed * abs(y[3])))
+        ]
         turning = abs(rates[3]) / y[3] ** 2, abs(y[1] / y[3])
         rows.append((y[0], y[3], y[4], *_residuals(y, problem.top), abs(rates[4]), *turning, *slip))
     table = np.array(rows).T
@@ -176,7 +198,10 @@ def _steady(quick: bool) -> xr.Dataset:
     return dataset(
         {"body": [name for name, _, _ in tops]},
         {"duration_s": duration},
-        **{name: (row, *meaning, "body") for row, (name, meaning) in zip(table, names.items(), strict=True)},
+        **{
+            name: (row, *meaning, "body")
+            for row, (name, meaning) in zip(table, names.items(), strict=True)
+        },
     )
 
 
@@ -203,7 +228,9 @@ def left_of_217(theta: Scalar, phi_dot: Scalar, omega3: Scalar, alpha: float) ->
 
 @experiment("rotation", "the equations of section 2.1 at random states", 0.1)
 def _rotation(quick: bool) -> xr.Dataset:
-    """Section 2.1 at random states: the angular velocity by (2.1) and (2.2), and Euler's equations (2.6)."""
+    """Section 2.1 at random states: the angular velocity by (2.1) and (2.2), and Euler's equations
+    (2.6).
+    """
     random = np.random.default_rng(1)
     misses = [
         _rotation_misses(random.uniform(0.3, 1.3, 3), random.normal(size=3), random.normal(size=3))
@@ -216,7 +243,9 @@ def _rotation(quick: bool) -> xr.Dataset:
 
 
 def _rotation_misses(angles: Array, rates: Array, torque: Array) -> tuple[float, float, float]:
-    """Relative errors of (2.1), (2.2) and (2.6) for these Euler angles, their rates and a torque."""
+    """Relative errors of (2.1), (2.2) and (2.6) for these Euler angles, their rates and a
+    torque.
+    """
     h, inertia = 1e-4, np.array([2.0, 3.0, 4.0])
 
     def turned(time: float) -> Rotation:
@@ -224,7 +253,9 @@ def _rotation_misses(angles: Array, rates: Array, torque: Array) -> tuple[float,
 
     omega = (turned(-h).inv() * turned(h)).as_rotvec() / (2.0 * h)
     z, nodes = np.eye(3)[2], Rotation.from_euler("Z", angles[0]).apply(np.eye(3)[0])
-    by_axes = turned(0.0).inv().apply(rates[0] * z + rates[1] * nodes + rates[2] * turned(0.0).apply(z))
+    by_axes = (
+        turned(0.0).inv().apply(rates[0] * z + rates[1] * nodes + rates[2] * turned(0.0).apply(z))
+    )
     (_, sb, sc), (_, cb, cc) = np.sin(angles), np.cos(angles)
     by_components = (
         rates[1] * cc + rates[0] * sb * sc,

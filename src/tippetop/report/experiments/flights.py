@@ -29,24 +29,33 @@ def leaves_at(problem: Problem, window: float) -> float:
 
 
 def first_onset(
-    times: Callable[[float], float], spins: np.ndarray, scanned: np.ndarray, window: float, accuracy: float
+    times: Callable[[float], float],
+    spins: np.ndarray,
+    scanned: np.ndarray,
+    window: float,
+    accuracy: float,
 ) -> float:
     """The least spin that leaves the table, rad/s: the first of a scan that does, then halving.
 
-    `times` gives the time of the first lift-off at a spin, s, nan if there is none; `scanned` are those of
-    the increasing `spins`, rad/s. A lift-off may come as late as the `window`, s; `accuracy` is the largest
-    error, rad/s. nan if none of the scan lifts off, or already the first does.
+    `times` gives the time of the first lift-off at a spin, s, nan if there is none; `scanned` are
+    those of the increasing `spins`, rad/s. A lift-off may come as late as the `window`, s;
+    `accuracy` is the largest error, rad/s. nan if none of the scan lifts off, or already the first
+    does.
     """
     lifting = np.flatnonzero(scanned <= window)
     if not len(lifting) or lifting[0] == 0:
         return math.nan
-    return onset_between(times, float(spins[lifting[0] - 1]), float(spins[lifting[0]]), window, accuracy)
+    return onset_between(
+        times, float(spins[lifting[0] - 1]), float(spins[lifting[0]]), window, accuracy
+    )
 
 
 def onset_between(
     times: Callable[[float], float], low: float, high: float, window: float, accuracy: float
 ) -> float:
-    """The onset between a spin that stays on the table and one that leaves it, by halving, rad/s."""
+    """The onset between a spin that stays on the table and one that leaves it, by halving,
+    rad/s.
+    """
     while high - low > 2.0 * accuracy:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if times(middle) <= window else (middle, high)
@@ -54,7 +63,9 @@ def onset_between(
 
 
 def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: bool) -> xr.Dataset:
-    """Times of the first lift-off over spin and another parameter, and the onset for each of its values."""
+    """Times of the first lift-off over spin and another parameter, and the onset for each of its
+    values.
+    """
     name = field.partition(".")[2]
     spins = np.arange(60.0, 600.1, 120.0 if quick else 30.0)
     base = stopping(report_problem(tilt=TILT, mu=MU))
@@ -89,7 +100,8 @@ def _over_tilt(quick: bool) -> xr.Dataset:
 
 
 def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
-    """Launches with these spins, rad/s, on a table that only pushes, followed through all their flights.
+    """Launches with these spins, rad/s, on a table that only pushes, followed through all their
+    flights.
 
     Variables over restitution and spin: what `flight_readings` gives, and first_lift_off, s.
     """
@@ -97,7 +109,9 @@ def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
     problems = [unilateral(report_problem(spin), restitution) for spin in spins]
     runs = [simulate(problem, FLIGHTS_WINDOW, samples=samples) for problem in problems]
     read = [flight_readings(run).assign(first_lift_off=run["first_lift_off"]) for run in runs]
-    whole = dataset({"spin": list(spins), "restitution": [restitution]}, {"window_s": FLIGHTS_WINDOW})
+    whole = dataset(
+        {"spin": list(spins), "restitution": [restitution]}, {"window_s": FLIGHTS_WINDOW}
+    )
     return whole.assign(xr.concat(read, "spin").expand_dims("restitution"))
 
 

@@ -1,4 +1,6 @@
-"""How long the top takes to turn over, as a function of friction: Fig. 7 and what is said around it."""
+"""How long the top takes to turn over, as a function of friction: Fig. 7 and what is said around
+it.
+"""
 
 import math
 from typing import NamedTuple
@@ -17,8 +19,9 @@ from tippetop.report.quoted import NORMAL_FRICTION, SPIN
 from tippetop.report.readings import SETTLED, crossings, flip_time
 
 OTHER_SPINS = (100.0, 115.0, 130.0, 145.0, 160.0)
-"""Other spins than that of its main run that the report, which does not say it, may have used for its Fig. 7,
-rad/s: all of them turn the top over without lifting it at mu = 0.3 s/m."""
+"""Other spins than that of its main run that the report, which does not say it, may have used for
+its Fig. 7, rad/s: all of them turn the top over without lifting it at mu = 0.3 s/m.
+"""
 
 
 class Times(NamedTuple):
@@ -58,8 +61,8 @@ _TURNING = ("s", "first tilt of more than pi/2")
 def power_law(mu: Array, times: Array) -> tuple[float, float, float]:
     """Fit t = a mu^b; return a, b, and a correlation.
 
-    The fit is that of the curve itself, by least squares; the correlation is Pearson's, of log t with log mu.
-    They are nan where there are no three positive times, of coefficients that differ.
+    The fit is that of the curve itself, by least squares; the correlation is Pearson's, of log t
+    with log mu. They are nan where there are no three positive times, of coefficients that differ.
     """
     sound = np.isfinite(times)
     x, y = mu[sound], times[sound]
@@ -106,7 +109,9 @@ def _wide(quick: bool) -> xr.Dataset:
     windows = WINDOW * 2.0 ** np.ceil(np.log2(np.maximum(1.0, (3.0 / mu + 4.0) / WINDOW)))
     times = np.empty((len(spins), len(mu)))
     for window in np.unique(windows):
-        times[:, windows == window] = converged_times(spins, mu[windows == window], float(window)).flip
+        times[:, windows == window] = converged_times(
+            spins, mu[windows == window], float(window)
+        ).flip
     small = mu <= 0.1001
     slopes = [linregress(np.log(mu[small]), np.log(row[small])).slope for row in times]
     return dataset(

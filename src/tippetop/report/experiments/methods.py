@@ -32,7 +32,9 @@ LAUNCHES = (
     (10.0, TILT, ROUGH_FRICTION),
     (SPIN, TILT, ROUGH_FRICTION),
 )
-"""Spins (rad/s), tilts (rad) and friction coefficients (s/m) of the launches the methods are compared on."""
+"""Spins (rad/s), tilts (rad) and friction coefficients (s/m) of the launches the methods are
+compared on.
+"""
 
 _SPAN = 3.0
 
@@ -75,15 +77,21 @@ def _order(quick: bool) -> xr.Dataset:
     printed = {
         f"printed{suffix}_{part}": found
         for suffix, last in (("", 0.0), ("_mended", 1.0))
-        for part, found in zip(_PARTS, np.array([_printed_errors(h, last) for h in coarse]).T, strict=True)
+        for part, found in zip(
+            _PARTS, np.array([_printed_errors(h, last) for h in coarse]).T, strict=True
+        )
     }
     order = "power of the step in the error, between the two finest: "
     return dataset(
         {"step": steps, "step_printed": coarse},
         **{
-            name: (each, "rad", f"error of the axis or tilt: {name}", "step") for name, each in errors.items()
+            name: (each, "rad", f"error of the axis or tilt: {name}", "step")
+            for name, each in errors.items()
         },
-        **{name: (each, "1", f"error of (B.1): {name}", "step_printed") for name, each in printed.items()},
+        **{
+            name: (each, "1", f"error of (B.1): {name}", "step_printed")
+            for name, each in printed.items()
+        },
         **{
             f"order_{name}": (math.log(each[-1] / each[-2], over[-1] / over[-2]), "1", order + name)
             for over, kind in ((steps, errors), (coarse, printed))
@@ -158,7 +166,10 @@ def effort(problem: Problem, method: str, span: float) -> Effort:
 @experiment("stiffness", "evaluations of explicit and implicit methods", 12.0)
 def _stiffness(quick: bool) -> xr.Dataset:
     methods = (*EXPLICIT, *IMPLICIT)
-    made = [[effort(report_problem(*launch), method, _SPAN) for method in methods] for launch in LAUNCHES]
+    made = [
+        [effort(report_problem(*launch), method, _SPAN) for method in methods]
+        for launch in LAUNCHES
+    ]
     counts = np.array([[one.evaluations for one in row] for row in made])
     runs = [simulate(on_table(report_problem(*launch)), _SPAN, samples=2) for launch in LAUNCHES]
     true = [float(run["final_theta"]) for run in runs]

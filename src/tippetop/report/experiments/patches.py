@@ -1,4 +1,6 @@
-"""Patches that slip and drill at once: when the top turns over, and which viscous friction they stand for."""
+"""Patches that slip and drill at once: when the top turns over, and which viscous friction they
+stand for.
+"""
 
 import math
 
@@ -52,7 +54,9 @@ def _map(quick: bool) -> xr.Dataset:
     """When the report's top turns over, if it does, by the radius of its patch and its spin."""
     radii = np.geomspace(2e-4, 6e-3, 5) if quick else np.geomspace(1e-4, 6e-3, 12)
     spins = np.linspace(25.0, 115.0, 4) if quick else np.linspace(34.0, 115.0, 10)
-    grid = [[with_friction(report_problem(float(s)), patch(MU, float(r))) for s in spins] for r in radii]
+    grid = [
+        [with_friction(report_problem(float(s)), patch(MU, float(r))) for s in spins] for r in radii
+    ]
     runs = [[simulate(one, MAP_WINDOW, samples=2, phase_limit=1) for one in row] for row in grid]
     times = [[float(run["turns_over"]) for run in row] for row in runs]
     least = min(float(run["least_normal_force"]) for row in runs for run in row)
@@ -70,7 +74,9 @@ def _map(quick: bool) -> xr.Dataset:
 
 @experiment("dry-viscous", "patches against viscous friction", 2.0)
 def _viscous(quick: bool) -> xr.Dataset:
-    """When patches turn the top over, and viscous friction with their coefficient for small slip."""
+    """When patches turn the top over, and viscous friction with their coefficient for small
+    slip.
+    """
     coefficients = np.geomspace(1.0, 40.0, 4 if quick else 10)
     base = report_problem(SPIN)
 
@@ -83,7 +89,9 @@ def _viscous(quick: bool) -> xr.Dataset:
     ]
     smooth = [turning(ViscousFriction(mu=float(c))) for c in coefficients]
     load, radius = base.body.mass * base.gravity, float(base.top.surface.size)
-    radii = [hertz_patch_radius(load, radius, material, material) for material in MATERIALS.values()]
+    radii = [
+        hertz_patch_radius(load, radius, material, material) for material in MATERIALS.values()
+    ]
     at_launch = f"viscous coefficient of that patch at {quoted.SPIN:g} rad/s"
     creep = [CREEP["hertz"] * MU / (r * quoted.SPIN) for r in radii]
     ratios = "growth rate of a patch over that of viscous friction"
@@ -104,7 +112,9 @@ def _viscous(quick: bool) -> xr.Dataset:
 
 
 def _growth_ratios() -> list[list[float]]:
-    """Growth rates of the vertical spins on a patch of 0.5 mm, over those with its viscous coefficient."""
+    """Growth rates of the vertical spins on a patch of 0.5 mm, over those with its viscous
+    coefficient.
+    """
     found = []
     for pressure, creep in CREEP.items():
         frictions = (
@@ -113,7 +123,10 @@ def _growth_ratios() -> list[list[float]]:
         )
         tops = [with_friction(report_problem(), law).top for law in frictions]
         dry, viscous = (
-            [float(vertical_growth_rates(kind, top, np.array([SPIN]))[0]) for kind in VERTICAL_SPINS]
+            [
+                float(vertical_growth_rates(kind, top, np.array([SPIN]))[0])
+                for kind in VERTICAL_SPINS
+            ]
             for top in tops
         )
         found.append([one / other for one, other in zip(dry, viscous, strict=True)])

@@ -8,7 +8,14 @@ import xarray as xr
 from tippetop.bodies import Body
 from tippetop.frictions import ContensouFriction, CoulombFriction, ViscousFriction
 from tippetop.launch import Launch
-from tippetop.presets import EGG, EULER_DISK, HURRICANE_BALLS, LEINE_GLOCKER_STEM, REPORT_STEM, report_problem
+from tippetop.presets import (
+    EGG,
+    EULER_DISK,
+    HURRICANE_BALLS,
+    LEINE_GLOCKER_STEM,
+    REPORT_STEM,
+    report_problem,
+)
 from tippetop.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import happenings
@@ -72,12 +79,19 @@ def events_of(run: xr.Dataset) -> dict[str, float]:
     """When it happens, s."""
     both = first_of(happenings(run, "double contact"))
     stem, back = (first_of(happenings(run, "touchdown", surface)) for surface in (1, 0))
-    return {"stem": stem, "back": back, "both": both, "apart": first_of(happenings(run, "opening"), both)}
+    return {
+        "stem": stem,
+        "back": back,
+        "both": both,
+        "apart": first_of(happenings(run, "opening"), both),
+    }
 
 
 @experiment("real-leine", "Leine and Glocker's top, stem and all", 8.0)
 def _leine(quick: bool) -> xr.Dataset:
-    """Leine and Glocker's top: when the stem strikes, when it falls back, and how long it rests on both."""
+    """Leine and Glocker's top: when the stem strikes, when it falls back, and how long it rests on
+    both.
+    """
     pressures = ["ellipsoidal"] if quick else ["ellipsoidal", "hertz"]
     problems = [LEINE.replace({"friction.pressure": name}) for name in pressures]
     runs = [simulate(problem, LEINE_WINDOW, samples=801) for problem in problems]
@@ -86,7 +100,10 @@ def _leine(quick: bool) -> xr.Dataset:
         {"pressure": pressures, "time": runs[0]["time"].values},
         theta=([run["theta"].values for run in runs], "rad", "tilt", "pressure", "time"),
         energy_error=(errors, "1", "energy", "pressure"),
-        **{name: ([one[name] for one in found], "s", long, "pressure") for name, long in EVENTS.items()},
+        **{
+            name: ([one[name] for one in found], "s", long, "pressure")
+            for name, long in EVENTS.items()
+        },
     )
 
 
@@ -99,7 +116,9 @@ def with_stem(radius: float) -> Body:
 
 @experiment("real-stems", "which stems let the report's top stand", 2.0)
 def _stems(quick: bool) -> xr.Dataset:
-    """Whether the report's top stands on stems of several tips, and Jellett's integral when these strike."""
+    """Whether the report's top stands on stems of several tips, and Jellett's integral when these
+    strike.
+    """
     radii = np.array([0.003, 0.006, 0.009, 0.012]) if quick else np.arange(0.002, 0.0141, 0.001)
     final, needed, brought, struck = [], [], [], []
     for radius in radii.tolist():
@@ -107,7 +126,9 @@ def _stems(quick: bool) -> xr.Dataset:
         run = simulate(problem, STEM_WINDOW, samples=2001)
         touch = first_of(happenings(run, "touchdown", 1))
         before = run.isel(time=int(np.searchsorted(run["time"].values, touch)) - 1)
-        axis, momentum = (tuple(before[name].values.tolist()) for name in ("axis", "angular_momentum"))
+        axis, momentum = (
+            tuple(before[name].values.tolist()) for name in ("axis", "angular_momentum")
+        )
         brought.append(abs(jellett_about(1, axis, momentum, problem.top)))
         needed.append(least_jellett_to_stand(problem.body))
         struck.append(touch)
@@ -125,7 +146,9 @@ def _stems(quick: bool) -> xr.Dataset:
 
 @experiment("real-egg", "a hard-boiled egg that rises", 4.0)
 def _egg(quick: bool) -> xr.Dataset:
-    """A hard-boiled egg that is spun on its side: how far it rises, and whether it leaves the table."""
+    """A hard-boiled egg that is spun on its side: how far it rises, and whether it leaves the
+    table.
+    """
     rates = [60.0, 200.0] if quick else [40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 200.0]
     friction = ViscousFriction(mu=EGG_MU)
     launches = [Launch(tilt=1.5, spin=0.0, precession=rate) for rate in rates]

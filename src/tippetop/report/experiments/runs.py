@@ -12,7 +12,14 @@ from tippetop.problem import Problem
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.listing import VARIABLES, listing_run
 from tippetop.report.quoted import END_OF_FIG_5, ROUGH_FRICTION, SPIN, TILT
-from tippetop.report.readings import SETTLED, SHOWN, crossings, first_below_zero, flip_time, longest_quiet
+from tippetop.report.readings import (
+    SETTLED,
+    SHOWN,
+    crossings,
+    first_below_zero,
+    flip_time,
+    longest_quiet,
+)
 from tippetop.run import simulate
 from tippetop.sweeps import Ending, Product, Sweep, compute
 
@@ -20,10 +27,14 @@ WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""
 
 ARRIVALS = np.linspace(SETTLED, 0.1, 46)
-"""Distances from the last tilt at which a top may be said to have arrived, rad; the report's is the first."""
+"""Distances from the last tilt at which a top may be said to have arrived, rad; the report's is the
+first.
+"""
 
 WINDOWS = np.arange(9.0, WINDOW + 0.5)
-"""Lengths of the runs that may have given the end of the report's Fig. 5, s: from its time of arrival on."""
+"""Lengths of the runs that may have given the end of the report's Fig. 5, s: from its time of
+arrival on.
+"""
 
 CAPPED_SPINS = (165.0, 175.0, 200.0)
 """Spins of launches on which the lines that the listing has commented out are tried, rad/s."""
@@ -55,7 +66,9 @@ SWEPT = 1e-12
 
 
 def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WINDOW) -> xr.Dataset:
-    """What becomes of the launches that cross these values of fields; nan where that is not to be had."""
+    """What becomes of the launches that cross these values of fields; nan where that is not to be
+    had.
+    """
     found = compute(Sweep(problem, Product.of(values), window, SWEPT))
     return found.where(~found["outcome"].isin([Ending.FAILED, Ending.INACCURATE, Ending.BAD]))
 
@@ -87,11 +100,13 @@ def flight_readings(run: xr.Dataset) -> xr.Dataset:
 
 
 def comparison(problem: Problem, quick: bool) -> xr.Dataset:
-    """One launch by the report's method and converged, on a table that pulls, with what is read off both.
+    """One launch by the report's method and converged, on a table that pulls, with what is read off
+    both.
 
-    Variables over `time` are converged; those over `time_listing`, named ``..._listing``, are the report's
-    method at its own points of output. If the table would have to pull, there are also variables over `time`
-    named ``..._flight``, converged for a table that only pushes, and what is read off them.
+    Variables over `time` are converged; those over `time_listing`, named ``..._listing``, are the
+    report's method at its own points of output. If the table would have to pull, there are also
+    variables over `time` named ``..._flight``, converged for a table that only pushes, and what is
+    read off them.
     """
     problem = on_table(problem)
     true = simulate(problem, WINDOW, samples=20_001 if quick else 40_001)
@@ -117,11 +132,19 @@ def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
 
     data, other = thin(true[[*SERIES, "energy_published"]]).drop_attrs(deep=False), thin(listing)
     published = "energy by the report's equation (4.1)"
-    data["energy_published"].attrs = {"units": "J", "long_name": f"{published}, along the converged motion"}
+    data["energy_published"].attrs = {
+        "units": "J",
+        "long_name": f"{published}, along the converged motion",
+    }
     every = math.ceil(listing.sizes["time"] / other.sizes["time"])
-    label = "time of the report's method" + (f", one in {every} of its points of output" if every > 1 else "")
+    label = "time of the report's method" + (
+        f", one in {every} of its points of output" if every > 1 else ""
+    )
     data["time_listing"] = variable(other["time"].values, "s", label, "time_listing")
-    labels = {"energy": f"{published} and its method", "theta_integrated": "theta before it is wrapped"}
+    labels = {
+        "energy": f"{published} and its method",
+        "theta_integrated": "theta before it is wrapped",
+    }
     for name in (*SERIES, "theta_integrated"):
         told = data["theta" if name not in data else name].attrs
         label = labels.get(name, f"{told['long_name']}, by the report's method")
@@ -130,12 +153,16 @@ def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
 
 
 def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
-    """The launch on a table that only pushes: what is drawn of it, its flights and what is read off it."""
+    """The launch on a table that only pushes: what is drawn of it, its flights and what is read off
+    it.
+    """
     run = simulate(unilateral(problem), WINDOW, times=times)
     drawn: dict[str, object] = {}
     for name in ("theta", "normal_force", "energy"):
         label = f"{run[name].attrs['long_name']}, on a table that only pushes"
-        drawn[f"{name}_flight"] = variable(run[name].values, run[name].attrs["units"], label, "time")
+        drawn[f"{name}_flight"] = variable(
+            run[name].values, run[name].attrs["units"], label, "time"
+        )
     for name in ("flight_start", "flight_end", "flight_highest_gap"):
         drawn[name] = run[name]
     return drawn | {str(name): found for name, found in flight_readings(run).items()}
@@ -148,7 +175,10 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
     quiet = longest_quiet(times, turning)
     slip = np.hypot(run["slip_x"].values, run["slip_y"].values)
     force, energy = run["normal_force"].values, run["energy"].values
-    arrivals, seen = [flip_time(times, theta, within) for within in ARRIVALS], force + SHOWN * force.max()
+    arrivals, seen = (
+        [flip_time(times, theta, within) for within in ARRIVALS],
+        force + SHOWN * force.max(),
+    )
     arrived = "first time at which the tilt is within this of its last value"
     values = {
         "arrival_time": variable(arrivals, "s", arrived, "within"),
@@ -162,8 +192,12 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
         "end_slip": variable(slip[-1], "m s-1", "slip speed at the end"),
         "largest_slip": variable(slip.max(), "m s-1", "largest slip speed"),
         "least_force": variable(force.min(), "N", "least normal force"),
-        "zero_of_force": variable(first_below_zero(times, force), "s", "first time with a pulling table"),
-        "visible_pull": variable(first_below_zero(times, seen), "s", "first pull that a plot shows"),
+        "zero_of_force": variable(
+            first_below_zero(times, force), "s", "first time with a pulling table"
+        ),
+        "visible_pull": variable(
+            first_below_zero(times, seen), "s", "first pull that a plot shows"
+        ),
         "launch_energy": variable(energy[0], "J", "energy at launch"),
         "largest_energy": variable(energy.max(), "J", "largest energy"),
     }
@@ -173,7 +207,9 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
 
 
 def _launch(name: str, cost: float, title: str, *numbers: float) -> None:
-    """The report's top launched with a spin, and a tilt and a friction if they are others than usual."""
+    """The report's top launched with a spin, and a tilt and a friction if they are others than
+    usual.
+    """
     experiment(name, title, cost)(lambda quick: comparison(report_problem(*numbers), quick))
 
 
@@ -187,7 +223,9 @@ def _settling(quick: bool) -> xr.Dataset:
     """How far the tilt still swings, in the second before several times, on the table of Fig. 8."""
     ends = np.array([20.0, 40.0] if quick else [20.0, 40.0, 80.0])
     run = simulate(
-        on_table(report_problem(SPIN, mu=ROUGH_FRICTION)), float(ends[-1]), samples=int(200 * ends[-1]) + 1
+        on_table(report_problem(SPIN, mu=ROUGH_FRICTION)),
+        float(ends[-1]),
+        samples=int(200 * ends[-1]) + 1,
     )
     swings = [float(np.ptp(run["theta"].sel(time=slice(end - 1.0, end)).values)) for end in ends]
     return dataset(
@@ -204,20 +242,26 @@ def _windows(quick: bool) -> xr.Dataset:
     data = dataset({"window": (windows, "s", "length of the run")})
     for name, units in (("theta", "rad"), ("phi_dot", "rad s-1"), ("omega3", "rad s-1")):
         theirs, label = [float(end[name]) for end in ends], "at the end of a run of this length"
-        data[f"{name}_after_listing"] = variable(theirs, units, f"{label}, by the report's method", "window")
+        data[f"{name}_after_listing"] = variable(
+            theirs, units, f"{label}, by the report's method", "window"
+        )
         data[f"{name}_after"] = variable(true[name].values, units, label, "window")
     return data
 
 
 def likely_end(windows: xr.Dataset) -> xr.Dataset:
     """The end, among runs of several lengths, that comes nearest to what is printed of Fig. 5."""
-    misses = [abs(windows[f"{key}_after_listing"].values - value) for key, value in END_OF_FIG_5.items()]
+    misses = [
+        abs(windows[f"{key}_after_listing"].values - value) for key, value in END_OF_FIG_5.items()
+    ]
     return windows.isel(window=int(np.argmin(np.max(misses, axis=0))))
 
 
 @experiment("listing-capped", "the listing with what it has commented out", 2.5)
 def _capped(quick: bool) -> xr.Dataset:
-    """Where launches end by the report's method, and if a negative normal force is set to zero in it."""
+    """Where launches end by the report's method, and if a negative normal force is set to zero in
+    it.
+    """
     spins = CAPPED_SPINS[1:2] if quick else CAPPED_SPINS
 
     def ends(unilateral: bool) -> list[float]:

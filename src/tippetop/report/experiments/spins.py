@@ -43,7 +43,9 @@ def _listing_spins(quick: bool) -> np.ndarray:
     top = np.arange(166.0, 174.0, 2.0 if quick else 1.0)
     between = np.concatenate([np.arange(5, 24, 6), np.arange(35, 76, 8), np.arange(85, 164, 10)])
     coarse = between[1::5] if quick else between
-    return np.unique(np.concatenate([coarse, low, high, top, [180.0] if quick else [180, 190, 200, 210]]))
+    return np.unique(
+        np.concatenate([coarse, low, high, top, [180.0] if quick else [180, 190, 200, 210]])
+    )
 
 
 @experiment("final-tilt-listing", "final tilt against spin, by the report's method", 14.0)
@@ -52,9 +54,12 @@ def _by_listing(quick: bool) -> xr.Dataset:
     runs = (listing_run(report_problem(float(spin)), WINDOW) for spin in spins)
     tilts = np.array([float(run["theta"].values[-1]) for run in runs])
     low, high = (spins >= 24) & (spins < 32), (spins > 76) & (spins < 81)
-    upright = [_where(spins[low], np.log(tilts[low]), math.log(margin)) for margin in LISTED_MARGINS]
+    upright = [
+        _where(spins[low], np.log(tilts[low]), math.log(margin)) for margin in LISTED_MARGINS
+    ]
     inverted = [
-        _where(spins[high], -np.log(math.pi - tilts[high]), -math.log(margin)) for margin in LISTED_MARGINS
+        _where(spins[high], -np.log(math.pi - tilts[high]), -math.log(margin))
+        for margin in LISTED_MARGINS
     ]
     name = "spin above which the final tilt is no longer 0, by the report's method"
     other = "spin above which the final tilt is pi, by the report's method"
@@ -63,7 +68,9 @@ def _by_listing(quick: bool) -> xr.Dataset:
         final_theta_listing=(tilts, *_TILT, "spin_listing"),
         critical_upright_listing=(upright, "rad s-1", name, "margin_listing"),
         critical_inverted_listing=(inverted, "rad s-1", other, "margin_listing"),
-        lost_listing=_least_lost(spins, np.abs(tilts - math.pi) > TURNED, ", by the report's method"),
+        lost_listing=_least_lost(
+            spins, np.abs(tilts - math.pi) > TURNED, ", by the report's method"
+        ),
     )
 
 
@@ -106,10 +113,11 @@ def critical_spins(
     margin: float,
     between: tuple[tuple[float, float], tuple[float, float]] = ((22.0, 34.0), (72.0, 84.0)),
 ) -> tuple[float, float]:
-    """Spins between which a launch ends neither upright nor turned over, looked for `between` others, rad/s.
+    """Spins between which a launch ends neither upright nor turned over, looked for `between`
+    others, rad/s.
 
-    The `window` is the length of the runs, s. The `margin` is the tilt at the end that counts as upright, and
-    the distance from pi that counts as turned over, rad.
+    The `window` is the length of the runs, s. The `margin` is the tilt at the end that counts as
+    upright, and the distance from pi that counts as turned over, rad.
     """
 
     def upright(spin: float) -> float:
@@ -131,10 +139,15 @@ def _thresholds(quick: bool) -> xr.Dataset:
     for window in windows[1:]:
         # With more patience they are farther in, and near the last ones.
         upright, inverted = found[-1]
-        found.append(critical_spins(window, SETTLED, ((upright, upright + 1.0), (inverted - 1.2, inverted))))
+        found.append(
+            critical_spins(window, SETTLED, ((upright, upright + 1.0), (inverted - 1.2, inverted)))
+        )
     by_window = np.array(found)
     by_margin = np.array([critical_spins(WINDOW, margin) for margin in MARGINS])
-    names = ("spin above which the final tilt is no longer 0", "spin above which the final tilt is pi")
+    names = (
+        "spin above which the final tilt is no longer 0",
+        "spin above which the final tilt is pi",
+    )
     return dataset(
         {"window": list(windows), "margin": list(MARGINS)},
         {"margin_of_windows_rad": SETTLED},

@@ -1,4 +1,6 @@
-"""Leine and Glocker's top by time-stepping: what a fixed step finds of its impacts and its rocking."""
+"""Leine and Glocker's top by time-stepping: what a fixed step finds of its impacts and its
+rocking.
+"""
 
 import math
 
@@ -44,11 +46,15 @@ def found_in(history: History) -> dict[str, float]:
 
     touched = first(stem)
     back = first(sphere & (times > touched + 0.5))
-    changes = np.diff(np.concatenate([[False], sphere & stem & (times >= back), [False]]).astype(int))
+    changes = np.diff(
+        np.concatenate([[False], sphere & stem & (times >= back), [False]]).astype(int)
+    )
     begins, ends = np.flatnonzero(changes == 1), np.flatnonzero(changes == -1)
     rests = np.flatnonzero((ends - begins) * step > 0.02)
     both, apart = (
-        (float(times[begins[rests[0]]]), float(times[ends[rests[0]] - 1])) if len(rests) else 2 * (math.nan,)
+        (float(times[begins[rests[0]]]), float(times[ends[rests[0]] - 1]))
+        if len(rests)
+        else 2 * (math.nan,)
     )
     onsets = touching[1:] & ~touching[:-1]
     strikes = int(onsets[(times[1:] >= back) & (times[1:] <= both)].sum())
@@ -67,7 +73,9 @@ def _stepping(quick: bool) -> xr.Dataset:
     exact["strikes"] = int(((impacts >= exact["back"]) & (impacts <= exact["both"])).sum())
     shown = (times >= ROCKING[0]) & (times <= ROCKING[1])
     ends = [one.step * np.arange(1, len(one.tilts) + 1) for one in histories]
-    tilts = [np.interp(times[shown], end, one.tilts) for end, one in zip(ends, histories, strict=True)]
+    tilts = [
+        np.interp(times[shown], end, one.tilts) for end, one in zip(ends, histories, strict=True)
+    ]
     last = [history.tilts[-1] for history in histories]
     meanings = {name: ("s", long) for name, long in EVENTS.items()}
     meanings["strikes"] = ("1", "strikes of the rocking")
@@ -78,5 +86,8 @@ def _stepping(quick: bool) -> xr.Dataset:
         exact_theta=(run["theta"].values[shown], "rad", "tilt of an exact run", "time"),
         exact_final_theta=(float(run["theta"][-1]), "rad", "tilt at the end of an exact run"),
         **{name: ([one[name] for one in found], *told, "step") for name, told in meanings.items()},
-        **{f"exact_{name}": (value, meanings[name][0], f"{name}, exactly") for name, value in exact.items()},
+        **{
+            f"exact_{name}": (value, meanings[name][0], f"{name}, exactly")
+            for name, value in exact.items()
+        },
     )

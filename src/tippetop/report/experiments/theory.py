@@ -1,4 +1,6 @@
-"""Steady states of the report's top and of others, found without a simulation, and runs beside them."""
+"""Steady states of the report's top and of others, found without a simulation, and runs beside
+them.
+"""
 
 import math
 from dataclasses import astuple
@@ -61,8 +63,18 @@ def _critical(quick: bool) -> xr.Dataset:
         critical_formula=(formula, "rad s-1", "critical axial spin, by formula", each),
         critical_spectrum=(spectrum, "rad s-1", zero, each),
         growth_rate=(rates, "s-1", "growth rate of the vertical spin", each, "growth_spin"),
-        apparent_upright=([one.upright for one in seen], "rad s-1", apparent.format("upright"), "visible"),
-        apparent_inverted=([one.inverted for one in seen], "rad s-1", apparent.format("inverted"), "visible"),
+        apparent_upright=(
+            [one.upright for one in seen],
+            "rad s-1",
+            apparent.format("upright"),
+            "visible",
+        ),
+        apparent_inverted=(
+            [one.inverted for one in seen],
+            "rad s-1",
+            apparent.format("inverted"),
+            "visible",
+        ),
     )
 
 
@@ -77,7 +89,12 @@ def _bifurcation(quick: bool) -> xr.Dataset:
     tilts = np.linspace(0.0, math.pi, 181 if quick else 721)
     parts = [
         _diagram("", REPORT, tilts, [(spin, 0.1) for spin in gradual]),
-        _diagram("_jump", jumping, tilts, [(spin, tilt) for spin in sudden for tilt in (0.1, math.pi - 0.1)]),
+        _diagram(
+            "_jump",
+            jumping,
+            tilts,
+            [(spin, tilt) for spin in sudden for tilt in (0.1, math.pi - 0.1)],
+        ),
     ]
     whole = xr.merge(parts, compat="no_conflicts", join="exact", combine_attrs="drop_conflicts")
     whole.attrs = {"long_run_s": LONG_RUN, "inertia_ratio_jump": JUMP_RATIO}
@@ -94,7 +111,9 @@ _OF_RUNS = {
 }
 
 
-def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, float]]) -> xr.Dataset:
+def _diagram(
+    suffix: str, body: Body, tilts: Array, launches: list[tuple[float, float]]
+) -> xr.Dataset:
     """Steady states of a body against the spin of a launch near theta = 0, and runs.
 
     A launch is the spin near theta = 0 that has its Jellett's integral, rad/s, and its tilt, rad.
@@ -125,7 +144,10 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
         **{
             f"branch_spin{suffix}": (spins, "rad s-1", "spin of launches that can end there", over),
             f"branch_growth{suffix}": (rates, "s-1", "growth rate of the steady precession", over),
-            **{f"run_{name}{suffix}": (values, *_OF_RUNS[name], run) for name, values in of_runs.items()},
+            **{
+                f"run_{name}{suffix}": (values, *_OF_RUNS[name], run)
+                for name, values in of_runs.items()
+            },
             f"limits{suffix}": (limits, "rad s-1", "critical spins at launch", "vertical"),
         },
     )
@@ -133,14 +155,20 @@ def _diagram(suffix: str, body: Body, tilts: Array, launches: list[tuple[float, 
 
 def _left_of_217(end: xr.Dataset, problem: Problem) -> float:
     """What is left of (2.17) at the end of a run, over phi'."""
-    left = left_of_217(end["theta"], end["phi_dot"], end["omega3"], groups.eccentricity(problem.top))
+    left = left_of_217(
+        end["theta"], end["phi_dot"], end["omega3"], groups.eccentricity(problem.top)
+    )
     return float(abs(left / end["phi_dot"]))
 
 
 def _launched(base: Problem, spin: float, tilt: float) -> Problem:
-    """The launch at this tilt with the Jellett's integral of one at the usual tilt with this spin."""
+    """The launch at this tilt with the Jellett's integral of one at the usual tilt with this
+    spin.
+    """
     tilted = base.replace({"launch.tilt": tilt})
-    return tilted.replace({"launch.spin": spin * jellett_line(base).per_spin / jellett_line(tilted).per_spin})
+    return tilted.replace(
+        {"launch.spin": spin * jellett_line(base).per_spin / jellett_line(tilted).per_spin}
+    )
 
 
 @experiment("why-groups", "which tops turn over", 0.3)
@@ -159,11 +187,17 @@ def _groups(quick: bool) -> xr.Dataset:
         "no_precession_to": [groups.precession_boundaries(a)[1] for a in alpha],
     }
     gamma = np.linspace(0.5, 1.6, 111 if quick else 441)
-    letters = sorted({groups.classify(float(g), float(a)).value for g in gamma[::10] for a in alpha[::10]})
+    letters = sorted(
+        {groups.classify(float(g), float(a)).value for g in gamma[::10] for a in alpha[::10]}
+    )
     names = {name: name.replace("_", " ") for name in lines}
     return dataset(
         {"alpha": (alpha, "1", "eccentricity"), "top": list(bodies)},
-        {"groups": ", ".join(letters), "gamma_least": float(gamma[0]), "gamma_greatest": float(gamma[-1])},
+        {
+            "groups": ", ".join(letters),
+            "gamma_least": float(gamma[0]),
+            "gamma_greatest": float(gamma[-1]),
+        },
         **{name: (lines[name], "1", f"gamma at the {names[name]}", "alpha") for name in lines},
         top_gamma=([groups.inertia_ratio(top) for top in tops], "1", "I1 / I3", "top"),
         top_alpha=([groups.eccentricity(top) for top in tops], "1", "eccentricity", "top"),

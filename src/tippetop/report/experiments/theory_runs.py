@@ -1,4 +1,6 @@
-"""How the top gets where it is going: the limit of weak friction, and what a run says of its nutation."""
+"""How the top gets where it is going: the limit of weak friction, and what a run says of its
+nutation.
+"""
 
 import math
 
@@ -14,7 +16,12 @@ from tippetop.report.readings import SETTLED, crossings, flip_time
 from tippetop.run import simulate
 from tippetop.theory.apparent import growth_rates_of_launches
 from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
-from tippetop.theory.diagnostics import gyroscopic_balance, nutation_envelope, potential_at, smooth_constants
+from tippetop.theory.diagnostics import (
+    gyroscopic_balance,
+    nutation_envelope,
+    potential_at,
+    smooth_constants,
+)
 from tippetop.theory.prediction import predict
 from tippetop.theory.steady import SteadyKind
 
@@ -88,7 +95,9 @@ def _exponent(quick: bool) -> xr.Dataset:
         exponent = local_exponent(mu, data[name].values)
         data[f"exponent_{name}"] = variable(exponent, "1", f"d ln t / d ln mu, {name}", "mu_flip")
     data["limit_crossing"] = variable(half, "s2 m-1", "limit of mu t at the first tilt of pi/2")
-    data["limit_arrival"] = variable(flip_time_limit(problem, SETTLED), "s2 m-1", "limit of mu t, arrival")
+    data["limit_arrival"] = variable(
+        flip_time_limit(problem, SETTLED), "s2 m-1", "limit of mu t, arrival"
+    )
     return data
 
 
@@ -96,12 +105,16 @@ _SENSES = {
     "crossing_time": "first time with a tilt of more than pi/2",
     "arrival_time_end": "first time within 0.01 rad of the steady tilt",
     "settling_time": "time from which on the tilt stays within 0.01 rad of the steady tilt",
-    "arrival_time_window": "first time within 0.01 rad of the tilt after 20 s, the report's definition",
+    "arrival_time_window": (
+        "first time within 0.01 rad of the tilt after 20 s, the report's definition"
+    ),
 }
 
 
 def _times(mu: float, final: float) -> tuple[float, float, float, float]:
-    """When a run turns half over, first comes near its end, stays there, flips by the report's rule, s."""
+    """When a run turns half over, first comes near its end, stays there, flips by the report's
+    rule, s.
+    """
     duration = max(WINDOW, 3.5 / mu + 8.0 / _decay_rate(mu))
     run = simulate(on_table(report_problem(SPIN, mu=mu)), duration, samples=40_001)
     times, theta = run["time"].values, run["theta"].values
@@ -126,7 +139,9 @@ def _decay_rate(mu: float) -> float:
 
 @experiment("why-diagnostics", "what the main run says of its nutation", 1.0)
 def _diagnostics(quick: bool) -> xr.Dataset:
-    """Gyroscopic balance, envelope of the nutation and effective potential along the report's main run."""
+    """Gyroscopic balance, envelope of the nutation and effective potential along the report's main
+    run.
+    """
     problem = on_table(report_problem(quoted.SPIN))
     top = problem.top
     run = simulate(problem, 10.0, samples=2001 if quick else 5001)
