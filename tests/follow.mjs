@@ -2,15 +2,23 @@
 import { createInterface } from "node:readline";
 import { pathToFileURL } from "node:url";
 
-const { InvalidInput, criticalSpins, predict, prospects, simulate } = await import(pathToFileURL(process.argv[2]));
+const { InvalidInput, criticalSpins, predict, prospects, simulate } = await import(
+  pathToFileURL(process.argv[2])
+);
 
 function followed({ problem, times, ...options }) {
   try {
     const run = simulate(problem, options);
     const track = run.track(times.filter((time) => time <= run.endTime));
     return {
-      outcome: run.outcome, end: run.endTime, events: run.events, flights: run.flights, metrics: run.metrics,
-      track: Object.fromEntries(Object.entries(track).map(([name, values]) => [name, Array.from(values)])),
+      outcome: run.outcome,
+      end: run.endTime,
+      events: run.events,
+      flights: run.flights,
+      metrics: run.metrics,
+      track: Object.fromEntries(
+        Object.entries(track).map(([name, values]) => [name, Array.from(values)]),
+      ),
     };
   } catch (error) {
     if (error instanceof InvalidInput) return { refused: error.message };
@@ -20,7 +28,11 @@ function followed({ problem, times, ...options }) {
 
 // What the theory says of a launch; of what it refuses, the field.
 function foreseen({ problem }) {
-  const asked = { predict: () => predict(problem), critical: () => criticalSpins(problem), prospects: () => prospects(problem.body) };
+  const asked = {
+    predict: () => predict(problem),
+    critical: () => criticalSpins(problem),
+    prospects: () => prospects(problem.body),
+  };
   const told = (ask) => {
     try {
       return ask();

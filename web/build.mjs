@@ -53,6 +53,12 @@ await mkdir(OUT, { recursive: true });
 const player = await bundled("src/player/index.js", { format: "esm" });
 await put("player.js", player.script);
 const worker = await bundled("src/lab/worker.js", { format: "iife" });
-const page = await bundled("src/lab/main.jsx", { format: "esm", plugins: [workers(worker.script)] });
+const page = await bundled("src/lab/main.jsx", {
+  format: "esm",
+  plugins: [workers(worker.script)],
+});
 const template = await readFile(new URL("src/lab/page.html", HERE), "utf8");
-await put("lab.html", template.replace("%STYLE%", () => page.style).replace("%SCRIPT%", () => page.script));
+await put(
+  "lab.html",
+  template.replace("%STYLE%", () => page.style).replace("%SCRIPT%", () => page.script),
+);

@@ -6,19 +6,28 @@ import { SCHEMA } from "./tables.js";
 export function numbers_of(value, name = "") {
   if (typeof value === "number") return [[name, value]];
   if (value === null || typeof value !== "object") return [];
-  return Object.entries(value).flatMap(([field, inner]) => numbers_of(inner, name ? `${name}.${field}` : field));
+  return Object.entries(value).flatMap(([field, inner]) =>
+    numbers_of(inner, name ? `${name}.${field}` : field),
+  );
 }
 
 const TABLE = "a table of its fields";
 
 export class Part {
   constructor(given = {}) {
-    const { fields, checks } = SCHEMA[this.constructor.title], keys = Object.keys(fields).join(", ");
+    const { fields, checks } = SCHEMA[this.constructor.title],
+      keys = Object.keys(fields).join(", ");
     const unknown = Object.keys(given).filter((name) => !(name in fields));
-    const wrong = unknown.map((name) => new m.InvalidInput(name, given[name], `one of the keys ${keys}`));
+    const wrong = unknown.map(
+      (name) => new m.InvalidInput(name, given[name], `one of the keys ${keys}`),
+    );
     for (const [name, field] of Object.entries(fields)) {
-      const value = given[name] === undefined || (given[name] === null && field.default !== undefined) ? field.default : given[name];
-      if (value === undefined) wrong.push(new m.InvalidInput(name, m.MISSING, "a value; it has no default"));
+      const value =
+        given[name] === undefined || (given[name] === null && field.default !== undefined)
+          ? field.default
+          : given[name];
+      if (value === undefined)
+        wrong.push(new m.InvalidInput(name, m.MISSING, "a value; it has no default"));
       else this[name] = taken(name, value, field, wrong);
     }
     if (wrong.length) throw wrong[0].within("", wrong.length - 1);
@@ -31,7 +40,11 @@ export class Part {
 
   /** A copy with other values, which are not checked. */
   model_copy(changes) {
-    return Object.assign(Object.create(Object.getPrototypeOf(this)), this, Object.fromEntries(changes.entries()));
+    return Object.assign(
+      Object.create(Object.getPrototypeOf(this)),
+      this,
+      Object.fromEntries(changes.entries()),
+    );
   }
 
   model_dump() {
@@ -45,7 +58,8 @@ function taken(name, value, field, wrong) {
   const number = (where, one, depth) => {
     const { gt, ge, lt, le } = field.limits ?? {};
     if (depth) one.forEach((inner, place) => number(`${where}.${place}`, inner, depth - 1));
-    else if (typeof one !== "number" || !Number.isFinite(one)) refuse(where, one, "a finite number");
+    else if (typeof one !== "number" || !Number.isFinite(one))
+      refuse(where, one, "a finite number");
     else if (one <= gt || one < ge || one >= lt || one > le) refuse(where, one, field.accepted);
   };
   if (value === null && field.default === null) return null;
@@ -55,8 +69,11 @@ function taken(name, value, field, wrong) {
     if (!found.length) refuse(name, value, TABLE);
     return found.length === 1 ? found[0] : found;
   }
-  const listed = Array.isArray(value) && (field.points ? value.every(Array.isArray) : value.length === field.count);
-  if (field.choices ? !field.choices.includes(value) : (field.points || field.count) && !listed) refuse(name, value, field.accepted);
+  const listed =
+    Array.isArray(value) &&
+    (field.points ? value.every(Array.isArray) : value.length === field.count);
+  if (field.choices ? !field.choices.includes(value) : (field.points || field.count) && !listed)
+    refuse(name, value, field.accepted);
   else if (!field.choices) number(name, value, field.points ? 2 : field.count ? 1 : 0);
   return value;
 }
@@ -75,10 +92,12 @@ function part(name, value, kinds, wrong) {
 
 /** The kind that fields are of, told apart by the one that is called `kind`. */
 function chosen(value, kinds) {
-  if (value === null || typeof value !== "object" || Array.isArray(value)) throw new m.InvalidInput("", value, TABLE);
+  if (value === null || typeof value !== "object" || Array.isArray(value))
+    throw new m.InvalidInput("", value, TABLE);
   const words = kinds.map((kind) => SCHEMA[kind].fields.kind?.default);
   if (words[0] === undefined) return kinds[0];
   if (value.kind === undefined) throw new m.InvalidInput("kind", m.MISSING, "a kind of it");
-  if (!words.includes(value.kind)) throw new m.InvalidInput("kind", value.kind, words.map((word) => `'${word}'`).join(", "));
+  if (!words.includes(value.kind))
+    throw new m.InvalidInput("kind", value.kind, words.map((word) => `'${word}'`).join(", "));
   return kinds[words.indexOf(value.kind)];
 }

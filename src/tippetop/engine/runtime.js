@@ -4,9 +4,11 @@ export * from "./words.js";
 
 export class ArithmeticError extends Error {}
 export class ZeroDivisionError extends ArithmeticError {}
-export const NotImplemented = null, [ValueError, NotImplementedError, AssertionError] = [Error, Error, Error];
+export const NotImplemented = null,
+  [ValueError, NotImplementedError, AssertionError] = [Error, Error, Error];
 
-let heeded = true, within = 0;
+let heeded = true,
+  within = 0;
 /** Whether what has no value is an error, or no number, as in arrays: until every block that asked for those is left. */
 export function heed(whether) {
   within += whether ? -1 : 1;
@@ -20,8 +22,13 @@ const asked = (a, word, b) => (takes(a, word) ? a[word](b) : NotImplemented);
 
 function applied(a, b, word, turned, plain) {
   // Where the second's class is one of the first's kind, it is asked first.
-  const special = takes(b, turned) && takes(a, word) && b instanceof a.constructor && b.constructor !== a.constructor;
-  const first = special ? NotImplemented : asked(a, word, b), found = first === NotImplemented ? asked(b, turned, a) : first;
+  const special =
+    takes(b, turned) &&
+    takes(a, word) &&
+    b instanceof a.constructor &&
+    b.constructor !== a.constructor;
+  const first = special ? NotImplemented : asked(a, word, b),
+    found = first === NotImplemented ? asked(b, turned, a) : first;
   if (found !== NotImplemented) return found;
   if (typeof a === "boolean" || typeof b === "boolean") return plain(Number(a), Number(b));
   throw new TypeError(`${word} of ${a} and ${b}`);
@@ -54,7 +61,8 @@ export function div(a, b) {
 }
 
 export function pow(a, b) {
-  if (typeof a !== "number" || typeof b !== "number") return applied(a, b, "__pow__", "__rpow__", pow);
+  if (typeof a !== "number" || typeof b !== "number")
+    return applied(a, b, "__pow__", "__rpow__", pow);
   if (b === 2) return finite(a * a, a);
   if (!heeded) return a ** b;
   if (a === 0 && b < 0) throw new ZeroDivisionError("0.0 cannot be raised to a negative power");
@@ -66,18 +74,22 @@ export function pow(a, b) {
 }
 
 function finite(value, ...given) {
-  if (heeded && !Number.isFinite(value) && given.every(Number.isFinite)) throw new ArithmeticError("a result too large");
+  if (heeded && !Number.isFinite(value) && given.every(Number.isFinite))
+    throw new ArithmeticError("a result too large");
   return value;
 }
 
 export const floordiv = (a, b) => Math.floor(a / b);
 export const mod = (a, b) => a - b * Math.floor(a / b);
-export const neg = (a) => (typeof a === "number" ? -a : typeof a === "boolean" ? -Number(a) : a.__neg__());
+export const neg = (a) =>
+  typeof a === "number" ? -a : typeof a === "boolean" ? -Number(a) : a.__neg__();
 export const abs = (a) => (typeof a === "number" ? Math.abs(a) : a.__abs__());
 export const float = (a) => (a === "inf" ? Infinity : Number(a));
 export const int = (a) => Math.trunc(Number(a));
-export const str = (a) => (a instanceof Error ? a.message : a instanceof Enum ? a.name : typeof a === "string" ? a : repr(a));
-export const sum = (values, start = 0) => tuple(values).reduce((total, value) => add(total, value), start);
+export const str = (a) =>
+  a instanceof Error ? a.message : a instanceof Enum ? a.name : typeof a === "string" ? a : repr(a);
+export const sum = (values, start = 0) =>
+  tuple(values).reduce((total, value) => add(total, value), start);
 
 export function truth(a) {
   if (typeof a === "number") return a !== 0;
@@ -112,11 +124,16 @@ export const np = {
   fmax: (a, b) => (a >= b || b !== b ? a : b),
   copysign: (a, b) => (b < 0 || Object.is(b, -0) ? -Math.abs(a) : Math.abs(a)),
   less: (a, b) => (takes(a, "__lt__") ? a.__lt__(b) : a < b),
-  where: (condition, a, b) => (takes(condition, "graph") ? condition.graph.select(condition, a, b) : condition ? a : b),
-  any: itself, max: itself, min: itself,
+  where: (condition, a, b) =>
+    takes(condition, "graph") ? condition.graph.select(condition, a, b) : condition ? a : b,
+  any: itself,
+  max: itself,
+  min: itself,
   stack: (parts) => Float64Array.from(parts),
-  empty: (shape) => (typeof shape === "number" ? new Float64Array(shape)
-    : made(shape[0], () => new Float64Array(shape[1]))),
+  empty: (shape) =>
+    typeof shape === "number"
+      ? new Float64Array(shape)
+      : made(shape[0], () => new Float64Array(shape[1])),
   zeros: (shape) => np.empty(shape),
   array: (numbers) => new Float64Array(numbers),
 };
@@ -137,7 +154,9 @@ export class NamedTuple extends Thing {
 export class Record extends Thing {}
 
 export const replace = (one, changes) =>
-  new one.constructor(...one.constructor.fields.map((name) => (name in changes ? changes[name] : one[name])));
+  new one.constructor(
+    ...one.constructor.fields.map((name) => (name in changes ? changes[name] : one[name])),
+  );
 
 export class Enum {
   constructor(name, value) {
@@ -162,12 +181,15 @@ const isRow = (a) => Array.isArray(a) || a instanceof NamedTuple;
 
 export function eq(a, b) {
   if (a === b) return true;
-  if (isRow(a) && isRow(b)) return len(a) === len(b) && [...a].every((one, place) => eq(one, b[place]));
-  if (a instanceof Record && a.constructor === b?.constructor) return a.constructor.fields.every((name) => eq(a[name], b[name]));
+  if (isRow(a) && isRow(b))
+    return len(a) === len(b) && [...a].every((one, place) => eq(one, b[place]));
+  if (a instanceof Record && a.constructor === b?.constructor)
+    return a.constructor.fields.every((name) => eq(a[name], b[name]));
   return typeof a === "boolean" && typeof b === "number" ? Number(a) === b : false;
 }
 
-export const contains = (all, one) => (all instanceof Map || all instanceof Set ? all.has(one) : [...all].some((each) => eq(each, one)));
+export const contains = (all, one) =>
+  all instanceof Map || all instanceof Set ? all.has(one) : [...all].some((each) => eq(each, one));
 
 const known = new WeakMap();
 let counted = 0;
@@ -175,7 +197,8 @@ let counted = 0;
 function key(a) {
   if (a === null || (typeof a !== "object" && typeof a !== "function")) return String(a);
   if (Array.isArray(a)) return `(${a.map(key).join()})`;
-  if (a instanceof NamedTuple || a instanceof Record) return `${key(a.constructor)}(${a.constructor.fields.map((name) => key(a[name])).join()})`;
+  if (a instanceof NamedTuple || a instanceof Record)
+    return `${key(a.constructor)}(${a.constructor.fields.map((name) => key(a[name])).join()})`;
   if (!known.has(a)) known.set(a, `#${(counted += 1)}`);
   return known.get(a);
 }
@@ -206,7 +229,10 @@ export class Dict extends Map {
 // ---- sequences
 
 export function item(all, place) {
-  if (typeof place === "number" && (Array.isArray(all) || all instanceof NamedTuple || ArrayBuffer.isView(all))) {
+  if (
+    typeof place === "number" &&
+    (Array.isArray(all) || all instanceof NamedTuple || ArrayBuffer.isView(all))
+  ) {
     return all[place < 0 ? len(all) + place : place];
   }
   if (all instanceof Dict) return all.get(place);
@@ -221,25 +247,32 @@ export function put(all, place, value) {
 /** A slice of a sequence, backwards. */
 export function slice(all, from, to, step) {
   if (step !== -1 || from < 0 || to < 0) throw new RangeError("such a slice is not known here");
-  return tuple(all).slice(to === null ? 0 : to + 1, from === null ? undefined : from + 1).reverse();
+  return tuple(all)
+    .slice(to === null ? 0 : to + 1, from === null ? undefined : from + 1)
+    .reverse();
 }
 
-export const len = (all) => (all instanceof NamedTuple ? all.constructor.fields.length : all.length);
+export const len = (all) =>
+  all instanceof NamedTuple ? all.constructor.fields.length : all.length;
 /** So many values: `Array.from`, and spreading of what is no list, take ten times as long. */
 function made(count, value) {
   const found = [];
   for (let place = 0; place < count; place += 1) found.push(value(place));
   return found;
 }
-export const list = (all = []) => (ArrayBuffer.isView(all) ? made(all.length, (place) => all[place]) : [...all]);
+export const list = (all = []) =>
+  ArrayBuffer.isView(all) ? made(all.length, (place) => all[place]) : [...all];
 export const tuple = (all = []) => (Array.isArray(all) ? all : list(all));
 export const dict = (pairs = []) => new Dict(pairs);
 export const range = (start, stop = null, step = 1) =>
-  stop === null ? made(start, (place) => place) : made(Math.ceil((stop - start) / step), (place) => start + place * step);
+  stop === null
+    ? made(start, (place) => place)
+    : made(Math.ceil((stop - start) / step), (place) => start + place * step);
 export const enumerate = (all) => Array.from(all, (one, place) => [place, one]);
 export const reversed = (all) => [...all].reverse();
 export function zip(...rows) {
-  const whole = rows.map(tuple), shortest = whole.reduce((a, b) => (b.length < a.length ? b : a));
+  const whole = rows.map(tuple),
+    shortest = whole.reduce((a, b) => (b.length < a.length ? b : a));
   return shortest.map((_, place) => whole.map((row) => row[place]));
 }
 export function map(function_, ...rows) {
@@ -259,7 +292,8 @@ function below(a, b) {
 }
 
 function most(given, better) {
-  const told = given.at(-1)?.constructor === Object ? given.pop() : {}, { key: worth = itself } = told;
+  const told = given.at(-1)?.constructor === Object ? given.pop() : {},
+    { key: worth = itself } = told;
   const choices = given.length === 1 ? [...given[0]] : given;
   if (!choices.length && "default" in told) return told.default;
   return choices.reduce((best, choice) => (better(worth(choice), worth(best)) ? choice : best));
@@ -267,14 +301,17 @@ function most(given, better) {
 export const max = (...given) => most(given, (one, other) => below(other, one));
 export const min = (...given) => most(given, below);
 // Of two, and without a list of what is given: this is asked for in every step.
-export const larger = (a, b) => (typeof a === "number" && typeof b === "number" ? (b > a ? b : a) : max(a, b));
-export const smaller = (a, b) => (typeof a === "number" && typeof b === "number" ? (b < a ? b : a) : min(a, b));
+export const larger = (a, b) =>
+  typeof a === "number" && typeof b === "number" ? (b > a ? b : a) : max(a, b);
+export const smaller = (a, b) =>
+  typeof a === "number" && typeof b === "number" ? (b < a ? b : a) : min(a, b);
 export const sorted = (all, { key: worth = itself } = {}) =>
   [...all].sort((a, b) => below(worth(b), worth(a)) - below(worth(a), worth(b)));
 
 // ---- objects
 
-export const is_number = Number.isFinite, is_whole = Number.isInteger;
+export const is_number = Number.isFinite,
+  is_whole = Number.isInteger;
 export const hasattr = (one, name) => one !== null && typeof one === "object" && name in one;
 export const getattr = (one, name, otherwise) => (hasattr(one, name) ? one[name] : otherwise);
 export const bound = (one, name) => one[name].bind(one);

@@ -13,7 +13,14 @@ import { Own } from "./own.jsx";
 import { Plots, QUANTITIES, USUAL } from "./plots.js";
 import { Story, veiled } from "./story.jsx";
 
-const PANELS = { story: Story, launch: Launch, own: Own, compare: Compare, map: MapPanel, keep: Keep };
+const PANELS = {
+  story: Story,
+  launch: Launch,
+  own: Own,
+  compare: Compare,
+  map: MapPanel,
+  keep: Keep,
+};
 
 export function App({ lab }) {
   const [, redraw] = useState(0);
@@ -32,7 +39,16 @@ export function App({ lab }) {
   const Panel = PANELS[tab] ?? Story;
   return (
     <>
-      <a class="skip" href="#panel" onClick={(event) => { event.preventDefault(); document.getElementById("panel").focus(); }}>{t("page.skip")}</a>
+      <a
+        class="skip"
+        href="#panel"
+        onClick={(event) => {
+          event.preventDefault();
+          document.getElementById("panel").focus();
+        }}
+      >
+        {t("page.skip")}
+      </a>
       <Header lab={lab} onHelp={() => turn(true)} />
       <main class={veiled(lab.state) ? "veiled" : ""}>
         <section class="stage" aria-label={t("page.stage")}>
@@ -42,7 +58,11 @@ export function App({ lab }) {
           <Tabs lab={lab} />
           <div class="panel-body" role="tabpanel" aria-labelledby={`tab-${tab}`} tabIndex={0}>
             <Busy lab={lab} />
-            {trouble && (!trouble.field || tab !== "launch") && <p class="refused" role="alert">{trouble.sentence}</p>}
+            {trouble && (!trouble.field || tab !== "launch") && (
+              <p class="refused" role="alert">
+                {trouble.sentence}
+              </p>
+            )}
             {tab !== "story" && <h2 class="hidden">{t(`page.${tab}`)}</h2>}
             <Panel lab={lab} key={tab} />
           </div>
@@ -75,17 +95,43 @@ function Header({ lab, onHelp }) {
     <header>
       <h1>{t("page.title")}</h1>
       <span class="space" />
-      <button type="button" disabled={!lab.changed} onClick={() => lab.undo()} title="Ctrl+Z">{t("page.undo")}</button>
-      <button type="button" onClick={copy}>{t("page.link")}</button>
-      <button type="button" onClick={onHelp} aria-haspopup="dialog">{t("page.help")}</button>
-      <button type="button" class="square" aria-label={t("page.theme")} title={t("page.theme")}
-        onClick={() => lab.set({ theme: isDark(theme) ? "light" : "dark" })}>◐</button>
-      <select aria-label={t("page.language")} value={document.documentElement.lang} onChange={(event) => lab.set({ lang: event.target.value })}>
-        {Object.entries(LANGUAGES).map(([key, { name }]) => <option value={key} lang={key}>{name}</option>)}
+      <button type="button" disabled={!lab.changed} onClick={() => lab.undo()} title="Ctrl+Z">
+        {t("page.undo")}
+      </button>
+      <button type="button" onClick={copy}>
+        {t("page.link")}
+      </button>
+      <button type="button" onClick={onHelp} aria-haspopup="dialog">
+        {t("page.help")}
+      </button>
+      <button
+        type="button"
+        class="square"
+        aria-label={t("page.theme")}
+        title={t("page.theme")}
+        onClick={() => lab.set({ theme: isDark(theme) ? "light" : "dark" })}
+      >
+        ◐
+      </button>
+      <select
+        aria-label={t("page.language")}
+        value={document.documentElement.lang}
+        onChange={(event) => lab.set({ lang: event.target.value })}
+      >
+        {Object.entries(LANGUAGES).map(([key, { name }]) => (
+          <option value={key} lang={key}>
+            {name}
+          </option>
+        ))}
       </select>
       <div class="linked" role="status">
         {link?.copied && t("page.linked")}
-        {link?.address && <label>{t("page.linkHere")}<input readOnly value={link.address} ref={(field) => field?.select()} /></label>}
+        {link?.address && (
+          <label>
+            {t("page.linkHere")}
+            <input readOnly value={link.address} ref={(field) => field?.select()} />
+          </label>
+        )}
       </div>
     </header>
   );
@@ -95,7 +141,11 @@ function Stage({ lab, dark }) {
   const host = useRef();
   useEffect(() => {
     const before = lab.player;
-    const player = createPlayer(host.current, { theme: dark ? "dark" : "light", words: part("player"), open: innerWidth > 900 });
+    const player = createPlayer(host.current, {
+      theme: dark ? "dark" : "light",
+      words: part("player"),
+      open: innerWidth > 900,
+    });
     lab.player = player;
     player.addEventListener("time", () => lab.dispatchEvent(new Event("time")));
     player.addEventListener("view", () => lab.share());
@@ -129,8 +179,16 @@ function Tabs({ lab }) {
   return (
     <div class="tabs" role="tablist" onKeyDown={key}>
       {names.map((name) => (
-        <button type="button" role="tab" id={`tab-${name}`} aria-selected={lab.state.tab === name}
-          tabIndex={lab.state.tab === name ? 0 : -1} onClick={() => go(name)}>{t(`page.${name}`)}</button>
+        <button
+          type="button"
+          role="tab"
+          id={`tab-${name}`}
+          aria-selected={lab.state.tab === name}
+          tabIndex={lab.state.tab === name ? 0 : -1}
+          onClick={() => go(name)}
+        >
+          {t(`page.${name}`)}
+        </button>
       ))}
     </div>
   );
@@ -140,8 +198,14 @@ function Busy({ lab }) {
   const { busy } = lab.state;
   if (busy === null) return null;
   return (
-    <div class="busy"><label>{t("page.computing")} <progress max="1" value={busy || undefined} /></label>
-      <button type="button" onClick={() => lab.stop()}>{t("page.stop")}</button></div>
+    <div class="busy">
+      <label>
+        {t("page.computing")} <progress max="1" value={busy || undefined} />
+      </label>
+      <button type="button" onClick={() => lab.stop()}>
+        {t("page.stop")}
+      </button>
+    </div>
   );
 }
 
@@ -151,7 +215,10 @@ function PlotSection({ lab, dark }) {
   const names = (lab.state.plots ?? USUAL).filter((name) => name in QUANTITIES);
   useEffect(() => {
     lab.plots = new Plots(host.current, {
-      seek: (time) => { lab.player.toggle(false); lab.player.seek(time); },
+      seek: (time) => {
+        lab.player.toggle(false);
+        lab.player.seek(time);
+      },
       time: () => lab.player?.time ?? 0,
       playing: () => lab.player?.playing ?? false,
     });
@@ -164,18 +231,41 @@ function PlotSection({ lab, dark }) {
     lab.addEventListener("run", fill);
     return () => lab.removeEventListener("run", fill);
   }, [names.join(), units, dark, document.documentElement.lang]);
-  const choose = (name, on) => lab.set({ plots: Object.keys(QUANTITIES).filter((one) => (one === name ? on : names.includes(one))) });
+  const choose = (name, on) =>
+    lab.set({
+      plots: Object.keys(QUANTITIES).filter((one) => (one === name ? on : names.includes(one))),
+    });
   return (
     <section class="plots" aria-label={t("plots.title")}>
       <div class="plots-bar">
-        <h2>{t("plots.title")}</h2><span class="hint">{t("plots.hint")} {lab.track?.header.flights.length ? t("plots.flights") : ""}</span>
-        <button type="button" onClick={() => lab.plots.zoom(0.5)}>{t("plots.in")}</button>
-        <button type="button" onClick={() => lab.plots.zoom(2)}>{t("plots.out")}</button>
-        <button type="button" onClick={() => lab.plots.zoom(null)}>{t("plots.all")}</button>
-        <details class="curves"><summary>{t("plots.choose")}</summary><div>
-          {Object.keys(QUANTITIES).map((name) => (
-            <label><input type="checkbox" checked={names.includes(name)} onChange={(event) => choose(name, event.target.checked)} /> {t(`quantities.${name}.name`)}</label>
-          ))}</div></details>
+        <h2>{t("plots.title")}</h2>
+        <span class="hint">
+          {t("plots.hint")} {lab.track?.header.flights.length ? t("plots.flights") : ""}
+        </span>
+        <button type="button" onClick={() => lab.plots.zoom(0.5)}>
+          {t("plots.in")}
+        </button>
+        <button type="button" onClick={() => lab.plots.zoom(2)}>
+          {t("plots.out")}
+        </button>
+        <button type="button" onClick={() => lab.plots.zoom(null)}>
+          {t("plots.all")}
+        </button>
+        <details class="curves">
+          <summary>{t("plots.choose")}</summary>
+          <div>
+            {Object.keys(QUANTITIES).map((name) => (
+              <label>
+                <input
+                  type="checkbox"
+                  checked={names.includes(name)}
+                  onChange={(event) => choose(name, event.target.checked)}
+                />{" "}
+                {t(`quantities.${name}.name`)}
+              </label>
+            ))}
+          </div>
+        </details>
       </div>
       <p class="veil">{t("plots.veiled")}</p>
       <div class="plots-host" ref={host} />

@@ -16,9 +16,11 @@ export function fineness({ row, column }) {
 }
 
 function colourOf(tilt) {
-  const place = (Math.min(Math.max(tilt / Math.PI, 0), 1) * (STOPS.length - 1)) || 0;
+  const place = Math.min(Math.max(tilt / Math.PI, 0), 1) * (STOPS.length - 1) || 0;
   const k = Math.min(Math.floor(place), STOPS.length - 2);
-  const mixed = STOPS[k].map((low, channel) => Math.round(low + (place - k) * (STOPS[k + 1][channel] - low)));
+  const mixed = STOPS[k].map((low, channel) =>
+    Math.round(low + (place - k) * (STOPS[k + 1][channel] - low)),
+  );
   return `rgb(${mixed})`;
 }
 
@@ -58,7 +60,10 @@ export class Chart {
 
   get box() {
     const { clientWidth, clientHeight } = this.canvas;
-    return { width: clientWidth - ROOM.left - ROOM.right, height: clientHeight - ROOM.top - ROOM.bottom };
+    return {
+      width: clientWidth - ROOM.left - ROOM.right,
+      height: clientHeight - ROOM.top - ROOM.bottom,
+    };
   }
 
   cellAt({ offsetX, offsetY }) {
@@ -66,7 +71,11 @@ export class Chart {
     const { width, height } = this.box;
     const column = Math.floor(((offsetX - ROOM.left) / width) * this.plan.spins.length);
     const row = Math.floor((1 - (offsetY - ROOM.top) / height) * this.plan.frictions.length);
-    const inside = column >= 0 && row >= 0 && column < this.plan.spins.length && row < this.plan.frictions.length;
+    const inside =
+      column >= 0 &&
+      row >= 0 &&
+      column < this.plan.spins.length &&
+      row < this.plan.frictions.length;
     return inside ? this.shown(row, column) : null;
   }
 
@@ -77,8 +86,14 @@ export class Chart {
       const { row, column, reach } = this.chosen ?? { row: 0, column: 0, reach: 0 };
       const [up, along] = moves[event.key];
       const next = (at, step, count) => Math.min(Math.max(at + step * reach, 0), count - 1);
-      this.mark(this.shown(next(row, up, this.plan.frictions.length), next(column, along, this.plan.spins.length)));
-    } else if ((event.key === "Enter" || event.key === " ") && this.chosen) this.choose(this.chosen);
+      this.mark(
+        this.shown(
+          next(row, up, this.plan.frictions.length),
+          next(column, along, this.plan.spins.length),
+        ),
+      );
+    } else if ((event.key === "Enter" || event.key === " ") && this.chosen)
+      this.choose(this.chosen);
     else return;
     event.preventDefault();
   }
@@ -106,12 +121,19 @@ export class Chart {
     const style = getComputedStyle(canvas);
     const { width, height } = this.box;
     const [across, up] = [width / plan.spins.length, height / plan.frictions.length];
-    const place = (row, column) => [ROOM.left + column * across, ROOM.top + height - (row + 1) * up];
+    const place = (row, column) => [
+      ROOM.left + column * across,
+      ROOM.top + height - (row + 1) * up,
+    ];
     for (let row = 0; row < plan.frictions.length; row++) {
       for (let column = 0; column < plan.spins.length; column++) {
         const cell = this.shown(row, column);
         const [x, y] = place(row, column);
-        pen.fillStyle = !cell ? style.getPropertyValue("--line") : Number.isFinite(cell.answer.tilt) ? colourOf(cell.answer.tilt) : "#8f5fc4";
+        pen.fillStyle = !cell
+          ? style.getPropertyValue("--line")
+          : Number.isFinite(cell.answer.tilt)
+            ? colourOf(cell.answer.tilt)
+            : "#8f5fc4";
         pen.fillRect(x, y, across + 0.6, up + 0.6);
         if (!cell?.answer.flights) continue;
         pen.fillStyle = "#e03c31";
@@ -143,7 +165,11 @@ export class Chart {
     pen.textAlign = "right";
     const count = plan.frictions.length;
     for (const row of [0, Math.floor(count / 2), count - 1]) {
-      pen.fillText(digits(plan.frictions[row], 2), ROOM.left - 5, ROOM.top + height - (row + 0.5) * (height / count) + 4);
+      pen.fillText(
+        digits(plan.frictions[row], 2),
+        ROOM.left - 5,
+        ROOM.top + height - (row + 0.5) * (height / count) + 4,
+      );
     }
     pen.save();
     pen.translate(11, ROOM.top + height / 2);

@@ -31,13 +31,16 @@ export const START = [
 export const ALL = [...MAIN, ...LAW, ...TABLE, ...TOP, ...START];
 
 // The kind of a dial's unit, which friction has where it grows with slip.
-export const frictionKind = ({ problem: { friction } }) => (friction.kind === "viscous" ? "s/m" : "");
-export const kindOf = ({ field, kind }, setup) => (field === "friction.mu" ? frictionKind(setup) : kind);
+export const frictionKind = ({ problem: { friction } }) =>
+  friction.kind === "viscous" ? "s/m" : "";
+export const kindOf = ({ field, kind }, setup) =>
+  field === "friction.mu" ? frictionKind(setup) : kind;
 
 // The size in SI of the number that a dial shows: inertias are in masses times radius squared.
 export function scaleOf({ kind }, { problem: { body } }) {
   return kind === "mR²" ? body.mass * (body.shape.radius ?? 1) ** 2 : 1;
 }
 
-export const placeOf = (dial, value) => (dial.log ? Math.log10(Math.max(value, dial.low / 10)) : value);
+export const placeOf = (dial, value) =>
+  dial.log ? Math.log10(Math.max(value, dial.low / 10)) : value;
 export const valueAt = (dial, place) => (dial.log ? Number((10 ** place).toPrecision(3)) : place);

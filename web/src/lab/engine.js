@@ -106,7 +106,10 @@ export class Engine {
 // Follow many launches in as many workers as there are cores to spare.
 export class Crew {
   constructor() {
-    this.helpers = Array.from({ length: Math.max(1, Math.min(4, navigator.hardwareConcurrency - 1)) }, () => new Helper());
+    this.helpers = Array.from(
+      { length: Math.max(1, Math.min(4, navigator.hardwareConcurrency - 1)) },
+      () => new Helper(),
+    );
   }
 
   async follow(jobs, tell) {

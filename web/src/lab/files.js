@@ -24,9 +24,13 @@ export function save(name, content) {
 export function toml(problem) {
   const lines = [];
   const write = (table, name) => {
-    const entries = Object.entries(table).filter(([, value]) => value !== null && value !== undefined);
-    const inner = ([, value]) => typeof value === "object" && (!Array.isArray(value) || typeof value[0] === "object");
-    for (const [key, value] of entries.filter((entry) => !inner(entry))) lines.push(`${key} = ${tomlValue(value)}`);
+    const entries = Object.entries(table).filter(
+      ([, value]) => value !== null && value !== undefined,
+    );
+    const inner = ([, value]) =>
+      typeof value === "object" && (!Array.isArray(value) || typeof value[0] === "object");
+    for (const [key, value] of entries.filter((entry) => !inner(entry)))
+      lines.push(`${key} = ${tomlValue(value)}`);
     for (const [key, value] of entries.filter(inner)) {
       const full = name ? `${name}.${key}` : key;
       for (const one of [value].flat()) {
@@ -49,8 +53,11 @@ function tomlValue(value) {
 export function commandLine({ header: { problem, asked } }) {
   const lists = Array.isArray(problem.body.shape);
   const words = lists ? ["tippetop.toml"] : [];
-  for (const [field, , value] of lists ? [] : differences(FIRST, { problem, duration: FIRST.duration })) {
-    if (value !== undefined) words.push(`--set '${field}=${typeof value === "string" ? value : JSON.stringify(value)}'`);
+  for (const [field, , value] of lists
+    ? []
+    : differences(FIRST, { problem, duration: FIRST.duration })) {
+    if (value !== undefined)
+      words.push(`--set '${field}=${typeof value === "string" ? value : JSON.stringify(value)}'`);
   }
   return ["tippetop simulate", ...words, `--duration ${asked}`].join(" \\\n  ");
 }
@@ -69,7 +76,10 @@ export async function glb(track) {
   const positions = new Float32Array(3 * count);
   const turns = new Float32Array(4 * count);
   times.forEach((time, k) => {
-    const { position, orientation: [w, x, y, z] } = track.at(time);
+    const {
+      position,
+      orientation: [w, x, y, z],
+    } = track.at(time);
     positions.set(position, 3 * k);
     turns.set([x, y, z, w], 4 * k);
   });
@@ -87,7 +97,9 @@ export function picture(player) {
 
 // The run from its start as the scene plays it.
 export async function film(player) {
-  const kind = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((one) => MediaRecorder.isTypeSupported(one));
+  const kind = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((one) =>
+    MediaRecorder.isTypeSupported(one),
+  );
   const recorder = new MediaRecorder(player.canvas.captureStream(FRAMES), { mimeType: kind });
   const parts = [];
   recorder.ondataavailable = ({ data }) => parts.push(data);

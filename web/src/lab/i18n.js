@@ -12,7 +12,9 @@ export function speak(language) {
 }
 
 export function preferred() {
-  return navigator.languages?.map((name) => name.slice(0, 2)).find((name) => name in LANGUAGES) ?? "en";
+  return (
+    navigator.languages?.map((name) => name.slice(0, 2)).find((name) => name in LANGUAGES) ?? "en"
+  );
 }
 
 // A part of the catalogue, by its name with dots; fields of a launch have dots in their own names.
@@ -31,7 +33,10 @@ export function t(name, gaps = {}) {
 
 // What the engine says in English, in the page's language as far as it has words for it.
 export function translated(text) {
-  return (words.patterns ?? []).reduce((found, [pattern, other]) => found.replace(pattern, other), text);
+  return (words.patterns ?? []).reduce(
+    (found, [pattern, other]) => found.replace(pattern, other),
+    text,
+  );
 }
 
 // A number with the language's decimal sign.

@@ -20,7 +20,13 @@ export class Lab extends EventTarget {
     super();
     this.engine = new Engine();
     this.ghosts = new Map();
-    this.state = { ...this.read(location.hash || location.search), busy: null, trouble: null, prospect: null, guess: null };
+    this.state = {
+      ...this.read(location.hash || location.search),
+      busy: null,
+      trouble: null,
+      prospect: null,
+      guess: null,
+    };
     this.good = this.state.setup;
     addEventListener("popstate", () => this.restore());
   }
@@ -71,7 +77,10 @@ export class Lab extends EventTarget {
     if (turns <= MOST_TURNS || !Number.isFinite(turns)) return null;
     const value = shown(launch.spin, "spin", this.state.units);
     const name = t("quantities.launch.spin.name");
-    return { field: "launch.spin", sentence: t("controls.tooLong", { name, value, turns: digits(turns, 2) }) };
+    return {
+      field: "launch.spin",
+      sentence: t("controls.tooLong", { name, value, turns: digits(turns, 2) }),
+    };
   }
 
   // Follow the launch that is set: quickly while a slider moves.
@@ -82,7 +91,10 @@ export class Lab extends EventTarget {
     if (trouble) return this.refuse(trouble);
     const late = setTimeout(() => this.set({ busy: this.state.busy ?? 0 }), PATIENCE);
     try {
-      const track = await this.engine.run({ ...setup, quick }, (share) => asked === this.asked && this.state.busy !== null && this.set({ busy: share }));
+      const track = await this.engine.run(
+        { ...setup, quick },
+        (share) => asked === this.asked && this.state.busy !== null && this.set({ busy: share }),
+      );
       clearTimeout(late);
       if (!track) return;
       this.good = setup;
@@ -130,7 +142,11 @@ export class Lab extends EventTarget {
   stop() {
     this.engine.stop();
     this.asked += 1;
-    this.set({ setup: this.good, busy: null, trouble: { field: null, sentence: t("page.stopped") } });
+    this.set({
+      setup: this.good,
+      busy: null,
+      trouble: { field: null, sentence: t("page.stopped") },
+    });
   }
 
   pin() {
@@ -153,7 +169,10 @@ export class Lab extends EventTarget {
     for (const pin of pins) {
       const key = JSON.stringify(pin);
       if (this.ghosts.has(key)) continue;
-      const known = this.track && same(pin.problem, this.track.header.problem) && pin.duration === this.track.header.asked;
+      const known =
+        this.track &&
+        same(pin.problem, this.track.header.problem) &&
+        pin.duration === this.track.header.asked;
       this.ghosts.set(key, known ? this.track : await this.engine.aside(pin).catch(() => null));
     }
     if (pins !== this.state.pins) return;
@@ -175,10 +194,14 @@ export class Lab extends EventTarget {
     const { player } = this;
     if (!player) return this.state.view;
     const { scene } = player;
-    const on = Object.entries(scene?.shown ?? {}).filter(([, value]) => value).map(([name]) => name);
+    const on = Object.entries(scene?.shown ?? {})
+      .filter(([, value]) => value)
+      .map(([name]) => name);
     const usual = on.join(" ") === "trace glass";
     return {
-      time: player.playing ? 0 : player.time, camera: scene?.eye.held ? scene.eye.place : null, shown: usual ? [] : on,
+      time: player.playing ? 0 : player.time,
+      camera: scene?.eye.held ? scene.eye.place : null,
+      shown: usual ? [] : on,
     };
   }
 
@@ -224,7 +247,8 @@ export class Lab extends EventTarget {
   look({ view, timed }) {
     const { player } = this;
     if (view.shown.length) {
-      for (const name of ["axis", "momentum", "friction", "trace", "glass"]) player.show({ [name]: view.shown.includes(name) });
+      for (const name of ["axis", "momentum", "friction", "trace", "glass"])
+        player.show({ [name]: view.shown.includes(name) });
     }
     if (view.camera && player.scene) {
       player.scene.eye.place = view.camera;

@@ -20,7 +20,8 @@ export function launchQuery(setup) {
   if (several) query.set("body.shape", JSON.stringify(body.shape));
   for (const [field, value] of all) {
     if (several && field.startsWith("body.shape")) continue;
-    if (other.has(field)) query.set(field, typeof value === "string" ? value : JSON.stringify(value));
+    if (other.has(field))
+      query.set(field, typeof value === "string" ? value : JSON.stringify(value));
   }
   return query;
 }
@@ -53,7 +54,8 @@ export function writeLink({ setup, pins, units, view, tab, step, plots, lang, th
   if (view.time > 0.0005) query.set("t", view.time.toFixed(4));
   if (view.camera) query.set("camera", view.camera.map((v) => v.toFixed(3)).join(" "));
   if (view.shown?.length) query.set("show", view.shown.join(" "));
-  if (units.spin !== FIRST_UNITS.spin || units.angle !== FIRST_UNITS.angle) query.set("units", `${units.spin} ${units.angle}`);
+  if (units.spin !== FIRST_UNITS.spin || units.angle !== FIRST_UNITS.angle)
+    query.set("units", `${units.spin} ${units.angle}`);
   if (tab !== "story") query.set("tab", tab);
   if (step) query.set("step", step);
   if (plots) query.set("plots", plots.join(" "));
@@ -71,12 +73,19 @@ export function readLink(text) {
   const right = camera?.length === 3 && camera.every(Number.isFinite);
   return {
     setup: readLaunch(query),
-    pins: query.getAll("pin").slice(0, 3).map((pin) => readLaunch(new URLSearchParams(pin))),
+    pins: query
+      .getAll("pin")
+      .slice(0, 3)
+      .map((pin) => readLaunch(new URLSearchParams(pin))),
     units: {
       spin: CHOICES.spin.includes(spin) ? spin : FIRST_UNITS.spin,
       angle: CHOICES.angle.includes(angle) ? angle : FIRST_UNITS.angle,
     },
-    view: { time: Math.max(Number(query.get("t")) || 0, 0), camera: right ? camera : null, shown: words("show") ?? [] },
+    view: {
+      time: Math.max(Number(query.get("t")) || 0, 0),
+      camera: right ? camera : null,
+      shown: words("show") ?? [],
+    },
     tab: query.get("tab") ?? (query.size && !query.has("step") ? "launch" : "story"),
     step: Math.max(Math.trunc(Number(query.get("step")) || 0), 0),
     plots: words("plots"),

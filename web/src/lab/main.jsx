@@ -11,7 +11,12 @@ import "./page.css";
 const lab = new Lab();
 globalThis.tippetopLab = lab;
 document.addEventListener("keydown", (event) => {
-  if (!(event.ctrlKey || event.metaKey) || event.key !== "z" || event.target.matches("input[type=text]")) return;
+  if (
+    !(event.ctrlKey || event.metaKey) ||
+    event.key !== "z" ||
+    event.target.matches("input[type=text]")
+  )
+    return;
   event.preventDefault();
   lab.undo();
 });

@@ -20,12 +20,17 @@ export function planOf(setup) {
   return {
     setup,
     spins: Array.from({ length: COLUMNS }, (_, k) => round(((k + 0.5) / COLUMNS) * HIGHEST, 4)),
-    frictions: Array.from({ length: ROWS }, (_, k) => round(round(mu, 1) * 10 ** (-1 + (2 * k) / (ROWS - 1)), 3)),
+    frictions: Array.from({ length: ROWS }, (_, k) =>
+      round(round(mu, 1) * 10 ** (-1 + (2 * k) / (ROWS - 1)), 3),
+    ),
   };
 }
 
 export function cellOf(plan, { row, column }) {
-  return changed(plan.setup, { "launch.spin": plan.spins[column], "friction.mu": plan.frictions[row] });
+  return changed(plan.setup, {
+    "launch.spin": plan.spins[column],
+    "friction.mu": plan.frictions[row],
+  });
 }
 
 export function MapPanel({ lab }) {
@@ -65,13 +70,40 @@ export function MapPanel({ lab }) {
   return (
     <div class="map">
       <p>{t("map.intro")}</p>
-      {none ? <p>{t("map.none")}</p> : crew
-        ? <button type="button" onClick={() => { crew.stop(); work(null); }}>{t("map.stop")}</button>
-        : <button type="button" class="strong" onClick={begin}>{t(lab.map ? "map.again" : "map.compute")}</button>}
-      <p class="hint" role="status">{note}</p>
-      <div class="chart"><canvas ref={host} tabIndex={0} role="application" aria-label={t("map.label")} /></div>
-      <div class="key" aria-hidden="true"><span>{t("map.upright")} <i /> {t("map.inverted")}</span><span><b /> {t("map.leaves")}</span></div>
-      <p class="hint tip" aria-live="polite">{tip}</p>
+      {none ? (
+        <p>{t("map.none")}</p>
+      ) : crew ? (
+        <button
+          type="button"
+          onClick={() => {
+            crew.stop();
+            work(null);
+          }}
+        >
+          {t("map.stop")}
+        </button>
+      ) : (
+        <button type="button" class="strong" onClick={begin}>
+          {t(lab.map ? "map.again" : "map.compute")}
+        </button>
+      )}
+      <p class="hint" role="status">
+        {note}
+      </p>
+      <div class="chart">
+        <canvas ref={host} tabIndex={0} role="application" aria-label={t("map.label")} />
+      </div>
+      <div class="key" aria-hidden="true">
+        <span>
+          {t("map.upright")} <i /> {t("map.inverted")}
+        </span>
+        <span>
+          <b /> {t("map.leaves")}
+        </span>
+      </div>
+      <p class="hint tip" aria-live="polite">
+        {tip}
+      </p>
     </div>
   );
 }
@@ -83,12 +115,24 @@ function* jobsOf(plan) {
     for (let column = 0; column < COLUMNS; column++) order.push({ row, column });
   }
   order.sort((a, b) => fineness(a) - fineness(b));
-  for (const cell of order) yield { key: cell.row * COLUMNS + cell.column, setup: cellOf(plan, cell) };
+  for (const cell of order)
+    yield { key: cell.row * COLUMNS + cell.column, setup: cellOf(plan, cell) };
 }
 
 function wordsOf(plan, { row, column, answer }, units) {
-  const gaps = { spin: shown(plan.spins[column], "spin", units), mu: shown(plan.frictions[row], frictionKind(plan.setup), units) };
-  if (answer.error || !Number.isFinite(answer.tilt)) return t("map.failed", { ...gaps, message: answer.error?.message ?? t(`outcomes.${answer.outcome.name}`) });
+  const gaps = {
+    spin: shown(plan.spins[column], "spin", units),
+    mu: shown(plan.frictions[row], frictionKind(plan.setup), units),
+  };
+  if (answer.error || !Number.isFinite(answer.tilt))
+    return t("map.failed", {
+      ...gaps,
+      message: answer.error?.message ?? t(`outcomes.${answer.outcome.name}`),
+    });
   const { tilt, flights } = answer;
-  return t(flights ? "map.cellJumps" : "map.cell", { ...gaps, tilt: shown(tilt, "angle", units, 3), flights });
+  return t(flights ? "map.cellJumps" : "map.cell", {
+    ...gaps,
+    tilt: shown(tilt, "angle", units, 3),
+    flights,
+  });
 }

@@ -7,13 +7,38 @@ import { part, t } from "./i18n.js";
 import { digits, unitOf } from "./units.js";
 
 export const QUANTITIES = {
-  theta: "angle", omega3: "spin", phi_dot: "spin", slip: "m/s", energy: "mJ", normal_force: "N", jellett_error: "", height: "mm",
+  theta: "angle",
+  omega3: "spin",
+  phi_dot: "spin",
+  slip: "m/s",
+  energy: "mJ",
+  normal_force: "N",
+  jellett_error: "",
+  height: "mm",
 };
 export const USUAL = ["theta", "omega3", "phi_dot", "slip", "energy", "normal_force"];
 
 const HEIGHT = 168;
-const COLOURS = ["#0b5fa5", "#b3401f", "#1b7f4c", "#6a3fc0", "#8a6100", "#a3195b", "#0f7680", "#5c6670"];
-const DARK_COLOURS = ["#66c5f0", "#ff9b78", "#62d09a", "#b79cff", "#e3b34d", "#ff7fb5", "#5fd3dd", "#b4bdc6"];
+const COLOURS = [
+  "#0b5fa5",
+  "#b3401f",
+  "#1b7f4c",
+  "#6a3fc0",
+  "#8a6100",
+  "#a3195b",
+  "#0f7680",
+  "#5c6670",
+];
+const DARK_COLOURS = [
+  "#66c5f0",
+  "#ff9b78",
+  "#62d09a",
+  "#b79cff",
+  "#e3b34d",
+  "#ff7fb5",
+  "#5fd3dd",
+  "#b4bdc6",
+];
 // How small a change beside the value counts as none: a constant is then seen as one.
 const CONSTANT = 0.02;
 const LEAST = { jellett_error: 1e-6, slip: 1e-7 };
@@ -23,7 +48,16 @@ const brief = (value) => digits(value, 4).replace(/[.,]0+e/, "e");
 
 export class Plots {
   constructor(host, { seek, time, playing }) {
-    Object.assign(this, { host, seek, time, playing, charts: [], window: null, ghosts: [], told: -Infinity });
+    Object.assign(this, {
+      host,
+      seek,
+      time,
+      playing,
+      charts: [],
+      window: null,
+      ghosts: [],
+      told: -Infinity,
+    });
     this.resizing = new ResizeObserver(() => this.lay());
     this.resizing.observe(host);
   }
@@ -32,7 +66,10 @@ export class Plots {
     const before = JSON.stringify([this.names, this.units, this.dark]);
     Object.assign(this, { track, ghosts, names, units, dark });
     if (this.window && this.window[1] > track.duration) this.window = null;
-    const same = before === JSON.stringify([names, units, dark]) && this.language === t("name") && this.charts.length;
+    const same =
+      before === JSON.stringify([names, units, dark]) &&
+      this.language === t("name") &&
+      this.charts.length;
     this.language = t("name");
     if (same) this.fill();
     else this.lay(true);
@@ -47,7 +84,10 @@ export class Plots {
     const [begin, end] = this.span;
     const length = factor ? Math.max((end - begin) * factor, 0.01) : whole;
     const now = this.time();
-    const start = Math.min(Math.max(now - ((now - begin) / (end - begin)) * length, 0), whole - length);
+    const start = Math.min(
+      Math.max(now - ((now - begin) / (end - begin)) * length, 0),
+      whole - length,
+    );
     this.window = length >= whole ? null : [start, start + length];
     this.fill();
   }
@@ -87,7 +127,11 @@ export class Plots {
     figure.dataset.quantity = name;
     this.host.append(figure);
     const number = Object.keys(QUANTITIES).indexOf(name);
-    const chart = new uPlot(this.options(name, width, number, `${symbol}${unit ? ` (${unit})` : ""}`), null, figure);
+    const chart = new uPlot(
+      this.options(name, width, number, `${symbol}${unit ? ` (${unit})` : ""}`),
+      null,
+      figure,
+    );
     chart.root.setAttribute("role", "img");
     chart.root.setAttribute("aria-label", label);
     const cursor = document.createElement("i");
@@ -100,12 +144,29 @@ export class Plots {
   options(name, width, number, label) {
     const ink = this.dark ? "#c6ced6" : "#3b444d";
     const faint = this.dark ? "#2c343d" : "#e4e8ec";
-    const axis = { stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint }, font: "11px system-ui", labelFont: "11px system-ui", labelSize: 14, values: (_, ticks) => ticks.map(brief) };
+    const axis = {
+      stroke: ink,
+      grid: { stroke: faint, width: 1 },
+      ticks: { stroke: faint },
+      font: "11px system-ui",
+      labelFont: "11px system-ui",
+      labelSize: 14,
+      values: (_, ticks) => ticks.map(brief),
+    };
     const colour = (this.dark ? DARK_COLOURS : COLOURS)[number];
-    const quarters = () => [0, 1, 2, 3, 4].map((k) => (k * Math.PI) / 4 / unitOf("angle", this.units).size);
-    const turned = name === "theta" ? { splits: (_, __, low, high) => (this.window ? [0, 1, 2, 3, 4].map((k) => low + (k * (high - low)) / 4) : quarters()) } : {};
+    const quarters = () =>
+      [0, 1, 2, 3, 4].map((k) => (k * Math.PI) / 4 / unitOf("angle", this.units).size);
+    const turned =
+      name === "theta"
+        ? {
+            splits: (_, __, low, high) =>
+              this.window ? [0, 1, 2, 3, 4].map((k) => low + (k * (high - low)) / 4) : quarters(),
+          }
+        : {};
     return {
-      width, height: HEIGHT, legend: { show: false },
+      width,
+      height: HEIGHT,
+      legend: { show: false },
       cursor: { show: false },
       scales: { x: { time: false, range: () => this.span }, y: { range: () => this.range(name) } },
       axes: [
@@ -120,7 +181,10 @@ export class Plots {
         { stroke: colour, width: 1.6, points: { show: false } },
       ],
       // How wide a plot is beside its numbers is known when it is drawn.
-      hooks: { drawClear: [(chart) => this.shade(chart)], draw: [(chart) => this.mark(this.charts.find((one) => one.chart === chart))] },
+      hooks: {
+        drawClear: [(chart) => this.shade(chart)],
+        draw: [(chart) => this.mark(this.charts.find((one) => one.chart === chart))],
+      },
     };
   }
 
@@ -133,7 +197,9 @@ export class Plots {
     chart.ctx.beginPath();
     for (const [from, to] of this.track.header.flights) {
       if (to < begin || from > end) continue;
-      const [left, right] = [Math.max(from, begin), Math.min(to, end)].map((time) => chart.valToPos(time, "x", true));
+      const [left, right] = [Math.max(from, begin), Math.min(to, end)].map((time) =>
+        chart.valToPos(time, "x", true),
+      );
       chart.ctx.rect(left, chart.bbox.top, Math.max(right - left, 1), chart.bbox.height);
     }
     chart.ctx.fill();
@@ -158,7 +224,9 @@ export class Plots {
   fill() {
     if (!this.charts.length) return;
     for (const { name, chart } of this.charts) {
-      const curves = [...this.ghosts, ...Array(3)].slice(0, 3).map((ghost) => ghost && this.curve(ghost, name));
+      const curves = [...this.ghosts, ...Array(3)]
+        .slice(0, 3)
+        .map((ghost) => ghost && this.curve(ghost, name));
       chart.setData(joined([...curves, this.curve(this.track, name)]));
     }
     this.move();
@@ -203,14 +271,21 @@ export class Plots {
     let [low, high] = [Infinity, -Infinity];
     for (const track of [this.track, ...this.ghosts]) {
       const [first, last] = this.span.map((time) => track.before(Math.min(time, track.duration)));
-      const values = name === "phi_dot" ? usual(track, first, last) : track.columns[name].subarray(first, last + 2);
+      const values =
+        name === "phi_dot"
+          ? usual(track, first, last)
+          : track.columns[name].subarray(first, last + 2);
       for (const value of values) {
         if (value < low) low = value;
         if (value > high) high = value;
       }
     }
     if (!(low <= high)) return [0, 1];
-    const least = Math.max(CONSTANT * Math.max(Math.abs(low), Math.abs(high)), LEAST[name] ?? 0, 1e-9);
+    const least = Math.max(
+      CONSTANT * Math.max(Math.abs(low), Math.abs(high)),
+      LEAST[name] ?? 0,
+      1e-9,
+    );
     const room = Math.max(0.07 * (high - low), (least - (high - low)) / 2);
     return [(low - room) / size, (high + room) / size];
   }
@@ -232,7 +307,11 @@ export class Plots {
     if (reads) this.told = now;
     for (const one of this.charts) {
       this.mark(one);
-      if (reads) one.value.textContent = digits(this.track.value(one.name, time) / unitOf(QUANTITIES[one.name], this.units).size, 4);
+      if (reads)
+        one.value.textContent = digits(
+          this.track.value(one.name, time) / unitOf(QUANTITIES[one.name], this.units).size,
+          4,
+        );
     }
   }
 
@@ -240,7 +319,10 @@ export class Plots {
   mark(one) {
     if (!one) return;
     const [begin, end] = this.span;
-    const place = Math.round((2 * (this.time() - begin) * one.chart.bbox.width) / devicePixelRatio / (end - begin)) / 2;
+    const place =
+      Math.round(
+        (2 * (this.time() - begin) * one.chart.bbox.width) / devicePixelRatio / (end - begin),
+      ) / 2;
     if (place !== one.place) one.cursor.style.transform = `translateX(${place}px)`;
     one.place = place;
   }
@@ -274,5 +356,8 @@ function middles(time, column, first, last, bins, size) {
 
 // Curves with times of their own as one table.
 function joined(curves) {
-  return uPlot.join(curves.map((curve) => curve ?? [[0], [null]]), curves.map(() => [2, 2]));
+  return uPlot.join(
+    curves.map((curve) => curve ?? [[0], [null]]),
+    curves.map(() => [2, 2]),
+  );
 }

@@ -24,7 +24,11 @@ export const PRESETS = [
   ["thin", { body: bodies["report-thin-stem"], duration: 10 }],
   ["wooden", { body: bodies.wooden, friction: DRILL, duration: 10 }],
   ["leine", problems["leine-glocker"]],
-].map(([key, changes, figure]) => ({ key, figure: figure && REPRODUCTION + figure, setup: changed(FIRST, changes) }));
+].map(([key, changes, figure]) => ({
+  key,
+  figure: figure && REPRODUCTION + figure,
+  setup: changed(FIRST, changes),
+}));
 
 export function preset(key) {
   return PRESETS.find((one) => one.key === key).setup;

@@ -43,14 +43,19 @@ export function same(one, other) {
 
 function sorted(value) {
   if (Array.isArray(value) || value === null || typeof value !== "object") return value;
-  return Object.fromEntries(Object.keys(value).sort().map((key) => [key, sorted(value[key])]));
+  return Object.fromEntries(
+    Object.keys(value)
+      .sort()
+      .map((key) => [key, sorted(value[key])]),
+  );
 }
 
 // The fields of a launch by their names with dots; lists, such as several surfaces, are one field.
 export function* fields(value, prefix = "") {
   for (const [name, inner] of Object.entries(value)) {
     if (inner === undefined || inner === null) continue;
-    if (typeof inner === "object" && !Array.isArray(inner)) yield* fields(inner, `${prefix}${name}.`);
+    if (typeof inner === "object" && !Array.isArray(inner))
+      yield* fields(inner, `${prefix}${name}.`);
     else yield [`${prefix}${name}`, inner];
   }
 }

@@ -16,7 +16,13 @@ export function printSheet(lab) {
     const sheet = document.createElement("section");
     sheet.className = "print";
     const { headline, details } = tell(lab.track, lab.state.prospect, lab.state.units);
-    sheet.append(text("h1", t("page.title")), text("h2", headline), text("p", details.join(" ")), table(lab), picture(lab.player));
+    sheet.append(
+      text("h1", t("page.title")),
+      text("h2", headline),
+      text("p", details.join(" ")),
+      table(lab),
+      picture(lab.player),
+    );
     lab.plots.size(...PLOT);
     document.querySelector("main").before(sheet);
     sheet.after(text("p", lab.link(), "print address"));
@@ -44,7 +50,10 @@ function table({ state: { setup, units } }) {
   const rows = ALL.map((dial) => {
     const value = valueOf(setup, dial.field);
     if (!value) return null;
-    return row(part(`quantities.${dial.field}`).name, shown(value / scaleOf(dial, setup), kindOf(dial, setup), units));
+    return row(
+      part(`quantities.${dial.field}`).name,
+      shown(value / scaleOf(dial, setup), kindOf(dial, setup), units),
+    );
   });
   const element = document.createElement("table");
   element.append(row(t("controls.law"), t(`laws.${kind}`)), ...rows.filter(Boolean));
@@ -56,6 +65,9 @@ function picture(player) {
   const figure = document.createElement("figure");
   const image = new Image();
   image.src = player.finely(FINE, () => player.canvas.toDataURL("image/png"));
-  figure.append(image, text("figcaption", `${t("plots.time").replace(/ \(s\)$/, "")} ${digits(player.time, 4)} s`));
+  figure.append(
+    image,
+    text("figcaption", `${t("plots.time").replace(/ \(s\)$/, "")} ${digits(player.time, 4)} s`),
+  );
   return figure;
 }

@@ -14,14 +14,22 @@ export function stl(body) {
   triangles.forEach((corners, k) => {
     const [a, b, c] = corners;
     const normal = unit(cross(minus(b, a), minus(c, a)));
-    [normal, a, b, c].flat().forEach((value, i) => view.setFloat32(84 + 50 * k + 4 * i, i < 3 ? value : MM * value, true));
+    [normal, a, b, c]
+      .flat()
+      .forEach((value, i) =>
+        view.setFloat32(84 + 50 * k + 4 * i, i < 3 ? value : MM * value, true),
+      );
   });
   return view.buffer;
 }
 
 // Points of a body from below, m: of its profile, or else of what is drawn of it.
 function line({ profile, parts, size }) {
-  if (!profile) return chained(parts.filter(({ opacity }) => opacity === 1)).map(([r, z]) => [Math.max(r, 0) * size, z * size]);
+  if (!profile)
+    return chained(parts.filter(({ opacity }) => opacity === 1)).map(([r, z]) => [
+      Math.max(r, 0) * size,
+      z * size,
+    ]);
   const edges = profile.slice(1).map((point, k) => edge(profile[k], point, (2 * Math.PI) / FACETS));
   return edges.flatMap((points, k) => (k ? points.slice(1) : points));
 }
@@ -42,7 +50,9 @@ function chained(parts) {
 // Triangles of the surface that points sweep out, from outside anticlockwise; what is on the axis is one corner.
 function turned(points, facets) {
   const turns = Array.from({ length: facets }, (_, k) => (2 * Math.PI * k) / facets);
-  const rings = points.map(([r, z]) => turns.map((turn) => (r ? [r * Math.cos(turn), r * Math.sin(turn), z] : [0, 0, z])));
+  const rings = points.map(([r, z]) =>
+    turns.map((turn) => (r ? [r * Math.cos(turn), r * Math.sin(turn), z] : [0, 0, z])),
+  );
   const triangles = [];
   for (let row = 1; row < rings.length; row++) {
     const [below, above] = [rings[row - 1], rings[row]];

@@ -6,15 +6,57 @@ import { changed } from "./setup.js";
 
 // Of each step: its launch, the arrows and curves it shows, and the preset whose figure in the report shows it too.
 const STEPS = [
-  { from: "turns", setup: preset("turns"), show: ["trace", "glass", "axis"], plots: ["theta", "height", "omega3"] },
-  { setup: changed(preset("slow"), { duration: 8 }), show: ["trace", "glass", "axis"], plots: ["theta", "omega3"] },
-  { from: "half", setup: preset("half"), show: ["trace", "glass", "axis"], plots: ["theta", "slip", "phi_dot"] },
-  { from: "turns", setup: preset("turns"), show: ["trace", "glass", "momentum"], plots: ["theta", "omega3", "energy", "jellett_error"] },
-  { setup: changed(preset("none"), { duration: 8 }), show: ["trace", "glass", "axis"], plots: ["theta", "energy", "slip"] },
-  { from: "much", setup: changed(preset("turns"), { "friction.mu": 3000, duration: 8 }), show: ["trace", "glass", "friction"], plots: ["theta", "slip", "energy"] },
-  { from: "jumps", setup: changed(preset("jumps"), { duration: 9 }), show: ["trace", "glass", "friction"], plots: ["theta", "normal_force", "height"] },
-  { setup: preset("stem"), show: ["trace", "glass", "axis"], plots: ["theta", "height", "normal_force"] },
-  { setup: changed(preset("dry"), { duration: 8 }), show: ["trace", "glass", "friction"], plots: ["theta", "slip", "energy"], extra: "drill" },
+  {
+    from: "turns",
+    setup: preset("turns"),
+    show: ["trace", "glass", "axis"],
+    plots: ["theta", "height", "omega3"],
+  },
+  {
+    setup: changed(preset("slow"), { duration: 8 }),
+    show: ["trace", "glass", "axis"],
+    plots: ["theta", "omega3"],
+  },
+  {
+    from: "half",
+    setup: preset("half"),
+    show: ["trace", "glass", "axis"],
+    plots: ["theta", "slip", "phi_dot"],
+  },
+  {
+    from: "turns",
+    setup: preset("turns"),
+    show: ["trace", "glass", "momentum"],
+    plots: ["theta", "omega3", "energy", "jellett_error"],
+  },
+  {
+    setup: changed(preset("none"), { duration: 8 }),
+    show: ["trace", "glass", "axis"],
+    plots: ["theta", "energy", "slip"],
+  },
+  {
+    from: "much",
+    setup: changed(preset("turns"), { "friction.mu": 3000, duration: 8 }),
+    show: ["trace", "glass", "friction"],
+    plots: ["theta", "slip", "energy"],
+  },
+  {
+    from: "jumps",
+    setup: changed(preset("jumps"), { duration: 9 }),
+    show: ["trace", "glass", "friction"],
+    plots: ["theta", "normal_force", "height"],
+  },
+  {
+    setup: preset("stem"),
+    show: ["trace", "glass", "axis"],
+    plots: ["theta", "height", "normal_force"],
+  },
+  {
+    setup: changed(preset("dry"), { duration: 8 }),
+    show: ["trace", "glass", "friction"],
+    plots: ["theta", "slip", "energy"],
+    extra: "drill",
+  },
   { setup: preset("turns"), show: ["trace", "glass"], plots: ["theta", "omega3"], extra: "own" },
 ];
 STEPS[7].extra = "thin";
@@ -30,14 +72,32 @@ export function Story({ lab }) {
   return (
     <article class="story">
       <p class="step">{t("story.step", { step: number + 1, all: STEPS.length })}</p>
-      <progress max={STEPS.length} value={number + 1} aria-label={t("story.step", { step: number + 1, all: STEPS.length })} />
+      <progress
+        max={STEPS.length}
+        value={number + 1}
+        aria-label={t("story.step", { step: number + 1, all: STEPS.length })}
+      />
       <h2>{words.title}</h2>
       <p>{words.text}</p>
-      <Question key={number} words={words} told={told ? guess : null} onGuess={(answer) => spin(lab, number, answer)} />
+      <Question
+        key={number}
+        words={words}
+        told={told ? guess : null}
+        onGuess={(answer) => spin(lab, number, answer)}
+      />
       {told && <Why lab={lab} number={number} words={words} guess={guess} />}
       <nav class="story-nav" aria-label={t("page.story")}>
-        <button type="button" disabled={number === 0} onClick={() => go(number - 1)}>{t("story.before")}</button>
-        <button type="button" class="strong" disabled={number === STEPS.length - 1} onClick={() => go(number + 1)}>{t("story.next")}</button>
+        <button type="button" disabled={number === 0} onClick={() => go(number - 1)}>
+          {t("story.before")}
+        </button>
+        <button
+          type="button"
+          class="strong"
+          disabled={number === STEPS.length - 1}
+          onClick={() => go(number + 1)}
+        >
+          {t("story.next")}
+        </button>
       </nav>
     </article>
   );
@@ -55,11 +115,27 @@ function Question({ words, told, onGuess }) {
         <legend>{words.question}</legend>
         {words.answers.map((text, k) => (
           <label class={told && k === words.right ? "right" : ""}>
-            <input type="radio" name="guess" value={k} required checked={told?.answer === k || undefined} /> {text}</label>
+            <input
+              type="radio"
+              name="guess"
+              value={k}
+              required
+              checked={told?.answer === k || undefined}
+            />{" "}
+            {text}
+          </label>
         ))}
       </fieldset>
-      {!told && <div class="row"><button type="submit" class="strong">{t("story.go")}</button>
-        <button type="button" onClick={() => onGuess(null)}>{t("story.skip")}</button></div>}
+      {!told && (
+        <div class="row">
+          <button type="submit" class="strong">
+            {t("story.go")}
+          </button>
+          <button type="button" onClick={() => onGuess(null)}>
+            {t("story.skip")}
+          </button>
+        </div>
+      )}
     </form>
   );
 }
@@ -69,11 +145,28 @@ function Why({ lab, number, words, guess }) {
   const { figure } = PRESETS.find(({ key }) => key === from) ?? {};
   return (
     <div class="answer" role="status">
-      {guess.answer !== null && <p class={`verdict ${guess.answer === words.right ? "right" : ""}`}>{t(guess.answer === words.right ? "story.right" : "story.wrong")}</p>}
+      {guess.answer !== null && (
+        <p class={`verdict ${guess.answer === words.right ? "right" : ""}`}>
+          {t(guess.answer === words.right ? "story.right" : "story.wrong")}
+        </p>
+      )}
       <p>{words.why}</p>
-      <details><summary>{t("story.deeper")}</summary><p class="deeper">{words.deeper}</p></details>
-      {figure && <p><a href={figure} rel="noreferrer">{t("presets.figure")}</a></p>}
-      {extra && <button type="button" onClick={() => more(lab, extra)}>{t(`story.extra.${extra}`)}</button>}
+      <details>
+        <summary>{t("story.deeper")}</summary>
+        <p class="deeper">{words.deeper}</p>
+      </details>
+      {figure && (
+        <p>
+          <a href={figure} rel="noreferrer">
+            {t("presets.figure")}
+          </a>
+        </p>
+      )}
+      {extra && (
+        <button type="button" onClick={() => more(lab, extra)}>
+          {t(`story.extra.${extra}`)}
+        </button>
+      )}
     </div>
   );
 }
@@ -87,7 +180,8 @@ function more(lab, extra) {
 function set(lab, number, others, play = false) {
   const { setup, show, plots } = STEPS[number];
   const { player } = lab;
-  for (const name of ["axis", "momentum", "friction", "trace", "glass"]) player.show({ [name]: show.includes(name) });
+  for (const name of ["axis", "momentum", "friction", "trace", "glass"])
+    player.show({ [name]: show.includes(name) });
   player.look("orbit");
   player.toggle(false);
   player.seek(0);

@@ -4,13 +4,24 @@ import { edge } from "../run/arc.js";
 
 export const MATERIALS = { beech: 720, plastic: 1050, cork: 240, aluminium: 2700 };
 
-export const FIRST = { radius: 0.02, face: 0.55, hollow: 0.6, stem: 0.032, knob: 0.0035, material: "beech" };
+export const FIRST = {
+  radius: 0.02,
+  face: 0.55,
+  hollow: 0.6,
+  stem: 0.032,
+  knob: 0.0035,
+  material: "beech",
+};
 
 // Thickness of the wall around the hollow, in radii of the ball.
 const WALL = 0.12;
 
 // Places and weights of Gauss's rule of three points on (0, 1): exact for what an edge adds.
-const GAUSS = [[0.5 - Math.sqrt(0.15), 5 / 18], [0.5, 8 / 18], [0.5 + Math.sqrt(0.15), 5 / 18]];
+const GAUSS = [
+  [0.5 - Math.sqrt(0.15), 5 / 18],
+  [0.5, 8 / 18],
+  [0.5 + Math.sqrt(0.15), 5 / 18],
+];
 
 // The line that is turned, in three parts from below: points (distance from the axis, height above the ball's
 // middle) with their radius where arcs end. All arcs have their centre on the axis.
@@ -21,9 +32,22 @@ function partsOf({ radius, face, hollow, stem, knob }) {
   // Cut too high there is no way in.
   const bored = bottom < cut && across(inner, cut) > slim && across(inner, bottom) > slim;
   return {
-    ball: [[0, -radius], [across(radius, cut), cut, radius]],
-    bore: bored ? [[across(inner, cut), cut], [across(inner, bottom), bottom, -inner], [slim, bottom]] : [],
-    stem: [[slim, bored ? bottom : cut], [slim, stem - across(knob, slim)], [0, stem + knob, knob]].slice(bored ? 1 : 0),
+    ball: [
+      [0, -radius],
+      [across(radius, cut), cut, radius],
+    ],
+    bore: bored
+      ? [
+          [across(inner, cut), cut],
+          [across(inner, bottom), bottom, -inner],
+          [slim, bottom],
+        ]
+      : [],
+    stem: [
+      [slim, bored ? bottom : cut],
+      [slim, stem - across(knob, slim)],
+      [0, stem + knob, knob],
+    ].slice(bored ? 1 : 0),
   };
 }
 
@@ -69,7 +93,8 @@ export function bodyOf(top) {
     { kind: "sphere", radius: top.radius, center: -centre },
     { kind: "sphere", radius: top.knob, center: top.stem - centre },
   ];
-  const above = ([r, z, ...arc]) => [r, z - centre, ...arc].map((value) => Number(value.toFixed(9)));
+  const above = ([r, z, ...arc]) =>
+    [r, z - centre, ...arc].map((value) => Number(value.toFixed(9)));
   return { mass, shape, I1, I3, profile: profileOf(top).map(above) };
 }
 
@@ -84,5 +109,8 @@ export function sectionOf(top) {
   const { ball, bore, stem } = partsOf(top);
   const drawn = (points) => points.slice(1).flatMap((point, k) => edge(points[k], point));
   const [slim] = stem[0];
-  return { outer: drawn([...ball, [slim, ball[1][1]], ...stem]), hollow: bore.length ? drawn([...bore, [slim, ball[1][1]]]) : [] };
+  return {
+    outer: drawn([...ball, [slim, ball[1][1]], ...stem]),
+    hollow: bore.length ? drawn([...bore, [slim, ball[1][1]]]) : [],
+  };
 }

@@ -13,7 +13,8 @@ export const FIRST = { spin: "rad/s", angle: "deg" };
 // The unit in which a quantity of a kind is shown, and its size in SI.
 export function unitOf(kind, units) {
   if (kind === "spin") return { name: t(`units.${units.spin}`), size: SPINS[units.spin] };
-  if (kind === "angle") return { name: units.angle === "deg" ? "°" : "rad", size: ANGLES[units.angle] };
+  if (kind === "angle")
+    return { name: units.angle === "deg" ? "°" : "rad", size: ANGLES[units.angle] };
   if (kind === "mm") return { name: "mm", size: 1e-3 };
   if (kind === "gram") return { name: "g", size: 1e-3 };
   if (kind === "mJ") return { name: "mJ", size: 1e-3 };
@@ -25,7 +26,10 @@ export function digits(value, count = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  const text = size < 1e-3 || size >= 1e5 ? value.toExponential(Math.max(count - 2, 0)) : `${+value.toPrecision(count)}`;
+  const text =
+    size < 1e-3 || size >= 1e5
+      ? value.toExponential(Math.max(count - 2, 0))
+      : `${+value.toPrecision(count)}`;
   return decimal(text.replaceAll("-", "−"));
 }
 

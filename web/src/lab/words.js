@@ -12,7 +12,8 @@ const LATE = 0.1;
 export function tell(track, prospect, units) {
   const { header } = track;
   const details = [];
-  if (prospect?.ends?.length) details.push(far(track, prospect) ? slowly(prospect, units) : heading(prospect, units));
+  if (prospect?.ends?.length)
+    details.push(far(track, prospect) ? slowly(prospect, units) : heading(prospect, units));
   if (header.problem.friction.mu === 0) details.push(t("words.frictionless"));
   if (header.outcome.name === "lifted_off") details.push(t("words.stopped"));
   else if (!["completed", "at_rest", "lying_flat"].includes(header.outcome.name)) {
@@ -54,11 +55,13 @@ function headline(track, prospect, units) {
   const [low, high] = range(theta, 0);
   const time = (value) => digits(Math.round(100 * value) / 100, 4);
   if (outcome.name === "lying_flat") return t("words.flat", { time: time(track.duration) });
-  if (high < AROUND && last < NEAR + problem.launch.tilt) return upright(track, prospect, units, last, tilt);
+  if (high < AROUND && last < NEAR + problem.launch.tilt)
+    return upright(track, prospect, units, last, tilt);
   if (low > Math.PI - AROUND) return t("words.staysInverted");
   const [lateLow, lateHigh] = range(theta, 1 - LATE);
   const settled = lateHigh - lateLow < STILL;
-  if (last > Math.PI - NEAR && (settled || lateLow > Math.PI - 2 * NEAR)) return t("words.inverts", { time: time(metrics.arrives) });
+  if (last > Math.PI - NEAR && (settled || lateLow > Math.PI - 2 * NEAR))
+    return t("words.inverts", { time: time(metrics.arrives) });
   if (outcome.name === "at_rest") return t("words.rest", { tilt, time: time(track.duration) });
   // What settles level, as on two balls, has not turned over.
   const level = settled && Math.abs(last - Math.PI / 2) < NEAR;
@@ -77,15 +80,20 @@ function upright(track, prospect, units, last, tilt) {
   if (problem.friction.mu === 0 || last > NEAR) return t("words.stays", { tilt });
   const critical = prospect?.critical?.upright;
   if (critical === undefined || critical === null) return t("words.staysUpright");
-  if (spin < critical) return t("words.staysUprightBelow", { spin: shown(critical, "spin", units) });
+  if (spin < critical)
+    return t("words.staysUprightBelow", { spin: shown(critical, "spin", units) });
   return t("words.uprightStill");
 }
 
 function jumpsOf({ flights, metrics, outcome }) {
-  if (outcome.name === "lifted_off") return t("words.pulls", { time: digits(metrics.first_lift_off, 3) });
+  if (outcome.name === "lifted_off")
+    return t("words.pulls", { time: digits(metrics.first_lift_off, 3) });
   if (!metrics.flights) return "";
   const first = digits(flights[0]?.[0] ?? metrics.first_lift_off, 3);
-  return t(metrics.flights === 1 ? "words.jumpsOnce" : "words.jumps", { count: metrics.flights, time: first });
+  return t(metrics.flights === 1 ? "words.jumpsOnce" : "words.jumps", {
+    count: metrics.flights,
+    time: first,
+  });
 }
 
 function range(values, from) {

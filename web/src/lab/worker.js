@@ -19,13 +19,22 @@ function answerRun({ id, problem, duration, quick }) {
     postMessage({ id, share });
   };
   const samples = quick ? QUICK.samples : samplesFor(problem, duration);
-  const run = simulate(problem, { duration, onProgress, ...(quick && { tolerance: QUICK.tolerance }) });
+  const run = simulate(problem, {
+    duration,
+    onProgress,
+    ...(quick && { tolerance: QUICK.tolerance }),
+  });
   return { track: pack(problem, run, samples) };
 }
 
 function answerCell({ problem, duration }) {
   const { metrics, outcome } = simulate(problem, { duration, tolerance: COARSE });
-  return { tilt: metrics.final_theta, flights: metrics.flights, turnsOver: metrics.turns_over, outcome };
+  return {
+    tilt: metrics.final_theta,
+    flights: metrics.flights,
+    turnsOver: metrics.turns_over,
+    outcome,
+  };
 }
 
 function answerBody({ body, gravity, tilt }) {
@@ -39,6 +48,15 @@ self.onmessage = ({ data }) => {
     postMessage({ id, answer }, answer?.track ? buffersOf(answer.track) : []);
   } catch (error) {
     const { field, value, accepted, message } = error;
-    postMessage({ id, error: { field, missing: value === MISSING, value, accepted, message: message ?? String(error) } });
+    postMessage({
+      id,
+      error: {
+        field,
+        missing: value === MISSING,
+        value,
+        accepted,
+        message: message ?? String(error),
+      },
+    });
   }
 };

@@ -22,7 +22,8 @@ export function markup(words) {
   const box = (kind, name, checked) =>
     `<label><input type="checkbox" data-${kind}="${name}" ${checked ? "checked" : ""}> ${words[name]}</label>`;
   const speeds = SPEEDS.map(
-    (speed) => `<option value="${speed}">${speed === 1 ? words.realTime : `1/${Math.round(1 / speed)}`}</option>`,
+    (speed) =>
+      `<option value="${speed}">${speed === 1 ? words.realTime : `1/${Math.round(1 / speed)}`}</option>`,
   );
   const arrows = Object.entries(ARROWS).map(
     ([name, colour]) =>

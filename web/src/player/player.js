@@ -54,9 +54,14 @@ export class Player extends EventTarget {
 
   listen() {
     const actions = {
-      play: () => this.toggle(), back: () => this.step(-1), on: () => this.step(1), flip: () => this.flip(),
+      play: () => this.toggle(),
+      back: () => this.step(-1),
+      on: () => this.step(1),
+      flip: () => this.flip(),
     };
-    this.host.addEventListener("click", ({ target }) => actions[target.closest("button")?.dataset.do]?.());
+    this.host.addEventListener("click", ({ target }) =>
+      actions[target.closest("button")?.dataset.do]?.(),
+    );
     this.host.addEventListener("change", ({ target }) => {
       const { do: what, show } = target.dataset;
       if (what === "speed") this.speed = Number(target.value);
@@ -77,7 +82,12 @@ export class Player extends EventTarget {
   }
 
   key(event) {
-    const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] };
+    const turns = {
+      ArrowLeft: [-0.1, 0],
+      ArrowRight: [0.1, 0],
+      ArrowUp: [0, 0.1],
+      ArrowDown: [0, -0.1],
+    };
     const keys = {
       " ": () => this.toggle(),
       ArrowLeft: () => this.step(-1),
@@ -186,7 +196,8 @@ export class Player extends EventTarget {
   }
 
   setTheme(theme) {
-    const dark = theme === "auto" ? matchMedia("(prefers-color-scheme: dark)").matches : theme === "dark";
+    const dark =
+      theme === "auto" ? matchMedia("(prefers-color-scheme: dark)").matches : theme === "dark";
     this.host.classList.toggle("tt-dark", dark);
     this.dark = dark;
     this.scene?.setTheme(dark ? "dark" : "light");

@@ -4,18 +4,43 @@ import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { Eye } from "./eye.js";
-import { layShadow, makeRuler, makeShadow, makeTable, paintShadow, paintTable, SUN } from "./table.js";
-import { cutTrace, makeArrow, makePatch, makeToy, makeTrace, pointArrow, traceMaterial } from "./toy.js";
+import {
+  layShadow,
+  makeRuler,
+  makeShadow,
+  makeTable,
+  paintShadow,
+  paintTable,
+  SUN,
+} from "./table.js";
+import {
+  cutTrace,
+  makeArrow,
+  makePatch,
+  makeToy,
+  makeTrace,
+  pointArrow,
+  traceMaterial,
+} from "./toy.js";
 import { welded } from "./weld.js";
 
 export const ARROWS = { axis: "#109b60", momentum: "#7b4fd0", friction: "#e03c31" };
 
 // How the contact is shown by its mode: it slides, rolls (holds), or is of two surfaces.
-export const MODES = { sliding: "#e8590c", sticking: "#2b8a3e", double: "#7b4fd0", stem: "#7b4fd0" };
+export const MODES = {
+  sliding: "#e8590c",
+  sticking: "#2b8a3e",
+  double: "#7b4fd0",
+  stem: "#7b4fd0",
+};
 
 // How much of a ghost is seen, and where ghosts stand beside the top, in sizes of it.
 const GHOST = 0.45;
-const BESIDE = [[-1.9, -1.2], [1.9, 1.2], [-2.2, 2.6]];
+const BESIDE = [
+  [-1.9, -1.2],
+  [1.9, 1.2],
+  [-2.2, 2.6],
+];
 
 export class Scene {
   constructor(canvas) {
@@ -53,9 +78,12 @@ export class Scene {
   // A swipe up or down and a wheel scroll the page; drags turn, and so do wheels once the scene was clicked.
   listen(canvas) {
     canvas.style.touchAction = "pan-y";
-    const wheel = ({ ctrlKey }) => (this.controls.enableZoom = ctrlKey || document.activeElement === canvas);
+    const wheel = ({ ctrlKey }) =>
+      (this.controls.enableZoom = ctrlKey || document.activeElement === canvas);
     canvas.addEventListener("wheel", wheel, { capture: true });
-    canvas.addEventListener("pointerdown", () => (this.controls.enableZoom = true), { capture: true });
+    canvas.addEventListener("pointerdown", () => (this.controls.enableZoom = true), {
+      capture: true,
+    });
   }
 
   light() {
@@ -117,10 +145,12 @@ export class Scene {
     world.add(this.trace);
     const pull = track.columns.friction;
     let strongest = 0;
-    for (let i = 0; i < pull.length; i += 2) strongest = Math.max(strongest, Math.hypot(pull[i], pull[i + 1]));
+    for (let i = 0; i < pull.length; i += 2)
+      strongest = Math.max(strongest, Math.hypot(pull[i], pull[i + 1]));
     const L = track.columns.momentum;
     let largest = 0;
-    for (let i = 0; i < L.length; i += 3) largest = Math.max(largest, Math.hypot(L[i], L[i + 1], L[i + 2]));
+    for (let i = 0; i < L.length; i += 3)
+      largest = Math.max(largest, Math.hypot(L[i], L[i + 1], L[i + 2]));
     this.scales = { momentum: 2.6 / (largest || 1), friction: 1.6 / (strongest || 1) };
     this.show(this.shown);
   }
@@ -227,8 +257,16 @@ export class Scene {
       if (shown[name]) pointArrow(arrows[name], from, vector);
       else arrows[name].visible = false;
     };
-    place("axis", centre, pose.axis.map((v) => 2.2 * v));
-    place("momentum", centre, pose.momentum.map((v) => v * scales.momentum));
+    place(
+      "axis",
+      centre,
+      pose.axis.map((v) => 2.2 * v),
+    );
+    place(
+      "momentum",
+      centre,
+      pose.momentum.map((v) => v * scales.momentum),
+    );
     const [fx, fy] = [0, 1].map((k) => track.value("friction", time, k, 2) * scales.friction);
     const foot = [0, 1].map((k) => track.value("point", time, k, 2) / unit);
     place("friction", [foot[0], foot[1], 0.05], [fx, fy, 0]);
@@ -239,7 +277,14 @@ export class Scene {
   }
 
   dispose() {
-    this.remove(this.toy, this.table, this.ruler, this.shadow, this.patch, ...this.ghosts.map(({ toy }) => toy));
+    this.remove(
+      this.toy,
+      this.table,
+      this.ruler,
+      this.shadow,
+      this.patch,
+      ...this.ghosts.map(({ toy }) => toy),
+    );
     this.clearTrace();
     this.ink.dispose();
     this.controls.dispose();
@@ -271,12 +316,13 @@ function drawnInSoftware() {
 // The round length (1, 2 or 5 times a power of ten) nearest to one, m, and how to number its multiples.
 function roundLength(length) {
   const power = 10 ** Math.floor(Math.log10(length));
-  const metres = [1, 2, 5, 10].map((k) => k * power).reduce((a, b) =>
-    Math.abs(Math.log(b / length)) < Math.abs(Math.log(a / length)) ? b : a,
-  );
+  const metres = [1, 2, 5, 10]
+    .map((k) => k * power)
+    .reduce((a, b) => (Math.abs(Math.log(b / length)) < Math.abs(Math.log(a / length)) ? b : a));
   const [factor, name] = metres < 0.001 ? [1e6, "µm"] : metres < 0.5 ? [100, "cm"] : [1, "m"];
   return {
     metres,
-    label: (count) => `${+(count * metres * factor).toPrecision(3)}${count === 10 ? " " + name : ""}`,
+    label: (count) =>
+      `${+(count * metres * factor).toPrecision(3)}${count === 10 ? " " + name : ""}`,
   };
 }

@@ -16,7 +16,8 @@ export function drawStrip(canvas, track, dark, ghosts = []) {
     pen.rect(across(begin), 0, Math.max(1, across(end) - across(begin)), height);
   }
   pen.fill();
-  for (const ghost of ghosts) line(pen, ghost, across, width, height, ratio, dark ? "#8b96a1" : "#9aa5b0");
+  for (const ghost of ghosts)
+    line(pen, ghost, across, width, height, ratio, dark ? "#8b96a1" : "#9aa5b0");
   line(pen, track, across, width, height, ratio, dark ? "#66c5f0" : "#0b5fa5");
 }
 

@@ -12,7 +12,10 @@ export function makeTable(cell, colours, frugal) {
   const cells = 16;
   texture.repeat.set(cells, cells);
   const side = 5 * cell * cells;
-  const table = new THREE.Mesh(new THREE.PlaneGeometry(side, side), frugal ? finished(texture) : lit(texture));
+  const table = new THREE.Mesh(
+    new THREE.PlaneGeometry(side, side),
+    frugal ? finished(texture) : lit(texture),
+  );
   table.renderOrder = -3;
   table.receiveShadow = !frugal;
   table.userData = { canvas, frugal };
@@ -37,7 +40,8 @@ function finished(texture) {
 
 export function paintTable({ material, userData: { canvas, frugal } }, theme) {
   const { table, line } = theme;
-  const seen = (colour) => (frugal ? new THREE.Color(colour).multiply(lightOf(theme)).getStyle() : colour);
+  const seen = (colour) =>
+    frugal ? new THREE.Color(colour).multiply(lightOf(theme)).getStyle() : colour;
   const pen = canvas.getContext("2d");
   const side = canvas.width;
   pen.globalAlpha = 1;
@@ -63,16 +67,28 @@ export const SUN = { place: new THREE.Vector3(-2.2, -4.2, 7), colour: "#fff4e0" 
 
 // The share of its own colour that a level face sends back, in the sun or in the shadow.
 function lightOf({ sky, ground, ambient, sun }, sunny = true) {
-  const light = new THREE.Color(sky).lerp(new THREE.Color(ground), 0.5).multiplyScalar(ambient / Math.PI);
+  const light = new THREE.Color(sky)
+    .lerp(new THREE.Color(ground), 0.5)
+    .multiplyScalar(ambient / Math.PI);
   const high = SUN.place.z / SUN.place.length();
-  return sunny ? light.add(new THREE.Color(SUN.colour).multiplyScalar((sun * high) / Math.PI)) : light;
+  return sunny
+    ? light.add(new THREE.Color(SUN.colour).multiplyScalar((sun * high) / Math.PI))
+    : light;
 }
 
 // The flat shadow of a toy on the table: all of it pressed along the sun's rays, darker than the table only once.
 export function makeShadow(toy) {
   const material = new THREE.MeshBasicMaterial({
-    fog: false, side: THREE.DoubleSide, depthTest: false, depthWrite: false, blending: THREE.MultiplyBlending, premultipliedAlpha: true,
-    stencilWrite: true, stencilRef: 1, stencilFunc: THREE.NotEqualStencilFunc, stencilZPass: THREE.ReplaceStencilOp,
+    fog: false,
+    side: THREE.DoubleSide,
+    depthTest: false,
+    depthWrite: false,
+    blending: THREE.MultiplyBlending,
+    premultipliedAlpha: true,
+    stencilWrite: true,
+    stencilRef: 1,
+    stencilFunc: THREE.NotEqualStencilFunc,
+    stencilZPass: THREE.ReplaceStencilOp,
   });
   const shadow = new THREE.Group();
   toy.traverse((object) => {
@@ -88,14 +104,31 @@ export function makeShadow(toy) {
 }
 
 export function paintShadow({ userData: { material } }, theme) {
-  const [dim, full] = [false, true].map((sunny) => new THREE.Color(theme.table).multiply(lightOf(theme, sunny)).convertLinearToSRGB());
+  const [dim, full] = [false, true].map((sunny) =>
+    new THREE.Color(theme.table).multiply(lightOf(theme, sunny)).convertLinearToSRGB(),
+  );
   // What is multiplied are colours of the screen; this one is converted to them once more.
   material.color.setRGB(dim.r / full.r, dim.g / full.g, dim.b / full.b).convertSRGBToLinear();
 }
 
 // Where a point is pressed to by the sun, as a matrix.
 const PRESS = new THREE.Matrix4().set(
-  1, 0, -SUN.place.x / SUN.place.z, 0, 0, 1, -SUN.place.y / SUN.place.z, 0, 0, 0, 0, 0.002, 0, 0, 0, 1,
+  1,
+  0,
+  -SUN.place.x / SUN.place.z,
+  0,
+  0,
+  1,
+  -SUN.place.y / SUN.place.z,
+  0,
+  0,
+  0,
+  0,
+  0.002,
+  0,
+  0,
+  0,
+  1,
 );
 
 export function layShadow(shadow, toy) {

@@ -19,9 +19,19 @@ export function makeToy(parts, seen = 1) {
     colours.forEach((color, k) => {
       const steps = Math.max(1, Math.round(SEGMENTS / colours.length));
       // three.js turns profiles about y, from z towards x.
-      const geometry = new THREE.LatheGeometry(points, steps, k * angle + Math.PI / 2, angle).rotateX(Math.PI / 2);
+      const geometry = new THREE.LatheGeometry(
+        points,
+        steps,
+        k * angle + Math.PI / 2,
+        angle,
+      ).rotateX(Math.PI / 2);
       const material = new THREE.MeshStandardMaterial({
-        color, opacity, transparent: glass, depthWrite: !glass, roughness: glass ? 0.08 : 0.42, metalness: 0,
+        color,
+        opacity,
+        transparent: glass,
+        depthWrite: !glass,
+        roughness: glass ? 0.08 : 0.42,
+        metalness: 0,
       });
       const mesh = new THREE.Mesh(geometry, material);
       mesh.castShadow = mesh.receiveShadow = !glass;
@@ -43,7 +53,11 @@ export function makePatch() {
 
 // An arrow from the origin along z, to be turned and stretched by `pointArrow`.
 export function makeArrow(colour) {
-  const material = new THREE.MeshStandardMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.35 });
+  const material = new THREE.MeshStandardMaterial({
+    color: colour,
+    emissive: colour,
+    emissiveIntensity: 0.35,
+  });
   const arrow = new THREE.Group();
   const shaft = new THREE.Mesh(new THREE.CylinderGeometry(0.035, 0.035, 1, 12), material);
   const head = new THREE.Mesh(new THREE.ConeGeometry(0.1, 0.28, 16), material);

@@ -9,7 +9,12 @@ export class Track {
     this.count = this.time.length;
     this.start = this.time[0] ?? 0;
     this.duration = this.header.duration;
-    this.pose = { position: [0, 0, 0], orientation: [1, 0, 0, 0], axis: [0, 0, 1], momentum: [0, 0, 0] };
+    this.pose = {
+      position: [0, 0, 0],
+      orientation: [1, 0, 0, 0],
+      axis: [0, 0, 1],
+      momentum: [0, 0, 0],
+    };
   }
 
   unpack(buffer) {
@@ -101,7 +106,12 @@ export class Track {
     pose.axis = axis;
     pose.momentum = L[0].map((v, k) => (1 - u) * v + u * L[1][k]);
     pose.position = hermite(
-      u, h, slice(position, i, 3), slice(position, j, 3), slice(velocity, i, 3), slice(velocity, j, 3),
+      u,
+      h,
+      slice(position, i, 3),
+      slice(position, j, 3),
+      slice(velocity, i, 3),
+      slice(velocity, j, 3),
     );
     return pose;
   }
@@ -115,7 +125,9 @@ function hermite(u, h, a, b, rateA, rateB) {
   const v = 1 - u;
   return a.map(
     (value, k) =>
-      v * v * (1 + 2 * u) * value + u * u * (3 - 2 * u) * b[k] + u * v * h * (v * rateA[k] - u * rateB[k]),
+      v * v * (1 + 2 * u) * value +
+      u * u * (3 - 2 * u) * b[k] +
+      u * v * h * (v * rateA[k] - u * rateB[k]),
   );
 }
 

@@ -5,7 +5,11 @@ import looks from "../generated/looks.json";
 // Points from one of a profile to the next, on the arc of the radius that this has, so far apart, rad, at most.
 export function edge([r, z], [toR, toZ, radius = 0], apart = looks.meridian.arc_step) {
   const [across, up] = [toR - r, toZ - z];
-  if (!radius) return [[r, z], [toR, toZ]];
+  if (!radius)
+    return [
+      [r, z],
+      [toR, toZ],
+    ];
   const half = Math.asin(Math.max(-1, Math.min(1, Math.hypot(across, up) / (2 * radius))));
   const steps = Math.max(1, Math.ceil((2 * Math.abs(half)) / apart - 1e-9));
   return Array.from({ length: steps + 1 }, (_, k) => {

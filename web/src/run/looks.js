@@ -29,10 +29,17 @@ export function toyParts(body) {
   if (pieces.length === 1) {
     const [one] = pieces;
     const middle = one.length >> 1;
-    pieces = [one.slice(0, middle - BAND + 1), one.slice(middle - BAND, middle + BAND + 1), one.slice(middle + BAND)];
+    pieces = [
+      one.slice(0, middle - BAND + 1),
+      one.slice(middle - BAND, middle + BAND + 1),
+      one.slice(middle + BAND),
+    ];
   }
   return pieces.map((profile, k) => ({
-    name: `belt ${k}`, profile, colours: k % 2 ? looks.band : looks.bowl, opacity: 1,
+    name: `belt ${k}`,
+    profile,
+    colours: k % 2 ? looks.band : looks.bowl,
+    opacity: 1,
   }));
 }
 
@@ -46,7 +53,9 @@ function ownProfile(body) {
   const { profile } = body;
   if (!profile) return null;
   const pairs = profile.slice(1).map((point, k) => [profile[k], point]);
-  const edges = pairs.filter(([before, point]) => before[0] || point[0] || point[2]).map((pair) => edge(...pair));
+  const edges = pairs
+    .filter(([before, point]) => before[0] || point[0] || point[2])
+    .map((pair) => edge(...pair));
   const points = edges.flat();
   let area = 0;
   points.forEach(([r, z], k) => {

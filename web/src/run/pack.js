@@ -15,7 +15,10 @@ const WIDE = { orientation: 4, angular_momentum: 3, velocity: 3, axis: 3, contac
 
 export function samplesFor(problem, duration) {
   const { launch, body } = problem;
-  const most = Math.max(Math.abs(launch.spin) * Math.max(1, body.I3 / body.I1), Math.abs(launch.precession ?? 0));
+  const most = Math.max(
+    Math.abs(launch.spin) * Math.max(1, body.I3 / body.I1),
+    Math.abs(launch.precession ?? 0),
+  );
   return Math.ceil(Math.min(duration * Math.max(RATE, most / TURN), MOST)) + 2;
 }
 
@@ -23,11 +26,16 @@ export function samplesFor(problem, duration) {
 export function pack(problem, run, samples) {
   const { metrics } = run;
   const end = Math.min(run.duration, run.endTime);
-  const sampled = run.track(Float64Array.from({ length: samples }, (_, k) => (k === samples - 1 ? end : (end * k) / (samples - 1))));
+  const sampled = run.track(
+    Float64Array.from({ length: samples }, (_, k) =>
+      k === samples - 1 ? end : (end * k) / (samples - 1),
+    ),
+  );
   const count = sampled.time.length;
   const columns = {};
   for (const name of PLAIN) columns[name] = Float32Array.from(sampled[name]);
-  for (const [name, width] of Object.entries(WIDE)) columns[name] = flat(sampled[name], width, count);
+  for (const [name, width] of Object.entries(WIDE))
+    columns[name] = flat(sampled[name], width, count);
   columns.momentum = columns.angular_momentum;
   columns.position = new Float32Array(3 * count);
   columns.friction = new Float32Array(2 * count);
@@ -68,11 +76,13 @@ export function pack(problem, run, samples) {
 
 // A vector at every sample in one block, whether it comes as one or as an array of its components.
 function flat(values, width, count) {
-  if (values.length === width * count && typeof values[0] === "number") return Float32Array.from(values);
+  if (values.length === width * count && typeof values[0] === "number")
+    return Float32Array.from(values);
   const block = new Float32Array(width * count);
   const by_component = values.length === width && count !== width;
   for (let i = 0; i < count; i++) {
-    for (let k = 0; k < width; k++) block[width * i + k] = by_component ? values[k][i] : values[i][k];
+    for (let k = 0; k < width; k++)
+      block[width * i + k] = by_component ? values[k][i] : values[i][k];
   }
   return block;
 }
