@@ -14,7 +14,7 @@ reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 
 page: $(BUILT) ## Build what runs in browsers; node comes from this machine, or else from a wheel
 
-$(BUILT): $(shell find web src/tippetop/engine -name node_modules -prune -o -name '*.py' -o -type f -print) | $(VENV)/bin/python
+$(BUILT): $(shell find web src/tippetop/page_engine -name node_modules -prune -o -name '*.py' -o -type f -print) | $(VENV)/bin/python
 	web/build.sh "$(abspath $(BIN)/python)"
 
 test: $(VENV)/.installed-dev ## Run the tests
@@ -53,7 +53,7 @@ quick: $(VENV)/.installed ## A coarse report in half a minute
 	$(BIN)/tippetop reproduce --quick --out $(OUT) --force
 
 engine: $(VENV)/.installed ## Write the engine in the page anew from the mechanics and contact modes
-	$(BIN)/python -m tippetop.engine
+	$(BIN)/python -m tippetop.page_engine
 
 bench: $(VENV)/.installed-bench ## Measure what is promised of speed and memory; takes half an hour
 	$(BIN)/python -m benchmarks --json benchmarks.json

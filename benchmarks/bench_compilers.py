@@ -15,7 +15,7 @@ import numpy as np
 import tippetop as tt
 from benchmarks.surroundings import markdown, rounded
 from tippetop.integrators import TOLERANCES as DEFAULTS
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 
 DURATION, PART, SAMPLES = 20.0, 4.0, 2001
 TOLERANCES = (1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14)

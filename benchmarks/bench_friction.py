@@ -28,7 +28,7 @@ from scipy.optimize import brentq
 
 import tippetop as tt
 from benchmarks.surroundings import markdown
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.ensemble import follow_cells
 

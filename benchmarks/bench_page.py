@@ -20,8 +20,8 @@ import numpy as np
 
 import tippetop as tt
 from benchmarks.surroundings import markdown, rounded, slowness
-from tippetop.engine import HERE
-from tippetop.presets import report_problem
+from tippetop.page_engine import HERE
+from tippetop.problem.presets import report_problem
 
 DURATION = 20.0
 TOLERANCES = (

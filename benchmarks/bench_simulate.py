@@ -18,7 +18,7 @@ import heyoka as hy
 import tippetop as tt
 from benchmarks.surroundings import COMMAND_LINE, IMPORTS, markdown, new_process, seconds
 from tippetop.mechanics.top import natural_units
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 
 SPIN, DURATION, SAMPLES = 155.0, 20.0, 2001
 TOLERANCE = 2e-16
@@ -142,7 +142,7 @@ def measure(quick: bool, profile: bool) -> dict[str, Any]:
         IMPORTS: ("-c", IMPORTS),
         "import and one run": (
             "-c",
-            "import tippetop as tt; from tippetop.presets import report_problem;"
+            "import tippetop as tt; from tippetop.problem.presets import report_problem;"
             f"tt.simulate(report_problem({SPIN}), {DURATION})",
         ),
         "tippetop --help": (*COMMAND_LINE, "--help"),

@@ -19,7 +19,7 @@ import numpy as np
 import psutil
 
 from benchmarks.surroundings import COMMAND_LINE, PROCESSORS, markdown, memory_of, rounded
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.ensemble import follow_cells
 

@@ -20,8 +20,8 @@ from scipy.integrate import solve_ivp
 from tippetop.mechanics.euler import published_rates
 from tippetop.mechanics.motion import contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
-from tippetop.presets import report_problem
-from tippetop.problem import Problem
+from tippetop.problem.presets import report_problem
+from tippetop.problem.problem import Problem
 from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.ensemble import follow_cells

@@ -13,8 +13,8 @@ import numpy as np
 
 import tippetop as tt
 from node import NODE
-from tippetop.catalogue import LISTED, METRICS, SAMPLED
-from tippetop.engine import HERE
+from tippetop.page_engine import HERE
+from tippetop.results.catalogue import LISTED, METRICS, SAMPLED
 
 SAMPLES = 41
 TOLERANCE = 3e-14

@@ -5,14 +5,14 @@ import math
 from hypothesis import assume, reject
 from hypothesis import strategies as st
 
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import contact
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import Angles
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import InvalidInput
 
 
 def numbers(low, high):

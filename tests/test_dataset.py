@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import tippetop as tt
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 
 
 @pytest.fixture(scope="module")

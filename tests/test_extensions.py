@@ -14,10 +14,8 @@ import pytest
 from pydantic import Field, model_validator
 
 import tippetop as tt
-from tippetop.catalogue import SWEPT, Fault
 from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.mode import IntegratedMode, Reaction, Transition
-from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
 from tippetop.mechanics.motion import axis_rate, on_table
@@ -28,7 +26,9 @@ from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector
 from tippetop.mechanics.wrench import FORCES, Wrench
-from tippetop.validation import Positive, Quantity
+from tippetop.results.catalogue import SWEPT, Fault
+from tippetop.support.errors import InvalidInput
+from tippetop.support.validation import Positive, Quantity
 
 DURATION = 1.0
 

@@ -11,7 +11,7 @@ from launches import TOLERANCE, asked, in_javascript
 from tippetop.contact.mode import BROKEN
 from tippetop.mechanics.roots import first_root
 from tippetop.mechanics.unsolved import Unsolved
-from tippetop.presets import REPORT, report_problem
+from tippetop.problem.presets import REPORT, report_problem
 
 THROWN = report_problem(spin=155.0).replace({"launch.gap": 0.01})
 SLIPPERY = tt.Problem(

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import tippetop as tt
 from independent_flights import Toy, slide_and_fly
-from tippetop.presets import REPORT, report_problem
+from tippetop.problem.presets import REPORT, report_problem
 
 FIRST_LIFT_OFF = {175.0: 5.361332, 170.0: 5.85182}
 """Converged times of the first lift-off of the report's top launched at tilt 0.1 with mu 0.3 s/m.

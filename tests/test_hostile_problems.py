@@ -15,13 +15,13 @@ from scipy.optimize import brentq
 
 import tippetop as tt
 from tippetop.contact import closing, several
-from tippetop.errors import TippetopError
 from tippetop.integrators import has_llvm, has_numba, has_taylor, make_integrator, sampling
 from tippetop.integrators.base import Motion
 from tippetop.mechanics import impact_process
 from tippetop.mechanics.impact import impact
-from tippetop.sweeps import stride
-from tippetop.sweeps.stepper import stepper
+from tippetop.support.errors import TippetopError
+from tippetop.sweeps import taylor_step
+from tippetop.sweeps.taylor_stepper import stepper
 
 COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "64")), 8
 STEPS, MODES = 2_000, 200
@@ -182,7 +182,7 @@ def test_launches_followed_together_are_watched(monkeypatch: pytest.MonkeyPatch,
     ordinary = swept_ending(problem, 1e-9)
     assert ordinary not in (tt.Ending.FAILED, tt.Ending.INACCURATE)
     stepper.cache_clear()
-    monkeypatch.setattr(stride, "FAST", np.inf)
+    monkeypatch.setattr(taylor_step, "FAST", np.inf)
     careless = swept_ending(problem, 1e-9)
     stepper.cache_clear()
     assert careless is tt.Ending.INACCURATE

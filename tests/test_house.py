@@ -78,15 +78,19 @@ def test_a_circle_is_found_wherever_it_hides() -> None:
     """Inside functions and classes, but not where only type checkers look."""
     hidden = """
 if TYPE_CHECKING:
-    from tippetop.bodies import Body
+    from tippetop.problem.bodies import Body
 else:
-    import tippetop.presets
+    import tippetop.problem.presets
 class Deep:
     def inside(self):
-        from tippetop import errors
-        from .files import written_beside
+        from tippetop.support import errors
+        from .support.files import written_beside
 """
     found = imported_by("tippetop.deep", "tippetop", hidden)
-    assert found == {"tippetop.presets", "tippetop.errors", "tippetop.files"}
+    assert found == {
+        "tippetop.problem.presets",
+        "tippetop.support.errors",
+        "tippetop.support.files",
+    }
     assert circle({"a": {"b"}, "b": {"c"}, "c": {"a"}})
     assert circle({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []

@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from tippetop.interrupts import deferred, heard
+from tippetop.support.interrupts import deferred, heard
 
 
 def test_ctrl_c_waits_for_the_end_of_the_block():

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.lowest import lowest_jellett
+from tippetop.contact.lowest_surface import lowest_jellett
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.vectors import length
-from tippetop.monitor import Monitor
+from tippetop.results.monitor import Monitor
 
 PROBLEM = tt.presets.report_problem()
 STEMMED = PROBLEM.replace({"body": tt.presets.REPORT_STEM})

@@ -15,8 +15,8 @@ from tippetop.integrators import has_llvm
 from tippetop.mechanics.motion import along_table, angular_velocity, contact, sliding_rates
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.state import SlidingState
-from tippetop.presets import report_problem
-from tippetop.samples import continuous
+from tippetop.problem.presets import report_problem
+from tippetop.results.samples import continuous
 
 RANDOM = np.random.default_rng(2).normal(size=(1000, 4))
 HALF_TURNS = np.hstack((np.zeros((100, 1)), RANDOM[:100, 1:]))

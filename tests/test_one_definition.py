@@ -11,11 +11,11 @@ from typer.testing import CliRunner
 
 import tippetop as tt
 from tippetop import integrators
-from tippetop.catalogue import METRICS, NEAR_FINAL
 from tippetop.cli.commands import app
 from tippetop.export.words import tell
 from tippetop.integrators import has_numba, has_taylor
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
+from tippetop.results.catalogue import METRICS, NEAR_FINAL
 from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.ensemble import follow_cells
 

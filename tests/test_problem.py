@@ -15,26 +15,27 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 from strategies import problems
-from tippetop import bodies, contacts, frictions, launch, presets, problem, shapes
-from tippetop.bodies import Body
-from tippetop.contacts import Contact
-from tippetop.errors import FileTrouble, InvalidInput, TippetopError
-from tippetop.fields import part_at
-from tippetop.frictions import (
-    ContensouFriction,
-    CoulombFriction,
-    RegularizedCoulombFriction,
-    ViscousFriction,
-)
-from tippetop.launch import Launch
+from tippetop import presets
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, contact, point_velocity
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
-from tippetop.problem import Problem
-from tippetop.shapes import EccentricSphere, Ring, Sphere, Spheroid
-from tippetop.validation import Quantity
+from tippetop.problem import bodies, contact_rules, frictions, launch, problem, shapes
+from tippetop.problem.bodies import Body
+from tippetop.problem.contact_rules import Contact
+from tippetop.problem.frictions import (
+    ContensouFriction,
+    CoulombFriction,
+    RegularizedCoulombFriction,
+    ViscousFriction,
+)
+from tippetop.problem.launch import Launch
+from tippetop.problem.problem import Problem
+from tippetop.problem.shapes import EccentricSphere, Ring, Sphere, Spheroid
+from tippetop.support.errors import FileTrouble, InvalidInput, TippetopError
+from tippetop.support.field_paths import part_at
+from tippetop.support.validation import Quantity
 
 EGG = {
     "mass": 0.05,
@@ -956,7 +957,7 @@ class TestSchema:
     def test_the_parts_are_all_the_models_there_are(self):
         defined = {
             model
-            for module in (bodies, contacts, frictions, launch, problem, shapes)
+            for module in (bodies, contact_rules, frictions, launch, problem, shapes)
             for model in vars(module).values()
             if isinstance(model, type)
             and issubclass(model, BaseModel)

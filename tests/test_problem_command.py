@@ -10,7 +10,7 @@ import tippetop as tt
 from strategies import problems
 from tippetop.cli.commands import app
 from tippetop.cli.problem import commented_toml
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 
 NUMBER = re.compile(r"(\w+ = )?-?\d\S*,?(  # .+)?", re.ASCII)
 

@@ -12,8 +12,8 @@ from typing import Any
 import psutil
 import pytest
 
-from tippetop.errors import InvalidInput, Unavailable
-from tippetop.processes import RESTARTS, Job, Worker, shared
+from tippetop.support.errors import InvalidInput, Unavailable
+from tippetop.support.processes import RESTARTS, Job, Worker, shared
 
 
 def jobs(*calls: tuple[Any, ...]) -> Callable[[], Job | None]:
@@ -139,7 +139,7 @@ def test_processes_are_gone_when_they_are_no_longer_asked_for() -> None:
 
 INTERRUPTED = """
 import time
-from tippetop.processes import Job, shared
+from tippetop.support.processes import Job, shared
 waiting = (Job(k, time.sleep, (0.2,)) for k in range(10**6))
 print("begun", flush=True)
 try:
@@ -166,7 +166,7 @@ def test_ctrl_c_ends_all_of_it_without_a_traceback(wait: float) -> None:
 
 BLOCKED = """
 import signal
-from tippetop.processes import Job, shared
+from tippetop.support.processes import Job, shared
 waiting = [Job(k, signal.pthread_sigmask, (signal.SIG_BLOCK, ())) for k in range(2)]
 for _, blocked in shared(lambda: waiting.pop() if waiting else None, 2):
     print(signal.SIGINT in blocked)

@@ -17,9 +17,9 @@ from scipy.spatial.transform import Rotation
 
 import tippetop as tt
 from strategies import numbers
-from tippetop.catalogue import SAMPLED
 from tippetop.integrators import has_numba, has_taylor, make_integrator
-from tippetop.presets import REPORT, report_problem
+from tippetop.problem.presets import REPORT, report_problem
+from tippetop.results.catalogue import SAMPLED
 
 few_and_slow = settings(
     max_examples=10,

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 import tippetop as tt
 from tippetop.cli.commands import app
-from tippetop.summary import summarize
+from tippetop.results.summary import summarize
 from tippetop.theory.averaging import flip_time_limit
 
 

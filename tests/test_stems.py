@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 
 import tippetop as tt
-from tippetop.catalogue import SWEPT, Fault
 from tippetop.contact import several
 from tippetop.contact.double import SlidingOnTwo, on_two
 from tippetop.contact.mode import EventKind, Mode
@@ -20,6 +19,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_units
+from tippetop.results.catalogue import SWEPT, Fault
 
 LEINE_GLOCKER = tt.Problem(
     body=tt.Body(

@@ -6,7 +6,7 @@ import { fileURLToPath } from "node:url";
 
 const HERE = new URL(".", import.meta.url);
 const OUT = new URL("../src/tippetop/export/built/", HERE);
-const ENGINE = process.env.ENGINE ?? "../src/tippetop/engine/index.js";
+const ENGINE = process.env.ENGINE ?? "../src/tippetop/page_engine/index.js";
 
 const COMMON = {
   absWorkingDir: fileURLToPath(HERE),

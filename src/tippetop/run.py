@@ -13,20 +13,20 @@ from tippetop.contact.block import in_blocks
 from tippetop.contact.choice import rules_of
 from tippetop.contact.mode import Event, Outcome
 from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
-from tippetop.dataset import assemble
-from tippetop.errors import InvalidInput, is_whole
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import NOT_FINITE, Array
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
-from tippetop.metrics import metrics
-from tippetop.observables import Recorder
-from tippetop.problem import Problem, require_problem
-from tippetop.samples import continuous, event_in_si, observe
-from tippetop.tally import Tally
-from tippetop.validation import require_callback
+from tippetop.problem.problem import Problem, require_problem
+from tippetop.results.dataset import assemble
+from tippetop.results.metrics import metrics
+from tippetop.results.observables import Recorder
+from tippetop.results.run_metrics import Tally
+from tippetop.results.samples import continuous, event_in_si, observe
+from tippetop.support.errors import InvalidInput, is_whole
+from tippetop.support.validation import require_callback
 
 BYTES_PER_SAMPLE = 1600
 """Memory that a sample takes at most while a result is being made."""
@@ -81,11 +81,12 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        The variables of `tippetop.catalogue` with their SI units. Over `time`: those of `SAMPLED`,
-        and the contact mode. Over `event` and `flight`: those of `LISTED`. Single numbers: those of
-        `METRICS`, which are events and extremes of the motion and do not depend on the samples, and
-        of `MONITORS`. Attributes: problem (JSON), outcome, outcome_advice, integrator (every one
-        that took steps), tolerance (the largest) or step, tippetop_version, Conventions. When the
+        The variables of `tippetop.results.catalogue` with their SI units. Over `time`: those of
+        `SAMPLED`, and the contact mode. Over `event` and `flight`: those of `LISTED`. Single
+        numbers: those of `METRICS`, which are events and extremes of the motion and do not depend
+        on the samples, and of `MONITORS`. Attributes: problem (JSON), outcome, outcome_advice,
+        integrator (every one that took steps), tolerance (the largest) or step, tippetop_version,
+        Conventions. When the
         run ends before `duration`, the last sample is its end, unless its numbers grew beyond all
         bounds.
 

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import tippetop as tt
-from tippetop import netcdf
+from tippetop.results import netcdf
 
 MANY = int(os.environ.get("TIPPETOP_FAULTS", "1"))
 """How many times more faults than in a quick run."""

@@ -9,8 +9,8 @@ import pytest
 import tippetop as tt
 from misused import misused
 from tippetop.cli.options import Choice
-from tippetop.errors import short
-from tippetop.files import LONGEST_TEXT
+from tippetop.support.errors import short
+from tippetop.support.files import LONGEST_TEXT
 from tippetop.sweeps import Sweep
 
 PROBLEM = tt.presets.report_problem()

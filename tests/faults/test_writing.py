@@ -19,11 +19,11 @@ import pytest
 
 import tippetop as tt
 from misused import misused
-from tippetop import files
 from tippetop.export.csv import write_csv
 from tippetop.export.glb import write_glb
 from tippetop.export.movie import write_movie
-from tippetop.files import MARK, put_in_place, written_beside
+from tippetop.support import files
+from tippetop.support.files import MARK, put_in_place, written_beside
 
 MANY = int(os.environ.get("TIPPETOP_FAULTS", "1"))
 """How many times more faults than in a quick run."""
@@ -212,8 +212,8 @@ def test_writers_of_many_names_do_not_disturb_each_other(tmp_path):
 
 SLOW = """
 import signal, sys, time
-from tippetop.interrupts import ENDINGS
-from tippetop.files import written_beside
+from tippetop.support.interrupts import ENDINGS
+from tippetop.support.files import written_beside
 for number in ENDINGS:
     signal.signal(number, signal.default_int_handler)
 try:

@@ -12,7 +12,7 @@ from exact_motions import KEPLER, whole
 
 from every_motion import CASES, states
 from tippetop.integrators import Guard, Motion, dormand_prince, has_numba, make_integrator, stepping
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 
 if not has_numba():
     pytest.skip("numba is not installed", allow_module_level=True)

@@ -21,7 +21,6 @@ from exact_motions import (
     whole,
 )
 
-from tippetop.errors import InvalidInput
 from tippetop.integrators import (
     NAMES,
     Guard,
@@ -32,6 +31,7 @@ from tippetop.integrators import (
     sampling,
     stepping,
 )
+from tippetop.support.errors import InvalidInput
 
 if has_taylor():
     from tippetop.integrators import taylor

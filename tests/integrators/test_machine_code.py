@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tippetop.emit.recording import record
+from tippetop.graph.recording import record
 from tippetop.integrators import has_llvm
 
 if not has_llvm():

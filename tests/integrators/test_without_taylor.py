@@ -11,7 +11,7 @@ import pytest
 
 import tippetop as tt
 from tippetop.integrators import NAMES, has_numba, has_taylor
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 
 HIDE = """
 import sys
@@ -31,7 +31,7 @@ RUN = """
 import json
 import tippetop as tt
 from tippetop.integrators import NAMES, default_name, has_taylor
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 
 assert not has_taylor()
 run = tt.simulate(report_problem(), 1.0, samples=11)

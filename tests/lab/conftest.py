@@ -4,8 +4,8 @@ from pathlib import Path
 import pytest
 
 from browsing import Visit
-from tippetop.errors import Unavailable
 from tippetop.lab.serve import page_path
+from tippetop.support.errors import Unavailable
 
 
 @pytest.fixture(scope="session")

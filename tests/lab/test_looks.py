@@ -9,8 +9,8 @@ import pytest
 
 import tippetop as tt
 from node import NODE
-from tippetop.engine import HERE
 from tippetop.figures import looks
+from tippetop.page_engine import HERE
 
 WEB = Path(__file__).parents[2] / "web" / "src"
 GENERATED = WEB / "generated" / "looks.json"

@@ -8,8 +8,8 @@ from hypothesis import reject
 from hypothesis import strategies as st
 
 from strategies import numbers
-from tippetop.errors import InvalidInput
 from tippetop.lathe.profile import profile_of
+from tippetop.support.errors import InvalidInput
 
 BALL = ((0.0, -0.02), (0.0, 0.02, 0.02))
 

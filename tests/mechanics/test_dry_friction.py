@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from strategies import numbers
-from tippetop.hertz import MATERIALS, Material, hertz_patch_radius
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzDrillingLaw, HertzLaw, HertzSlidingLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
@@ -17,6 +16,7 @@ from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.series import Series, solved, unknown
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_units
+from tippetop.problem.hertz_patch import MATERIALS, Material, hertz_patch_radius
 from tippetop.theory.derivatives import jacobian
 
 LAWS = [EllipsoidalLaw, HertzDrillingLaw, HertzSlidingLaw]

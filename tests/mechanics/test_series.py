@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tippetop.mechanics.series import Series, horner, solved, unknown
-from tippetop.sweeps.stepper import NumPyArithmetic
+from tippetop.sweeps.taylor_stepper import NumPyArithmetic
 
 PLAIN = NumPyArithmetic()
 DEGREE = 12

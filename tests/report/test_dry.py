@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 
 from judging import assert_drawn, assert_judged, assert_judged_otherwise
-from tippetop.frictions import ContensouFriction
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.top import natural_units
+from tippetop.problem.frictions import ContensouFriction
 from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.dry import COHEN, friction_needed, stepped

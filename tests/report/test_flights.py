@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 from tippetop.report.claim import Judgement, Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiment import variable

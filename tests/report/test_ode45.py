@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tippetop.mechanics.euler import published_normal_force
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 from tippetop.report.listing import launch_state, listing_rates, listing_run
 from tippetop.report.ode45 import REFINE, dormand_prince_step, ode45
 from tippetop.run import simulate

@@ -9,16 +9,16 @@ import pytest
 import xarray as xr
 
 from judging import assert_drawn, assert_judged, assert_judged_otherwise
-from tippetop.bodies import Body
-from tippetop.launch import Launch
-from tippetop.presets import EULER_DISK, HURRICANE_BALLS
-from tippetop.problem import Problem
+from tippetop.problem.bodies import Body
+from tippetop.problem.launch import Launch
+from tippetop.problem.presets import EULER_DISK, HURRICANE_BALLS
+from tippetop.problem.problem import Problem
+from tippetop.problem.shapes import Spheroid
 from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.real import ROUGH, rolling, with_stem
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES, Plate
-from tippetop.shapes import Spheroid
 from tippetop.theory.resting_center import resting_center
 from tippetop.theory.stem import least_jellett_to_stand
 

@@ -10,13 +10,13 @@ from typer import Typer
 from typer.testing import CliRunner
 
 from tippetop.cli.reproduce import reproduce as command
-from tippetop.errors import FileTrouble, InvalidInput
-from tippetop.netcdf import read_run
 from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.reproduce import reproduce
+from tippetop.results.netcdf import read_run
+from tippetop.support.errors import FileTrouble, InvalidInput
 
 FIELDS = {
     "id",

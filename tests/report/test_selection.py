@@ -2,11 +2,11 @@
 
 import pytest
 
-from tippetop.errors import InvalidInput
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.selection import select
+from tippetop.support.errors import InvalidInput
 
 
 def test_everything_by_default() -> None:

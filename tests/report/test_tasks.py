@@ -6,8 +6,8 @@ import os
 
 import pytest
 
-from tippetop.errors import TippetopError
 from tippetop.report.tasks import Task, carry_out
+from tippetop.support.errors import TippetopError
 
 TASKS = [
     Task("sum", 1.0, operator.add, (), after=("root", "power")),

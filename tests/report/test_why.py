@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from judging import assert_drawn, assert_judged
-from tippetop.presets import REPORT
+from tippetop.problem.presets import REPORT
 from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiment import variable

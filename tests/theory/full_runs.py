@@ -13,7 +13,7 @@ from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural_units
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
 
 RADIUS, MASS, GRAVITY, AXIAL_INERTIA = 0.02, 0.02, 9.8, 3.2e-6
 

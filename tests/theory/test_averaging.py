@@ -8,10 +8,10 @@ from full_runs import full_run, sphere_problem, tilts_of
 from scipy.integrate import solve_ivp
 
 from tippetop import presets
-from tippetop.errors import InvalidInput
 from tippetop.integrators import has_taylor
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import natural_units
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import (
     averaged_flow,
     flip_time_limit,

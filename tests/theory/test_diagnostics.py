@@ -7,10 +7,10 @@ import pytest
 from full_runs import full_run, tilts_of
 
 from tippetop import presets
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.mechanics.view import Angles, state_from_angles
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.diagnostics import (
     gyroscopic_balance,
     nutation_envelope,

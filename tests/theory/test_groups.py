@@ -9,9 +9,9 @@ from hypothesis import assume, given, settings
 
 from strategies import numbers
 from tippetop import presets
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.surface import SpheroidSurface
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.groups import (
     Group,
     classify,

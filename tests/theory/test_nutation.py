@@ -11,13 +11,13 @@ from hypothesis import assume, given
 
 from strategies import numbers
 from tippetop import presets
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SpheroidSurface
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.vectors import dot
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.derivatives import jacobian
 from tippetop.theory.diagnostics import smooth_constants
 from tippetop.theory.dissipation import amplitude_rates, mean_dissipation

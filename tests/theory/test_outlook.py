@@ -17,9 +17,9 @@ from typer.testing import CliRunner
 
 from tippetop import presets
 from tippetop.cli.commands import app
-from tippetop.errors import InvalidInput
-from tippetop.frictions import ViscousFriction
-from tippetop.problem import Problem
+from tippetop.problem.frictions import ViscousFriction
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group
 from tippetop.theory.overview import outlook

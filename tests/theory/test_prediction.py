@@ -8,11 +8,11 @@ import pytest
 from full_runs import full_run, sphere_problem, tilts_of
 
 from tippetop import presets
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
 from tippetop.run import simulate
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import predict, touching_tilts
 from tippetop.theory.steady import SteadyKind, jellett_of_launch, precession_branch
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import tippetop as tt
-from tippetop.presets import LEINE_GLOCKER, REPORT
+from tippetop.problem.presets import LEINE_GLOCKER, REPORT
 from tippetop.theory.groups import Group
 from tippetop.theory.prospects import prospects
 

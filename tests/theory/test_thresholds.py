@@ -10,8 +10,8 @@ from hypothesis import assume, given
 import tippetop as tt
 from strategies import numbers, spheroids, tops
 from tippetop import presets
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.friction import ViscousLaw
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.apparent import (
     apparent_critical_spins,
     critical_spin_from_spectrum,

@@ -12,8 +12,8 @@ import tippetop as tt
 from tippetop.cli.options import DRAWINGS, Force, Json, write_figure
 from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
-from tippetop.errors import InvalidInput
-from tippetop.files import place_for, require_ending
+from tippetop.support.errors import InvalidInput
+from tippetop.support.files import place_for, require_ending
 
 ENDINGS = {"plot": DRAWINGS, "stl": (".stl",), "3mf": (".3mf",)}
 """How the names of files may end."""
@@ -102,7 +102,7 @@ def _told(piece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
 
 def _expected(piece: "tt.Workpiece") -> dict[str, Any]:
     """What the theory says of it; nothing but None where it does not lie on a sphere."""
-    from tippetop.bodies import touching  # noqa: PLC0415 - slow to import
+    from tippetop.problem.bodies import touching  # noqa: PLC0415 - slow to import
     from tippetop.theory.prospects import prospects  # noqa: PLC0415
 
     mass, _, I1, I3 = piece.mass_properties

@@ -10,7 +10,6 @@ from pydantic import ValidationError
 from typer.core import TyperGroup
 
 from tippetop import __version__
-from tippetop.accepted import accepted_by
 from tippetop.cli.body import body
 from tippetop.cli.critical import critical
 from tippetop.cli.lab import lab
@@ -18,8 +17,9 @@ from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
-from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, InvalidInput, TippetopError
-from tippetop.interrupts import INTERRUPTED, asked_to_end, let_end, let_raise
+from tippetop.support.accepted_values import accepted_by
+from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, InvalidInput, TippetopError
+from tippetop.support.interrupts import INTERRUPTED, asked_to_end, let_end, let_raise
 
 MISUSE = 2
 

@@ -39,8 +39,8 @@ def lab(
 
 def _write(path: Path, force: bool) -> None:
     from tippetop.export.bundle import built  # noqa: PLC0415
-    from tippetop.files import require_ending, written_beside  # noqa: PLC0415
     from tippetop.lab.serve import PAGE  # noqa: PLC0415
+    from tippetop.support.files import require_ending, written_beside  # noqa: PLC0415
 
     require_ending("--out", path, (".html", ".htm"))
     with written_beside(path, force) as beside:

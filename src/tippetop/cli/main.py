@@ -5,7 +5,7 @@ import os
 import sys
 from contextlib import suppress
 
-from tippetop.interrupts import INTERRUPTED, let_end
+from tippetop.support.interrupts import INTERRUPTED, let_end
 
 GARBAGE = 50_000
 """Objects made between two looks for garbage: importing the libraries makes many, and drops hardly

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Concatenate, NamedTuple
 import typer
 
 import tippetop as tt
-from tippetop.errors import InvalidInput, short
-from tippetop.files import written_beside
+from tippetop.support.errors import InvalidInput, short
+from tippetop.support.files import written_beside
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,10 +6,10 @@ from typing import Annotated, Literal, get_args, get_origin
 import typer
 
 import tippetop as tt
-from tippetop.catalogue import written_unit
 from tippetop.cli.options import Choice, Json, of_a_problem
 from tippetop.cli.terminal import show_json
-from tippetop.fields import part_at
+from tippetop.results.catalogue import written_unit
+from tippetop.support.field_paths import part_at
 
 TABLE, FIELD, ITEM = re.compile(r"\[(.+)]"), re.compile(r"([\w-]+) = "), re.compile(r"    -?[\d.]")
 """Lines of TOML: that begin a table, a field, or hold an item of a list."""

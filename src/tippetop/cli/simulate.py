@@ -11,7 +11,7 @@ import typer
 import tippetop as tt
 from tippetop.cli.options import DRAWINGS, Choice, Force, Json, of_a_problem, write_figure
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
-from tippetop.files import place_for, refuse_ending_of_others, require_ending
+from tippetop.support.files import place_for, refuse_ending_of_others, require_ending
 
 if TYPE_CHECKING:
     import xarray as xr

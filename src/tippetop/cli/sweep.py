@@ -11,9 +11,9 @@ import typer
 import tippetop as tt
 from tippetop.cli.options import Choice, Force, Json, of_a_problem, write_figure
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
-from tippetop.errors import MISSING, FileTrouble, InvalidInput
-from tippetop.files import in_words, place_for, read_text, require_ending
-from tippetop.interrupts import INTERRUPTED
+from tippetop.support.errors import MISSING, FileTrouble, InvalidInput
+from tippetop.support.files import in_words, place_for, read_text, require_ending
+from tippetop.support.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
     import numpy as np
@@ -86,8 +86,8 @@ def sweep(
 ) -> None:
     """See what becomes of many launches: over axes that cross, or draws at random."""
     from tippetop.sweeps import Store, fill  # noqa: PLC0415 - slow to import
-    from tippetop.sweeps.layout import kept_sweep, refuse_existing  # noqa: PLC0415
-    from tippetop.sweeps.tasks import need_workers  # noqa: PLC0415
+    from tippetop.sweeps.schedulers import need_workers  # noqa: PLC0415
+    from tippetop.sweeps.store_layout import kept_sweep, refuse_existing  # noqa: PLC0415
 
     if resume and force:
         raise InvalidInput("--force", "with --resume", "one of the two")
@@ -209,7 +209,7 @@ def _range(text: str) -> tuple[str, Any]:
 
 def _holds_sweep(file: Path) -> bool:
     """Whether a file is a sweep's rather than a problem's."""
-    from tippetop.parsing import parse_toml  # noqa: PLC0415
+    from tippetop.support.parsing import parse_toml  # noqa: PLC0415
     from tippetop.sweeps.definition import is_sweep  # noqa: PLC0415 - slow to import
 
     try:

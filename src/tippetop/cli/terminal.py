@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from tippetop.interrupts import hear
+from tippetop.support.interrupts import hear
 
 if TYPE_CHECKING:
     from rich.table import Table

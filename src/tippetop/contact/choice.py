@@ -6,13 +6,13 @@ from tippetop.contact.mode import Mode
 from tippetop.contact.rules import Rules
 from tippetop.contact.several import OnSeveral
 from tippetop.contact.sliding import Sliding
-from tippetop.contacts import Contact
 from tippetop.mechanics.hull import Hull, lowest_surface
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
+from tippetop.problem.contact_rules import Contact
 
 
 def rules_for(top: Top, liftoff: str, restitution: float) -> Rules:

@@ -7,10 +7,10 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from tippetop.contact.lowest_surface import lowest_contact_vector
 from tippetop.contact.mode import IntegratedMode, Mode
 from tippetop.integrators.base import Array, Rows
 from tippetop.integrators.evaluation import Evaluation, compiled_evaluation
-from tippetop.lowest import lowest_contact_vector
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from tippetop.contact.mode import Event, Mode, Outcome, Segment, Transition
-from tippetop.errors import InvalidInput, is_number, is_whole
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.state import State
+from tippetop.support.errors import InvalidInput, is_number, is_whole
 
 PHASE_LIMIT = 100_000
 """How many modes a run goes through at most unless told otherwise."""

@@ -7,7 +7,7 @@ import gzip
 from functools import cache
 from pathlib import Path
 
-from tippetop.errors import Unavailable
+from tippetop.support.errors import Unavailable
 
 BUILT = Path(__file__).parent / "built"
 """Where the built files are; a released package brings them."""

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tippetop.dataset import require_run
-from tippetop.files import written_beside
+from tippetop.results.dataset import require_run
+from tippetop.support.files import written_beside
 
 
 def write_csv(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:

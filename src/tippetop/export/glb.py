@@ -10,16 +10,16 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop import __version__
-from tippetop.bodies import Body
-from tippetop.dataset import require_run
-from tippetop.errors import InvalidInput
 from tippetop.export.geometry import Mesh, lathe
 from tippetop.export.poses import poses_at
 from tippetop.export.words import tell
 from tippetop.figures.looks import SCENES, ToyPart, size, toy_parts
-from tippetop.files import written_beside
-from tippetop.problem import Problem
-from tippetop.samples import continuous
+from tippetop.problem.bodies import Body
+from tippetop.problem.problem import Problem
+from tippetop.results.dataset import require_run
+from tippetop.results.samples import continuous
+from tippetop.support.errors import InvalidInput
+from tippetop.support.files import written_beside
 
 TURN_PER_KEY = 0.5
 """Angle by which the body may turn between two keys, rad; a viewer goes the shortest way between

@@ -6,10 +6,10 @@ from pathlib import Path
 import xarray as xr
 
 from tippetop import __version__
-from tippetop.dataset import require_run
 from tippetop.export.bundle import LOADER, packed, player_packed
 from tippetop.export.track import pack_run, unpack_header
-from tippetop.files import written_beside
+from tippetop.results.dataset import require_run
+from tippetop.support.files import written_beside
 
 _PAGE = Path(__file__).with_name("run.html")
 

@@ -11,16 +11,16 @@ import xarray as xr
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from tippetop.dataset import require_run
-from tippetop.errors import FileTrouble, InvalidInput, Unavailable, is_number, is_whole
 from tippetop.export.poses import contact_path, poses_at
 from tippetop.export.raycast import fine_path, picture, view_of
 from tippetop.export.words import tell
 from tippetop.figures.style import INK
 from tippetop.figures.toy import Toy
-from tippetop.files import path_of, place_for, require_ending, written_beside
-from tippetop.problem import Problem
-from tippetop.validation import require_callback
+from tippetop.problem.problem import Problem
+from tippetop.results.dataset import require_run
+from tippetop.support.errors import FileTrouble, InvalidInput, Unavailable, is_number, is_whole
+from tippetop.support.files import path_of, place_for, require_ending, written_beside
+from tippetop.support.validation import require_callback
 
 Frame = NDArray[np.uint8]
 

@@ -13,8 +13,8 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from tippetop.lowest import lowest_contact_vector
-from tippetop.problem import Problem
+from tippetop.contact.lowest_surface import lowest_contact_vector
+from tippetop.problem.problem import Problem
 
 Array = NDArray[np.float64]
 

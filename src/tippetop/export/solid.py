@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from tippetop.errors import InvalidInput, Unavailable, require
-from tippetop.files import path_of, require_ending, written_beside
 from tippetop.lathe.profile import Profile
 from tippetop.lathe.workpiece import Workpiece
+from tippetop.support.errors import InvalidInput, Unavailable, require
+from tippetop.support.files import path_of, require_ending, written_beside
 
 FACETS = 180
 """Facets around the axis: of a ball of 20 mm they leave out 3 micrometres."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tippetop.export.poses import contact_path
 from tippetop.export.words import tell
 from tippetop.figures.looks import SCENES, size, toy_parts
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
 
 Array = NDArray[np.float64]
 

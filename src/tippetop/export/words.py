@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import natural_units
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import Prediction, predict
 from tippetop.theory.steady import SteadyKind, SteadyState
 from tippetop.theory.thresholds import CriticalSpins, critical_spins

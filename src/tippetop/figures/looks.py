@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.bodies import Body
 from tippetop.figures.meridian import ARC_STEP, meridian, own_profile
 from tippetop.figures.style import ACCENT, CONVERGED, REPORT
 from tippetop.mechanics.outline import extent
-from tippetop.shapes import EccentricSphere
+from tippetop.problem.bodies import Body
+from tippetop.problem.shapes import EccentricSphere
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,6 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 
 import tippetop.figures.annotation as mark
-from tippetop.catalogue import SWEPT, Ending, written_unit
-from tippetop.errors import InvalidInput
 from tippetop.figures.style import (
     CONVERGED,
     CYCLE,
@@ -22,6 +20,8 @@ from tippetop.figures.style import (
     house_style,
     pi_ticks,
 )
+from tippetop.results.catalogue import SWEPT, Ending, written_unit
+from tippetop.support.errors import InvalidInput
 
 MAPPED = ("final_theta", "turns_over", "flights")
 """The maps that are drawn of every sweep."""

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from tippetop.bodies import Body
 from tippetop.lathe.edges import Edge
 from tippetop.lathe.profile import profile_of
 from tippetop.mechanics.outline import Line, is_outline, outline, smoothly_joined
+from tippetop.problem.bodies import Body
 
 ARC_STEP = np.pi / 48
 """Angle between points on arcs of profiles, rad, at most."""

@@ -8,8 +8,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tippetop.dataset import require_run
 from tippetop.figures.style import ACCENT, CONVERGED, DASHED, MUTED, WIDTH, house_style, pi_ticks
+from tippetop.results.dataset import require_run
 
 TALLEST_PRECESSION = 400.0
 """Precession beyond which a curve is cut off, rad/s: it peaks without bound where the axis is

@@ -11,7 +11,7 @@ from tippetop.figures import drawing as draw
 from tippetop.figures.drawing import Array
 from tippetop.figures.style import ACCENT, MUTED, TABLE, TABLE_EDGE, house_style
 from tippetop.figures.toy import FAR, Toy
-from tippetop.presets import REPORT
+from tippetop.problem.presets import REPORT
 
 _LIGHT = draw.unit([-0.55, -0.6, 1.0])
 _REACH = 1.05

@@ -12,8 +12,8 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from tippetop.bodies import Body
 from tippetop.figures.looks import size, toy_parts
+from tippetop.problem.bodies import Body
 
 Array = NDArray[np.floating[Any]]
 

@@ -4,14 +4,14 @@ Kutta's.
 
 from importlib.util import find_spec
 
-from tippetop.errors import MISSING, InvalidInput, Unavailable, is_number, one_of
 from tippetop.integrators.base import TOLERANCES as TOLERANCES
 from tippetop.integrators.base import Arc as Arc
 from tippetop.integrators.base import Guard as Guard
 from tippetop.integrators.base import Integrator as Integrator
 from tippetop.integrators.base import Motion as Motion
 from tippetop.integrators.base import require_tolerance
-from tippetop.interrupts import import_heard
+from tippetop.support.errors import MISSING, InvalidInput, Unavailable, is_number, one_of
+from tippetop.support.interrupts import import_heard
 
 NAMES = [*TOLERANCES, "rk4"]
 """The integrators by the names users give."""

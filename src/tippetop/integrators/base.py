@@ -9,9 +9,9 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.errors import InvalidInput, is_number
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.vectors import Scalar
+from tippetop.support.errors import InvalidInput, is_number
 
 Array: TypeAlias = NDArray[np.float64]
 Function: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Scalar]

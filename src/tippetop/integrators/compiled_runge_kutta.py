@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numba import types
 
-from tippetop.emit.recording import recordable
+from tippetop.graph.recording import recordable
 from tippetop.integrators import dormand_prince, numba_calls
 from tippetop.integrators.base import Arc, Array, Motion
 from tippetop.integrators.dormand_prince import LOOKS
@@ -43,7 +43,7 @@ code.
 class CompiledRungeKutta:
     """SciPy's DOP853, compiled: the same steps, with compensated sums, and the same guards.
 
-    A motion that cannot be recorded (see `tippetop.emit.recording`) is left to SciPy.
+    A motion that cannot be recorded (see `tippetop.graph.recording`) is left to SciPy.
     """
 
     tolerance: float

@@ -6,8 +6,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from tippetop.emit.llvm import ABREAST
-from tippetop.emit.recording import recordable
+from tippetop.graph.llvm import ABREAST
+from tippetop.graph.recording import recordable
 from tippetop.integrators import has_llvm
 from tippetop.integrators.base import Array, Rows
 

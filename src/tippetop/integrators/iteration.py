@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from tippetop.emit.recording import record
-from tippetop.emit.unrolling import NodeValues
+from tippetop.graph.recording import record
+from tippetop.graph.unrolling import NodeValues
 from tippetop.integrators import has_llvm
 from tippetop.integrators.base import Array
 from tippetop.mechanics.vectors import Scalar

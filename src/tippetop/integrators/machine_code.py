@@ -7,11 +7,11 @@ from typing import Any, cast
 import llvmlite
 import llvmlite.binding as llvm
 
-from tippetop.emit.llvm import llvm_source
-from tippetop.emit.recording import Recorded
+from tippetop.graph.llvm import llvm_source
+from tippetop.graph.recording import Recorded
 from tippetop.integrators.base import Array
 from tippetop.integrators.sealed_folders import kept_content
-from tippetop.interrupts import heard
+from tippetop.support.interrupts import heard
 
 EFFORT = 1
 """How hard the compiler tries, of 3: with 2 it takes an eighth longer, and its code runs no faster;

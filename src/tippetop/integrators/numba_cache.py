@@ -12,7 +12,7 @@ from typing import Any
 import numba
 
 from tippetop.integrators.sealed_folders import kept
-from tippetop.interrupts import heard
+from tippetop.support.interrupts import heard
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 """How functions are compiled: a sum and a product may be rounded together, as in what LLVM

@@ -14,12 +14,12 @@ from typing import Any, ClassVar, TypeAlias
 import heyoka as hy
 import numpy as np
 
-from tippetop.emit.hoisting import hoisted, played
-from tippetop.emit.recording import recordable
+from tippetop.graph.hoisting import hoisted, played
+from tippetop.graph.recording import recordable
 from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Expansion, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.sealed_folders import kept_content
-from tippetop.interrupts import heard
+from tippetop.support.interrupts import heard
 
 RESOLVED = 1e6
 """Step, in roundings of time, below which only a solution that blows up is followed: these matter

@@ -5,10 +5,10 @@ from typing import Any
 
 import xarray as xr
 
-from tippetop.dataset import require_run
-from tippetop.errors import InvalidInput, Unavailable, is_whole
 from tippetop.export.bundle import built
 from tippetop.export.track import pack_run
+from tippetop.results.dataset import require_run
+from tippetop.support.errors import InvalidInput, Unavailable, is_whole
 
 THEMES = ("auto", "light", "dark")
 

@@ -8,8 +8,8 @@ from importlib.util import find_spec
 from io import BytesIO, StringIO
 from pathlib import Path
 
-from tippetop.errors import InvalidInput
 from tippetop.export.bundle import BUILT, built
+from tippetop.support.errors import InvalidInput
 
 PAGE = "lab.html"
 

@@ -9,9 +9,9 @@ from itertools import groupby, pairwise
 import numpy as np
 from scipy.optimize import brentq
 
-from tippetop.errors import InvalidInput, require
 from tippetop.lathe.profile import ROUNDING
 from tippetop.lathe.workpiece import UNITS, Insert, Workpiece
+from tippetop.support.errors import InvalidInput, require
 
 LOOKS = 96
 """Sizes that are tried before the one that is wanted is looked for between two of them."""

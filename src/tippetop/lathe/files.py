@@ -6,10 +6,10 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from tippetop.errors import InvalidInput, Unavailable
-from tippetop.files import made_of, named, path_of, read_text
 from tippetop.lathe.workpiece import Workpiece
-from tippetop.parsing import parse_toml
+from tippetop.support.errors import InvalidInput, Unavailable
+from tippetop.support.files import made_of, named, path_of, read_text
+from tippetop.support.parsing import parse_toml
 
 ACCEPTED = "a workpiece in TOML, or a profile in CSV or SVG"
 

@@ -10,8 +10,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.errors import InvalidInput
 from tippetop.lathe.edges import Edge, Points, meetings
+from tippetop.support.errors import InvalidInput
 
 ROUNDING = 1e-9
 """What counts as the same place, in sizes of the profile."""

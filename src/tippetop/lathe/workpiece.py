@@ -7,11 +7,11 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tippetop.errors import InvalidInput
 from tippetop.lathe.hull import ConvexHull, hull_of
 from tippetop.lathe.mass import MassProperties, mass_properties
 from tippetop.lathe.profile import Profile, area_of, profile_of
-from tippetop.validation import NotNegative, Part, Points, Positive, Quantity
+from tippetop.support.errors import InvalidInput
+from tippetop.support.validation import NotNegative, Part, Points, Positive, Quantity
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 """The units of profiles, m."""

@@ -9,7 +9,7 @@ import xarray as xr
 
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.euler import published_energy, published_normal_force, published_rates
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
 from tippetop.report.ode45 import ode45
 
 VARIABLES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y")

@@ -1,12 +1,12 @@
 """A run to be played on the page itself: the launch that the report calls abnormal."""
 
-from tippetop.errors import Unavailable
 from tippetop.export.bundle import LOADER, packed, player_packed
 from tippetop.export.track import pack_run, sample_count
 from tippetop.export.words import tell
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 from tippetop.report.experiments.runs import unilateral
 from tippetop.run import simulate
+from tippetop.support.errors import Unavailable
 
 SPIN, DURATION = 175.0, 9.0
 """The launch, rad/s, and how long it is followed, s: until it spins inverted."""

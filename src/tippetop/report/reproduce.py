@@ -14,10 +14,7 @@ from tempfile import TemporaryDirectory
 
 import xarray as xr
 
-from tippetop.errors import FileTrouble
 from tippetop.figures.style import save
-from tippetop.files import in_words, put_in_place, refuse_overwriting
-from tippetop.netcdf import write_run
 from tippetop.report.claim import Judgement
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
@@ -25,6 +22,9 @@ from tippetop.report.page import render
 from tippetop.report.playable import playable
 from tippetop.report.selection import Selection, select
 from tippetop.report.tasks import Task, carry_out
+from tippetop.results.netcdf import write_run
+from tippetop.support.errors import FileTrouble
+from tippetop.support.files import in_words, put_in_place, refuse_overwriting
 
 PAGE, CLAIMS_FILE, FIGURES, DATA = "index.html", "claims.json", "figures", "data"
 

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import chain
 
-from tippetop.errors import InvalidInput
 from tippetop.report.claim import Claim
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiment import Experiment
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES, Plate
+from tippetop.support.errors import InvalidInput
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tippetop.processes import Job, shared
+from tippetop.support.processes import Job, shared
 
 
 @dataclass

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
-from tippetop.validation import Number, Part, Whole, in_order
+from tippetop.support.errors import InvalidInput
+from tippetop.support.validation import Number, Part, Whole, in_order
 
 MOST_CELLS = 10**8
 """Cells a sweep may have."""

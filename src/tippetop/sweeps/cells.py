@@ -13,21 +13,21 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.catalogue import Fault
 from tippetop.contact.choice import rules_of
 from tippetop.contact.trajectory import LONGEST
-from tippetop.contacts import Contact
-from tippetop.errors import InvalidInput, one_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.hull import Hull, sizes
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
-from tippetop.problem import Problem
+from tippetop.problem.contact_rules import Contact
+from tippetop.problem.problem import Problem
+from tippetop.results.catalogue import Fault
+from tippetop.support.errors import InvalidInput, one_of
+from tippetop.support.validation import Part
 from tippetop.sweeps.flights import slips
-from tippetop.sweeps.launches import Launches, Own, branched
-from tippetop.validation import Part
+from tippetop.sweeps.launch_arrays import Launches, Own, branched
 
 PartType = TypeVar("PartType", bound=Part)
 

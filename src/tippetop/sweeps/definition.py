@@ -9,14 +9,14 @@ from typing import Annotated, Any, Self, TypeAlias
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from tippetop.errors import MISSING, InvalidInput
-from tippetop.files import made_of, read_text
-from tippetop.parsing import parse_toml
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import MISSING, InvalidInput
+from tippetop.support.files import made_of, read_text
+from tippetop.support.parsing import parse_toml
+from tippetop.support.validation import Number, Part, Positive, in_order
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.theory.requirements import require_jellett
-from tippetop.validation import Number, Part, Positive, in_order
 
 DEFAULT_TOLERANCE = 1e-9
 SETTLED_RANGE = (1e-6, 1e-2)

@@ -7,7 +7,6 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.catalogue import SWEPT, Ending, Fault
 from tippetop.contact.mode import Outcome
 from tippetop.contact.sliding import sliding_motion
 from tippetop.integrators.base import Array, Motion
@@ -18,15 +17,16 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
-from tippetop.metrics import OUTCOMES, Ends, ending, final_band, metrics
-from tippetop.monitor import WAYS_TO_END, Monitor, kept
-from tippetop.sweeps.alone import follow_each, is_alone
+from tippetop.results.catalogue import SWEPT, Ending, Fault
+from tippetop.results.metrics import OUTCOMES, Ends, ending, final_band, metrics
+from tippetop.results.monitor import WAYS_TO_END, Monitor, kept
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import Flat
-from tippetop.sweeps.lanes import Lanes, arrivals
-from tippetop.sweeps.launches import Launches
-from tippetop.sweeps.stepper import stepper
+from tippetop.sweeps.lane_executor import Lanes, arrivals
+from tippetop.sweeps.launch_arrays import Launches
+from tippetop.sweeps.single_launches import follow_each, is_alone
+from tippetop.sweeps.taylor_stepper import stepper
 
 LANES_AT_ONCE = 2048
 """Launches that are followed together: enough to make little of Python's part, few enough for the
@@ -36,9 +36,7 @@ cache.
 
 @np.errstate(all="ignore")  # what is no number is told by outcomes
 def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
-    """Every variable of `tippetop.catalogue.SWEPT` for cells counted row by row, each of shape
-    (n,).
-    """
+    """Return each variable of `catalogue.SWEPT` for cells counted row by row, of shape (n,)."""
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
     count = len(numbers)
     found = {name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}

@@ -33,8 +33,7 @@ from tippetop.mechanics.stick_slip import (
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import highest_gap
 from tippetop.mechanics.view import axis_sine
-from tippetop.sweeps.launches import Flags, Indices, single
-from tippetop.sweeps.pieces import (
+from tippetop.sweeps.flight_steps import (
     LEFT,
     STATE,
     TIME,
@@ -45,8 +44,9 @@ from tippetop.sweeps.pieces import (
     flight_terms,
     pieces,
 )
-from tippetop.sweeps.stepper import NumPyArithmetic
-from tippetop.sweeps.tip import TipMotion
+from tippetop.sweeps.launch_arrays import Flags, Indices, single
+from tippetop.sweeps.taylor_stepper import NumPyArithmetic
+from tippetop.sweeps.tip_extremes import TipMotion
 
 PLAIN = NumPyArithmetic()
 

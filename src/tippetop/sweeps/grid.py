@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, field_serializer, model_serializer, model_validator
 
-from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
-from tippetop.parsing import DEEPEST
+from tippetop.support.errors import InvalidInput
+from tippetop.support.parsing import DEEPEST
+from tippetop.support.validation import Number, Whole
 from tippetop.sweeps.axes import MOST_CELLS, Axis, Count, Entry, between
 from tippetop.sweeps.axes import Flat as Flat
-from tippetop.validation import Number, Whole
 
 _Kind = TypeVar("_Kind")
 

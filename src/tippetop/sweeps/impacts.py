@@ -16,9 +16,9 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import length
-from tippetop.sweeps.arcs import arcs
-from tippetop.sweeps.launches import Flags
-from tippetop.sweeps.stepper import polynomials
+from tippetop.sweeps.launch_arrays import Flags
+from tippetop.sweeps.polynomial_arcs import arcs
+from tippetop.sweeps.taylor_stepper import polynomials
 
 TOLERANCE = 1e-10
 """What is left out of the polynomials, relative to the momenta and velocities."""

@@ -20,13 +20,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from tippetop.catalogue import SWEPT
-from tippetop.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable
-from tippetop.files import in_words, path_of
-from tippetop.interrupts import deferred
+from tippetop.results.catalogue import SWEPT
+from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable
+from tippetop.support.files import in_words, path_of
+from tippetop.support.interrupts import deferred
 from tippetop.sweeps.definition import Sweep, Task
-from tippetop.sweeps.disk import bring_to_disk, clear_away, identity, locked
-from tippetop.sweeps.layout import (
+from tippetop.sweeps.store_layout import (
     CONTENTS,
     DIGEST,
     Status,
@@ -38,6 +37,7 @@ from tippetop.sweeps.layout import (
     refuse_another,
     refuse_existing,
 )
+from tippetop.sweeps.store_lock import bring_to_disk, clear_away, identity, locked
 
 
 class Store:

@@ -8,11 +8,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
-from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.top import Top, natural_units
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.stability import linear_tilts, vertical_growth_rates
 from tippetop.theory.steady import SteadyKind, vertical_spin
 from tippetop.theory.thresholds import CriticalSpins, critical_spins, jellett_line

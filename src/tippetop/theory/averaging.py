@@ -17,13 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from tippetop.errors import InvalidInput, is_number, is_whole
 from tippetop.integrators.base import Array
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.roots import crossing, dip
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import InvalidInput, is_number, is_whole
 from tippetop.theory.nutation import numbers_of
 from tippetop.theory.nutation_decay import Goals, Nutation, Stage, follow_nutation, launched
 from tippetop.theory.prediction import stable_by_energy

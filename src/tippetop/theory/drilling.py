@@ -15,11 +15,11 @@ import math
 
 import numpy as np
 
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.motion import angular_velocity, contact
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.top import Top
-from tippetop.problem import Problem, require_problem
+from tippetop.problem.problem import Problem, require_problem
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.requirements import require_creep, require_sphere
 from tippetop.theory.stability import drilling, spectrum
 from tippetop.theory.steady import (

@@ -21,8 +21,8 @@ import math
 from enum import StrEnum
 from typing import NamedTuple
 
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.top import Top
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.requirements import require_jellett
 from tippetop.theory.steady import SteadyKind, branch_jellett
 from tippetop.theory.thresholds import critical_jellett

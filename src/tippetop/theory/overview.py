@@ -3,10 +3,10 @@
 import math
 from dataclasses import dataclass, replace
 
-from tippetop.errors import InvalidInput
-from tippetop.frictions import ViscousFriction
 from tippetop.mechanics.hull import Hull
-from tippetop.problem import Problem, require_problem
+from tippetop.problem.frictions import ViscousFriction
+from tippetop.problem.problem import Problem, require_problem
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.drilling import standing_time
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio

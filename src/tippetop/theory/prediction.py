@@ -16,13 +16,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
-from tippetop.problem import Problem, require_problem
+from tippetop.problem.problem import Problem, require_problem
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.requirements import require_creep, require_jellett
 from tippetop.theory.series_roots import roots_between
 from tippetop.theory.steady import (

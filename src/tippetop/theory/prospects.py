@@ -5,16 +5,16 @@ stem.
 import math
 from dataclasses import dataclass
 
-from tippetop.bodies import Body
-from tippetop.frictions import ViscousFriction
-from tippetop.launch import Launch
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector, add, dot, scale
-from tippetop.problem import Problem
-from tippetop.shapes import EccentricSphere, Shape, Sphere
+from tippetop.problem.bodies import Body
+from tippetop.problem.frictions import ViscousFriction
+from tippetop.problem.launch import Launch
+from tippetop.problem.problem import Problem
+from tippetop.problem.shapes import EccentricSphere, Shape, Sphere
 from tippetop.theory.groups import Group, classify
 from tippetop.theory.prediction import touching_tilts
 from tippetop.theory.steady import SteadyKind, branch_jellett

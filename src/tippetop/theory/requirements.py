@@ -1,9 +1,9 @@
 """What the theory asks of a top, with a sentence for those it does not hold for."""
 
-from tippetop.errors import InvalidInput
 from tippetop.mechanics.hull import Hull, is_edge
 from tippetop.mechanics.rolling import is_set_valued, slip_length
 from tippetop.mechanics.top import Top
+from tippetop.support.errors import InvalidInput
 
 
 def require_one_surface(top: Top) -> None:

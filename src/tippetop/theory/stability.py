@@ -24,7 +24,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
 from tippetop.mechanics.branches import on_branch
 from tippetop.mechanics.motion import sliding_rates
@@ -34,6 +33,7 @@ from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.derivatives import derivative, jacobian
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.steady import (

@@ -18,7 +18,6 @@ from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from tippetop.errors import InvalidInput
 from tippetop.integrators.base import Array
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import SlidingState, State
@@ -26,7 +25,8 @@ from tippetop.mechanics.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.vectors import VERTICAL, Functions, Scalar, Vector, add, dot, scale
 from tippetop.mechanics.view import Angles, state_from_angles
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import InvalidInput
 from tippetop.theory.series_roots import roots_between
 
 Number = TypeVar("Number", float, Array)

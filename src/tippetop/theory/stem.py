@@ -1,12 +1,12 @@
 """What it takes to stand on a stem: the least Jellett's integral about its tip."""
 
-from tippetop.bodies import Body
-from tippetop.errors import InvalidInput, is_number, is_whole, require
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.hull import each_surface
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector, dot
+from tippetop.problem.bodies import Body
+from tippetop.support.errors import InvalidInput, is_number, is_whole, require
 from tippetop.theory.steady import SteadyKind
 from tippetop.theory.thresholds import critical_jellett
 

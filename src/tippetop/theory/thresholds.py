@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
-from tippetop.problem import Problem, require_problem
+from tippetop.problem.problem import Problem, require_problem
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.steady import (
     VERTICAL_SPINS,

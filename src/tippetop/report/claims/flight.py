@@ -4,8 +4,8 @@ import numpy as np
 import xarray as xr
 
 from tippetop.mechanics.euler import published_parameters
-from tippetop.presets import REPORT
-from tippetop.problem import Problem
+from tippetop.problem.presets import REPORT
+from tippetop.problem.problem import Problem
 from tippetop.report.claim import Finding, examines
 from tippetop.report.quoted import ENERGY, ENERGY_TIME, STOP
 from tippetop.report.tolerance import PLOTTED, rounded

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.presets import REPORT, REPORT_TABLE_1
+from tippetop.problem.presets import REPORT, REPORT_TABLE_1
 from tippetop.report.claim import Finding, both, examines
 from tippetop.report.experiments.runs import likely_end
 from tippetop.report.quoted import END_OF_FIG_5, TILT, TURNED_AT

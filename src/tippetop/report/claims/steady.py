@@ -5,7 +5,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.presets import REPORT
+from tippetop.problem.presets import REPORT
 from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.experiments.equations import left_of_217
 from tippetop.report.quoted import END_OF_FIG_5

@@ -3,9 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from tippetop.frictions import ViscousFriction
-from tippetop.presets import report_problem
-from tippetop.problem import Problem
+from tippetop.problem.frictions import ViscousFriction
+from tippetop.problem.presets import report_problem
+from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.quoted import MU

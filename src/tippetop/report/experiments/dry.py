@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tippetop import presets
 from tippetop.contact.sliding import sliding_motion
-from tippetop.contacts import Contact
-from tippetop.frictions import CoulombFriction, RegularizedCoulombFriction
 from tippetop.integrators.classical import classical_step
 from tippetop.integrators.rates import RightHandSide
-from tippetop.launch import Launch
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import velocity_without_slip
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import natural, natural_state, natural_units
-from tippetop.presets import report_problem
-from tippetop.problem import Problem
+from tippetop.problem import presets
+from tippetop.problem.contact_rules import Contact
+from tippetop.problem.frictions import CoulombFriction, RegularizedCoulombFriction
+from tippetop.problem.launch import Launch
+from tippetop.problem.presets import report_problem
+from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import happenings, stopping
 from tippetop.report.quoted import SPIN, TILT

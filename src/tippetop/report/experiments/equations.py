@@ -14,13 +14,13 @@ from tippetop.mechanics.euler import published_normal_force, published_parameter
 from tippetop.mechanics.motion import angular_velocity, contact
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, cross, dot, scale
-from tippetop.presets import REPORT, report_problem
-from tippetop.problem import Problem
+from tippetop.problem.presets import REPORT, report_problem
+from tippetop.problem.problem import Problem
+from tippetop.problem.shapes import EccentricSphere
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import VARIABLES
 from tippetop.run import simulate
-from tippetop.shapes import EccentricSphere
 
 _INSTANT = 5.0
 _INSTANTS = np.array([1.0, 3.0, _INSTANT, 6.0, 8.0])

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from tippetop.presets import report_problem
-from tippetop.problem import Problem
+from tippetop.problem.presets import report_problem
+from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import WINDOW, flight_readings, stopping, swept, unilateral
 from tippetop.report.quoted import MU, TILT

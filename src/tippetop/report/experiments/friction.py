@@ -11,7 +11,7 @@ from scipy.optimize import curve_fit
 from scipy.stats import linregress
 
 from tippetop.integrators.base import Array
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run

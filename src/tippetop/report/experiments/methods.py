@@ -11,8 +11,8 @@ from scipy.integrate import RK45
 from tippetop.integrators.base import Array, Motion
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.vectors import Scalar
-from tippetop.presets import report_problem
-from tippetop.problem import Problem
+from tippetop.problem.presets import report_problem
+from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import launch_state, listing_rates

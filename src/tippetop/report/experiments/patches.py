@@ -7,10 +7,10 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.frictions import ContensouFriction, ViscousFriction
-from tippetop.hertz import MATERIALS, hertz_patch_radius
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
-from tippetop.presets import LEINE_GLOCKER, report_problem
+from tippetop.problem.frictions import ContensouFriction, ViscousFriction
+from tippetop.problem.hertz_patch import MATERIALS, hertz_patch_radius
+from tippetop.problem.presets import LEINE_GLOCKER, report_problem
 from tippetop.report import quoted
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.dry import turning_time, with_friction

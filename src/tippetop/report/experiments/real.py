@@ -5,10 +5,10 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.bodies import Body
-from tippetop.frictions import ContensouFriction, CoulombFriction, ViscousFriction
-from tippetop.launch import Launch
-from tippetop.presets import (
+from tippetop.problem.bodies import Body
+from tippetop.problem.frictions import ContensouFriction, CoulombFriction, ViscousFriction
+from tippetop.problem.launch import Launch
+from tippetop.problem.presets import (
     EGG,
     EULER_DISK,
     HURRICANE_BALLS,
@@ -16,11 +16,11 @@ from tippetop.presets import (
     REPORT_STEM,
     report_problem,
 )
-from tippetop.problem import Problem
+from tippetop.problem.problem import Problem
+from tippetop.problem.shapes import Shape, Sphere
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import happenings
 from tippetop.run import simulate
-from tippetop.shapes import Shape, Sphere
 from tippetop.theory.resting_center import RestingCenter, resting_center
 from tippetop.theory.stem import jellett_about, least_jellett_to_stand
 

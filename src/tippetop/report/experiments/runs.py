@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from tippetop.mechanics.euler import published_energy
-from tippetop.presets import REPORT_TABLE_1, report_problem
-from tippetop.problem import Problem
+from tippetop.problem.presets import REPORT_TABLE_1, report_problem
+from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.listing import VARIABLES, listing_run
 from tippetop.report.quoted import END_OF_FIG_5, ROUGH_FRICTION, SPIN, TILT

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import brentq
 
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.flights import leaves_at, onset_between
 from tippetop.report.experiments.runs import WINDOW, on_table, swept, unilateral

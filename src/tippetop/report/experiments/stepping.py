@@ -7,8 +7,8 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.frictions import ContensouFriction
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
+from tippetop.problem.frictions import ContensouFriction
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, events_of
 from tippetop.report.experiments.runs import happenings

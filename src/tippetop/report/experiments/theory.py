@@ -8,10 +8,10 @@ from dataclasses import astuple
 import numpy as np
 import xarray as xr
 
-from tippetop.bodies import Body
 from tippetop.integrators.base import Array
-from tippetop.presets import LEINE_GLOCKER, REPORT, REPORT_TABLE_1, report_problem
-from tippetop.problem import Problem
+from tippetop.problem.bodies import Body
+from tippetop.problem.presets import LEINE_GLOCKER, REPORT, REPORT_TABLE_1, report_problem
+from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.equations import left_of_217
 from tippetop.report.experiments.runs import WINDOW

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tippetop.integrators.base import Array
-from tippetop.presets import report_problem
+from tippetop.problem.presets import report_problem
 from tippetop.report import quoted
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table

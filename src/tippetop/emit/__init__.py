@@ -1,1 +1,0 @@
-"""The mechanics recorded as a graph of operations, and printed as code for other machines."""

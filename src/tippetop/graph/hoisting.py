@@ -1,0 +1,71 @@
+"""What a recorded function makes of its parameters alone, apart from the rest."""
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from tippetop.graph import graph
+from tippetop.graph.recording import Recorded, needed
+
+OPERATIONS: Mapping[str, Callable[..., Any]] = {
+    graph.SUM: operator.add,
+    graph.DIFFERENCE: operator.sub,
+    graph.PRODUCT: operator.mul,
+    graph.QUOTIENT: operator.truediv,
+    graph.NEGATIVE: operator.neg,
+    graph.SIZE: abs,
+    graph.LESS: lambda a, b: 1.0 * (a < b),
+    graph.ROOT: lambda number: number**0.5,
+    graph.POWER: operator.pow,
+}
+"""What plain operators make a node."""
+
+
+def hoisted(recorded: Recorded) -> tuple[Recorded, Recorded]:
+    """A function of the parameters alone, and the rest, to which what that makes are further
+    parameters.
+    """
+    fixed = set[int]()
+    for node in recorded.nodes:
+        given = node.name in (graph.PARAMETER, graph.CONSTANT)
+        if given or (
+            node.operands and fixed.issuperset([operand.place for operand in node.operands])
+        ):
+            fixed.add(node.place)
+    moving = [node for node in recorded.nodes if node.place not in fixed]
+    asked = {operand.place for node in moving for operand in node.operands}
+    asked.update([node.place for node in recorded.outputs])
+    made = [node for node in recorded.nodes if node.operands and node.place in fixed & asked]
+    further = {node.place: recorded.parameters + k for k, node in enumerate(made)}
+    rest, found = graph.Graph(), dict[int, graph.Node]()
+    for node in recorded.nodes:
+        if node.place in further:
+            found[node.place] = rest.node(graph.PARAMETER, (), further[node.place])
+        elif node.place not in fixed or not node.operands:
+            operands = tuple([found[operand.place] for operand in node.operands])
+            found[node.place] = rest.node(node.name, operands, node.value)
+    outputs = tuple([found[node.place] for node in recorded.outputs])
+    count = recorded.parameters + len(made)
+    return (
+        Recorded(needed(made[0].graph, made) if made else (), tuple(made), 0, recorded.parameters),
+        Recorded(needed(rest, outputs), outputs, recorded.size, count),
+    )
+
+
+def played(recorded: Recorded, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
+    """What a recorded function makes of a state and parameters, in the arithmetic that they
+    have.
+    """
+    found = dict[int, Any]()
+    for node in recorded.nodes:
+        match node.name:
+            case graph.CONSTANT:
+                value = node.value
+            case graph.STATE:
+                value = state[int(node.value)]
+            case graph.PARAMETER:
+                value = parameters[int(node.value)]
+            case name:
+                value = OPERATIONS[name](*[found[operand.place] for operand in node.operands])
+        found[node.place] = value
+    return [found[node.place] for node in recorded.outputs]

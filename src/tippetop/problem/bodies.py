@@ -1,0 +1,226 @@
+"""Bodies of revolution as users state them, validated, and as a lathe makes them."""
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator, model_validator
+
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.surface import Surface
+from tippetop.problem.shapes import EccentricSphere, Ring, Shape, Sphere
+from tippetop.support.errors import InvalidInput
+from tippetop.support.validation import ONE_OR_SEVERAL, Part, Points, Positive, Quantity
+
+if TYPE_CHECKING:
+    from tippetop.lathe.hull import Zone
+    from tippetop.lathe.workpiece import Insert, Workpiece
+
+
+def _a_profile(
+    points: tuple[tuple[float, ...], ...] | None,
+) -> tuple[tuple[float, ...], ...] | None:
+    """Refuse points of which no body could be turned."""
+    if points is not None:
+        from tippetop.lathe.profile import profile_of  # noqa: PLC0415 - slow to import
+
+        profile_of(points)
+    return points
+
+
+class Body(Part):
+    """A rigid body of revolution.
+
+    Attributes
+    ----------
+    mass
+        Mass, kg.
+    shape
+        Outer surface, and where the centre of mass is in it; or several, whose convex hull the body
+        is.
+    I1
+        Moment of inertia about the centre of mass, transverse to the axis of symmetry, kg m^2.
+    I3
+        Moment of inertia about the axis of symmetry, kg m^2; at most 2 I1.
+    profile
+        What the body looks like, as pictures of it show it where it fits its surfaces: points
+        (distance from the axis, height above the centre of mass) or, at the end of an arc,
+        (distance, height, radius), m, as those of `tippetop.lathe.workpiece.Workpiece`. Without it,
+        pictures show the hull of its surfaces.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> sphere = tt.EccentricSphere(radius=0.02, eccentricity=0.3)
+    >>> top = tt.Body(mass=0.02, shape=sphere, I1=3.0e-6, I3=3.2e-6)
+    >>> tt.Body(mass=0.02, shape=sphere, I1=3.0e-6, I3=7e-6)
+    Traceback (most recent call last):
+        ...
+    tippetop.support.errors.InvalidInput: I3 = 7e-06 is not possible;
+    accepted: at most 2 I1 = 6e-06, as for any body
+    """
+
+    mass: Annotated[Positive, Quantity("kg", "mass of the body")]
+    shape: Annotated[Shape | tuple[Shape, ...], ONE_OR_SEVERAL]
+    I1: Annotated[
+        Positive, Quantity("kg m2", "moment of inertia transverse to the axis of symmetry")
+    ]
+    I3: Annotated[Positive, Quantity("kg m2", "moment of inertia along the axis of symmetry")]
+    profile: Annotated[
+        Points | None, AfterValidator(_a_profile), Quantity("m", "profile that pictures show")
+    ] = None
+
+    @model_validator(mode="after")
+    def _can_exist(self) -> Self:
+        if self.I3 > 2 * self.I1:
+            raise InvalidInput("I3", self.I3, f"at most 2 I1 = {2 * self.I1:g}, as for any body")
+        for number, shape in enumerate(self.shapes):
+            if len(self.shapes) > 1 and not _reaches_out(number, self.shapes):
+                numbers = ", ".join(f"{name} = {value}" for name, value in shape)
+                raise InvalidInput(
+                    f"shape.{number}", numbers, "a surface that the others do not enclose"
+                )
+        return self
+
+    @property
+    def shapes(self) -> tuple[Shape, ...]:
+        """Its surfaces."""
+        return self.shape if isinstance(self.shape, tuple) else (self.shape,)
+
+    @property
+    def surface(self) -> Surface:
+        """Its surface, from the centre of mass, as the mechanics takes it: a `Hull` of several."""
+        if isinstance(self.shape, tuple):
+            return Hull.of(tuple(shape.surface for shape in self.shape))
+        return self.shape.surface
+
+    @classmethod
+    def turned(
+        cls,
+        profile: "Sequence[Sequence[float]] | Path | str | Workpiece",
+        density: float | None = None,
+        *,
+        inserts: "Sequence[Insert | Mapping[str, Any]] | None" = None,
+        unit: Literal["m", "cm", "mm", "in"] | None = None,
+        whole: bool = False,
+    ) -> Self:
+        """The body that a lathe makes: mass, moments of inertia and the surfaces it touches the
+        table with.
+
+        They are exact for the profile, whose edges are straight or arcs of circles, and which
+        pictures show.
+
+        Parameters
+        ----------
+        profile
+            Points (distance from the axis, height) or, at the end of an arc, (distance, height,
+            radius), as in `tippetop.lathe.workpiece.Workpiece`; or such a workpiece; or a .toml,
+            .csv or .svg file, as in `tippetop.lathe.files.read_workpiece`.
+        density
+            Density, kg/m^3.
+        inserts
+            Cavities and weights: `tippetop.lathe.workpiece.Insert` or their fields, profile and
+            density.
+        unit
+            What the numbers of the profile are in: "m" if left out.
+        whole
+            Take spheres and rings that the body has only a part of as whole. Otherwise it is
+            refused if it does not stay within them.
+
+        Raises
+        ------
+        InvalidInput
+            If the profile is no body's, or if no surfaces that are known make up what it touches
+            with.
+        FileTrouble
+            If a file cannot be read.
+        """
+        from tippetop.lathe.files import read_workpiece  # noqa: PLC0415 - slow to import
+        from tippetop.lathe.workpiece import Workpiece  # noqa: PLC0415
+
+        given = {"density": density, "inserts": inserts, "unit": unit}
+        fields = {name: value for name, value in given.items() if value is not None}
+        match profile:
+            case Workpiece():
+                piece = profile.model_copy(update=fields)
+            case str() | Path():
+                piece = read_workpiece(profile, **fields)
+            case _:
+                piece = Workpiece(**{"profile": profile, **fields})
+        mass, center, I1, I3 = piece.mass_properties
+        shapes = touching(piece, whole)
+        shown = piece.outline.points_above(center)
+        return cls(
+            mass=mass, shape=shapes[0] if len(shapes) == 1 else shapes, I1=I1, I3=I3, profile=shown
+        )
+
+
+def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
+    """The surfaces that a turned body touches the table with, as seen from its centre of mass.
+
+    Raises `InvalidInput` if there are others than spheres and rings; or, unless they may be taken
+    as whole, if one of these, were it whole, would be outside of the body.
+    """
+    center, hull, reach = piece.mass_properties.center, piece.hull, PROTRUDING * piece.outline.size
+    if len(hull.zones) > MOST:
+        many = f"a body that stands on {len(hull.zones)} surfaces"
+        raise InvalidInput("profile", many, f"at most {MOST}: arcs rather than many short edges")
+    found = {zone: _shape(zone, zone.height - center) for zone in hull.zones}
+    for zone in hull.zones:
+        if hull.protrusion(zone)[0] > reach and not whole:
+            part = f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
+            wanted = (
+                "surfaces that stay inside the body where it does not stand on them, or to take"
+                " them as whole"
+            )
+            raise InvalidInput("profile", part, wanted)
+    shapes = [found[zone] for zone in hull.whole(reach)]
+    match shapes:
+        case [Sphere(radius=radius, center=above)] if 0.0 < above < radius:
+            return [EccentricSphere(radius=radius, eccentricity=above / radius)]
+    return shapes
+
+
+def _shape(zone: "Zone", center: float) -> Shape:
+    if zone.radius == 0.0 and zone.tube:
+        return Sphere(radius=zone.tube, center=center)
+    if zone.radius > 0.0:
+        return Ring(radius=zone.radius, center=center, tube=zone.tube)
+    part = "a sharp tip" if zone.name == "tip" else "an arc around a point beyond the axis"
+    raise InvalidInput("profile", part, "a body that stands on spheres and rings")
+
+
+MOST = 12
+"""Most surfaces of a turned body."""
+
+PROTRUDING = 1e-6
+"""How far a surface taken as whole may reach out of the body, in sizes of this."""
+
+LOOKS, SEARCHES = 64, 5
+"""Looks at the tilts where a surface may be outermost, repeated so often around the best of them.
+"""
+
+REACH = 1e-9
+"""How far a surface must reach beyond the others, in its sizes, to be one of the body's."""
+
+
+def _reaches_out(number: int, shapes: tuple[Shape, ...]) -> bool:
+    """Whether a surface touches the table at some tilt; also where no computer can tell."""
+    own = shapes[number].surface
+    others = [shape.surface for place, shape in enumerate(shapes) if place != number]
+    low, high = 0.0, math.pi
+    for _ in range(SEARCHES):
+        looks = [low + (high - low) * k / LOOKS for k in range(LOOKS + 1)]
+        try:
+            ahead = [
+                own.height(c) - max(other.height(c) for other in others)
+                for c in map(math.cos, looks)
+            ]
+        except ArithmeticError:
+            return True
+        if max(ahead) > REACH * own.size:
+            return True
+        best = ahead.index(max(ahead))
+        low, high = looks[max(best - 1, 0)], looks[min(best + 1, LOOKS)]
+    return False

@@ -1,0 +1,185 @@
+"""The friction of the table: its laws as users state them, validated."""
+
+from abc import abstractmethod
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from tippetop.mechanics.contensou import EllipsoidalLaw
+from tippetop.mechanics.contensou_hertz import HertzLaw
+from tippetop.mechanics.coulomb import CoulombLaw
+from tippetop.mechanics.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.vectors import Scalar
+from tippetop.support.validation import NO_WORD, NotNegative, Positive, Quantity, Variant
+
+LEAST_PATCH = 1e-9
+"""Least radius of a contact patch in units of the body's size: smaller, its drilling is lost in
+rounding.
+"""
+
+LEAST_EPS = 1e-100
+"""Least slip speed that a law is smoothed below, m/s: the square of a much smaller one is 0."""
+
+
+class Friction(Variant):
+    """The friction of the table; a kind of it is a subclass.
+
+    Attributes
+    ----------
+    kind
+        The word for the kind, in a subclass with a default: ``kind: Literal["wet"] = "wet"``.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> isinstance(tt.CoulombFriction(mu=0.3), tt.Friction)
+    True
+    """
+
+    kind: str
+
+    @property
+    @abstractmethod
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+
+    def fits(self, size: Scalar) -> bool:
+        """Whether the contact of a body of this size, m, can be so; of arrays, an array of it."""
+        return True
+
+    @property
+    def vanishes(self) -> bool:
+        """Whether the table is smooth: there is a coefficient mu, and it is 0."""
+        return getattr(self, "mu", None) == 0.0
+
+
+class ViscousFriction(Friction):
+    """Friction force -mu N v for slip velocity v and normal force N.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient, s/m.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.ViscousFriction(mu=0.3).law.traction((0.1, 0.0), (0.0, 0.0, 0.0)).force  # at 0.1 m/s
+    (-0.03, -0.0)
+    """
+
+    kind: Literal["viscous"] = "viscous"
+    mu: Annotated[NotNegative, Quantity("s m-1", "friction coefficient")]
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+        return ViscousLaw(self.mu)
+
+
+class RegularizedCoulombFriction(Friction):
+    """Friction force -mu N v / sqrt(v^2 + eps^2) for slip velocity v and normal force N.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient, dimensionless.
+    eps
+        Slip speed below which the force falls to zero, m/s.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> law = tt.RegularizedCoulombFriction(mu=0.3, eps=1e-3).law
+    >>> [round(law.traction((slip, 0.0), (0.0, 0.0, 0.0)).force[0], 3) for slip in (1e-3, 0.1)]
+    [-0.212, -0.3]
+    """
+
+    kind: Literal["regularized_coulomb"] = "regularized_coulomb"
+    mu: Annotated[NotNegative, Quantity("1", "friction coefficient")]
+    eps: Annotated[
+        float,
+        Field(ge=LEAST_EPS),
+        NO_WORD,
+        Quantity("m s-1", "slip speed below which friction falls to zero"),
+    ] = 1e-3
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+        return RegularizedCoulombLaw(self.mu, self.eps)
+
+
+class CoulombFriction(Friction):
+    """Dry friction, Coulomb's law as it is: ``-mu N v / |v|`` for slip velocity v and normal force
+    N.
+
+    Where v = 0 the force is what keeps it so, up to mu N: the top sticks, and rolls. Drilling,
+    which is turning about the vertical on the spot, is not resisted.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> problem = tt.presets.report_problem().replace({"friction.kind": "coulomb"})
+    >>> run = tt.simulate(problem, duration=1.0)
+    >>> str(run["event_kind"].values[0]), bool(run["turns_over"].isnull())  # it sticks and rolls
+    ('stick', True)
+    """
+
+    kind: Literal["coulomb"] = "coulomb"
+    mu: Annotated[Positive, Quantity("1", "Coulomb friction coefficient")]
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+        return CoulombLaw(self.mu)
+
+
+class ContensouFriction(Friction):
+    """Dry friction of a round patch that slides and drills at once (Contensou 1963).
+
+    Every part of the patch rubs by Coulomb's law against its own velocity: drilling makes sliding
+    easier, and sliding makes drilling easier. The top sticks while neither is needed to hold it.
+
+    Attributes
+    ----------
+    mu
+        Friction coefficient.
+    patch_radius
+        Radius R of the patch, m; see `hertz_patch_radius`.
+    pressure
+        "hertz": the pressure of Hertz's contact, its law exact; "ellipsoidal": the approximation of
+        its limit surface by an ellipsoid that drills as hard, semi-axis (3 pi/16) R (Leine and
+        Glocker 2003).
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> law = tt.ContensouFriction(mu=0.3, patch_radius=1e-3).law
+    >>> slip, still, spinning = (0.001, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 100.0)
+    >>> slow, fast = (law.traction(slip, spin).force[0] for spin in (still, spinning))
+    >>> round(slow, 4), round(fast, 4)  # drilling makes sliding easier
+    (-0.3, -0.0035)
+    """
+
+    kind: Literal["contensou"] = "contensou"
+    mu: Annotated[Positive, Quantity("1", "Coulomb friction coefficient")]
+    patch_radius: Annotated[Positive, Quantity("m", "radius of the contact patch")]
+    pressure: Literal["hertz", "ellipsoidal"] = "hertz"
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as the mechanics takes it."""
+        return (HertzLaw if self.pressure == "hertz" else EllipsoidalLaw)(
+            self.mu, self.patch_radius
+        )
+
+    def fits(self, size: Scalar) -> bool:
+        """As `Friction.fits`: a patch is no larger than the body, and more than a point."""
+        fits: bool = (self.patch_radius >= LEAST_PATCH * size) & (self.patch_radius <= size)
+        return fits

@@ -1,0 +1,174 @@
+"""Outer surfaces of bodies as users state them, validated, with the centre of mass in them."""
+
+from abc import abstractmethod
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface, Surface
+from tippetop.support.errors import InvalidInput
+from tippetop.support.validation import NO_WORD, NotNegative, Number, Positive, Quantity, Variant
+
+Center = Annotated[Number, Quantity("m", "height of the surface's middle above the centre of mass")]
+
+
+class Shape(Variant):
+    """The outer surface of a body, and where the centre of mass is in it; a kind of it is a
+    subclass.
+
+    Attributes
+    ----------
+    kind
+        The word for the kind, in a subclass with a default: ``kind: Literal["cone"] = "cone"``.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> isinstance(tt.Spheroid(across=0.02, along=0.03), tt.Shape)
+    True
+    >>> sorted(tt.Shape.kinds)[:1]
+    ['eccentric_sphere']
+    """
+
+    kind: str
+
+    @property
+    @abstractmethod
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+
+
+class EccentricSphere(Shape):
+    """A sphere whose centre of mass is off its centre: the tippe top.
+
+    Attributes
+    ----------
+    radius
+        Radius of the sphere, m.
+    eccentricity
+        Distance of the centre of mass from the centre, in radii, between 0 and 1.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.EccentricSphere(radius=0.02, eccentricity=0.3)
+    EccentricSphere(kind='eccentric_sphere', radius=0.02, eccentricity=0.3)
+    """
+
+    kind: Literal["eccentric_sphere"] = "eccentric_sphere"
+    radius: Annotated[Positive, Quantity("m", "radius of the sphere")]
+    eccentricity: Annotated[
+        float,
+        Field(gt=0, lt=1),
+        NO_WORD,
+        Quantity("1", "distance of the centre of mass from the centre, in radii"),
+    ]
+
+    @property
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return SphereSurface(self.radius, self.eccentricity * self.radius)
+
+
+class Sphere(Shape):
+    """A sphere whose centre is anywhere on the axis: the tip of a stem, or one of two hurricane
+    balls.
+
+    Attributes
+    ----------
+    radius
+        Radius of the sphere, m.
+    center
+        Height of its centre above the centre of mass, along the axis, m.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> bowl, tip = tt.Sphere(radius=0.02, center=0.006), tt.Sphere(radius=0.003, center=0.025)
+    >>> top = tt.Body(mass=0.02, shape=[bowl, tip], I1=3.0e-6, I3=3.2e-6)
+    >>> [shape.kind for shape in top.shapes]
+    ['sphere', 'sphere']
+    """
+
+    kind: Literal["sphere"] = "sphere"
+    radius: Annotated[Positive, Quantity("m", "radius of the sphere")]
+    center: Center
+
+    @property
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return SphereSurface(self.radius, self.center)
+
+
+class Ring(Shape):
+    """A ring about the axis, sharp or round: the edge of a disk or a coin.
+
+    Attributes
+    ----------
+    radius
+        Radius of the circle in the middle of the ring, m.
+    center
+        Height of its plane above the centre of mass, along the axis, m.
+    tube
+        Radius by which the ring is thick, m; 0 for a sharp edge.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.Ring(radius=0.0125, center=0.0).surface.height(0.0)  # standing on its edge
+    0.0125
+    """
+
+    kind: Literal["ring"] = "ring"
+    radius: Annotated[Positive, Quantity("m", "radius of the ring's circle")]
+    center: Center = 0.0
+    tube: Annotated[NotNegative, Quantity("m", "radius of the ring's tube")] = 0.0
+
+    @property
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return RingSurface(self.radius, self.center, self.tube)
+
+
+MOST_ASPECT = 1e6
+"""Ratio of a spheroid's semi-axes; the square of it is still far from rounding, as its curvature
+needs.
+"""
+
+
+class Spheroid(Shape):
+    """A spheroid: the spinning egg.
+
+    Attributes
+    ----------
+    across
+        Semi-axis across the axis of symmetry, m.
+    along
+        Semi-axis along the axis of symmetry, m.
+    center
+        Height of its centre above the centre of mass, along the axis, m.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> egg = tt.Spheroid(across=0.02, along=0.03)
+    >>> egg.surface.height(1.0), egg.surface.height(0.0)  # of the centre, standing and lying
+    (0.03, 0.02)
+    """
+
+    kind: Literal["spheroid"] = "spheroid"
+    across: Annotated[Positive, Quantity("m", "semi-axis across the axis of symmetry")]
+    along: Annotated[Positive, Quantity("m", "semi-axis along the axis of symmetry")]
+    center: Center = 0.0
+
+    @model_validator(mode="after")
+    def _has_a_thickness(self) -> Self:
+        if not 1.0 / MOST_ASPECT <= self.along / self.across <= MOST_ASPECT:
+            accepted = f"within a factor of {MOST_ASPECT:.1g} of across = {self.across:g}"
+            raise InvalidInput("along", self.along, accepted)
+        return self
+
+    @property
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return SpheroidSurface(self.across, self.along, self.center)

@@ -1,0 +1,183 @@
+"""What is read off a run on its way: its samples, what is integrated along it, and what it must
+keep.
+"""
+
+import numpy as np
+
+from tippetop.contact.block import NODES, WEIGHTS, Block
+from tippetop.contact.choice import as_begun
+from tippetop.contact.flight import Flight
+from tippetop.contact.mode import Mode, Outcome
+from tippetop.contact.readings import TOLD, Instants, instants, read
+from tippetop.contact.sliding import Sliding
+from tippetop.contact.trajectory import Trajectory
+from tippetop.integrators.base import Array
+from tippetop.integrators.dense import parts_of, powers
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Row, Scalar
+from tippetop.results.monitor import Monitor, kept
+from tippetop.results.samples import Samples
+
+_INTEGRALS = np.array(
+    [
+        np.polynomial.Legendre.fit(NODES, unit, len(NODES) - 1, domain=[0.0, 1.0])
+        .integ(lbnd=0.0)
+        .convert(kind=np.polynomial.Polynomial, domain=[0.0, 1.0])
+        .coef
+        for unit in np.eye(len(NODES))
+    ]
+)
+"""The integrals of Lagrange's polynomials on Gauss's points, from 0, in powers from -1 to 1 over a
+step.
+"""
+
+
+def kept_in(mode: Mode, y: Row) -> tuple[Scalar, ...]:
+    """What the monitor sees of the numbers of a mode."""
+    return kept(mode.state(y), mode.top)
+
+
+class Recorder:
+    """Takes the samples of a launch on its way, and what is integrated along it; all in natural
+    units.
+
+    It is made of the top, the state at launch, the direction `azimuth` into which the axis leans
+    there, rad (the marker lies in the plane of axis and vertical), increasing sample times, shape
+    (k,), and the energy `lost` in an impact at launch.
+    """
+
+    def __init__(
+        self, top: Top, start: State, azimuth: float, times: Array, lost: float = 0.0
+    ) -> None:
+        self.top, self.times = top, times
+        self._parts: list[Array] = []
+        self.modes = [Sliding.name, Flight.name]
+        self._taken = 0
+        self._last: tuple[Block, tuple[Array, Array, Array, Array]] | None = None
+        self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
+        # A law without torque has nothing to lose by drilling or rolling.
+        self._resisted = not top.torque_free
+        self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._resisted)
+        self._struck = lost
+        self.monitor = Monitor(top, start)
+
+    def take(self, block: Block) -> None:
+        """Take the samples in a block."""
+        if not len(block.starts):
+            return
+        integrals = self._integrate(block)
+        until = int(np.searchsorted(self.times, block.ends[-1], side="right"))
+        times = self.times[self._taken : until]
+        self._taken = until
+        self._last = block, integrals
+        if len(times):
+            self._sample(block, times, *integrals)
+
+    def outcome_of(self, trajectory: Trajectory) -> Outcome:
+        """How a trajectory of which all was taken ended, by what it kept on its way and keeps at
+        its end.
+        """
+        assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
+        tolerance = getattr(trajectory.integrator, "tolerance", 0.0)
+        return self.monitor.concluded(
+            trajectory.outcome, trajectory.state, self._sums[3], tolerance
+        )
+
+    def finish(self, end: float, state: State, early: bool) -> Samples:
+        """All samples of a launch that ended; where it did so early, its end is the last of
+        them.
+        """
+        if early and not (self._parts and self._parts[-1][0, -1] >= end):
+            if self._last is None:
+                self._parts.append(self._single(state))
+            else:
+                block, integrals = self._last
+                self._sample(block, np.array([end]), *integrals)
+        if not self._parts:
+            self._parts.append(self._single(state))
+        rows = np.concatenate(self._parts, axis=1) if len(self._parts) > 1 else self._parts[0]
+        times, mode, x, y, turn, work, drilled, rolled, struck, pole = rows[:10]
+        told, lost = Instants.unpack(rows[10:]), (struck, drilled, rolled)
+        return Samples(times, told, x, y, turn, work, *lost, pole, mode.astype(np.int8))
+
+    def _sample(
+        self, block: Block, times: Array, rates: Array, values: Array, poles: Array, struck: Array
+    ) -> None:
+        """Take the samples of a block at some times."""
+        step = block.step_at(times)
+        part = parts_of(times, block.starts[step], block.ends[step])
+        integrals = _INTEGRALS @ powers(2.0 * part - 1.0, len(NODES) + 1).T * block.spans[step]
+        sums = values.take(step, axis=1) + np.einsum(
+            "ik,qik->qk", integrals, rates.take(step, axis=2)
+        )
+        rows = np.empty((10 + TOLD, len(times)))
+        rows[0], rows[2:6], rows[6:8] = times, sums[:4], -sums[4:] if self._resisted else 0.0
+        rows[8], rows[9] = struck[step], poles[step]
+        for mode, here, numbers in block.sampled(step, part):
+            rows[10:, here] = numbers
+            if mode.label not in self.modes:
+                self.modes.append(mode.label)
+            rows[1, here] = self.modes.index(mode.label)
+        self._parts.append(rows)
+
+    def _single(self, state: State) -> Array:
+        """The sample of a launch that ended as it began."""
+        mode, numbers = as_begun(state, self.top)
+        told = read(instants, mode, np.array([numbers]).T)[:, 0]
+        sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole]
+        return np.array([[0.0, 0.0, *sums, *told]]).T
+
+    def _integrate(self, block: Block) -> tuple[Array, Array, Array, Array]:
+        """Integrate along the steps of a block.
+
+        Returns
+        -------
+        tuple
+            Rates of the quadratures at Gauss's points, shape (q, 8, k), their values where the
+            steps begin, shape (q, k), the charts of the angle, and what impacts took before, both
+            of shape (k,). The quadratures are x, y, the angle and the work, and beside them, for a
+            law with a torque, the work of drilling and of rolling.
+        """
+        count = len(block.starts)
+        rates, axis = np.empty((len(self._sums), len(NODES), count)), np.empty((2, count))
+        poles = np.empty(count)
+        for group in block.groups:
+            found = group.nodes[: len(rates)]
+            if len(group.which) == count:
+                rates = found
+            else:
+                rates[:, :, group.which] = found
+            axis[:, group.which], poles[group.which] = group.terms[:, :2, 0].T, group.poles
+        gains = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
+        changes = poles - np.concatenate([[self._pole], poles[:-1]])
+        values = np.cumsum(np.concatenate([self._sums[:, None], gains], axis=1), axis=1)
+        values[2] = self._sums[2] + evenly_summed(gains[2])
+        for step in np.flatnonzero(changes):
+            values[2, step:] += changes[step] * np.arctan2(axis[1, step], axis[0, step])
+        lost = np.zeros(count + 1)
+        for place, segment in zip(np.cumsum(block.lengths), block.segments, strict=True):
+            if segment.transition is not None:
+                lost[place] += segment.transition.energy_lost
+        struck = np.cumsum(lost)
+        values[3] -= struck
+        struck += self._struck
+        self._struck = float(struck[-1])
+        self._sums, self._pole = values[:, -1], float(poles[-1])
+        for group in block.groups:
+            size, cosine, height, energy, jellett = read(
+                kept_in, group.mode, group.begun, total=len(group.which)
+            )
+            with np.errstate(invalid="ignore"):  # of edges on which the axis is vertical
+                self.monitor.see(size, cosine, height, energy, jellett, values[3, group.which])
+        return rates, values[:, :-1], poles, struck[:-1]
+
+
+def evenly_summed(gains: Array) -> Array:
+    """Sums of the first gains, from none to all, without adding up the rounding of many that are
+    alike.
+    """
+    mean = np.mean(gains)
+    found: Array = mean * np.arange(len(gains) + 1.0)
+    found[1:] += np.cumsum(gains - mean)
+    return found

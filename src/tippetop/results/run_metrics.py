@@ -1,0 +1,128 @@
+"""What is found on the way of one launch, block by block: events and extremes of the dense
+solution.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from tippetop.contact.block import WEIGHTS, Block, ModeSteps
+from tippetop.contact.flights import Flights
+from tippetop.contact.mode import Event, Outcome
+from tippetop.contact.readings import Rates
+from tippetop.integrators.base import Array, Integrator
+from tippetop.integrators.dense import chebyshev
+from tippetop.integrators.polynomials import Polynomials, least_of_each
+from tippetop.mechanics.state import State
+from tippetop.mechanics.vectors import Scalar
+from tippetop.results.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
+
+AT_ONCE = 4
+"""Steps that are searched together for when something happens first; then so many times more, and
+again.
+"""
+
+FORCE_DEGREE = 20
+"""Degree of the polynomials in which the least normal force is looked for."""
+
+
+class Tally:
+    """What is found on the way of one launch, block by block."""
+
+    def __init__(self) -> None:
+        self._tips: list[tuple[Polynomials, Array, Array, Array]] = []
+        self.flights = Flights()
+        self._lowest, self._highest, self._raised, self._pressed = (
+            list[Polynomials]() for _ in range(4)
+        )
+        self._turned = np.nan
+        self._drilled = self._rolled = 0.0
+        self.steps = self.evaluations = 0
+        self.methods = dict[str, Integrator]()
+
+    def take(self, block: Block) -> None:
+        """Take in the steps of a block."""
+        self.steps += sum(segment.steps for segment in block.segments)
+        self.evaluations += sum(segment.evaluations for segment in block.segments)
+        for segment in block.segments:
+            if segment.method is not None and segment.method.name not in self.methods:
+                self.methods[segment.method.name] = segment.method
+            if not segment.mode.touching:
+                self.flights.take(segment)
+        for group in block.groups:
+            self._see(group, block.starts[group.which])
+            if not group.mode.touching:
+                self._rise(group)
+                continue
+            if not self.flights.rows:
+                self._press(group)
+            if not group.mode.top.torque_free:
+                self._resistance(group)
+
+    def _see(self, group: ModeSteps, starts: Array) -> None:
+        """Take in the motion of the tip of the axis."""
+        tip = Polynomials.of_unit(np.ascontiguousarray(group.terms[:, 2].T), group.spans)
+        seen = Rates(*group.nodes).axis
+        least, most, sag = seen.min(axis=0), seen.max(axis=0), tip.sag
+        low, high = least - sag, most + sag
+        self._tips.append((tip, starts, low, high))
+        self._lowest.append(tip.some(np.flatnonzero(low <= least.min())))
+        self._highest.append(tip.some(np.flatnonzero(high >= most.max()), sign=-1.0))
+        self._turned = _first(self._turned, tip, starts, (low <= 0.0) & (high >= 0.0), turning_time)
+
+    def _rise(self, group: ModeSteps) -> None:
+        """Take in the height of the centre of mass in flights."""
+        self._raised.append(Polynomials.of_unit(-group.terms[:, 9].T, group.spans))
+
+    def _press(self, group: ModeSteps) -> None:
+        """Take in the normal force."""
+        force = Rates(*group.nodes).force
+        least = force.min(axis=0)
+        # Between Gauss's points, and beyond them, it is lower by a small part of what it varies by
+        # there.
+        near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
+        places, transform, to_powers = chebyshev(FORCE_DEGREE)
+        unit = to_powers @ (transform @ Rates(*group.at(places, near)).force)
+        self._pressed.append(Polynomials.of_unit(unit, group.spans[near]))
+
+    def _resistance(self, group: ModeSteps) -> None:
+        """Take in the work of drilling and of rolling."""
+        shares, rates = WEIGHTS[:, None] * group.spans, Rates(*group.nodes)
+        self._drilled -= float(np.sum(shares * rates.drilling))
+        self._rolled -= float(np.sum(shares * rates.rolling))
+
+    def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
+        """All that was found, as numbers, given how and where it ended."""
+        last = State.unpack([np.float64(number) for number in state.pack()])
+        least = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
+        resisted, when = (
+            (self._drilled, self._rolled),
+            (self._turned, self.arrival(*final_band(last))),
+        )
+        number, ended = OUTCOMES.index(outcome), np.float64(time)
+        return Ends.of_one(
+            last, ended, number, events, self.flights, self.steps, resisted, least, when
+        )
+
+    def arrival(self, low: Scalar, high: Scalar) -> float:
+        """First time at which n_z is between `low` and `high`; nan if it never is."""
+        found = float(np.nan)
+        for tip, starts, least, most in self._tips:
+            near = (least <= high) & (most >= low)
+            found = _first(found, tip, starts, near, lambda some: arrival_time(some, low, high))
+        return found
+
+
+def _first(
+    known: float, tip: Polynomials, starts: Array, near: Flags, find: Callable[[Polynomials], Array]
+) -> float:
+    """The first time that is found on steps where it may be, or the one that is known if that is
+    earlier.
+    """
+    which, count = np.flatnonzero(near & ~(starts > known)), AT_ONCE
+    while len(which):
+        some, which, count = which[:count], which[count:], AT_ONCE * count
+        times = find(tip.some(some)) + starts[some]
+        if not np.all(np.isnan(times)):
+            return float(np.fmin(known, np.fmin.reduce(times)))
+    return known

@@ -1,0 +1,100 @@
+"""Samples of a run, and every variable over time: the report's variables, forces and invariants."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.contact.mode import Event
+from tippetop.contact.readings import Instants
+from tippetop.integrators.base import Array
+from tippetop.mechanics.quadratures import orientation
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.units import Units
+from tippetop.mechanics.vectors import scale
+from tippetop.mechanics.view import axis_sine
+
+
+class Samples(NamedTuple):
+    """A launch at its samples, in natural units; every number of shape (k,)."""
+
+    times: Array
+    """When."""
+    instants: Instants
+    """What is told of each."""
+    x: Array
+    y: Array
+    """Horizontal position of the centre of mass."""
+    turn: Array
+    work: Array
+    """Work of the contact force since launch."""
+    struck: Array
+    drilled: Array
+    rolled: Array
+    """Energy lost since launch in impacts, to drilling and to rolling."""
+    pole: Array
+    """Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`).
+    """
+    mode: NDArray[np.int8]
+    """Number of the contact mode, among the names that the recorder has met."""
+
+
+def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
+    """Return every variable of `catalogue.SAMPLED` in SI, by name, of a top in natural units."""
+    told, state = samples.instants, samples.instants.state
+    axis, momentum = state.axis, state.momentum
+    sine, (slip_x, slip_y), tilting = axis_sine(axis), told.slip, told.tilting
+    upright = sine == 0.0
+    if np.any(upright):
+        # Where the axis is vertical it leans nowhere; X is then the space axis x, and theta' the
+        # rate at which the axis leaves the pole.
+        slip_x, slip_y = (
+            np.where(upright, *both) for both in zip(told.point, told.slip, strict=True)
+        )
+        leaving = np.hypot(momentum[0], momentum[1]) / top.transverse_inertia
+        tilting = np.where(upright, np.copysign(leaving, axis[2]), tilting)
+    return {
+        "theta": np.arctan2(sine, axis[2]),
+        "theta_dot": tilting / units.time,
+        "phi": np.arctan2(axis[1], axis[0]),
+        "phi_dot": told.precession / units.time,
+        "omega3": told.spin / units.time,
+        "slip_x": slip_x * units.speed,
+        "slip_y": slip_y * units.speed,
+        "normal_force": told.force[2] * units.force,
+        "contact_force": np.stack(scale(units.force, told.force), -1),
+        "contact_torque": np.stack(scale(units.energy, told.torque), -1),
+        "energy": told.energy * units.energy,
+        "work": samples.work * units.energy,
+        "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled)
+        * units.energy,
+        "drilling_loss": samples.drilled * units.energy,
+        "rolling_loss": samples.rolled * units.energy,
+        "jellett": told.jellett * units.jellett,
+        "height": state.height * units.length,
+        "gap": told.gap * units.length,
+        "x": samples.x * units.length,
+        "y": samples.y * units.length,
+        "axis": np.stack(axis, -1),
+        "velocity": np.stack(scale(units.speed, state.velocity), -1),
+        "angular_momentum": np.stack(scale(units.angular_momentum, momentum), -1),
+        "orientation": np.stack(orientation(axis, samples.turn, samples.pole, np), -1),
+    }
+
+
+def event_in_si(event: Event, units: Units) -> Event:
+    """An event with its numbers in SI."""
+    return replace(
+        event,
+        time=event.time * units.time,
+        impulse=event.impulse * units.mass * units.speed,
+        energy_lost=event.energy_lost * units.energy,
+    )
+
+
+def continuous(quaternions: Array) -> Array:
+    """Quaternions, shape (k, 4), with the signs that let none jump."""
+    jumps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0
+    signs = np.concatenate(([1.0], np.cumprod(np.where(jumps, -1.0, 1.0))))
+    return np.asarray(quaternions * signs[:, None])

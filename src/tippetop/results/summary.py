@@ -1,0 +1,67 @@
+"""The few numbers a person wants to know of a run."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tippetop.results.catalogue import METRICS, MONITORS
+from tippetop.results.dataset import require_run
+
+
+def summarize(run: xr.Dataset) -> dict[str, Any]:
+    """The main figures of a run, as plain numbers and strings.
+
+    Returns
+    -------
+    dict
+        Keys: outcome, advice, duration (s), final (theta, theta_dot, omega3, phi_dot: rad and
+        rad/s), turns_over (s: the tilt first passes pi/2; None if never), arrives (s: first within
+        0.01 rad of its last value), first_lift_off (s), highest (m), least_normal_force (N),
+        energy_start, energy_lost, energy_lost_sliding, energy_lost_drilling, energy_lost_rolling
+        (J), jellett_drift and energy_error (relative), flights (how many), airborne_time (s),
+        highest_gap (m), impact_energy_lost (J), events (kind and time, s), integrator, steps,
+        evaluations. What is not a number is None.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> summary = tt.summarize(tt.simulate(tt.presets.report_problem(spin=155.0), duration=20.0))
+    >>> summary["outcome"], round(summary["turns_over"], 2), summary["flights"]
+    ('completed', 5.88, 0)
+    """
+    require_run(run)
+    last = run.isel(time=-1)
+    names = ("theta", "theta_dot", "omega3", "phi_dot")
+    return {
+        "outcome": run.attrs["outcome"],
+        "advice": run.attrs["outcome_advice"],
+        "duration": float(run["end_time"]),
+        "final": {name: _number(last[name]) for name in names},
+        **{name: _number(run[name]) for name in NUMBERS},
+        "events": [
+            {"kind": str(kind), "time": float(at)}
+            for kind, at in zip(run["event_kind"].values, run["event_time"].values, strict=True)
+        ],
+        "integrator": run.attrs["integrator"],
+        "steps": int(run["steps"]),
+        "evaluations": int(run["evaluations"]),
+    }
+
+
+_OTHERWISE = {
+    "final_theta",
+    "final_omega3",
+    "final_phi_dot",
+    "end_time",
+    "steps",
+    "evaluations",
+    "jellett_error",
+}
+NUMBERS = [name for name in (*METRICS, *MONITORS) if name not in _OTHERWISE]
+"""The single numbers of a run that are told under their names."""
+
+
+def _number(value: xr.DataArray) -> int | float | None:
+    found = value.item()
+    return found if np.isfinite(found) else None

@@ -1,0 +1,200 @@
+"""The one way to run work in processes beside this one.
+
+They are fresh interpreters, which is the one way to start that is the same on every system and safe
+beside threads. They run this package alone and never the caller's script, have one thread each,
+leave Ctrl-C to this process, and end with it even if it is killed. One that is killed is replaced.
+"""
+
+import multiprocessing
+import os
+import pickle
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from multiprocessing import connection, resource_tracker
+from typing import Any, NamedTuple
+
+from tippetop.support.errors import TippetopError, Unavailable
+from tippetop.support.interrupts import deferred
+
+RESTARTS = 3
+"""How often a job is done again whose process was killed."""
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+_SPAWN = multiprocessing.get_context("spawn")
+_starting = threading.Lock()
+
+
+class Job(NamedTuple):
+    """A call to be made in another process: importable, with arguments that can be sent."""
+
+    name: Any
+    call: Callable[..., Any]
+    arguments: tuple[Any, ...]
+
+
+class _Failed(NamedTuple):
+    """What a job raised."""
+
+    error: Exception
+
+
+class Worker:
+    """A process that does one job at a time."""
+
+    def __init__(self) -> None:
+        self.end, theirs = _SPAWN.Pipe()
+        self._process = _SPAWN.Process(
+            target=_work, args=(theirs,), daemon=True, name="tippetop worker"
+        )
+        try:
+            with _apart():
+                self._process.start()
+        except BaseException:
+            # Ctrl-C that had to wait: nobody else knows of this process.
+            if self._process.pid is not None:
+                self.close()
+            raise
+        theirs.close()
+
+    def give(self, job: Callable[..., Any], *arguments: Any) -> None:
+        """Have a job done; if the process has ended, `take` tells."""
+        with suppress(OSError):
+            self.end.send((job, arguments))
+
+    def take(self) -> Any:
+        """What comes of the job; an `EOFError` if the process ended."""
+        try:
+            return self.end.recv()
+        except OSError:
+            raise EOFError from None
+
+    def close(self) -> None:
+        """End the process, whatever it does."""
+        self._process.kill()
+        self._process.join()
+        self.end.close()
+
+
+def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any, Any]]:
+    """Do jobs in so many processes, and give the name and the result of each as it comes.
+
+    When a process is free, `next_job` gives another, or None if there is none, or none before
+    another result. With a count of 1 all is done in this process.
+
+    Raises `Unavailable` if the process of a job was killed, again and again, and whatever a job
+    raises.
+    """
+    if count == 1:
+        while (job := next_job()) is not None:
+            yield job.name, job.call(*job.arguments)
+        return
+    crew: list[Worker] = []
+    try:
+        crew += (Worker() for _ in range(count))
+        idle, busy = list(crew), dict[Any, tuple[Worker, Job, int]]()
+
+        def give(worker: Worker, job: Job, kills: int = 0) -> None:
+            worker.give(job.call, *job.arguments)
+            busy[worker.end] = worker, job, kills
+
+        def hand_out() -> None:
+            while idle and (job := next_job()) is not None:
+                give(idle.pop(), job)
+
+        hand_out()
+        while busy:
+            for end in connection.wait(busy):
+                worker, job, kills = busy.pop(end)
+                try:
+                    result = worker.take()
+                except EOFError:
+                    if kills == RESTARTS:
+                        raise Unavailable(
+                            f"processes were killed {kills + 1} times during {job.name}, perhaps"
+                            " for want of memory; try again, or with fewer workers"
+                        ) from None
+                    worker.close()
+                    crew.append(Worker())
+                    give(crew[-1], job, kills + 1)
+                    continue
+                if isinstance(result, _Failed):
+                    raise result.error
+                idle.append(worker)
+                hand_out()  # a process need not wait for what is done with its result
+                yield job.name, result
+                hand_out()
+    finally:
+        for worker in crew:
+            worker.close()
+
+
+@contextmanager
+def _apart() -> Iterator[None]:
+    """Keep the caller's script, and Ctrl-C, from processes that are started meanwhile."""
+    main = sys.modules["__main__"]
+    with _starting, deferred():
+        spec, main.__spec__ = getattr(main, "__spec__", None), None
+        file = vars(main).pop("__file__", None)
+        try:
+            with _unheard():
+                yield
+        finally:
+            main.__spec__ = spec
+            if file is not None:
+                main.__file__ = file
+
+
+@contextmanager
+def _unheard() -> Iterator[None]:
+    """Block Ctrl-C in this thread, where a system can: what is started meanwhile inherits that, for
+    good.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # Python's tracker of resources would be started with the first process, and unblock it.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _work(end: Any) -> None:
+    """The life of a worker: jobs from the other end of the pipe, until it closes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    # A job does not look at its pipe until it is done.
+    threading.Thread(target=_follow_parent, daemon=True).start()
+    with suppress(EOFError, OSError):
+        while True:
+            job, arguments = end.recv()
+            try:
+                end.send(job(*arguments))
+            except Exception as error:  # noqa: BLE001 - handed over, not swallowed
+                end.send(_Failed(_portable(error)))
+
+
+def _follow_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)
+
+
+def _portable(error: Exception) -> Exception:
+    """An error as it can be sent: with where it was raised, unless it is one that is raised on
+    purpose.
+    """
+    if not isinstance(error, TippetopError):
+        error.add_note(traceback.format_exc())
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:  # noqa: BLE001 - whatever it is that does not go through
+        return RuntimeError(repr(error))
+    return error

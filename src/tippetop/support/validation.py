@@ -1,0 +1,303 @@
+"""The base of every part of a problem: frozen, validated, and clear about what it refuses."""
+
+import inspect
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
+
+import numpy as np
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationError,
+)
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from tippetop.support.accepted_values import accepted_by
+from tippetop.support.errors import MISSING, InvalidInput, is_whole
+from tippetop.support.field_paths import part_at
+
+
+def _no_word(value: Any) -> Any:
+    """Refuse what Python would turn into a number although nobody would call it one."""
+    if isinstance(value, (bool, np.bool_, str, bytes)):
+        raise PydanticCustomError("float_type", "a finite number")
+    return value
+
+
+NO_WORD = BeforeValidator(_no_word)
+"""Makes a field of numbers refuse truth values and digits in quotes."""
+
+Number: TypeAlias = Annotated[float, NO_WORD]
+"""A number, and nothing that only looks like one."""
+
+Positive: TypeAlias = Annotated[float, Field(gt=0), NO_WORD]
+NotNegative: TypeAlias = Annotated[float, Field(ge=0), NO_WORD]
+
+
+def _whole(value: Any) -> int:
+    if not is_whole(value):
+        raise PydanticCustomError("int_type", "a whole number")
+    return int(value)
+
+
+Whole: TypeAlias = Annotated[int, BeforeValidator(_whole)]
+"""A whole number, and nothing that only looks like one."""
+
+
+POINTS = "a list of points [distance from the axis, height, radius]"
+"""What a profile is accepted as."""
+
+
+def _listed(value: Any) -> Any:
+    if not isinstance(value, list | tuple) or not all(
+        isinstance(point, list | tuple) for point in value
+    ):
+        raise PydanticCustomError("points", POINTS)
+    return value
+
+
+Points: TypeAlias = Annotated[tuple[tuple[Number, ...], ...], BeforeValidator(_listed)]
+"""Points of a profile: distance from the axis, height along it and, at the end of an arc, its
+radius.
+"""
+
+
+def require_callback(field: str, value: object) -> None:
+    """Raise `InvalidInput` unless a value can be called, or is None."""
+    if not (value is None or callable(value)):
+        raise InvalidInput(field, value, "a function, or None")
+
+
+class Quantity(NamedTuple):
+    """What a field of numbers measures."""
+
+    units: str
+    """Its SI unit, as in CF: ``rad s-1``; "1" for a pure number."""
+    long_name: str
+    places: tuple[str, ...] = ()
+    """What each number is, of a field of several."""
+
+
+class Part(BaseModel):
+    """A frozen, validated piece of a problem.
+
+    Raises
+    ------
+    InvalidInput
+        If a field is missing, unknown, not finite or outside its range.
+    """
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True
+    )
+
+    if not TYPE_CHECKING:  # else mypy takes it that values may do without names
+
+        def __new__(cls, /, *values: Any, **_: Any) -> Self:
+            """Refuse values without their names here, where signatures of parts, made of
+            `__init__`, stay.
+            """
+            if values and cls.__init__ is Part.__init__:
+                raise InvalidInput(
+                    cls.__name__, values, f"its fields by name: {', '.join(_written(cls))}"
+                )
+            return super().__new__(cls)
+
+    def __init__(self, /, **fields: Any) -> None:
+        try:
+            super().__init__(**fields)
+        except ValidationError as error:
+            raise _as_invalid_input(error, type(self)) from None
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Copy with some fields replaced, and validated like any other."""
+        fields = {name: getattr(self, name) for name in type(self).model_fields}
+        return type(self)(**{**fields, **(update or {})})
+
+    if not TYPE_CHECKING:  # else mypy takes it that every attribute may be set
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            try:
+                super().__setattr__(name, value)
+            except ValidationError:
+                accepted = "no change, but a copy: model_copy(update={...})"
+                raise InvalidInput(name, value, accepted) from None
+
+    def quantity(self, field: str) -> Quantity:
+        """What a field measures, named with dots; without a unit if it was declared with none."""
+        where, _, last = field.rpartition(".")
+        part = part_at(self, where)
+        if isinstance(part, tuple):
+            several = self.quantity(where)
+            return several._replace(long_name=f"{several.long_name} {several.places[int(last)]}")
+        info = type(part).model_fields[last]
+        return next(
+            (item for item in info.metadata if isinstance(item, Quantity)), Quantity("", last)
+        )
+
+    def modules(self) -> set[str]:
+        """The modules outside this package in which the kinds of this part, and of the parts in it,
+        are.
+        """
+        here = (
+            {type(self).__module__}
+            if type(self).__module__.partition(".")[0] != _PACKAGE
+            else set()
+        )
+        values = [getattr(self, name) for name in type(self).model_fields]
+        several = [
+            inner for value in values for inner in (value if isinstance(value, tuple) else (value,))
+        ]
+        return here.union(*(value.modules() for value in several if isinstance(value, Part)))
+
+
+_PACKAGE = __name__.partition(".")[0]
+
+
+def in_order(
+    part: type[Part], names: Iterable[str], values: Sequence[Any], fields: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Fields of a part, of which the first may be given without their names.
+
+    Raises `InvalidInput` if there are too many, or one both in its place and by its name.
+    """
+    names = list(names)
+    if len(values) > len(names):
+        raise InvalidInput(part.__name__, values, f"at most these, in order: {', '.join(names)}")
+    ordered = dict(zip(names, values, strict=False))
+    aliases = {info.alias: name for name, info in part.model_fields.items()}
+    for name, value in fields.items():
+        if aliases.get(name, name) in ordered:
+            raise InvalidInput(name, value, "a field once: in its place, or by its name")
+    return ordered | dict(fields)
+
+
+class Variant(Part):
+    """A part of which there are several kinds: its subclasses, told apart by their field `kind`.
+
+    A ``class Mine(Shape)`` with a field ``kind: Literal["mine"] = "mine"`` is a kind of `Shape`
+    wherever it is defined, and whatever has a `Shape` takes it. One that is defined again, as in a
+    notebook, replaces its former self.
+
+    Attributes
+    ----------
+    kinds
+        Those that are known, by their words.
+    """
+
+    kinds: ClassVar[dict[str, type[Part]]]
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **keywords: Any) -> None:
+        super().__pydantic_init_subclass__(**keywords)
+        if Variant in cls.__bases__:
+            cls.kinds = {}
+            return
+        info = cls.model_fields.get("kind")
+        if info is None or not isinstance(info.default, str):
+            raise TypeError(f'{cls.__name__} needs a word: kind: Literal["word"] = "word"')
+        known = cls.kinds.get(info.default)
+        if known and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
+            raise TypeError(
+                f"{cls.__name__} needs another word: {info.default!r} is {known.__name__}"
+            )
+        cls.kinds[info.default] = cls
+
+    @classmethod
+    def fields_of(cls, kind: Any) -> set[str]:
+        """The names of the fields of another kind of the same part; those of this one if there is
+        none.
+        """
+        base = next(part for part in cls.__mro__ if Variant in part.__bases__)
+        known: Any = base.kinds  # type: ignore[attr-defined]
+        return (
+            set(known.get(kind, cls).model_fields)
+            if isinstance(kind, str)
+            else set(cls.model_fields)
+        )
+
+
+class _OfItsKind:
+    """Makes a field take all kinds of a variant, and keep what each has of its own.
+
+    A list of them is taken too if there may be `several`; of one in a list, the list is forgotten.
+    """
+
+    def __init__(self, *, several: bool = False) -> None:
+        self.several = several
+
+    def __get_pydantic_core_schema__(self, base: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        if self.several:
+            base = next(part for part in get_args(base) if inspect.isclass(part))
+
+        def chosen(value: Any) -> Any:
+            if isinstance(value, base):
+                return value
+            if not isinstance(value, Mapping):
+                raise PydanticCustomError("model_type", "a table of its fields")
+            kind = value.get("kind", MISSING)
+            if not inspect.isabstract(base) and (kind is MISSING or not base.kinds):
+                return base(**value)
+            if kind is MISSING:
+                raise InvalidInput("kind", kind, "a kind of it")
+            if not isinstance(kind, str) or kind not in base.kinds:
+                raise InvalidInput("kind", kind, ", ".join(map(repr, base.kinds)))
+            found = base.kinds[kind](**value)
+            assert isinstance(found, base)
+            return found
+
+        def chosen_each(value: Any) -> Any:
+            if not isinstance(value, list | tuple):
+                return chosen(value)
+            found = []
+            for place, inner in enumerate(value):
+                try:
+                    found.append(chosen(inner))
+                except InvalidInput as error:
+                    raise error.within(str(place)) from None
+            if not found:
+                raise PydanticCustomError("model_type", "a table of its fields")
+            return tuple(found) if len(found) > 1 else found[0]
+
+        taken = chosen_each if self.several else chosen
+        return core_schema.no_info_plain_validator_function(taken, metadata={"base": base})
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        base: Any = schema["metadata"]["base"]
+        known = [*([] if inspect.isabstract(base) else [base]), *base.kinds.values()]
+        one = {"oneOf": [handler(kind.__pydantic_core_schema__) for kind in known]}
+        return (
+            {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
+            if self.several
+            else one
+        )
+
+
+OF_ITS_KIND = _OfItsKind()
+ONE_OR_SEVERAL = _OfItsKind(several=True)
+
+
+def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
+    """Turn a validation error into the one sentence a user reads, about the most telling of its
+    details.
+    """
+    details = sorted(error.errors(), key=lambda detail: detail["type"] != "extra_forbidden")
+    first, others = details[0], len(details) - 1
+    field = ".".join(str(step) for step in first["loc"])
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, InvalidInput):
+        return cause.within("" if f"{cause.field}.".startswith(f"{field}.") else field, others)
+    value = MISSING if first["type"] == "missing" else first["input"]
+    return InvalidInput(field, value, accepted_by(first, _written(part)), others)
+
+
+def _written(part: type[Part]) -> dict[str, FieldInfo]:
+    """The fields of a part by the names they are written with."""
+    return {info.alias or name: info for name, info in part.model_fields.items()}

@@ -1,0 +1,135 @@
+"""A piece of a flight of many tops at once: how far it goes, whether the table is touched, how high
+it leads.
+
+Within a piece the gap is a Taylor polynomial that is exact to rounding. LLVM compiles all that is
+usual of it. Where something is doubtful, or happens that is asked for, the polynomials are to be
+looked at.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tippetop.graph.graph import COSINE, SINE, Node
+from tippetop.integrators.base import Array
+from tippetop.mechanics.flight import fly
+from tippetop.mechanics.hull import is_edge
+from tippetop.mechanics.separation import NARROWEST, Tip, support_terms
+from tippetop.mechanics.series import Arithmetic
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.touchdown import Start
+from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.view import axis_sine
+from tippetop.sweeps.polynomial_minima import first_fall, least_value, looked_at
+from tippetop.sweeps.taylor_step import CLOSER_LOOKS, LOOKS, extremes, met, step_size
+from tippetop.sweeps.taylor_stepper import NODES, compiled, padded
+
+STATE, TIME, LEFT, VANISHING, WANTED, GIVEN = slice(10), 10, 11, 12, slice(13, 16), 16
+"""Rows of what is given, and how many: the state at the start of the flight, the time since then
+and what is left, how many of gap, gap rate and gap acceleration vanish now, and what is wanted (see
+`met`).
+"""
+
+
+BESIDE = 0.5
+"""Part of the angle to flat that an edge turns in a piece at most: in one plane, series see no kink
+there.
+"""
+
+
+class Piece(NamedTuple):
+    """What became of pieces: all of shape (n,)."""
+
+    span: Array
+    """How long each lasts."""
+    touches: Array
+    """1 where the table is touched at its end, else 0."""
+    doubt: Array
+    """Not 0 where the polynomials are to be looked at, and nothing here is to be used."""
+    highest_gap: Array
+    floor: Array
+    ceiling: Array
+    """Largest gap, and least and largest n_z."""
+
+
+class NodeFunctions:
+    """Elementary functions of nodes."""
+
+    def sin(self, angle: Node) -> Node:
+        """Sine."""
+        return angle.graph.node(SINE, (angle,))
+
+    def cos(self, angle: Node) -> Node:
+        """Cosine."""
+        return angle.graph.node(COSINE, (angle,))
+
+
+def pieces(kind: Kind, given: Array, numbers: Array) -> Piece:
+    """The pieces that begin as given, of shape (GIVEN, n), of tops with these numbers,
+    (kind.numbers, n).
+    """
+    count = given.shape[1]
+    start, parameters = padded(given), padded(numbers)
+    found = np.empty((len(Piece._fields), start.shape[1]))
+    _code(kind)(start, parameters, found)
+    return Piece(*found[:, :count])
+
+
+@lru_cache(maxsize=16)
+def _code(kind: Kind) -> Callable[[Array, Array, Array], None]:
+    def rows(given: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
+        return piece(kind.top(tuple(numbers)), given, NODES)
+
+    return compiled(rows, GIVEN, kind.numbers, effort=0)
+
+
+def piece(top: Top, given: Sequence[Any], plain: Arithmetic) -> Piece:
+    """The piece of a flight that begins as given."""
+    here = fly(State.unpack(given[STATE]), given[TIME], top, NodeFunctions())
+    tip, gap, reach = flight_terms(here, given[LEFT], top, plain)
+    zero, doubt = first_fall(divided(gap, given[VANISHING], plain), reach, CLOSER_LOOKS, plain)
+    touches = plain.below(zero, reach)
+    span = plain.least(zero, reach)
+    floor, ceiling = extremes(tip, span, plain)
+    depth = [-term for term in gap]
+    highest = -least_value(depth, looked_at(depth, span, LOOKS), span, plain)
+    if is_edge(top.surface):
+        doubt += 1.0 - plain.below(0.0, reach)
+    return Piece(
+        span, touches, doubt + met(floor, ceiling, given[WANTED], plain), highest, floor, ceiling
+    )
+
+
+def flight_terms(
+    state: State, left: Scalar, top: Top, plain: Arithmetic
+) -> tuple[list[Scalar], list[Scalar], Scalar]:
+    """Polynomials of n_z and of the gap in flight, and how far they serve, all that is left at
+    most.
+
+    That is 0 where an edge lies flat, or almost.
+    """
+    moving = Tip.of(state, top)
+    tip = moving.terms
+    support = support_terms(top.surface, tip, plain)
+    fall = (state.height, state.velocity[2], -0.5 * top.gravity)
+    gap = [b - s for b, s in zip(fall, support[:3], strict=True)] + [-term for term in support[3:]]
+    reach = step_size([tip, support], left, plain)
+    if is_edge(top.surface):
+        sine = axis_sine(state.axis)
+        beside = plain.least(reach, BESIDE * sine / moving.frequency)
+        reach = plain.choose(plain.below(NARROWEST, sine), beside, 0.0 * left)
+    return tip, gap, reach
+
+
+def divided(terms: Sequence[Scalar], vanishing: Scalar, plain: Arithmetic) -> list[Scalar]:
+    """A polynomial whose first coefficients vanish, divided by the power of time that it has."""
+    found = list(terms)
+    for most in range(int(max(Start))):
+        more, following = plain.below(most + 0.5, vanishing), [*found[1:], 0.0 * found[0]]
+        found = [
+            plain.choose(more, after, here) for here, after in zip(found, following, strict=True)
+        ]
+    return found

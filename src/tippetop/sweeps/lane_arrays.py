@@ -1,0 +1,163 @@
+"""The arrays of launches under way: one lane a launch."""
+
+from functools import cached_property
+
+import numpy as np
+
+from tippetop.contact.mode import Outcome
+from tippetop.integrators.base import Array
+from tippetop.mechanics.branches import is_branched, on_other_branch
+from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.units import Units
+from tippetop.results.metrics import OUTCOMES, Ends
+from tippetop.sweeps.launch_arrays import Flags, Indices, Launches, branched
+from tippetop.sweeps.taylor_step import LANES
+from tippetop.sweeps.taylor_stepper import Stepper
+from tippetop.sweeps.tip_extremes import TipMotion
+
+NATURAL = Units(1.0, 1.0, 1.0)
+"""Units of what is dimensionless."""
+
+LOSSES = slice(8, 10)
+"""Rows of the work of drilling and of rolling, where a law has a torque."""
+
+
+class Slots:
+    """Lanes, and what is kept of each; all of shape (n,) or (rows, n).
+
+    Attributes
+    ----------
+    ends
+        How the launches ended.
+    cell
+        Which launch is on the lane.
+    alive
+        Whether it is under way: lanes beyond the launches only fill up.
+    end
+        When its run ends.
+    numbers
+        The parameters of the motion and what to pause for.
+    rows, spare
+        What a step brings up to date, and room for the next.
+    held, before
+        The step that a lane waits before, 0 if it does not wait, and the time left before it.
+    tip
+        How the tip of the axis moves.
+    """
+
+    def __init__(
+        self, launches: Launches, stepper: Stepper, band: tuple[Array, Array] | None
+    ) -> None:
+        count, layout = len(launches), stepper.layout
+        lanes = count + -count % LANES
+        self.launches, self.stepper, self.layout = launches, stepper, layout
+        self.ends, self.tip = Ends.unknown(count), TipMotion.of(lanes)
+        self.cell: Indices = np.minimum(np.arange(lanes), count - 1)
+        self.alive, self.end = np.arange(lanes) < count, launches.end[self.cell]
+        pauses = np.zeros((layout.numbers - layout.parameters, lanes))
+        self.numbers = np.concatenate((launches.numbers[:, self.cell], pauses))
+        self.numbers[layout.counts], self.numbers[layout.turns] = 1.0, 1.0
+        # The first guard is of lift-off.
+        self.numbers[layout.counts.start] = float(launches.liftoff != "ignore")
+        self.numbers[layout.band] = np.array([[np.inf], [-np.inf]])
+        if band is not None:
+            self.tip.low, self.tip.high = band[0][self.cell], band[1][self.cell]
+            self.numbers[layout.band] = self.tip.low, self.tip.high
+        self.rows, self.spare = np.zeros((2, layout.rows, lanes))
+        self.held, self.before = np.zeros((2, lanes))
+
+    @property
+    def left(self) -> Array:
+        """The time left."""
+        found: Array = self.rows[self.layout.left]
+        return found
+
+    def time(self, lanes: Indices | Flags) -> Array:
+        """Where some lanes are."""
+        found: Array = self.end[lanes] - self.left[lanes]
+        return found
+
+    def keep(self, working: Indices) -> None:
+        """Keep the lanes at work, and as many others as fill them up."""
+        missing = -len(working) % LANES
+        kept = np.concatenate((working, np.full(missing, working[-1], dtype=np.intp)))
+        self.alive = np.arange(len(kept)) < len(working)
+        for name in ("cell", "end", "held", "before"):
+            setattr(self, name, getattr(self, name)[kept])
+        for name in ("numbers", "rows"):
+            setattr(self, name, np.ascontiguousarray(getattr(self, name)[:, kept]))
+        self.rows[self.layout.left] *= self.alive
+        self.spare = np.zeros_like(self.rows)
+        self.tip = self.tip.some(kept)
+
+    def tops(self, lanes: Indices | Flags) -> Top:
+        """Some of the tops, with arrays for numbers."""
+        return self.launches.kind.top(tuple(self.numbers[: self.layout.parameters, lanes]))
+
+    def whole(self, lanes: Indices | Flags) -> State:
+        """Whole states of sliding tops."""
+        numbers = self.rows[: self.layout.size, lanes]
+        return on_table(SlidingState.unpack(numbers), self.tops(lanes))
+
+    def place(self, lanes: Indices, state: State, time: Array) -> None:
+        """Let tops slide from these states on."""
+        for row, number in enumerate(along_table(state).pack()):
+            self.rows[row, lanes] = number
+        self.rows[self.layout.left, lanes] = self.end[lanes] - time
+        self.rows[self.layout.taken, lanes] = np.inf
+        if is_branched(self.launches.kind.example.friction):
+            self._put(lanes, branched(self.tops(lanes), state))
+
+    def choose_branch(self) -> None:
+        """Let tops that slide on somewhere on their way follow the branch of their law that holds
+        there.
+        """
+        if is_branched(self.launches.kind.example.friction):
+            lanes = np.arange(len(self.cell))
+            self._put(lanes, branched(self.tops(lanes), self.whole(lanes)))
+
+    @cached_property
+    def branch(self) -> int:
+        """Row of the number, 0 or 1, that tells the branch of the law."""
+        example = self.launches.kind.example
+        pairs = zip(example.numbers, on_other_branch(example).numbers, strict=True)
+        return next(row for row, (one, other) in enumerate(pairs) if one != other)
+
+    def change_branch(self, lanes: Indices) -> None:
+        """Let tops slide on along the other branch of their law."""
+        branches = self.numbers[self.branch]
+        branches[lanes] = 1.0 - branches[lanes]
+
+    def _put(self, lanes: Indices, top: Top) -> None:
+        """Let tops on some lanes have these tops' law."""
+        first = 2 + self.launches.kind.proportions
+        for row, number in enumerate(top.friction.coefficients(NATURAL), start=first):
+            self.numbers[row, lanes] = number
+
+    def retire(self, lanes: Indices, state: State, time: Array, outcome: Outcome) -> None:
+        """Put down how launches ended."""
+        if not len(lanes):
+            return
+        ends, cells = self.ends, self.cell[lanes]
+        for kept, number in zip(ends.state.pack(), state.pack(), strict=True):
+            kept[cells] = number
+        fine = np.all(np.isfinite(np.array(np.broadcast_arrays(*state.pack()))), axis=0)
+        ends.time[cells] = time
+        ends.outcome[cells] = np.where(
+            fine, OUTCOMES.index(outcome), OUTCOMES.index(Outcome.FAILED)
+        )
+        ends.steps[cells] = self.rows[self.layout.steps, lanes]
+        if self.layout.size == LOSSES.stop:
+            drilled, rolled = -self.rows[LOSSES][:, lanes]
+            ends.drilled[cells] += drilled
+            ends.rolled[cells] += rolled
+        ends.turned[cells], ends.arrived[cells] = self.tip.turned[lanes], self.tip.reached[lanes]
+        self.rows[self.layout.left, lanes] = 0.0
+        self.alive[lanes] = False
+        stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
+        force, down, up = self.tip.least[:, lanes]
+        ends.least_force[cells] = np.where(stayed, np.fmin(ends.least_force[cells], force), 0.0)
+        ends.down[cells] = np.fmin(ends.down[cells], down)
+        ends.up[cells] = np.fmax(ends.up[cells], -up)

@@ -1,0 +1,228 @@
+"""Many launches followed at once, one a lane, each at its own time and with its own steps.
+
+A lane waits before a step in which something may happen: a guard may fall through zero, the top may
+turn over, a band of tilts may be reached. When waiting has cost enough, the lanes that wait are
+looked at together, exactly, and go on: after that step if nothing came of it, else where
+`tippetop.sweeps.transitions` leads. Lanes at their end are taken out.
+"""
+
+import numpy as np
+
+from tippetop.contact.mode import Outcome
+from tippetop.contact.trajectory import STEP_LIMIT
+from tippetop.integrators.base import Array
+from tippetop.integrators.polynomials import Polynomials
+from tippetop.integrators.relief import PATIENCE, is_stiff
+from tippetop.results.metrics import Ends
+from tippetop.sweeps.lane_arrays import Slots
+from tippetop.sweeps.launch_arrays import Checkpoint, Flags, Indices, Launches, picked
+from tippetop.sweeps.polynomial_arcs import arcs
+from tippetop.sweeps.taylor_step import LANES
+from tippetop.sweeps.taylor_stepper import Stepper
+from tippetop.sweeps.tip_extremes import FORCE
+from tippetop.sweeps.transitions import Crossings
+from tippetop.theory.prediction import is_held
+
+LOST = 4.0
+"""Steps of all lanes that are lost to waiting, in all, before the lanes that wait are looked at: to
+look at some costs Python as much as several steps of all.
+"""
+
+WINDOW = 64
+"""Steps between checkpoints of the states, from which a part of the run can be done again."""
+
+SHORTEST, ROUNDED = 1e-13, float(np.finfo(float).eps)
+"""Step, in natural units and over the time left, both of which it is below where a motion is
+singular.
+"""
+
+CROWDED = 0.75
+"""Share of lanes at work below which the others are taken out."""
+
+
+class Lanes:
+    """Launches under way, by Taylor's method for sliding tops of their kind, and otherwise alone.
+
+    The tolerance is that of the integrator of launches that are followed alone: relative error per
+    step. A launch ends when n_z reaches its own `band`, the least and the largest of shape (n,),
+    and once its tilt is held within `settled`, rad. Launches that are not at the start are
+    `resumed`: numbers of the motion and times left, shape (size + 1, n).
+    """
+
+    def __init__(
+        self,
+        launches: Launches,
+        stepper: Stepper,
+        tolerance: float,
+        band: tuple[Array, Array] | None = None,
+        resumed: Array | None = None,
+        settled: float | None = None,
+    ) -> None:
+        self.tolerance, self.banded, self.settled = tolerance, band is not None, settled
+        self.slots = slots = Slots(launches, stepper, band)
+        self.crossings, self.checkpoints = (
+            Crossings(slots, tolerance, band is not None),
+            list[Checkpoint](),
+        )
+        self._launched = slots.alive.copy()
+        if resumed is None:
+            lanes = np.arange(len(slots.cell))
+            slots.place(lanes, picked(launches.state, slots.cell), np.zeros(len(lanes)))
+            slots.left[~slots.alive] = 0.0
+            self.crossings.launch(lanes[: len(launches)], launches.state)
+        else:
+            slots.rows[: stepper.layout.left + 1] = resumed[:, slots.cell]
+            slots.choose_branch()
+            slots.left[~slots.alive] = 0.0
+        slots.numbers[stepper.layout.turns] = np.isnan(slots.tip.turned)
+
+    def run(self) -> Ends:
+        """Follow every launch to its end."""
+        # Launches that ended in the flight they began with are recorded in the first window.
+        recorded, slots = self._launched, self.slots
+        while recorded.any():
+            begun, lost, waiting = slots.rows[: slots.layout.kept].copy(), 0, 0
+            bearable = LOST * np.count_nonzero(recorded)
+            for _ in range(WINDOW):
+                waiting += self._stride()
+                lost += waiting
+                if lost >= bearable:
+                    self._look()
+                    lost = waiting = 0
+            self._look()
+            self._close(recorded, begun)
+            recorded = slots.alive.copy()
+        return slots.ends
+
+    def _stride(self) -> int:
+        """Take a step on every lane that does not wait; return how many wait from here on."""
+        slots, layout = self.slots, self.slots.layout
+        before, after = slots.rows, slots.spare
+        self.slots.stepper.step(before, after, slots.numbers)
+        waiting = after[layout.pause].nonzero()[0]
+        if len(waiting):
+            slots.held[waiting] = after[layout.taken, waiting]
+            slots.before[waiting] = before[layout.left, waiting]
+        slots.tip.put(after[layout.least])
+        slots.rows, slots.spare = after, before
+        changed = after[layout.changed].nonzero()[0]
+        if len(changed):
+            slots.change_branch(changed)
+        return len(waiting)
+
+    def _look(self) -> None:
+        """Look at the lanes that wait, and let them go on."""
+        slots, layout = self.slots, self.slots.layout
+        lanes = np.flatnonzero(slots.held > 0.0)
+        if not len(lanes):
+            return
+        left, numbers = slots.before[lanes], slots.numbers[:, lanes]
+        begun = slots.end[lanes] - left
+        held = slots.held[lanes]
+        jet = slots.stepper.jet(slots.rows[:, lanes], numbers)
+        found = arcs(jet, held, held, numbers[layout.parameters :])
+        closer = found.look_closer(jet, numbers[layout.counts])
+        if len(closer):
+            pressing, tip = (
+                Polynomials(terms[:, closer], found.span[closer])
+                for terms in (jet.guards[0], jet.state[2])
+            )
+            slots.tip.take(FORCE, lanes[closer], pressing)
+            slots.tip.see(lanes[closer], begun[closer], tip)
+            found.least[:, closer] = np.nan
+        slots.tip.put_of(lanes, found.least)
+        slots.rows[: layout.size, lanes], span = found.after, found.span
+        slots.rows[layout.left, lanes], slots.rows[layout.taken, lanes] = left - span, held
+        slots.rows[layout.steps, lanes] += 1
+        slots.held[lanes] = 0.0
+        some = found.fallen >= 0.0
+        if some.any():
+            self.crossings.fall(
+                lanes[some], begun[some] + span[some], found.fallen[some].astype(np.intp)
+            )
+        slots.numbers[layout.turns, lanes] = np.isnan(slots.tip.turned[lanes])
+        if self.banded:
+            slots.rows[layout.left, ~np.isnan(slots.tip.reached)] = 0.0
+
+    def _close(self, recorded: Flags, begun: Array) -> None:
+        """End a window: record it, take out what has ended, and close ranks."""
+        slots, layout = self.slots, self.slots.layout
+        cells, (_, down, up) = slots.cell[recorded], slots.tip.lately[:, recorded]
+        if not self.banded:
+            self.checkpoints.append(
+                Checkpoint(cells, begun[: layout.left + 1, recorded], down, -up)
+            )
+        slots.tip.put_aside()
+        ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
+        if len(ended):
+            slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)
+        shortest = np.minimum(SHORTEST, ROUNDED * slots.left)
+        singular, many = slots.rows[layout.taken] < shortest, slots.rows[layout.steps] >= STEP_LIMIT
+        for lost, outcome in (
+            (singular, Outcome.FAILED),
+            (~singular & many, Outcome.TOO_MANY_STEPS),
+        ):
+            which = np.flatnonzero(slots.alive & lost)
+            slots.retire(which, slots.whole(which), slots.time(which), outcome)
+        if self.settled is not None:
+            self._end_the_settled(self.settled)
+        self._relieve(np.flatnonzero(recorded & slots.alive), begun)
+        working = np.flatnonzero(slots.alive)
+        if len(working) and len(working) + LANES < CROWDED * len(slots.alive):
+            slots.keep(working)
+
+    def _relieve(self, lanes: Indices, begun: Array) -> None:
+        """Have launches whose motion is stiff, which is looked at now and then, followed alone."""
+        slots, layout = self.slots, self.slots.layout
+        steps = slots.rows[layout.steps, lanes]
+        taken = steps - begun[layout.steps, lanes]
+        lanes, taken = (
+            some[steps // PATIENCE > (steps - taken) // PATIENCE] for some in (lanes, taken)
+        )
+        if not len(lanes):
+            return
+        step = (begun[layout.left, lanes] - slots.left[lanes]) / taken
+        motion, numbers = self.crossings.motion, slots.numbers[: layout.parameters, lanes]
+        stiff = is_stiff(motion, list(numbers), slots.rows[: motion.size, lanes].T, step)
+        self.crossings.follow_alone(lanes[stiff])
+
+    def _end_the_settled(self, closeness: float) -> None:
+        """End the launches whose tilt is held."""
+        slots = self.slots
+        lanes = np.flatnonzero(slots.alive)
+        if not len(lanes):
+            return
+        state = slots.whole(lanes)
+        held = is_held(state, slots.launches.tops(slots.cell[lanes]), closeness)
+        slots.retire(lanes[held], picked(state, held), slots.time(lanes[held]), Outcome.COMPLETED)
+
+
+def arrivals(followed: Lanes, band: tuple[Array, Array]) -> Array:
+    """First times at which n_z is in a band, shape (n,); nan where it never is while a lane slides
+    or flies.
+
+    The window in which that happens is known from the checkpoints; it is done again, up to that
+    moment.
+    """
+    slots = followed.slots
+    launches, size = slots.launches, slots.layout.size
+    count = len(launches)
+    window = np.full(count, -1)
+    rows = np.zeros((size + 1, count))
+    low, high = band
+    for index, checkpoint in enumerate(followed.checkpoints):
+        meets = (checkpoint.down <= high[checkpoint.cells]) & (
+            checkpoint.up >= low[checkpoint.cells]
+        )
+        fresh = meets & (window[checkpoint.cells] < 0)
+        window[checkpoint.cells[fresh]] = index
+        rows[:, checkpoint.cells[fresh]] = checkpoint.rows[:, fresh]
+    found = np.full(count, np.nan)
+    for first in (True, False):
+        which = np.flatnonzero((window == 0) if first else (window > 0))
+        if len(which):
+            again = launches.some(which)
+            edges, resumed = (low[which], high[which]), None if first else rows[:, which]
+            lanes = Lanes(again, slots.stepper, followed.tolerance, edges, resumed)
+            found[which] = lanes.run().arrived
+    return found

@@ -1,0 +1,198 @@
+"""Carry out a sweep, into a store or into memory."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import InvalidInput, require
+from tippetop.support.validation import require_callback
+from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
+from tippetop.sweeps.grid import Draws, Product
+from tippetop.sweeps.schedulers import Cluster, Found, need_workers, results
+from tippetop.sweeps.store import Store
+from tippetop.sweeps.store_layout import CONTENTS, Status, coordinate_attributes, layout_attributes
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a sweep is."""
+
+    cells: int
+    """How many cells there are."""
+    before: int
+    """How many of them were done before this run began."""
+    done: int
+    """How many are done."""
+    elapsed: float
+    """Time since this run began, s."""
+
+    @property
+    def rate(self) -> float:
+        """Cells per second in this run."""
+        return (self.done - self.before) / self.elapsed if self.elapsed > 0 else 0.0
+
+
+Callback = Callable[[Progress], None]
+
+
+def _carry_out(
+    sweep: Sweep,
+    tasks: Sequence[Task],
+    keep: Callable[[Task, Found], None],
+    workers: int | None,
+    scheduler: str | Cluster | None,
+    callback: Callback | None,
+) -> Progress:
+    """Compute tasks of a sweep whose others are done, and keep what they find."""
+    before = sweep.cells - sum(sweep.numbers(sweep.region(task)).size for task in tasks)
+    began, told = time.monotonic(), callback or (lambda _: None)
+    progress = Progress(sweep.cells, before, before, 0.0)
+    told(progress)
+    for task, found in results(sweep, tasks, workers, scheduler) if tasks else ():
+        keep(task, found)
+        done = progress.done + found["outcome"].size
+        progress = Progress(sweep.cells, before, done, time.monotonic() - began)
+        told(progress)
+    return progress
+
+
+def fill(
+    store: Store,
+    *,
+    workers: int | None = None,
+    scheduler: str | Cluster | None = None,
+    callback: Callback | None = None,
+) -> Progress:
+    """Compute what is missing in a store; for workers, scheduler and callback see `sweep`.
+
+    Raises `FileTrouble` if the store cannot be written, or another process fills it; it stays good,
+    and another call goes on where this one ended.
+    """
+    with store.held():
+        return _carry_out(store.sweep, store.remaining(), store.write, workers, scheduler, callback)
+
+
+def compute(
+    sweep: Sweep,
+    *,
+    workers: int | None = 1,
+    scheduler: str | None = None,
+    callback: Callback | None = None,
+) -> xr.Dataset:
+    """Carry out a sweep in memory; for workers, scheduler and callback see `sweep`.
+
+    The variables of `tippetop.results.catalogue.SWEPT` and `status` are over the grid.
+    """
+    shape, grid = sweep.grid.shape, sweep.grid
+    arrays = {
+        name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in CONTENTS.items()
+    }
+
+    def keep(task: Task, found: Found) -> None:
+        region = sweep.region(task)
+        for name, values in found.items():
+            arrays[name][region] = values.reshape(arrays[name][region].shape)
+
+    _carry_out(sweep, sweep.tasks, keep, workers, scheduler, callback)
+    arrays["status"][...] = Status.DONE
+    data = {
+        name: (grid.dimensions, arrays[name], kind.attributes) for name, kind in CONTENTS.items()
+    }
+    coordinates = {
+        name: ((along,), values, coordinate_attributes(sweep, name))
+        for name, (along, values) in grid.coordinates().items()
+    }
+    return xr.Dataset(data, coordinates, layout_attributes(sweep))
+
+
+def sweep(
+    problem: Problem,
+    over: Mapping[str, Any] | Product | Draws,
+    *,
+    duration: float = 20.0,
+    tolerance: float = DEFAULT_TOLERANCE,
+    settled: float | None = None,
+    out: Path | str | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    callback: Callback | None = None,
+) -> xr.Dataset:
+    """See what becomes of many launches: ``sweep(problem, {"launch.spin": np.linspace(0, 250,
+    200)})``.
+
+    Parameters
+    ----------
+    problem
+        The problem whose fields are changed.
+    over
+        Fields, named with dots, and their values in SI units: arrays, lists, or tables such as
+        ``{"from": 0.05, "to": 1, "count": 40, "spacing": "geometric"}``, of which all combinations
+        are launched; or `Draws`.
+    duration
+        Length of every run, s.
+    tolerance
+        Relative error per step.
+    settled
+        A run ends once its energy holds the tilt within this for good, rad; None to follow every
+        run for its whole duration.
+    out
+        Folder of a Zarr store to keep the sweep in; in memory if left out.
+    overwrite
+        Replace a sweep that is there.
+    resume
+        Finish a sweep that is there.
+    workers
+        How many processes; None for as many as there are processors, 1 for this process alone.
+    scheduler
+        Address of a running dask.distributed scheduler, instead of processes.
+    callback
+        Told of the progress, at the beginning and after every task.
+
+    Returns
+    -------
+    xarray.Dataset
+        What became of every launch, over the grid: its outcome, final tilt, spin and precession,
+        when it turned over, its flights, forces and losses, each with its SI unit. That of a store
+        is read when used.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such field, or it cannot have such values; if `overwrite` or `resume` is
+        asked for without `out`, or both are.
+    FileTrouble
+        If there is something at `out` already, or it cannot be written.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> spins = {"launch.spin": [10.0, 50.0, 155.0]}
+    >>> found = tt.sweep(tt.presets.report_problem(), spins, duration=20.0)
+    >>> [round(float(tilt), 2) for tilt in found["final_theta"]]
+    [0.0, 1.5, 3.14]
+    """
+    grid = over if isinstance(over, Draws) else Product.of(over)
+    chosen = Sweep(problem, grid, duration, tolerance, settled)
+    require_callback("callback", callback)
+    for field, asked in {"overwrite": overwrite, "resume": resume}.items():
+        require(field, asked, bool, "True or False")
+        if asked and out is None:
+            raise InvalidInput(field, asked, "False, unless out says where the sweep is kept")
+    if overwrite and resume:
+        raise InvalidInput(
+            "overwrite", overwrite, "False with resume=True, which keeps what is there"
+        )
+    if out is None:
+        return compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
+    with need_workers(chosen, workers, scheduler) as cluster:
+        store = Store.resume(out, chosen) if resume else Store.create(out, chosen, overwrite)
+        fill(store, workers=workers, scheduler=cluster, callback=callback)
+    return store.dataset()

@@ -1,0 +1,244 @@
+"""Who computes the tasks of a sweep: this process, processes beside it, or a Dask cluster."""
+
+import json
+import logging
+import os
+import threading
+import time
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from contextlib import contextmanager, nullcontext
+from functools import lru_cache
+from importlib import import_module
+from importlib.util import find_spec
+from traceback import walk_tb
+from typing import Any, NamedTuple, TypeAlias
+
+from numpy.typing import NDArray
+
+from tippetop import __version__
+from tippetop.support.errors import RESUME, InvalidInput, Unavailable, is_whole
+from tippetop.support.processes import RESTARTS, Job, shared
+from tippetop.sweeps.definition import Sweep, Task
+from tippetop.sweeps.ensemble import follow_cells
+
+Found: TypeAlias = dict[str, NDArray[Any]]
+Call: TypeAlias = tuple[str, str, tuple[str, ...], tuple[slice, ...]]
+"""What `compute_region` is called with."""
+
+AHEAD = 2
+"""Tasks handed out for every worker of a cluster, so that none waits."""
+
+PATIENCE = 10.0
+"""How long a scheduler may take to answer, s."""
+LONELY = 60.0
+"""How long a cluster may be without workers before the sweep is given up, s."""
+GLANCE = 1.0
+"""How often it is looked whether it has some, if no task is done meanwhile, s."""
+
+KEPT = f"what is done is kept, and {RESUME} goes on"
+
+HERE = "__main__"
+"""Where what a script or notebook defines is, which no other process can import."""
+
+_turn = threading.Lock()
+
+
+class Cluster(NamedTuple):
+    """A running cluster that is connected to."""
+
+    address: str
+    client: Any
+
+
+def compute_region(
+    description: str, version: str, modules: tuple[str, ...], region: tuple[slice, ...]
+) -> Found:
+    """Compute a region of the cells from parameters: this is all that a worker is sent.
+
+    The modules are those in which the sweep's own kinds of parts are defined, in whoever asks for
+    it.
+
+    Raises `Unavailable` if the worker has another version of this package, or lacks a module.
+    """
+    if version != __version__:
+        raise Unavailable(f"a worker has tippetop {__version__}, and the sweep is run by {version}")
+    try:
+        for name in modules:
+            import_module(name)
+    except ImportError as error:
+        raise Unavailable(
+            f"a worker cannot import the module of a part of the problem: {error}"
+        ) from None
+    sweep = _sweep(description)
+    # Compiled functions have one set of buffers; a worker with several threads takes turns.
+    with _turn:
+        return follow_cells(sweep, sweep.numbers(region).ravel())
+
+
+@lru_cache(maxsize=4)
+def _sweep(description: str) -> Sweep:
+    return Sweep(**json.loads(description))
+
+
+def results(
+    sweep: Sweep,
+    tasks: Sequence[Task],
+    workers: int | None = None,
+    scheduler: str | Cluster | None = None,
+) -> Iterator[tuple[Task, Found]]:
+    """Compute tasks of a sweep and give what they found as it comes, in any order; see
+    `need_workers`.
+    """
+    modules = _modules(sweep, workers, scheduler)
+    if HERE in modules:
+        workers = 1
+    description = json.dumps(sweep.describe())
+    calls = {task: (description, __version__, modules, sweep.region(task)) for task in tasks}
+    if scheduler is not None:
+        yield from _share_with_cluster(scheduler, calls)
+        return
+    jobs = (Job(task, compute_region, call) for task, call in calls.items())
+    try:
+        yield from shared(
+            lambda: next(jobs, None), min(workers or processors(), max(len(tasks), 1))
+        )
+    except Unavailable as error:
+        raise Unavailable(f"{error}; {KEPT}") from None
+
+
+@contextmanager
+def need_workers(
+    sweep: Sweep, workers: int | None, scheduler: str | None
+) -> Iterator[Cluster | None]:
+    """See that there is someone to compute, before anything is written; for both see `sweep`.
+
+    Gives the cluster, connected to, that takes the place of the scheduler's address meanwhile.
+
+    Raises `InvalidInput` if the number of workers is not positive, or there is no scheduler at the
+    address; `Unavailable` if dask.distributed is needed and not installed.
+    """
+    _modules(sweep, workers, scheduler)
+    with nullcontext() if scheduler is None else _cluster(scheduler) as cluster:
+        yield cluster
+
+
+def _modules(sweep: Sweep, workers: int | None, scheduler: str | Cluster | None) -> tuple[str, ...]:
+    """The modules that a worker has to import, for kinds of parts that are not of this package."""
+    known = is_whole(workers) and workers >= 1
+    if not (workers is None or known):
+        raise InvalidInput("workers", workers, "a whole number, at least 1")
+    modules = sweep.problem.modules()
+    if HERE in modules and (scheduler is not None or workers not in (None, 1)):
+        raise InvalidInput(
+            "workers" if scheduler is None else "scheduler",
+            workers if scheduler is None else scheduler,
+            "this process alone, with workers = 1: the problem has parts that the script itself"
+            " defines, and that other processes can import only from a module",
+        )
+    return tuple(sorted(modules))
+
+
+def processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _share_with_cluster(
+    scheduler: str | Cluster, calls: Mapping[Task, Call]
+) -> Iterator[tuple[Task, Found]]:
+    """Hand tasks to a cluster, a few ahead of every worker; it does those of workers that died
+    again.
+    """
+    waiting = deque(calls)
+    running: dict[Future[Found], Task] = {}
+    with (
+        nullcontext(scheduler) if isinstance(scheduler, Cluster) else _cluster(scheduler)
+    ) as cluster:
+        address, client = cluster
+        executor = client.get_executor(retries=RESTARTS)
+        most = AHEAD * _workers(client)
+        try:
+            while waiting or running:
+                while waiting and len(running) < most:
+                    task = waiting.popleft()
+                    running[executor.submit(compute_region, *calls[task])] = task
+                for future in _first_done(client, address, running):
+                    task = running.pop(future)
+                    yield task, future.result()
+        except Exception as error:
+            if _is_of_cluster(error):
+                raise Unavailable(
+                    f"the cluster at {address} was lost ({type(error).__name__}); {KEPT}"
+                ) from None
+            raise
+        finally:
+            for future in running:
+                future.cancel()
+
+
+def _is_of_cluster(error: Exception) -> bool:
+    """Whether the cluster failed, not a task: the library stumbles over results of workers that are
+    lost.
+    """
+    *_, (innermost, _) = walk_tb(error.__traceback__)
+    where = (type(error).__module__, innermost.f_globals.get("__name__", ""))
+    return isinstance(error, CancelledError) or any(
+        name.startswith("distributed") for name in where
+    )
+
+
+def _first_done(
+    client: Any, address: str, running: Mapping[Future[Found], Task]
+) -> set[Future[Found]]:
+    """Wait until one is done, as long as there is somebody to do it."""
+    alone = 0.0
+    while True:
+        done, _ = wait(running, timeout=GLANCE, return_when=FIRST_COMPLETED)
+        if done:
+            return done
+        if client.status != "running":
+            # Tasks handed out since then are cancelled only when the client gives up reconnecting.
+            raise CancelledError
+        if _workers(client):
+            alone = 0.0
+            continue
+        if not alone:
+            alone = time.monotonic()
+            logging.getLogger(__name__).warning(
+                "the cluster at %s has no workers; the sweep waits for some, %g s", address, LONELY
+            )
+        if time.monotonic() - alone >= LONELY:
+            raise Unavailable(
+                f"the cluster at {address} has had no workers for {LONELY:g} s; {KEPT}"
+            )
+
+
+def _workers(client: Any) -> int:
+    return len(client.scheduler_info(n_workers=-1).get("workers", ()))
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Cluster]:
+    """A running cluster that has workers."""
+    if find_spec("distributed") is None:
+        raise Unavailable("a scheduler needs dask.distributed: pip install 'tippetop[sweep]'")
+    from distributed import Client  # noqa: PLC0415 - optional, and slow to import
+    from distributed.comm.addressing import get_address_host_port  # noqa: PLC0415
+    from distributed.utils import silence_logging_cmgr  # noqa: PLC0415
+
+    # What goes wrong is said here, in a sentence.
+    with silence_logging_cmgr(logging.CRITICAL):
+        try:
+            # A client that is asked for no address tries for long, and complains at its end.
+            get_address_host_port(address)
+            client: Any = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
+        except (OSError, TypeError, ValueError) as error:
+            raise InvalidInput(
+                "scheduler", address, f"the address of a running scheduler ({error})"
+            ) from None
+        with client:
+            if not _workers(client):
+                raise InvalidInput("scheduler", address, "a scheduler that has workers")
+            yield Cluster(address, client)

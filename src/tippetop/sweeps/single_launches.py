@@ -1,0 +1,82 @@
+"""Launches of a sweep that are followed one by one, each as a single launch is."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from tippetop.contact.block import in_blocks
+from tippetop.contact.mode import Segment, Transition
+from tippetop.contact.trajectory import Trajectory
+from tippetop.integrators import TOLERANCES, default_name, has_llvm, make_integrator
+from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.results.metrics import Ends
+from tippetop.results.observables import Recorder
+from tippetop.results.run_metrics import Tally
+from tippetop.sweeps.launch_arrays import Launches, single
+from tippetop.theory.prediction import is_held
+
+
+def is_alone(launches: Launches) -> bool:
+    """Whether there are no batches, which LLVM compiles, or they know nothing of their bodies or
+    rules.
+    """
+    example = launches.kind.example
+    return not has_llvm() or launches.own is not None or isinstance(example.surface, Hull)
+
+
+def follow_each(launches: Launches, tolerance: float, settled: float | None = None) -> Ends:
+    """Follow every launch to its end, or until its tilt is held within `settled`, rad."""
+    ends = Ends.unknown(len(launches))
+    for i in range(len(launches)):
+        rules, state = launches.rules(i), single(launches.state, i)
+        begin = rules.top, state, 0.0
+        found, _ = follow(begin, rules.launch(state), float(launches.end[i]), tolerance, settled)
+        ends.put(np.array([i]), found)
+    return ends
+
+
+def follow(
+    begin: tuple[Top, State, float],
+    start: Transition,
+    end: float,
+    tolerance: float,
+    settled: float | None = None,
+) -> tuple[Ends, Tally]:
+    """What a launch comes to: followed from a top, a state, a time and what follows, or until it
+    settles.
+    """
+    top, state, time = begin
+    method = make_integrator(None, max(tolerance, TOLERANCES[default_name()]))
+    trajectory, tally = Trajectory(start, end, method, time=time), Tally()
+    segments, recorder = (
+        trajectory.segments(),
+        Recorder(top, state, 0.0, np.empty(0), start.energy_lost),
+    )
+    segments = segments if settled is None else until_settled(trajectory, segments, settled)
+    for block in in_blocks(segments):
+        recorder.take(block)
+        tally.take(block)
+    outcome = recorder.outcome_of(trajectory)
+    return tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events), tally
+
+
+def until_settled(
+    trajectory: Trajectory, segments: Iterator[Segment], closeness: float
+) -> Iterator[Segment]:
+    """The segments of a trajectory up to the first step at whose start the tilt is held."""
+    for segment in segments:
+        knots, terms = segment.solution.knots, segment.solution.terms
+        held = is_held(segment.mode.state(terms[:, :, 0].T), segment.mode.top, closeness)
+        if not held.any():
+            yield segment
+            continue
+        count = int(held.argmax())
+        last = segment.mode.state(terms[count, :, 0].tolist())
+        trajectory.end_at(float(knots[count]), last)
+        solution = DenseSolution(knots[: count + 1], terms[:count])
+        yield replace(segment, solution=solution, end_state=last, transition=None, steps=count)
+        return

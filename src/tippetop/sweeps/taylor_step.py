@@ -1,0 +1,256 @@
+"""One step of Taylor's method for many launches at once, with what happens inside it.
+
+The equations of motion and guards of a contact mode, in plain operators, are evaluated on power
+series. LLVM compiles the whole step, with its dense output, into one function that works on eight
+launches an instruction; without it launches are followed one by one. Order and step size are chosen
+much as by heyoka's integrators (Biscani and Izzo 2021, MNRAS 504; Jorba and Zou 2005, Experimental
+Mathematics 14): the order p from the tolerance, and the step from the last two coefficients, so
+that what is left out is below the tolerance. What is left out of all numbers is compared with all
+of them, by the roots of their squares; so a spin or slip that is large would let the axis go
+astray, and what is left out of that is compared with no more than `FAST`, and less beyond `FASTER`.
+Heyoka compares the largest numbers, and in a single launch the guards with them, where
+`tippetop.integrators.taylor` cuts steps that are too long for any.
+
+A launch's step depends on nothing but its own numbers: arrays are filled up to a multiple of
+`LANES`, so that every launch is computed by the same instructions wherever it stands in them.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from tippetop.contact.closed import BRANCH
+from tippetop.graph.taylor_coefficients import SharedSeries
+from tippetop.integrators.base import Motion
+from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
+from tippetop.mechanics.vectors import Scalar
+from tippetop.sweeps.polynomial_minima import (
+    TINY,
+    first_fall,
+    least_value,
+    looked_at,
+    lower_bound,
+    may_fall,
+)
+
+LOOKS, CLOSER_LOOKS = 12, 32
+"""Intervals of a step at whose ends n_z and guards are looked at, and of what may be longer than a
+step.
+"""
+
+FAST = 10.0
+"""Size of the state, in natural units, beyond which a top is so fast that its axis needs more care.
+"""
+
+FASTER = 1e3
+"""Size beyond which it needs yet more, as the square: by so much what the axis is off changes the
+force.
+"""
+
+LANES = 16
+"""Arrays are filled up to a multiple of this many launches."""
+
+
+class Layout(NamedTuple):
+    """Which row holds what, for a motion of some size with some guards.
+
+    A step brings the first rows up to date: the numbers of the motion, the time that is left to go
+    and the steps taken. The others tell of the step: the time it may take, whether something may
+    happen in it, the least values of the first guard, of n_z and of -n_z in it, and whether it
+    ended earlier, where another branch of the law takes over. Where something else may happen it
+    was not taken, those values are inf, and no time is left: the launch waits.
+
+    What to pause for is in rows after the parameters: whether each guard counts, whether the top is
+    yet to turn over, and the least and the largest n_z of a band (inf and -inf for none).
+    """
+
+    size: int
+    parameters: int
+    """Numbers of the motion, and parameters."""
+    left: int
+    steps: int
+    """Rows of the time left, and of the number of steps."""
+    kept: int
+    """How many rows a step brings up to date."""
+    taken: int
+    pause: int
+    """Rows of the time that a step may take, and of whether something may happen in it."""
+    least: slice
+    """Rows of the least values of the first guard, n_z and -n_z in a step."""
+    changed: int
+    """Row of whether a step ended where another branch of the law takes over."""
+    rows: int
+    """How many rows there are."""
+    counts: slice
+    turns: int
+    band: slice
+    """Rows, after the parameters, of which guards count, of whether the top is yet to turn over,
+    and of the band.
+    """
+    numbers: int
+    """How many rows of parameters and of what to pause for there are."""
+    branch: int | None
+    """Which guard tells where another branch of the law takes over, if any does."""
+
+    @classmethod
+    def of(cls, motion: Motion) -> "Layout":
+        """The layout for a motion."""
+        size, guards, parameters = motion.size, len(motion.guards), motion.parameters
+        kept, turns = size + 2, parameters + guards
+        pause, changed, numbers = kept + 1, kept + 5, turns + 3
+        least, counts, band = (
+            slice(kept + 2, changed),
+            slice(parameters, turns),
+            slice(turns + 1, numbers),
+        )
+        row = (size, size + 1, kept, kept, pause, least, changed, changed + 1)
+        names = [guard.name for guard in motion.guards]
+        branch = names.index(BRANCH) if BRANCH in names else None
+        return cls(size, parameters, *row, counts, turns, band, numbers, branch)
+
+
+class Jet(NamedTuple):
+    """Coefficients of polynomials in time, in increasing order, which may be arrays of n
+    launches.
+    """
+
+    state: Any
+    """Those of the state, size x (order + 1)."""
+    guards: Any
+    """Those of the guards, guards x order."""
+
+
+def expansion(
+    motion: Motion,
+    order: int,
+    start: Sequence[Scalar],
+    numbers: Sequence[Scalar],
+    plain: Arithmetic,
+) -> Jet:
+    """The polynomials of a step: coefficients of the solution and of the guards."""
+    parameters = numbers[: motion.parameters]
+    y = solved(
+        [SharedSeries(unknown, plain) for _ in start], start, lambda y: motion.rates(y, parameters)
+    )
+    guards = [guard.value(y, parameters) for guard in motion.guards]
+    return Jet(
+        [series.up_to(order)[: order + 1] for series in y],
+        [guard.up_to(order - 1)[:order] for guard in guards],
+    )
+
+
+def stride(
+    layout: Layout, jet: Jet, before: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
+) -> list[Scalar]:
+    """What `Stepper.step` makes of the rows that are kept, by the polynomials from there: all
+    rows.
+    """
+    left, steps = before[layout.size :]
+    counts, wanted = numbers[layout.counts], numbers[layout.turns :]
+    state, falls = jet
+    whole = step_size(state, left, plain, axis=3)
+    taken, changes, events = later_guards(falls, counts, (whole, layout.branch), plain)
+    floor, ceiling = extremes(state[2], taken, plain)
+    events += met(floor, ceiling, wanted, plain)
+    pressing = looked_at(falls[0], taken, LOOKS)
+    events += may_fall(falls[0], pressing, taken, plain) * counts[0]
+    moves = plain.below(0.0, taken)
+    pause = events * moves
+    after = [*(horner(terms, taken) for terms in state), left - taken, steps + moves]
+    goes = plain.below(pause, moves)
+    stays = [plain.choose(goes, new, old) for old, new in zip(before, after, strict=True)]
+    stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
+    force = least_value(falls[0], pressing, taken, plain)
+    least = [
+        plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)
+    ]
+    return [*stays, whole, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
+
+
+def extremes(tip: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
+    """The least and the largest n_z in a step, given its polynomial."""
+    heights, upside = looked_at(tip, taken, LOOKS), [-term for term in tip]
+    floor = least_value(tip, heights, taken, plain)
+    return floor, -least_value(upside, [-height for height in heights], taken, plain)
+
+
+def met(floor: Scalar, ceiling: Scalar, wanted: Sequence[Scalar], plain: Arithmetic) -> Scalar:
+    """Whether n_z passes zero, if the top is yet to turn over, or reaches a band: see `Layout`."""
+    turns, low, high = wanted
+    over = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
+    return over + (1.0 - plain.below(high, floor)) * (1.0 - plain.below(ceiling, low))
+
+
+def later_guards(
+    falls: Sequence[Sequence[Scalar]],
+    counts: Sequence[Scalar],
+    step: tuple[Scalar, int | None],
+    plain: Arithmetic,
+) -> tuple[Scalar, Scalar, Scalar]:
+    """What a step is because of all guards but the first, as far as they count.
+
+    Of the step that may be taken, and of which guard is of the law's branch, it makes the step that
+    is taken, whether that ends where another branch of the law takes over, and whether a guard may
+    fall in it. Only where that of the branch comes near zero is it looked at.
+    """
+    whole, branch = step
+    none = 0.0 * whole
+    taken, changes, events = whole, none, none
+    for number, (terms, count) in enumerate(zip(falls[1:], counts[1:], strict=True), start=1):
+        near = plain.below(lower_bound(terms, whole, plain), TINY)
+        if number != branch:
+            events += near * count
+            continue
+        need, (change, doubt) = (
+            near * plain.below(0.0, whole),
+            first_fall(terms, whole, LOOKS, plain),
+        )
+        found, usual = (
+            (plain.least(change, whole), plain.below(change, whole), doubt),
+            (whole, none, none),
+        )
+        taken, changes, doubt = (
+            plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True)
+        )
+        events += doubt
+    return taken, changes, events
+
+
+def step_size(
+    state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic, axis: int = 0
+) -> Scalar:
+    """Step for which the last terms of the polynomials are below the tolerance, or all that is
+    left.
+
+    They are compared with the state; the first, as many as are of the axis, with `FAST` at most,
+    and with less beyond `FASTER`. The step is 0 where they are no numbers.
+    """
+    order = len(state[0]) - 1
+
+    def square(terms: Sequence[Scalar]) -> Scalar:
+        return plain.total([term * term for term in terms])
+
+    def ratio(k: int) -> Scalar:
+        # Of fast motion the last terms are so large that their squares are no numbers.
+        scale = 1.0 / (plain.total([plain.size(series[k]) for series in state]) + TINY)
+        terms = [scale * series[k] for series in state]
+        others = square(terms[axis:])
+        left_out = whole / others
+        if axis:
+            own = square(terms[:axis])
+            left_out = plain.least(bounded / own, whole / (own + others))
+        return scale * left_out**0.5
+
+    whole = square([series[0] for series in state])
+    bounded = whole
+    if axis:
+        most = FAST * FASTER * FASTER / whole
+        bounded = plain.least(plain.least(whole, FAST * FAST), most * most)
+    radius = plain.least(*(ratio(k) ** (1.0 / k) for k in (order - 1, order)))
+    safety = math.exp(-2.0 - 0.7 / (order - 1))
+    return plain.choose(plain.below(0.0, radius), plain.least(safety * radius, left), 0.0 * left)
+
+
+def order_for(tolerance: float) -> int:
+    """Degree of the polynomials for a tolerance, as heyoka chooses it."""
+    return max(2, math.ceil(1.0 - 0.5 * math.log(tolerance)))

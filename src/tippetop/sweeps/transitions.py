@@ -1,0 +1,233 @@
+"""What follows on lanes where a guard falls through zero, a flight ends or a launch begins.
+
+Lift-off, flights and impacts without restitution, the bulk of it, are done for all lanes at once,
+with the equations of a single launch. Everything else goes through the transitions of a single
+launch, lane by lane; a lane that enters a mode which only a single launch knows is followed alone
+to its end.
+"""
+
+import numpy as np
+
+from tippetop.contact.closed import BRANCH, LIFT_OFF
+from tippetop.contact.flight import TOUCHING, Flight
+from tippetop.contact.mode import EventKind, Mode, Outcome, Transition
+from tippetop.contact.sliding import Sliding, sliding_motion
+from tippetop.contact.surfaces import lies_flat
+from tippetop.integrators.base import Array
+from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import presses
+from tippetop.mechanics.state import State
+from tippetop.mechanics.touchdown import Start
+from tippetop.results.metrics import OUTCOMES
+from tippetop.sweeps.flights import fly_all, rolls, slides, slips
+from tippetop.sweeps.impacts import collide
+from tippetop.sweeps.lane_arrays import Slots
+from tippetop.sweeps.launch_arrays import Indices, branched, picked, single
+from tippetop.sweeps.single_launches import follow
+
+FLIGHT_LIMIT = 50_000
+"""Flights after which a launch is given up."""
+
+
+class Crossings:
+    """Transitions of launches under way, which end when they reach a band of n_z if they are
+    `banded`.
+
+    The tolerance is that of the integrator of launches that are followed alone: relative error per
+    step.
+    """
+
+    def __init__(self, slots: Slots, tolerance: float, banded: bool) -> None:
+        self.slots, self.tolerance, self.banded = slots, tolerance, banded
+        self.motion = sliding_motion(slots.launches.kind, guarded=True)
+
+    def launch(self, lanes: Indices, state: State) -> None:
+        """Sort the launches out that do not simply slide from the start."""
+        launches = self.slots.launches
+        alone = launches.unresisted
+        for i in np.flatnonzero(alone).tolist():
+            here = single(state, i)
+            self._follow_alone(int(lanes[i]), 0.0, here, launches.rules(i).launch(here))
+        plain = slips(state, launches.top, far=True) & rolls(state, launches.top)
+        if launches.liftoff != "ignore":
+            plain &= slides(state, launches.top)
+        if launches.liftoff == "fly":
+            plain &= gap(state, launches.top) <= TOUCHING
+            plain &= np.abs(gap_rate(state, launches.top)) <= TOUCHING
+        others = np.flatnonzero(~plain & ~alone)
+        transitions = [launches.rules(i).launch(single(state, i)) for i in others.tolist()]
+        self._enter(lanes[others], np.zeros(len(others)), picked(state, others), transitions)
+
+    def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
+        """What follows where guards fall through zero."""
+        names = np.array([guard.name for guard in self.motion.guards])[guards]
+        other, free = names == BRANCH, names == LIFT_OFF
+        if free.any():
+            here = self.slots.whole(lanes)
+            free &= ~presses(here.axis, here.momentum, self.slots.tops(lanes))
+        ending = ~(other | free)
+        if ending.any():
+            cells, state = self.slots.cell[lanes[ending]], self.slots.whole(lanes[ending])
+            modes = [self.slots.launches.sliding(int(cell)) for cell in cells]
+            transitions = [
+                mode.follow(str(name), float(moment), single(state, i))
+                for i, (mode, name, moment) in enumerate(
+                    zip(modes, names[ending], time[ending], strict=True)
+                )
+            ]
+            self._enter(lanes[ending], time[ending], state, transitions)
+        if other.any():
+            self.slots.change_branch(lanes[other])
+        self._let_go(lanes[free], time[free])
+
+    def _let_go(self, lanes: Indices, time: Array) -> None:
+        """What follows where the normal force falls to zero."""
+        slots = self.slots
+        cells, state = slots.cell[lanes], slots.whole(lanes)
+        slots.ends.lift_off[cells] = np.fmin(slots.ends.lift_off[cells], time)
+        if slots.launches.liftoff == "stop":
+            slots.retire(lanes, state, time, Outcome.LIFTED_OFF)
+        else:
+            self._fly(lanes, state, time, np.full(len(lanes), int(Start.LIFT_OFF), dtype=np.intp))
+
+    def _fly(self, lanes: Indices, state: State, time: Array, vanishing: Indices) -> None:
+        """Fly, collide, and fly again, until the tops slide or their runs end."""
+        slots = self.slots
+        ends, launches = slots.ends, slots.launches
+        while len(lanes):
+            cells = slots.cell[lanes]
+            horizon = slots.end[lanes] - time
+            numbers = launches.numbers[:, cells]
+            flown = fly_all(
+                state, launches.kind, numbers, horizon, vanishing, (slots.tip, lanes, time)
+            )
+            ends.flights[cells] += 1
+            ends.airborne[cells] += flown.duration
+            ends.highest_gap[cells] = np.fmax(ends.highest_gap[cells], flown.highest_gap)
+            ends.highest[cells] = np.fmax(ends.highest[cells], flown.highest)
+            over = ~flown.landed & (flown.duration >= horizon)
+            time = np.where(over, slots.end[lanes], time + flown.duration)
+            slots.retire(lanes[over], picked(flown.state, over), time[over], Outcome.COMPLETED)
+            slots.retire(
+                lanes[flown.lost], picked(flown.state, flown.lost), time[flown.lost], Outcome.FAILED
+            )
+            spent = ~over & (~flown.landed | (ends.flights[cells] >= FLIGHT_LIMIT))
+            which = spent & ~flown.lost
+            slots.retire(
+                lanes[which], picked(flown.state, which), time[which], Outcome.TOO_MANY_PHASES
+            )
+            landed = flown.landed & ~spent
+            lanes, time, state = lanes[landed], time[landed], picked(flown.state, landed)
+            lanes, state, time, vanishing = self._land(lanes, state, time)
+
+    def _land(
+        self, lanes: Indices, state: State, time: Array
+    ) -> tuple[Indices, State, Array, Indices]:
+        """Collide with the table; return the lanes that fly again, as `_fly` takes them."""
+        slots = self.slots
+        cells, launches = slots.cell[lanes], slots.launches
+        top = branched(launches.tops(cells), state)
+        after, struck = collide(state, top)
+        sliding = (
+            struck
+            & ~np.asarray(lies_flat(top, state.axis))
+            & (launches.restitution[cells] == 0.0)
+            & slides(after, top)
+        )
+        sliding &= slips(after, top, far=True)
+        slots.place(lanes[sliding], picked(after, sliding), time[sliding])
+        taken = energy(state, top) - energy(after, top)
+        slots.ends.struck[cells[sliding]] += np.broadcast_to(taken, sliding.shape)[sliding]
+        others = np.flatnonzero(~sliding)
+        transitions = [
+            launches.rules(int(cells[i])).touchdown(float(time[i]), single(state, i))
+            for i in others.tolist()
+        ]
+        return self._enter(
+            lanes[others], time[others], picked(state, others), transitions, fly=False
+        )
+
+    def _enter(
+        self,
+        lanes: Indices,
+        time: Array,
+        state: State,
+        transitions: list[Transition],
+        fly: bool = True,
+    ) -> tuple[Indices, State, Array, Indices]:
+        """Put lanes where transitions lead from their states.
+
+        Those that fly do so, or are returned as `_fly` takes them.
+        """
+        again, starts, states = [], [], []
+        for i, transition in enumerate(transitions):
+            self._note(lanes[i], float(time[i]), transition)
+            if not isinstance(transition.then, Flight | Outcome) and not is_plain(transition.then):
+                self._follow_alone(int(lanes[i]), float(time[i]), single(state, i), transition)
+                continue
+            self.slots.ends.struck[self.slots.cell[lanes[i]]] += transition.energy_lost
+            if isinstance(transition.then, Flight):
+                again.append(i)
+                starts.append(int(transition.then.start))
+                states.append(transition.state.pack())
+            else:
+                self._settle(lanes[i : i + 1], transition, time[i : i + 1])
+        which = np.array(again, dtype=np.intp)
+        thrown = State.unpack(list(np.array(states, dtype=float).reshape(-1, 10).T.copy()))
+        flying = lanes[which], thrown, time[which], np.array(starts, dtype=np.intp)
+        if fly:
+            self._fly(*flying)
+        return flying
+
+    def _note(self, lane: int, time: float, transition: Transition) -> None:
+        """Note a lift-off."""
+        if any(event.kind is EventKind.LIFT_OFF for event in transition.events):
+            ends, cell = self.slots.ends, self.slots.cell[lane]
+            ends.lift_off[cell] = np.fmin(ends.lift_off[cell], time)
+
+    def _settle(self, lane: Indices, transition: Transition, time: Array) -> None:
+        """Let a top slide, or end its run."""
+        state = State.unpack(
+            [np.array([number], dtype=float) for number in transition.state.pack()]
+        )
+        if isinstance(transition.then, Outcome):
+            self.slots.retire(lane, state, time, transition.then)
+        else:
+            self.slots.place(lane, state, time)
+
+    def follow_alone(self, lanes: Indices) -> None:
+        """Follow launches that slide as single launches are, from where they are."""
+        state, time = self.slots.whole(lanes), self.slots.time(lanes)
+        for i, lane in enumerate(lanes.tolist()):
+            here = single(state, i)
+            mode = self.slots.launches.rules(int(self.slots.cell[lane])).going_on(here, slips=True)
+            self._follow_alone(lane, float(time[i]), here, Transition((), mode, here))
+
+    def _follow_alone(self, lane: int, time: float, state: State, transition: Transition) -> None:
+        """Follow one launch from a transition in a state to its end as a single launch is."""
+        slots, ends, cell, where = (
+            self.slots,
+            self.slots.ends,
+            self.slots.cell[[lane]],
+            np.array([lane]),
+        )
+        begin = slots.launches.rules(int(slots.cell[lane])).top, state, time
+        found, tally = follow(begin, transition, float(slots.end[lane]), self.tolerance)
+        for name in ("flights", "airborne", "struck", "drilled", "rolled"):
+            getattr(ends, name)[cell] += getattr(found, name)
+        for name in ("highest_gap", "highest", "up"):
+            getattr(ends, name)[cell] = np.fmax(getattr(ends, name)[cell], getattr(found, name))
+        for name in ("lift_off", "least_force", "down"):
+            getattr(ends, name)[cell] = np.fmin(getattr(ends, name)[cell], getattr(found, name))
+        tip = slots.tip
+        tip.turned[where] = np.fmin(tip.turned[where], found.turned)
+        arrived = tally.arrival(tip.low[where], tip.high[where]) if self.banded else found.arrived
+        tip.reached[where] = np.fmin(tip.reached[where], arrived)
+        slots.rows[slots.layout.steps, where] += found.steps
+        slots.retire(where, found.state, found.time, OUTCOMES[found.outcome])
+
+
+def is_plain(mode: Mode) -> bool:
+    """Whether lanes slide as in this mode."""
+    return type(mode) is Sliding and not mode.near

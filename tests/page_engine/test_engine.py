@@ -1,0 +1,366 @@
+"""The engine in the page: current, and the same numbers as Python's.
+
+TIPPETOP_PARITY=500 follows as many random launches in both instead of the few that every check
+takes.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tippetop as tt
+from launches import (
+    TOLERANCE,
+    asked,
+    compared,
+    in_javascript,
+    in_python,
+    launch_of,
+    laws_of,
+    nudged,
+    parts_of,
+    surfaces_of,
+)
+from lying import lying, resisted
+from node import printed
+from tippetop.page_engine import COMMAND, HERE
+
+SLIPS_IN_THE_END = 21
+STOP_ON_TWO = (80, 192, 426)
+LIFTS_OFF_AT_ONCE, SLIPS_TO_ITS_END, TRIES_NO_SHAPE = 327, 374, 1030
+"""The last's first trial leads beyond lying flat, where nothing is a number; its step is then
+shortened.
+"""
+SEEDS, DURATION = (
+    (1, 3, 32, 62, 64, 104, 195, LIFTS_OFF_AT_ONCE, SLIPS_TO_ITS_END, TRIES_NO_SHAPE),
+    0.3,
+)
+if "TIPPETOP_PARITY" in os.environ:
+    SEEDS = tuple(range(int(os.environ["TIPPETOP_PARITY"])))
+
+
+def test_what_is_generated_is_current() -> None:
+    # In a process of its own: laws that other tests define are parts of a problem too.
+    code = (
+        "import json; from tippetop.page_engine.generate import generated;"
+        " print(json.dumps(generated()))"
+    )
+    said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    for name, text in json.loads(said.stdout).items():
+        words, numbers = told(text)
+        words_there, numbers_there = told((HERE / name).read_text(encoding="utf-8"))
+        assert words == words_there, f"{name} is out of date: run `{COMMAND}`"
+        # The last digits are the processor's: libraries of linear algebra sum in another order on
+        # each.
+        np.testing.assert_allclose(
+            numbers_there, numbers, rtol=1e-13, atol=0.0, err_msg=f"run `{COMMAND}`"
+        )
+
+
+def told(text: str) -> tuple[list[str], list[float]]:
+    """What is said between the numbers of a text, and these."""
+    parts = re.split(r"(-?\b\d+(?:\.\d+)?(?:e[-+]?\d+)?\b)", text)
+    return parts[::2], [float(number) for number in parts[1::2]]
+
+
+def test_all_that_is_generated_asks_for_is_there() -> None:
+    script = f"""
+      import {{ readFileSync }} from "node:fs";
+      import * as py from {json.dumps((HERE / "runtime.js").as_uri())};
+      const text = readFileSync({json.dumps(str(HERE / "mechanics.js"))}, "utf8");
+      const uses = text.matchAll(/\\bpy\\.(?:(math|np)\\.)?(\\w+)/g);
+      const asked = new Set(Array.from(uses, ([name]) => name));
+      const value = (name) => name.split(".").slice(1).reduce((one, part) => one?.[part], py);
+      const there = (name) => value(name) !== undefined;
+      console.log(JSON.stringify([[...asked].filter((name) => !there(name)), [...asked]]));
+    """
+    missing, asked = json.loads(printed(script))
+    assert {"py.add", "py.math.pi", "py.np.nan"} <= set(asked)
+    assert not missing
+
+
+def test_the_report_s_launch_with_flights_is_the_same() -> None:
+    problem = tt.presets.report_problem(spin=175.0)
+    duration = 6.5
+    run = tt.simulate(problem, duration, samples=41)
+    question = asked(0, duration) | {
+        "problem": problem.model_dump(mode="json"),
+        "tolerance": TOLERANCE,
+    }
+    (found,) = in_javascript([question])
+    assert run.sizes["event"] > 10, "it flies"
+    assert not compared(found, run)
+
+
+def test_a_coin_that_tumbles_through_flat_is_the_same() -> None:
+    launch, contact = tt.Launch(tilt=1.2, spin=0.0, gap=0.01), tt.Contact(restitution=0.5)
+    for friction in (tt.ViscousFriction(mu=0.3), tt.CoulombFriction(mu=0.3)):
+        problem = tt.Problem(
+            body=tt.presets.COIN, friction=friction, launch=launch, contact=contact
+        )
+        fields = problem.model_dump(mode="json")
+        (found,) = in_javascript([asked(0, DURATION) | {"problem": fields}])
+        run = in_python(fields, DURATION)
+        assert run.attrs["outcome"] == "lying_flat"
+        assert not compared(found, run)
+
+
+def test_a_coin_that_slips_until_it_lies_flat_is_the_same() -> None:
+    launch = tt.Launch(tilt=0.16, spin=0.0, tilt_rate=-20.0)
+    for pressure in ("ellipsoidal", "hertz"):
+        law = tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure=pressure)
+        fields = tt.Problem(body=tt.presets.COIN, friction=law, launch=launch).model_dump(
+            mode="json"
+        )
+        (found,) = in_javascript([asked(0, DURATION) | {"problem": fields}])
+        run = in_python(fields, DURATION)
+        assert run.attrs["outcome"] == "lying_flat"
+        assert abs(float(run["theta"][-1]) - 1e-3) < 1e-9
+        assert not compared(found, run)
+
+
+def test_random_launches_are_the_same() -> None:
+    found = in_javascript([asked(seed, DURATION) for seed in SEEDS])
+    wrong = {}
+    for seed, theirs in zip(SEEDS, found, strict=True):
+        run = in_python(launch_of(seed), DURATION)
+        if isinstance(run, str):
+            off = [] if theirs.get("refused") == run else [f"{theirs} instead of {run}"]
+        else:
+            off = compared(theirs, run)
+            if off:
+                off = compared(theirs, run, in_python(nudged(launch_of(seed)), DURATION))
+        if off:
+            wrong[seed] = off
+    assert not wrong
+
+
+def test_every_law_on_every_surface_keeps_what_motion_keeps() -> None:
+    """Energy is what it began with and the work since; of spheres without torque Jellett's integral
+    stays.
+    """
+    random, size = np.random.default_rng(0), 0.02
+    launch = {"tilt": 0.4, "spin": 60.0, "tilt_rate": 1.0, "slip": [0.1, -0.05]}
+    shapes: list[Any] = [*surfaces_of(random, size), parts_of(random, size)[1:]]
+    spheres = shapes[:2]
+    problems = [
+        {
+            "body": {"mass": 0.02, "shape": shape, "I1": 3e-6, "I3": 3.5e-6},
+            "friction": law,
+            "launch": launch,
+        }
+        for law in laws_of(random, size)
+        for shape in shapes
+    ]
+    found = in_javascript([asked(0, 0.1) | {"problem": problem} for problem in problems])
+    for problem, run in zip(problems, found, strict=True):
+        assert run.get("outcome", run)["name"] == "completed", problem
+        energy, work, jellett = (
+            np.array(run["track"][name]) for name in ("energy", "work", "jellett")
+        )
+        assert np.ptp(energy - work) < 1e-12 * energy[0], problem
+        assert work[-1] < -1e-3 * energy[0], problem
+        if problem["friction"]["kind"] != "contensou" and problem["body"]["shape"] in spheres:
+            assert np.ptp(jellett) < 1e-12 * abs(jellett[0]), problem
+
+
+def test_slip_that_begins_on_two_contacts_is_the_same() -> None:
+    """At first its direction follows friction so fast that rates tell of rounding, and of motion no
+    more.
+    """
+    problem, duration = lying(SLIPS_IN_THE_END), 0.5
+    question = asked(0, duration) | {
+        "problem": problem.model_dump(mode="json"),
+        "tolerance": TOLERANCE,
+    }
+    (found,) = in_javascript([question])
+    run = in_python(problem.model_dump(mode="json"), duration)
+    assert str(run["event_kind"].values[-1]) == "slip"
+    assert not compared(found, run)
+
+
+def test_rolling_that_stops_and_starts_on_two_contacts_is_the_same() -> None:
+    problem, duration = resisted(64), 0.1
+    question = asked(0, duration) | {
+        "problem": problem.model_dump(mode="json"),
+        "tolerance": TOLERANCE,
+    }
+    (found,) = in_javascript([question])
+    run = in_python(problem.model_dump(mode="json"), duration)
+    assert {"rolling starts", "rolling stops"} <= set(run["event_kind"].values.tolist())
+    assert run.attrs["outcome"] == "at_rest"
+    assert not compared(found, run)
+
+
+def test_two_patches_stop_whatever_a_step_may_be_wrong_by() -> None:
+    """In the end guards are zero but for the error of a step, or for rounding, and no end of
+    anything.
+    """
+    ends = []
+    for tolerance in (1e-12, TOLERANCE):
+        found = list(
+            in_javascript(
+                [asked(seed, DURATION) | {"tolerance": tolerance} for seed in STOP_ON_TWO]
+            )
+        )
+        assert [run["outcome"]["name"] for run in found] == ["completed"] * len(STOP_ON_TWO)
+        ends.append(
+            [[(event["kind"], event["surface"]) for event in run["events"]] for run in found]
+        )
+    assert ends[0] == ends[1]
+    assert all([kind for kind, _ in events[-2:]] == ["stick", "stick"] for events in ends[0])
+
+
+def test_bodies_of_several_surfaces_may_end_upright() -> None:
+    """Where the precession has no value, which is no number there."""
+    changes = {"body": tt.presets.LEINE_GLOCKER_STEM, "launch.tilt": 0.0}
+    upright = tt.presets.report_problem().replace(changes)
+    [found] = in_javascript([asked(0, 0.1) | {"problem": json.loads(upright.to_json())}])
+    run = tt.simulate(upright, 0.1, samples=2)
+    assert found["outcome"]["name"] == run.attrs["outcome"] == "completed"
+    assert np.isnan(run["final_phi_dot"])
+    assert found["metrics"]["final_phi_dot"] is None
+    assert found["metrics"]["final_omega3"] == pytest.approx(upright.launch.spin, rel=1e-9)
+
+
+def test_numbers_that_are_refused_are_told_the_same() -> None:
+    question, sentences = asked(0, DURATION), list[str]()
+    numbers = (
+        0.0,
+        -0.0,
+        -2.0,
+        -3,
+        -0.5,
+        -1e-4,
+        -1.5e-5,
+        -3e-7,
+        -1e15,
+        -2e16,
+        -1.25e22,
+        -5e-324,
+        -1e300,
+    )
+    for number in numbers:
+        fields = question["problem"] | {"gravity": number}
+        with pytest.raises(tt.InvalidInput) as refusal:
+            tt.Problem(**fields)
+        sentences.append(str(refusal.value))
+    questions = [
+        question | {"problem": question["problem"] | {"gravity": number}} for number in numbers
+    ]
+    assert [found["refused"] for found in in_javascript(questions)] == sentences
+    told = [sentence.removeprefix("gravity = ").split(" is ")[0] for sentence in sentences]
+    assert told[:6] == ["0", "0", "-2", "-3", "-0.5", "-0.0001"]
+    assert list(map(float, told)) == list(numbers)
+
+
+def test_where_no_code_may_be_made_the_numbers_are_the_same() -> None:
+    """As under a policy of content security without unsafe-eval: every operation is the same."""
+    launches = [asked(seed, 0.05) for seed in SEEDS[:4]]
+    plain = list(in_javascript(launches))
+    assert all("outcome" in found for found in plain)
+    assert list(in_javascript(launches, "--disallow-code-generation-from-strings")) == plain
+
+
+def test_durations_and_limits_are_refused_the_same() -> None:
+    """What is asked of a run beside the problem; neither may a count of steps be a fraction."""
+    problem = tt.presets.report_problem()
+    changes: list[dict[str, Any]] = [
+        {"duration": 0.0},
+        {"duration": "1"},
+        {"duration": 2e300},
+        {"step_limit": -1},
+        {"step_limit": 0.5},
+        {"phase_limit": "3"},
+        {"tolerance": 1.0},
+        {"tolerance": "a"},
+    ]
+    sentences = list[str]()
+    for change in changes:
+        with pytest.raises(tt.InvalidInput) as refusal:
+            tt.simulate(problem, integrator="compiled", **{"duration": DURATION, **change})
+        sentences.append(str(refusal.value))
+    question = asked(0, DURATION) | {"problem": json.loads(problem.to_json())}
+    assert [
+        found.get("refused") for found in in_javascript([question | one for one in changes])
+    ] == sentences
+
+
+def test_the_last_of_so_many_samples_is_at_the_end() -> None:
+    """Also where the duration times a number, over that number, is rounded to more than the
+    duration.
+    """
+    duration, count = 0.007, 100
+    assert duration * (count - 1) / (count - 1) > duration
+    problem = json.dumps(tt.presets.report_problem().model_dump(mode="json"))
+    script = f"""
+      import {{ simulate }} from {json.dumps((HERE / "index.js").as_uri())};
+      const run = simulate({problem}, {{ duration: {duration} }});
+      console.log(JSON.stringify(Array.from(run.track({count}).time)));
+    """
+    times = json.loads(printed(script))
+    assert times == pytest.approx(np.linspace(0.0, duration, count), rel=1e-15)
+    assert times[-1] == duration
+
+
+def test_no_more_is_kept_than_so_much() -> None:
+    """A page may follow launches of ever other tops, each with tables of its own."""
+    script = f"""
+      import {{ cached }} from {json.dumps((HERE / "runtime.js").as_uri())};
+      let made = 0;
+      const square = cached((number) => (made += 1, number ** 2));
+      for (let number = 0; number < 5000; number += 1) square(number);
+      console.log(JSON.stringify([square(4999), made, square(0), made]));
+    """
+    assert json.loads(printed(script)) == [4999**2, 5000, 0, 5001]
+
+
+def test_a_run_keeps_not_much_more_than_its_numbers() -> None:
+    """However short its arcs are: a top that sticks and slips has hundreds of a few steps."""
+    problem = tt.presets.report_problem(tilt=1.0, spin=50.0).replace(
+        {"friction": tt.CoulombFriction(mu=0.2)}
+    )
+    script = f"""
+      import {{ simulate }} from {json.dumps((HERE / "index.js").as_uri())};
+      const {{ pieces }} = simulate({problem.to_json()}, {{ duration: 3, tolerance: 1e-8 }});
+      const sum = (of) => pieces.reduce((total, {{ solution }}) => total + of(solution.terms), 0);
+      const kept = sum((terms) => terms.buffer.byteLength), used = sum((terms) => terms.byteLength);
+      console.log(JSON.stringify([pieces.length, kept, used]));
+    """
+    arcs, kept, used = json.loads(printed(script))
+    assert arcs > 50
+    assert kept <= 2 * used
+
+
+def test_slip_that_has_all_but_ended_where_it_jams_sticks_in_the_page() -> None:
+    problem = tt.Problem(
+        body=tt.Body(
+            mass=0.02,
+            shape=tt.EccentricSphere(radius=0.013461353875469938, eccentricity=0.11510802842372737),
+            I1=1.0932492640476375e-07,
+            I3=1.266445725988121e-07,
+        ),
+        friction=tt.CoulombFriction(mu=0.5355226843422539),
+        launch=tt.Launch(
+            tilt=2.2788167293165924,
+            spin=-9.692539375774324,
+            tilt_rate=4.101303263481906,
+            slip=(-0.3166715094802961, 0.04264067899626711),
+        ),
+        contact=tt.Contact(liftoff="fly", restitution=0.0),
+        rolling_resistance=9.09935279481451e-05,
+    )
+    asked = {
+        "problem": problem.model_dump(mode="json"),
+        "duration": 0.05,
+        "tolerance": 1e-8,
+        "times": [0.05],
+    }
+    (found,) = in_javascript([asked | {"phase_limit": 300}])
+    assert found["outcome"]["name"] == "completed"

@@ -1,0 +1,63 @@
+"""Sweeps that the tests share: small, quick, and with all that can happen in them."""
+
+import numpy as np
+
+import tippetop as tt
+from tippetop.problem.presets import report_problem
+from tippetop.run import simulate
+from tippetop.sweeps import Axis, Product, Sweep
+from tippetop.sweeps.axes import Spaced
+
+FIELDS = (
+    "final_theta",
+    "final_omega3",
+    "energy_lost",
+    "airborne_time",
+    "first_lift_off",
+    "end_time",
+)
+
+
+def lively(liftoff="fly", spins=5, mus=3, duration=1.4, tolerance=1e-12, tilt=1.0):
+    """Launches of which some lift off, over spin and friction; tilted, so that things happen
+    early.
+    """
+    problem = report_problem(tilt=tilt).replace({"contact.liftoff": liftoff})
+    axes = (
+        Spaced("launch.spin", 40.0, 240.0, spins),
+        Spaced("friction.mu", 0.2, 1.0, mus, "geometric"),
+    )
+    return Sweep(problem, Product(axes), duration, tolerance)
+
+
+def thrown(tolerance=1e-9):
+    """Launches that fall on the table, bounce, and slide on; short."""
+    problem = report_problem(spin=150.0, tilt=0.5)
+    axes = Axis.of("launch.gap", [0.0, 0.001]), Axis.of("contact.restitution", [0.0, 0.4])
+    return Sweep(problem, Product(axes), 0.12, tolerance)
+
+
+def stored(sweep, out, **options):
+    """A sweep carried out into a store, as anybody does that."""
+    limits = {"duration": sweep.duration, "tolerance": sweep.tolerance, "settled": sweep.settled}
+    return tt.sweep(sweep.problem, sweep.grid, **limits, out=out, **options)
+
+
+def problem_of(sweep, cell):
+    """The problem of a cell."""
+    return sweep.problem.replace(
+        {field: float(values[0]) for field, values in sweep.grid.values(np.array([cell])).items()}
+    )
+
+
+def truth(problem, duration, samples=2001, **options):
+    """A run to compare with."""
+    return simulate(problem, duration, samples=samples, **options)
+
+
+def same(one, other):
+    """Whether two results are equal, number by number."""
+    return all(
+        np.array_equal(one[name], other[name], equal_nan=one[name].dtype.kind == "f")
+        for name in one
+    )

@@ -1,0 +1,365 @@
+"""Stores that are damaged, fought over or torn away: nothing is read wrong, and what can be is
+mended.
+"""
+
+import errno
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from sweep_cases import lively, stored
+
+from tippetop.problem.presets import report_problem
+from tippetop.support.errors import FileTrouble
+from tippetop.sweeps import (
+    SWEPT,
+    Draws,
+    Range,
+    Store,
+    Sweep,
+    compute,
+    definition,
+    fill,
+    read_sweep,
+    store_layout,
+    store_lock,
+)
+
+zarr = pytest.importorskip("zarr")
+
+DAMAGES = int(os.environ.get("TIPPETOP_DAMAGES", "40"))
+"""In how many places a store is damaged; more takes longer, and shows more."""
+
+
+def quick():
+    """Seven rows, so that the chunks at the edge are cut."""
+    return lively("fly", 7, 3, 0.05, 1e-9)
+
+
+def flip(data, random):
+    place = random.integers(len(data))
+    return data[:place] + bytes([data[place] ^ 1 << random.integers(8)]) + data[place + 1 :]
+
+
+def cut(data, random):
+    return data[: random.integers(len(data))]
+
+
+def blank(data, random):
+    place = random.integers(len(data))
+    return data[:place] + bytes(min(16, len(data) - place)) + data[place + 16 :]
+
+
+def lose(data, random):
+    return None
+
+
+def test_nothing_damaged_is_read_and_what_can_be_mended_is(tmp_path, monkeypatch):
+    monkeypatch.setattr(definition, "LEAST_CELLS_A_TASK", 12)
+    path, random = tmp_path / "a.zarr", np.random.default_rng(7)
+    truth = compute(quick())
+    stored(quick(), path, workers=1)
+    names = ["status", *SWEPT]
+    xr.testing.assert_identical(read_sweep(path)[names], truth[names])
+    files = sorted(file for file in path.rglob("*") if file.is_file() and file.name != ".lock")
+    sizes = np.array([file.stat().st_size for file in files])
+    refused = mended = 0
+    for _ in range(DAMAGES):
+        # Any file as likely as any other, or any byte.
+        file = random.choice(
+            files, p=random.choice([sizes / sizes.sum(), np.full(len(files), 1 / len(files))])
+        )
+        data = file.read_bytes()
+        damage = random.choice([flip, cut, blank, lose])(data, random)
+        if damage is None:
+            file.unlink()
+        else:
+            file.write_bytes(damage)
+        where = f"{damage and len(damage)} of {len(data)} bytes of {file.relative_to(path)}"
+        try:
+            found = read_sweep(path)[names]
+        except FileTrouble:
+            refused += 1
+        else:
+            # Metadata that are repeated elsewhere, spaces between words, or a task that counts as
+            # pending.
+            done = found["status"] == 1
+            assert found.where(done).identical(truth[names].where(done)), where
+            assert bool(done.all()) or file.parts[-4:-2] == ("status", "c"), where
+        if file == path / "zarr.json":
+            with pytest.raises(FileTrouble) if damage != data else pytest.MonkeyPatch.context():
+                Store.resume(path)
+            file.write_bytes(data)
+        else:
+            store = Store.resume(path)
+            fill(store, workers=1)
+            mended += 1
+            xr.testing.assert_identical(read_sweep(path)[names], truth[names])
+            assert (
+                json.loads(file.read_text()) == json.loads(data) if file.suffix else file.is_file()
+            )
+    assert refused > DAMAGES // 4
+    assert mended > DAMAGES // 4
+
+
+@pytest.mark.parametrize(
+    ("there", "instead"),
+    [
+        ('"duration": 0.05', '"duration": 0.06'),
+        ("rad s-1", "rad s-2"),
+        ("upright inverted", "inverted upright"),
+    ],
+)
+def test_metadata_that_were_edited_are_refused(tmp_path, there, instead):
+    path = tmp_path / "a.zarr"
+    Store.create(path, quick())
+    text = (path / "zarr.json").read_text()
+    (path / "zarr.json").write_text(text.replace(there, instead, 1))
+    for read in (read_sweep, Store.resume):
+        with pytest.raises(FileTrouble, match=r"zarr\.json is not as it was written"):
+            read(path)
+
+
+def test_resuming_does_again_what_is_missing_and_no_more(tmp_path, small_tasks):
+    path = tmp_path / "a.zarr"
+    stored(quick(), path, workers=1)
+    first, *_, last = quick().tasks
+    shutil.rmtree(path / "final_theta" / "c" / str(first[0]))
+    chunk = path.joinpath("steps", "c", *map(str, last))
+    chunk.write_bytes(flip(chunk.read_bytes(), np.random.default_rng(1)))
+    shutil.rmtree(path / "launch.spin" / "c")
+    store = Store.resume(path)
+    lost = {task for task in quick().tasks if task[0] == first[0]} | {last}
+    assert set(store.remaining()) == lost
+    with pytest.raises(FileTrouble, match="resume=True mends it"):
+        store.load(["final_theta"])
+    with pytest.raises(FileTrouble, match=r"a chunk of .* is missing"):
+        store.dataset()
+    progress = fill(store, workers=1)
+    assert progress.done - progress.before == sum(
+        store.sweep.numbers(store.sweep.region(task)).size for task in lost
+    )
+    xr.testing.assert_identical(store.dataset().load(), compute(quick()))
+
+
+def test_draws_are_mended_too(tmp_path):
+    sweep = Sweep(
+        report_problem(),
+        Draws((Range("launch.spin", 10, 200), Range("friction.mu", 0, 1)), 5),
+        0.05,
+    )
+    stored(sweep, tmp_path / "a.zarr", workers=1)
+    shutil.rmtree(tmp_path / "a.zarr" / "friction.mu")
+    with pytest.raises(FileTrouble, match=r"a chunk of friction\.mu is missing"):
+        read_sweep(tmp_path / "a.zarr")
+    stored(sweep, tmp_path / "a.zarr", resume=True, workers=1)
+    names = list(SWEPT)
+    xr.testing.assert_identical(read_sweep(tmp_path / "a.zarr", names), compute(sweep)[names])
+
+
+def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, monkeypatch):
+    """What would be left if the power were cut after any step: files whose content was brought to
+    store_lock.
+    """
+    store = Store.create(tmp_path / "a.zarr", quick())
+    synced, task = set(), quick().tasks[0]
+    chunks = {store.path.joinpath(name, "c", *map(str, task)) for name in ("status", *SWEPT)}
+    status = store.path.joinpath("status", "c", *map(str, task))
+    sync = store_lock._sync
+
+    def recorded(path):
+        if not status.exists():
+            assert path != status
+        synced.add(path)
+        if path == status:
+            others = chunks - {status}
+            assert others | {folder for chunk in others for folder in chunk.parents[:3]} <= synced
+        sync(path)
+
+    monkeypatch.setattr(store_lock, "_sync", recorded)
+    put = zarr.storage.LocalStore.set
+
+    async def after_the_others(self, key, value):
+        assert not key.startswith("status/c") or chunks - {status} <= synced
+        await put(self, key, value)
+
+    monkeypatch.setattr(zarr.storage.LocalStore, "set", after_the_others)
+    numbers = store.sweep.numbers(store.sweep.region(task))
+    store.write(
+        task, {name: np.zeros(numbers.size, dtype=kind.dtype) for name, kind in SWEPT.items()}
+    )
+    assert chunks <= synced
+
+
+def test_a_disk_that_does_not_take_it_leaves_the_task_undone(tmp_path, small_tasks, monkeypatch):
+    store = Store.create(tmp_path / "a.zarr", quick())
+
+    def full(path):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(store_lock, "_sync", full)
+        with pytest.raises(FileTrouble, match="No space left"):
+            fill(store, workers=1)
+    assert Store.resume(store.path).remaining() == quick().tasks
+
+
+SLOW = """
+import sys, time
+sys.path.insert(0, {folder!r})
+from test_sweep_faults import quick
+from tippetop.sweeps import definition
+from tippetop.sweeps import Store
+from tippetop.sweeps import fill
+definition.LEAST_CELLS_A_TASK, definition.TASKS = 4, 1000
+store = Store.create({path!r}, quick())
+print("filling", flush=True)
+fill(store, workers=1, callback=lambda progress: time.sleep(1.0))
+"""
+
+
+def test_a_sweep_that_is_being_filled_is_not_replaced(tmp_path, small_tasks):
+    path = tmp_path / "a.zarr"
+    script = SLOW.format(folder=str(Path(__file__).parent), path=str(path))
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE)
+    assert process.stdout.readline() == b"filling\n"
+    while not list(path.glob("status/c/*")):
+        time.sleep(0.05)
+    other = lively("stop", 7, 3, 0.05, 1e-9)
+    for overwrite in (True, False):
+        with pytest.raises(
+            FileTrouble, match="being filled by another process" if overwrite else "exists"
+        ):
+            stored(other, path, overwrite=overwrite, workers=1)
+    process.kill()
+    process.wait()
+    process.stdout.close()
+    assert [item.name for item in tmp_path.iterdir()] == ["a.zarr"]
+    assert 0 < len(Store.resume(path, quick()).remaining()) < len(quick().tasks)
+    stored(other, path, overwrite=True, workers=1)
+    xr.testing.assert_identical(read_sweep(path, list(SWEPT)), compute(other)[list(SWEPT)])
+
+
+def test_a_writer_notices_that_its_store_was_replaced(tmp_path, small_tasks):
+    path, other = tmp_path / "a.zarr", lively("stop", 7, 3, 0.05, 1e-9)
+
+    def replace(progress):
+        if progress.done and path.exists() and Store.resume(path).sweep == quick():
+            shutil.rmtree(path)
+            stored(other, path, workers=1)
+
+    store = Store.create(path, quick())
+    with pytest.raises(FileTrouble, match="replaced by another sweep"):
+        fill(store, workers=1, callback=replace)
+    xr.testing.assert_identical(read_sweep(path, list(SWEPT)), compute(other)[list(SWEPT)])
+    late = Store.resume(path)
+    Store.create(path, quick(), overwrite=True)
+    with pytest.raises(FileTrouble, match="replaced by another sweep"):
+        fill(late, workers=1)
+    shutil.rmtree(path)
+    with pytest.raises(FileTrouble, match="No such file"):
+        fill(late, workers=1)
+    assert not path.exists()
+
+
+def test_of_several_that_make_one_store_one_does(tmp_path, small_tasks):
+    said, ready = [], threading.Barrier(4)
+
+    def make():
+        ready.wait()
+        try:
+            Store.create(tmp_path / "a.zarr", quick())
+            said.append("made")
+        except FileTrouble as error:
+            said.append(str(error))
+
+    threads = [threading.Thread(target=make) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert said.count("made") == 1
+    assert [item.name for item in tmp_path.iterdir()] == ["a.zarr"]
+    assert Store.resume(tmp_path / "a.zarr").remaining() == quick().tasks
+
+
+KILLED = """
+import os, signal, sys
+sys.path.insert(0, {folder!r})
+from test_sweep_faults import quick
+from tippetop.sweeps import Store
+from tippetop.sweeps import store
+store.bring_to_disk = lambda paths: os.kill(os.getpid(), signal.SIGKILL)
+Store.create({path!r}, quick())
+"""
+
+
+def test_what_a_killed_program_left_is_cleared_away_by_the_next(tmp_path):
+    path = tmp_path / "a.zarr"
+    script = KILLED.format(folder=str(Path(__file__).parent), path=str(path))
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == -signal.SIGKILL
+    (left,) = tmp_path.iterdir()
+    assert left.name.startswith(".a.zarr.")
+    (tmp_path / ".a.zarr.theirs12").mkdir()
+    with store_lock.locked(left):
+        Store.create(path, quick())
+        assert left.exists(), "it may be another's who is at work"
+    Store.create(path, quick(), overwrite=True)
+    assert sorted(item.name for item in tmp_path.iterdir()) == [".a.zarr.theirs12", "a.zarr"]
+
+
+@pytest.mark.parametrize(
+    "text", ["[]", "3", "null", "{", "", '{"attributes": []}', "[" * 9999, "\ud800"]
+)
+def test_metadata_that_are_none_are_no_sweep(tmp_path, text):
+    path = tmp_path / "a.zarr"
+    path.mkdir()
+    (path / "zarr.json").write_bytes(text.encode(errors="surrogatepass"))
+    for read in (Store.resume, read_sweep):
+        with pytest.raises(FileTrouble, match="is not a sweep"):
+            read(path)
+    with pytest.raises(FileTrouble, match="is no sweep"):
+        Store.create(path, quick(), overwrite=True)
+
+
+@pytest.mark.parametrize("text", ["[]", "{", "", None])
+def test_a_sweep_whose_own_metadata_are_lost_is_known_by_its_arrays_and_replaced(tmp_path, text):
+    path = tmp_path / "a.zarr"
+    Store.create(path, quick())
+    if text is None:
+        (path / "zarr.json").unlink()
+    else:
+        (path / "zarr.json").write_text(text)
+    for read in (Store.resume, read_sweep):
+        with pytest.raises(
+            FileTrouble, match=r"is damaged: its zarr\.json .* start afresh with overwrite=True"
+        ):
+            read(path)
+    Store.create(path, quick(), overwrite=True)
+    assert len(Store.resume(path).remaining()) == len(quick().tasks)
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "x" * 250, "a\0b"])
+def test_names_that_no_file_can_have_are_told_in_a_sentence(tmp_path, name):
+    for use in (Store.create, Store.resume):
+        with pytest.raises(FileTrouble, match="cannot be"):
+            use(tmp_path / name, quick())
+    with pytest.raises(FileTrouble, match="cannot be"):
+        read_sweep(tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_another_layout_is_refused(tmp_path, monkeypatch):
+    Store.create(tmp_path / "a.zarr", quick())
+    monkeypatch.setattr(store_layout, "FORMAT", "tippetop sweep 99")
+    with pytest.raises(FileTrouble, match="laid out as 'tippetop sweep 2'"):
+        read_sweep(tmp_path / "a.zarr")

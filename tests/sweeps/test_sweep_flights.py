@@ -1,0 +1,270 @@
+"""Flights and impacts of many tops against those of one, and against what must hold."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from strategies import slides, spheres, spheroids, tops
+from tippetop.mechanics import impact_process
+from tippetop.mechanics.contensou_hertz import HertzLaw
+from tippetop.mechanics.flight import fly, gap_rate
+from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.impact import impact
+from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.motion import along_table, contact, on_table
+from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.top import Top, natural_state, natural_units
+from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
+from tippetop.sweeps.flight_steps import GIVEN, LEFT, STATE, TIME, VANISHING, WANTED, pieces
+from tippetop.sweeps.flights import fly_all, look
+from tippetop.sweeps.flights import slides as goes_on
+from tippetop.sweeps.impacts import collide
+from tippetop.sweeps.launch_arrays import branched, single
+from tippetop.sweeps.tip_extremes import DOWN, UP, TipMotion
+from tumbling import EDGES, Tumbling
+
+VISCOUS = tops(friction_laws=(ViscousLaw,))
+
+
+def many(state, count=2):
+    return State.unpack([np.full(count, float(number)) for number in state.pack()])
+
+
+def natural(top, sliding):
+    kind, numbers = top.kind, tuple(float(n) for n in top.numbers)
+    return kind, numbers, natural_state(on_table(sliding, top), natural_units(top))
+
+
+def flown(kind, numbers, state, vanishing, horizon=50.0):
+    column = np.repeat(np.array(numbers)[:, None], 2, axis=1)
+    tip = TipMotion.of(2)
+    here = np.arange(2)
+    return fly_all(
+        many(state),
+        kind,
+        column,
+        np.full(2, horizon),
+        np.full(2, vanishing),
+        (tip, here, np.zeros(2)),
+    ), tip
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # a sweep ignores what is no number
+@settings(max_examples=60)
+@given(slides(tops()), st.floats(0.01, 5.0), st.floats(-3.0, 3.0))
+def test_a_throw_lands_when_a_single_one_does(slide, gap, rise):
+    kind, numbers, state = natural(*slide)
+    u, v, w = state.velocity
+    state = state._replace(height=state.height + gap, velocity=(u, v, w + rise))
+    top = kind.top(numbers)
+    found, _ = flown(kind, numbers, state, 0)
+    landing = touchdown(state, top, 50.0, Start.AIRBORNE)
+    assert found.landed.all()
+    assert found.duration[0] == found.duration[1]
+    # A body that sinks in again at once touches at one of several times, which rounding tells
+    # apart.
+    last = fly(state, landing, top, math)
+    assume(abs(gap_rate(last, top)) > 1e-4)
+    assert found.duration[0] == pytest.approx(landing, rel=1e-10)
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # a sweep ignores what is no number
+@settings(max_examples=60)
+@given(slides(VISCOUS), st.floats(1e-4, 2.0))
+def test_a_rebound_lands_when_a_single_one_does(slide, rise):
+    kind, numbers, state = natural(*slide)
+    u, v, w = state.velocity
+    state = state._replace(velocity=(u, v, w + rise))
+    found, _ = flown(kind, numbers, state, 1)
+    landing = touchdown(state, kind.top(numbers), 50.0, Start.REBOUND)
+    last = fly(state, landing, kind.top(numbers), math)
+    assume(abs(gap_rate(last, kind.top(numbers))) > 1e-4)
+    assert found.duration[0] == pytest.approx(landing, rel=1e-9)
+
+
+@settings(max_examples=60)
+@given(slides(tops(st.one_of(spheres(), spheroids()), (ViscousLaw,))), st.floats(0.01, 5.0))
+def test_an_impact_is_the_single_one(slide, speed):
+    kind, numbers, state = natural(*slide)
+    u, v, w = state.velocity
+    state = state._replace(velocity=(u, v, w - speed))
+    top = kind.top(numbers)
+    after, struck = collide(many(state), kind.top(tuple(np.full(2, n) for n in numbers)))
+    one = impact(state, 0.0, top).state
+    assume(struck.all())
+    for ours, theirs in zip(after.pack()[:9], one.pack()[:9], strict=True):
+        assert ours[0] == pytest.approx(theirs, rel=1e-9, abs=1e-9 * (1.0 + speed))
+        assert ours[0] == ours[1]
+
+
+@pytest.mark.parametrize("surface", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 0.9, 0.2)])
+def test_pieces_of_flights_are_what_a_closer_look_finds_and_rarely_need_it(surface):
+    random, count = np.random.default_rng(4), 3000
+    kind = Top(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0).kind
+    numbers = np.repeat(
+        np.array(Top(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0).numbers)[:, None], count, 1
+    )
+    axis = random.normal(size=(3, count))
+    axis /= np.linalg.norm(axis, axis=0)
+    sliding = State(tuple(axis), tuple(3.0 * random.normal(size=(3, count))), (0.0, 0.0, 0.0), 0.0)
+    state = on_table(along_table(sliding), kind.top(tuple(numbers)))
+    # Thrown up, rebounding, let go, and lifted off with something that is left of the gap's
+    # acceleration.
+    vanishing = random.integers(0, 4, count).astype(float)
+    rise = np.where(vanishing < 2, 0.2 * random.exponential(size=count), 0.0)
+    thrown = state._replace(
+        velocity=(*random.normal(size=(2, count)), state.velocity[2] + rise),
+        height=state.height + np.where(vanishing == 0, random.exponential(size=count), 0.0),
+    )
+    given = np.empty((GIVEN, count))
+    given[STATE], given[VANISHING] = np.array(np.broadcast_arrays(*thrown.pack())), vanishing
+    given[TIME], given[LEFT] = 0.0, 10.0 ** random.uniform(-3.0, 1.0, count)
+    tip, lanes = TipMotion.of(count), np.arange(count)
+    tip.turned[:] = 0.0
+    given[WANTED] = tip.wanted(lanes)
+    found = pieces(kind, given, numbers)
+    looked = look(kind, given, numbers, (tip, lanes, np.zeros(count)))
+    sure = found.doubt == 0.0
+    assert sure[vanishing < 2].mean() > 0.9
+    assert np.count_nonzero(found.touches[sure]) > 100
+    assert np.array_equal(found.touches[sure], looked.touches[sure])
+    for mine, theirs in (
+        (found.span, looked.span),
+        (found.highest_gap, looked.highest_gap),
+        (found.floor, tip.least[DOWN]),
+        (found.ceiling, -tip.least[UP]),
+    ):
+        np.testing.assert_allclose(mine[sure], theirs[sure], rtol=1e-11, atol=1e-14)
+
+
+def test_impacts_are_rarely_left_out():
+    spheres_struck = []
+
+    @settings(max_examples=100, database=None)
+    @given(slides(VISCOUS))
+    def look(slide):
+        kind, numbers, state = natural(*slide)
+        u, v, w = state.velocity
+        state = state._replace(velocity=(u, v, w - 0.5))
+        spheres_struck.append(
+            bool(collide(many(state), kind.top(tuple(np.full(2, n) for n in numbers)))[1].all())
+        )
+
+    look()
+    assert np.mean(spheres_struck) > 0.9
+
+
+@settings(max_examples=30)
+@given(slides(tops(spheres(), (ViscousLaw,))))
+def test_flights_and_impacts_keep_what_must_be_kept(slide):
+    kind, numbers, state = natural(*slide)
+    state = state._replace(height=state.height + 0.5)
+    top = kind.top(numbers)
+    found, tip = flown(kind, numbers, state, 0)
+    size = 1.0 + abs(energy(state, top))
+    assert energy(found.state, top)[0] == pytest.approx(energy(state, top), abs=1e-10 * size)
+    assert found.highest[0] >= state.height - 1e-12
+    _, down, up = tip.least[:, 0]
+    assert down <= min(state.axis[2], found.state.axis[2][0]) + 1e-12
+    assert -up >= max(state.axis[2], found.state.axis[2][0]) - 1e-12
+    after, struck = collide(found.state, kind.top(tuple(np.full(2, n) for n in numbers)))
+    assume(struck.all())
+    assert energy(after, top)[0] <= energy(found.state, top)[0] + 1e-10 * size
+    before = jellett(found.state, top)[0]
+    assert jellett(after, top)[0] == pytest.approx(before, abs=1e-10 * (1 + abs(before)))
+    assert gap_rate(after, top)[0] == pytest.approx(0.0, abs=1e-9 * size)
+    touch = contact(
+        tuple(n[0] for n in after.axis),
+        tuple(n[0] for n in after.momentum),
+        [n[0] for n in after.velocity[:2]],
+        top,
+    )
+    assert goes_on(after, top)[0] == (touch.delassus > 0 and touch.free_acceleration < 0)
+
+
+def test_a_flight_that_outlasts_its_horizon_ends_there():
+    @settings(max_examples=10, database=None)
+    @given(slides(VISCOUS))
+    def look(slide):
+        kind, numbers, state = natural(*slide)
+        state = state._replace(height=state.height + 50.0)
+        found, _ = flown(kind, numbers, state, 0, 0.25)
+        assert not found.landed.any()
+        assert found.duration.tolist() == [0.25, 0.25]
+
+    look()
+
+
+def test_impacts_of_patches_go_on_where_another_branch_takes_over(monkeypatch) -> None:
+    """They are what they are alone, and that to more digits than are asked of a single one."""
+    monkeypatch.setattr(impact_process, "TOLERANCE", 1e-12)
+    random, count = np.random.default_rng(3), 150
+    axis = random.normal(size=(3, count))
+    axis /= np.linalg.norm(axis, axis=0)
+    law = HertzLaw(np.full(count, 0.3), random.uniform(0.02, 0.6, count))
+    top = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0)
+    velocity = random.normal(size=(3, count))
+    state = State(
+        tuple(axis), tuple(random.normal(size=(3, count))), tuple(velocity), 1.0 - 0.3 * axis[2]
+    )
+    after, struck = collide(state, branched(top, state))
+    changed = 0
+    for i in np.flatnonzero(struck).tolist():
+        mine = single(state, i)
+        alone = top._replace(friction=HertzLaw(0.3, float(law.patch_radius[i])))
+        hit = impact(mine, 0.0, alone)
+        before, then = (float(branched(alone, one).friction.drills) for one in (mine, hit.state))
+        changed += before != then
+        assert single(after, i).momentum == pytest.approx(hit.state.momentum, abs=1e-10)
+    assert changed > 10, "on many the other branch should take over"
+    assert struck.sum() > 0.9 * np.sum(gap_rate(state, top) < 0.0)
+
+
+@pytest.mark.parametrize("azimuth", [0.0, -2.0])
+@pytest.mark.parametrize("rate", [-25.0, 40.0, 200.0])
+@pytest.mark.parametrize("shape", EDGES.values(), ids=EDGES)
+def test_edges_that_tumble_through_flat_land_when_their_lowest_point_does(shape, rate, azimuth):
+    flight = Tumbling(shape, 1.0, rate, 0.01, 1.0, azimuth)
+    top, thrown = flight.thrown
+    units = natural_units(top)
+    found, tip = flown(top.kind, top.numbers, natural_state(thrown, units), 0)
+    assert abs(1.0 + rate * flight.landing - math.pi / 2) > math.pi / 2, "it is to pass flat"
+    assert found.landed.all()
+    assert found.duration[0] * units.time == pytest.approx(flight.landing, rel=1e-9)
+    looks = np.linspace(0.0, flight.landing, 20_001)
+    assert found.highest_gap[0] * units.length == pytest.approx(flight.highest, abs=3e-7)
+    heights = np.cos(1.0 + rate * looks)
+    assert tip.least[DOWN, 0] == pytest.approx(heights.min(), abs=1e-5)
+    assert -tip.least[UP, 0] == pytest.approx(heights.max(), abs=1e-5)
+
+
+@pytest.mark.parametrize("turns", [3.0, 30.0, 1e4, 1e6])
+@pytest.mark.parametrize("surface", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 0.9, 0.2)])
+def test_flights_of_many_turns_are_those_of_single_launches(monkeypatch, surface, turns):
+    """And take no more pieces than a few turns do."""
+    monkeypatch.setattr("tippetop.sweeps.flights.PIECES", 400)
+    top = Top(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0)
+    swing = 2.0 * math.pi * turns * top.transverse_inertia
+    for height, rise in ((3.0, 4.0), (40.0, 0.0), (3.0, 0.01)):
+        state = State((0.6, 0.0, 0.8), (0.0, 0.9 * swing, 0.3 * swing), (0.1, 0.2, rise), height)
+        found, tip = flown(top.kind, top.numbers, state, 0)
+        landing = touchdown(state, top, 50.0)
+        assert found.landed.all()
+        assert found.duration[0] == pytest.approx(landing, rel=1e-10)
+        assert found.highest_gap[0] == pytest.approx(
+            highest_gap(state, top, landing), abs=1e-13 * (turns + 100.0)
+        )
+        for short in (0.4 * landing, 0.9 * landing):
+            some, _ = flown(top.kind, top.numbers, state, 0, short)
+            assert some.duration.tolist() == [short, short]
+            assert some.highest_gap[0] == pytest.approx(
+                highest_gap(state, top, short), abs=1e-13 * (turns + 100.0)
+            )
+        # The axis goes round the momentum: as near to the vertical as the two lean from each other.
+        momentum, axis = math.atan2(0.9, 0.3), math.acos(0.3 * 0.8 / math.hypot(0.9, 0.3))
+        assert -tip.least[UP, 0] == pytest.approx(math.cos(momentum - axis), abs=1e-12)
+        assert tip.least[DOWN, 0] == pytest.approx(math.cos(momentum + axis), abs=1e-12)

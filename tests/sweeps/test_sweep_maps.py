@@ -1,0 +1,162 @@
+"""Maps show the values of their sweep, where they belong."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.collections import QuadMesh
+from sweep_cases import lively
+
+from tippetop.figures.maps import FLAGS, MAPPED, phase_map
+from tippetop.figures.style import save
+from tippetop.problem.presets import report_problem
+from tippetop.support.errors import InvalidInput
+from tippetop.sweeps import SWEPT, Draws, Ending, Product, Range, Sweep, compute
+from tippetop.sweeps.axes import Spaced
+
+
+@pytest.fixture(scope="module")
+def plane():
+    axes = Spaced("launch.spin", 100.0, 200.0, 3), Spaced("friction.mu", 0.1, 1.0, 4, "geometric")
+    return compute(Sweep(report_problem(tilt=1.0), Product(axes), 0.2))
+
+
+@pytest.mark.parametrize("name", [name for name in SWEPT if name != "steps"])
+def test_a_map_holds_every_cell(plane, name, tmp_path):
+    figure = phase_map(plane, name)
+    axes, bar = figure.axes
+    mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
+    values = np.asarray(plane[name].values, dtype=float).T
+    shown = np.ma.filled(mesh.get_array().astype(float), np.nan)
+    assert np.array_equal(shown, values, equal_nan=True)
+    assert axes.get_xscale() == "linear"
+    assert axes.get_yscale() == "log"
+    assert "spin" in axes.get_xlabel()
+    assert "μ" in axes.get_ylabel()
+    if "flag_meanings" in plane[name].attrs:
+        labels = [label.get_text().replace("-", "_") for label in bar.get_yticklabels()]
+        assert labels == plane[name].attrs["flag_meanings"].split()
+    save(figure, tmp_path / "map.png")
+
+
+def test_what_is_not_computed_is_not_shown(plane):
+    partly = plane.copy(deep=True)
+    partly["status"][0, :] = 0
+    mesh = next(
+        child for child in phase_map(partly).axes[0].get_children() if isinstance(child, QuadMesh)
+    )
+    assert mesh.get_array().mask[:, 0].all()
+    assert not mesh.get_array().mask[:, 1:].any()
+
+
+def test_cells_are_drawn_where_their_values_are(plane):
+    mesh = next(
+        child for child in phase_map(plane).axes[0].get_children() if isinstance(child, QuadMesh)
+    )
+    corners = mesh.get_coordinates()
+    spins, mus = plane["launch.spin"].values, plane["friction.mu"].values
+    assert np.all((corners[:, :-1, 0] < spins) & (spins < corners[:, 1:, 0]))
+    assert np.all((mus > corners[:-1, :, 1].T) & (mus < corners[1:, :, 1].T))
+
+
+def test_one_axis_is_a_curve_and_draws_are_points():
+    curve = compute(Sweep(report_problem(), Product((Spaced("launch.spin", 1, 9, 5),)), 0.1))
+    (line,) = phase_map(curve, "final_theta").axes[0].lines
+    assert line.get_ydata() == pytest.approx(curve["final_theta"].values)
+    never = phase_map(curve, "turns_over").axes[0]
+    assert never.get_xlim() == pytest.approx((0.0, 10.0))
+    assert never.get_title(loc="left").endswith("no point: never")
+    ranges = Range("launch.spin", 1, 9), Range("launch.tilt", 0.1, 0.2)
+    draws = compute(Sweep(report_problem(), Draws(ranges, 6), 0.1))
+    points = phase_map(draws, "final_theta").axes[0].collections[-1]
+    assert np.asarray(points.get_offsets())[:, 0] == pytest.approx(draws["launch.spin"].values)
+    assert np.asarray(points.get_array()) == pytest.approx(draws["final_theta"].values)
+    single = compute(Sweep(report_problem(), Draws(ranges[:1], 6), 0.1))
+    assert phase_map(single).axes[0].lines[0].get_xdata() == pytest.approx(
+        single["launch.spin"].values
+    )
+
+
+@pytest.mark.parametrize(("count", "drawn"), [(2, [0, 1]), (17, [0, 2, 4, 6, 8, 10, 12, 14, 16])])
+def test_more_axes_go_from_panel_to_panel(plane, count, drawn, tmp_path):
+    tilts = np.linspace(0.1, 0.9, count)
+    parts = [plane.assign(final_theta=plane["final_theta"] + k) for k in range(count)]
+    cube = xr.concat(parts, xr.DataArray(tilts, dims="launch.tilt", name="launch.tilt"))
+    cube = cube.expand_dims({"gravity": [1.0, 2.0, 3.0]}).transpose(
+        "launch.spin", "friction.mu", "launch.tilt", "gravity"
+    )
+    cube["gravity"].attrs["units"] = "m s-2"
+    figure = phase_map(cube)
+    meshes = [
+        child
+        for axes in figure.axes
+        for child in axes.get_children()
+        if isinstance(child, QuadMesh)
+    ]
+    maps = [mesh for mesh in meshes if mesh.get_array().shape == (4, 3)]
+    assert len(maps) == len(drawn)
+    for mesh, place in zip(maps, drawn, strict=True):
+        assert np.array_equal(mesh.get_array(), parts[place]["final_theta"].values.T)
+        assert f"{tilts[place]:.4g}" in mesh.axes.get_title(loc="left")
+    assert "Gravity (m/s²) = 2" in figure.get_suptitle()
+    save(figure, tmp_path / "map.png")
+
+
+def test_making_a_map_leaves_the_style_alone(plane):
+    before = dict(mpl.rcParams)
+    for name in MAPPED:
+        phase_map(plane, name)
+    assert dict(mpl.rcParams) == before
+
+
+def test_launches_that_were_stopped_at_lift_off_show_no_final_tilt():
+    sweep = compute(lively("stop"))
+    lifted = sweep["outcome"].values == Ending.LIFTED_OFF
+    assert lifted.any()
+    assert not lifted.all()
+    axes = phase_map(sweep).axes[0]
+    mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
+    assert np.array_equal(np.ma.getmaskarray(mesh.get_array()), lifted.T)
+    assert "left the table" in axes.get_title(loc="left")
+
+
+def test_launches_that_failed_or_are_inaccurate_show_no_final_tilt(plane):
+    some = plane.copy(deep=True)
+    some["outcome"].values[0, :2] = Ending.INACCURATE, Ending.FAILED
+    axes = phase_map(some).axes[0]
+    mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
+    masked = np.ma.getmaskarray(mesh.get_array()).T
+    assert masked[0, :2].all()
+    assert masked.sum() == 2
+    assert axes.get_title(loc="left").endswith("grey: failed, inaccurate")
+    assert "grey" not in phase_map(plane).axes[0].get_title(loc="left")
+
+
+def test_every_flag_has_a_colour_of_its_own():
+    assert len(set(FLAGS)) == len(FLAGS) >= max(len(kind.flags) for kind in SWEPT.values())
+
+
+def test_axes_have_the_units_of_the_problem():
+    """The friction coefficient of dry friction has none."""
+    problem = report_problem(tilt=1.0).replace({"friction.kind": "coulomb"})
+    grid = Product.of({"friction.mu": [0.1, 0.2], "launch.gap": [0.01, 0.02]})
+    axes = phase_map(compute(Sweep(problem, grid, 0.01))).axes[0]
+    assert axes.get_xlabel() == "Friction coefficient μ"
+    assert axes.get_ylabel() == "Height of the lowest point at launch (m)"
+
+
+@pytest.mark.parametrize("values", [np.linspace, np.geomspace])
+def test_an_axis_that_is_too_long_to_be_drawn_is_refused(plane, values):
+    far = plane.copy(deep=True)
+    name = str(far["final_theta"].dims[0])
+    far = far.assign_coords(
+        {name: values(1e-3, 1e299 if values is np.geomspace else 1e308, far.sizes[name])}
+    )
+    with pytest.raises(InvalidInput, match=f"{name} = .* an axis with cells over at most 1e.300"):
+        phase_map(far)
+
+
+def test_words_along_an_axis_are_no_lengths(plane):
+    name = str(plane["final_theta"].dims[0])
+    words = [f"{value:g}" for value in plane[name].values]
+    assert phase_map(plane.assign_coords(label=(name, words))).axes

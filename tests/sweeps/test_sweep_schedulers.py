@@ -1,0 +1,279 @@
+"""The same sweep by one process, by several, and by a Dask cluster some of whose workers are
+killed.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+from sweep_cases import lively, same, stored
+
+from tippetop.support.errors import InvalidInput, Unavailable
+from tippetop.sweeps import SWEPT, Store, compute, fill, read_sweep, schedulers
+
+
+def arrays(dataset):
+    return {name: dataset[name].values for name in SWEPT}
+
+
+def quick():
+    return lively("fly", 6, 4, 0.1, 1e-9)
+
+
+def test_several_processes_find_what_one_does(small_tasks):
+    assert same(arrays(compute(quick(), workers=1)), arrays(compute(quick(), workers=2)))
+
+
+def test_processes_that_are_killed_are_started_again(small_tasks):
+    sweep = quick()
+    kept = {}
+    killed = False
+    for task, found in schedulers.results(sweep, sweep.tasks, workers=2):
+        kept[task] = found
+        if not killed:
+            workers = [
+                child
+                for child in psutil.Process().children()
+                if "spawn" in " ".join(child.cmdline())
+            ]
+            os.kill(workers[-1].pid, signal.SIGKILL)
+            killed = True
+    assert sorted(kept) == sweep.tasks
+    assert sum(found["outcome"].size for found in kept.values()) == sweep.cells
+
+
+def test_no_process_outlives_its_use(small_tasks):
+    sweep = quick()
+    before = psutil.Process().children(recursive=True)
+    results = schedulers.results(sweep, sweep.tasks, workers=2)
+    next(results)
+    started = [
+        child
+        for child in psutil.Process().children(recursive=True)
+        if child not in before and "resource_tracker" not in " ".join(child.cmdline())
+    ]
+    assert started
+    results.close()
+    _, alive = psutil.wait_procs(started, timeout=10)
+    assert alive == []
+
+
+UNGUARDED = """
+from tippetop.problem.presets import report_problem
+from tippetop.sweeps import Axis
+from tippetop.sweeps import Product
+from tippetop.sweeps import Sweep
+from tippetop.sweeps import compute
+print("once")
+axis = Axis.of("launch.spin", {"from": 10, "to": 100, "count": 600})
+print(compute(Sweep(report_problem(), Product((axis,)), 0.01), workers=2).sizes["launch.spin"])
+print(__file__.endswith("script.py"), __spec__)
+"""
+
+
+def test_workers_do_not_run_the_script_that_started_them(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(UNGUARDED)
+    ran = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert ran.stdout.split() == ["once", "600", "True", "None"]
+
+
+def test_a_number_of_workers_that_cannot_be_is_refused():
+    with pytest.raises(InvalidInput, match="workers"):
+        compute(quick(), workers=0)
+
+
+def test_workers_of_another_version_are_refused():
+    with pytest.raises(Unavailable, match=r"the sweep is run by 99\.0"):
+        schedulers.compute_region("{}", "99.0", (), (slice(0, 1),))
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    connected, connect = [], schedulers._cluster
+    monkeypatch.setattr(schedulers, "_cluster", lambda at: connected.append(at) or connect(at))
+    sweep = lively("fly", 6, 4, 0.3, 1e-9)
+    alone = arrays(compute(sweep, workers=1))
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+    ) as cluster:
+        address = cluster.scheduler_address
+        victims = [worker.pid for worker in cluster.workers.values()]
+        done = threading.Event()
+
+        def kill() -> None:
+            while not done.is_set():
+                if began.is_set():
+                    os.kill(victims[0], signal.SIGKILL)
+                    return
+                time.sleep(0.01)
+
+        began = threading.Event()
+        killer = threading.Thread(target=kill)
+        killer.start()
+        try:
+            together = compute(sweep, scheduler=address, callback=lambda _: began.set())
+        finally:
+            done.set()
+            killer.join()
+        assert not psutil.pid_exists(victims[0]) or psutil.Process(victims[0]).status() == "zombie"
+    assert connected == [address]
+    assert same(alone, arrays(together))
+    assert np.all(together["status"].values == 1)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_sweep_that_is_kept_connects_once(monkeypatch, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    made, client = [], distributed.Client
+    monkeypatch.setattr(
+        distributed, "Client", lambda *at, **how: made.append(at) or client(*at, **how)
+    )
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, protocol="tcp", dashboard_address=None, silence_logs=50
+    ) as cluster:
+        made.clear()
+        kept = stored(quick(), tmp_path / "a.zarr", scheduler=cluster.scheduler_address)
+        assert made == [(cluster.scheduler_address,)]
+        assert same(arrays(kept), arrays(compute(quick(), workers=1)))
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_scheduler_that_is_not_there_is_refused(monkeypatch):
+    monkeypatch.setattr(schedulers, "PATIENCE", 1.0)
+    pytest.importorskip("distributed")
+    with pytest.raises(InvalidInput, match="scheduler"):
+        compute(quick(), scheduler="tcp://127.0.0.1:1")
+    with pytest.raises(InvalidInput, match="scheduler"):
+        compute(quick(), scheduler="nonsense://")
+
+
+def test_dask_that_is_not_installed_is_said_to_be_missing(monkeypatch):
+    monkeypatch.setattr(schedulers, "find_spec", lambda name: None)
+    with pytest.raises(Unavailable, match=r"pip install 'tippetop\[sweep\]'"):
+        compute(quick(), scheduler="tcp://127.0.0.1:1")
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_cluster_without_workers_is_refused_and_one_that_is_lost_is_told_of(small_tasks):
+    distributed = pytest.importorskip("distributed")
+    quiet = {"dashboard_address": None, "silence_logs": 50}
+    with (
+        distributed.LocalCluster(n_workers=0, **quiet) as cluster,
+        pytest.raises(InvalidInput, match="workers"),
+    ):
+        compute(quick(), scheduler=cluster.scheduler_address)
+    cluster = distributed.LocalCluster(n_workers=1, threads_per_worker=1, **quiet)
+    found = schedulers.results(quick(), quick().tasks, scheduler=cluster.scheduler_address)
+    next(found)
+    cluster.close()
+    with pytest.raises(Unavailable, match="was lost"):
+        list(found)
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(
+    ("raised_in", "expected"),
+    [("distributed.cfexecutor", Unavailable), ("tippetop.sweeps", ValueError)],
+)
+def test_the_library_that_stumbles_over_a_lost_result_means_a_lost_cluster(
+    monkeypatch, raised_in, expected
+):
+    """Dask takes a result whose worker is lost for an error, and unpacks it as one."""
+    distributed = pytest.importorskip("distributed")
+    names = {"__name__": raised_in}
+    exec("def stumble(*_):\n    raise ValueError('too many values to unpack')", names)
+    monkeypatch.setattr(schedulers, "_first_done", names["stumble"])
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        ) as cluster,
+        pytest.raises(expected),
+    ):
+        list(schedulers.results(quick(), quick().tasks, scheduler=cluster.scheduler_address))
+
+
+LOST = """
+import sys, time
+sys.path[:0] = {paths!r}
+from sweep_cases import lively, stored
+from tippetop.support.errors import Unavailable
+from tippetop.sweeps import definition
+from tippetop.sweeps import schedulers
+definition.LEAST_CELLS_A_TASK, definition.TASKS, schedulers.LONELY = 4, 1000, 2.0
+import os, signal
+def kill(progress):
+    if 8 <= progress.done < 12:
+        os.kill({victim}, signal.SIGKILL)
+        time.sleep({pause})
+try:
+    stored(lively("fly", 6, 4, 0.3, 1e-9), {out!r}, scheduler={address!r}, callback=kill)
+except Unavailable as error:
+    print(error)
+"""
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """A scheduler and a worker as they are started from a shell, and the scheduler's address."""
+    file = tmp_path / "scheduler.json"
+    started = []
+
+    def start(*arguments):
+        command = [sys.executable, "-m", "dask", *arguments, "--scheduler-file", file]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
+        started.append(subprocess.Popen(command, **quiet))
+
+    start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    while not file.exists():
+        assert started[0].poll() is None
+        time.sleep(0.05)
+    start("worker", "--no-nanny", "--nthreads", "1", "--no-dashboard")
+    yield *started, json.loads(file.read_text())["address"]
+    for process in started:
+        process.kill()
+        process.wait()
+
+
+@pytest.mark.parametrize(
+    ("lost", "pause", "sentence", "warnings"),
+    [
+        ("scheduler", 0.0, "was lost (CancelledError)", 0),
+        ("scheduler", 1.0, "was lost (CancelledError)", 0),
+        ("worker", 0.0, "has had no workers for 2 s", 1),
+    ],
+)
+def test_a_cluster_that_is_gone_is_told_of_in_a_sentence_and_what_is_done_is_kept(
+    cluster, small_tasks, tmp_path, lost, pause, sentence, warnings
+):
+    """With a pause, more tasks are handed out to what is known to be gone."""
+    distributed = pytest.importorskip("distributed")
+    scheduler, worker, address = cluster
+    with distributed.Client(address, set_as_default=False) as client:
+        client.wait_for_workers(1, timeout=60)
+    paths = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
+    out, victim = tmp_path / "a.zarr", scheduler.pid if lost == "scheduler" else worker.pid
+    script = LOST.format(paths=paths, victim=victim, pause=pause, out=str(out), address=address)
+    ran = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert (
+        ran.stdout
+        == f"the cluster at {address} {sentence}; what is done is kept, and resume=True goes on\n"
+    )
+    assert (
+        ran.stderr
+        == warnings * f"the cluster at {address} has no workers; the sweep waits for some, 2 s\n"
+    )
+    progress = fill(Store.resume(out), workers=1)
+    assert 8 <= progress.before < progress.done == 24
+    assert same(arrays(read_sweep(out)), arrays(compute(lively("fly", 6, 4, 0.3, 1e-9))))
