@@ -6,7 +6,7 @@ OUT ?= tippetop-report
 
 BUILT = src/tippetop/export/built/lab.html
 
-.PHONY: engine reproduce page test test-browser test-docs doctest chromium check lint types contract docs bench quick dist review clean
+.PHONY: reproduce page test test-browser test-docs doctest chromium check lint types contract docs bench quick dist review clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 	-@! command -v node >/dev/null || $(MAKE) --no-print-directory page  # then a run plays in it
@@ -14,7 +14,10 @@ reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 
 page: $(BUILT) ## Build what runs in browsers; node comes from this machine, or else from a wheel
 
-$(BUILT): $(shell find web src/tippetop/page_engine -name node_modules -prune -o -name '*.py' -o -type f -print) | $(VENV)/bin/python
+# The page's engine is translated from the package's modules, so that it is built anew with any of them.
+$(BUILT): $(shell find web src/tippetop -name node_modules -prune -o -name built -prune -o \
+  -name mechanics.js -o -name tables.js -o -name __pycache__ -prune -o -type f -print) | $(VENV)/.installed
+	$(BIN)/python -m tippetop.page_engine
 	web/build.sh "$(abspath $(BIN)/python)"
 
 test: $(VENV)/.installed-dev ## Run the tests
@@ -51,9 +54,6 @@ contract: $(VENV)/.installed-dev
 
 quick: $(VENV)/.installed ## A coarse report in half a minute
 	$(BIN)/tippetop reproduce --quick --out $(OUT) --force
-
-engine: $(VENV)/.installed ## Write the engine in the page anew from the mechanics and contact modes
-	$(BIN)/python -m tippetop.page_engine
 
 bench: $(VENV)/.installed-bench ## Measure what is promised of speed and memory; takes half an hour
 	$(BIN)/python -m benchmarks --json benchmarks.json

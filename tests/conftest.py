@@ -6,14 +6,20 @@ HYPOTHESIS_PROFILE=thorough looks at twenty times as many examples.
 """
 
 import os
+import subprocess
+import sys
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from browsing import browser, visit
 from tippetop.export import bundle
+from tippetop.page_engine import HERE
 
 __all__ = ["browser", "visit"]
+
+SOURCE = HERE.parent
+GENERATED = (HERE / "mechanics.js", HERE / "tables.js")
 
 anywhere = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("default", anywhere)
@@ -22,6 +28,17 @@ settings.register_profile("thorough", anywhere, max_examples=2000)
 settings.load_profile(
     os.environ.get("HYPOTHESIS_PROFILE", "ci" if "CI" in os.environ else "default")
 )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Generate the page's engine if a source is newer; pytest's workers need not."""
+    if hasattr(config, "workerinput"):
+        return
+    sources = [path.stat().st_mtime for path in SOURCE.rglob("*.py")]
+    if any(not path.exists() or path.stat().st_mtime < max(sources) for path in GENERATED):
+        subprocess.run([sys.executable, "-m", "tippetop.page_engine"], check=True)
+        for path in GENERATED:
+            path.touch()
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -6,9 +6,6 @@ takes.
 
 import json
 import os
-import re
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
@@ -29,7 +26,7 @@ from launches import (
 )
 from lying import lying, resisted
 from node import printed
-from tippetop.page_engine import COMMAND, HERE
+from tippetop.page_engine import HERE
 
 SLIPS_IN_THE_END = 21
 STOP_ON_TWO = (80, 192, 426)
@@ -43,30 +40,6 @@ SEEDS, DURATION = (
 )
 if "TIPPETOP_PARITY" in os.environ:
     SEEDS = tuple(range(int(os.environ["TIPPETOP_PARITY"])))
-
-
-def test_what_is_generated_is_current() -> None:
-    # In a process of its own: laws that other tests define are parts of a problem too.
-    code = (
-        "import json; from tippetop.page_engine.generate import generated;"
-        " print(json.dumps(generated()))"
-    )
-    said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
-    for name, text in json.loads(said.stdout).items():
-        words, numbers = told(text)
-        words_there, numbers_there = told((HERE / name).read_text(encoding="utf-8"))
-        assert words == words_there, f"{name} is out of date: run `{COMMAND}`"
-        # The last digits are the processor's: libraries of linear algebra sum in another order on
-        # each.
-        np.testing.assert_allclose(
-            numbers_there, numbers, rtol=1e-13, atol=0.0, err_msg=f"run `{COMMAND}`"
-        )
-
-
-def told(text: str) -> tuple[list[str], list[float]]:
-    """What is said between the numbers of a text, and these."""
-    parts = re.split(r"(-?\b\d+(?:\.\d+)?(?:e[-+]?\d+)?\b)", text)
-    return parts[::2], [float(number) for number in parts[1::2]]
 
 
 def test_all_that_is_generated_asks_for_is_there() -> None:

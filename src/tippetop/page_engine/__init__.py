@@ -1,8 +1,9 @@
 """The engine in the page: launches followed in JavaScript, in a browser, a worker or Node.
 
-`mechanics.js` and `tables.js` are made by ``python -m tippetop.page_engine`` of the modules of this
-package that say what happens to a top. What is written by hand is what these are run by: what
-Python means where JavaScript means something else, the integrator, and what is read off a run.
+`mechanics.js` and `tables.js` are no part of the repository: ``python -m tippetop.page_engine``
+makes them of the modules of this package that say what happens to a top. What is written by hand is
+what these are run by: what Python means where JavaScript means something else, the integrator, and
+what is read off a run.
 """
 
 from pathlib import Path

@@ -1,8 +1,16 @@
-"""Write the engine's generated modules; see `tippetop.page_engine.generate`."""
+"""Write the engine's generated modules beside those written by hand; see `generate`.
+
+``python -m tippetop.page_engine`` writes a module only where its text differs, so that what is
+built from it is built again only then.
+"""
 
 from tippetop.page_engine import HERE
 from tippetop.page_engine.generate import generated
+from tippetop.support.files import written_beside
 
 if __name__ == "__main__":
     for name, text in generated().items():
-        (HERE / name).write_text(text, encoding="utf-8")
+        path = HERE / name
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            with written_beside(path, overwrite=True) as beside:
+                beside.write_text(text, encoding="utf-8")
