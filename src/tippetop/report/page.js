@@ -3,23 +3,21 @@
 const host = document.getElementById("stage");
 
 async function start() {
-  {
-    {
-      player.loader | safe;
-    }
-  }
+  const { createPlayer } = await importPlayer();
   const player = createPlayer(host, { theme: "auto" });
   player.load(await unzip("run").arrayBuffer());
   globalThis.tippetopPlayer = player;
+}
+
+function showError(error) {
+  host.textContent = `The run cannot be played here: ${error.message}`;
 }
 
 new IntersectionObserver(
   (seen, watch) => {
     if (!seen.some((one) => one.isIntersecting)) return;
     watch.disconnect();
-    start().catch(
-      (error) => (host.textContent = `The run cannot be played here: ${error.message}`),
-    );
+    start().catch(showError);
   },
   { rootMargin: "600px" },
 ).observe(host);
