@@ -301,10 +301,10 @@ def test_a_run_keeps_not_much_more_than_its_numbers() -> None:
     )
     script = f"""
       import {{ simulate }} from {json.dumps((HERE / "index.js").as_uri())};
-      const {{ pieces }} = simulate({problem.to_json()}, {{ duration: 3, tolerance: 1e-8 }});
-      const sum = (of) => pieces.reduce((total, {{ solution }}) => total + of(solution.terms), 0);
+      const {{ segments }} = simulate({problem.to_json()}, {{ duration: 3, tolerance: 1e-8 }});
+      const sum = (of) => segments.reduce((total, {{ solution }}) => total + of(solution.terms), 0);
       const kept = sum((terms) => terms.buffer.byteLength), used = sum((terms) => terms.byteLength);
-      console.log(JSON.stringify([pieces.length, kept, used]));
+      console.log(JSON.stringify([segments.length, kept, used]));
     """
     arcs, kept, used = json.loads(printed(script))
     assert arcs > 50

@@ -1,9 +1,9 @@
-// What modes state in plain operators, recorded once a kind and compiled by the browser.
+// Compiles what modes state in plain operators: it is recorded once a kind of mode, and compiled by the browser.
 import {
-  Machinery,
-  NodeValues,
   advance,
   javascript_source,
+  Machinery,
+  NodeValues,
   record,
   stepped,
   unrolled,
@@ -12,16 +12,17 @@ import {
 import { add, cached, mul, neg, replace, sub } from "./runtime.js";
 
 /** A function (y, p) => numbers in plain operators as code (y, p, out). */
-export const compiled = (function_, size, parameters) => made(record(function_, size, parameters));
+export const compiled = (function_, size, parameters) =>
+  executable(record(function_, size, parameters));
 
-function made(recorded) {
+function executable(graph) {
+  const source = `"use strict";\n${javascript_source(graph, "recorded")}\nreturn recorded;`;
   try {
-    return new Function(
-      `"use strict";\n${javascript_source(recorded, "recorded")}\nreturn recorded;`,
-    )();
+    return new Function(source)();
   } catch (error) {
+    // The policy of some servers lets no page make code.
     if (!(error instanceof EvalError)) throw error;
-    return interpreted(recorded);
+    return interpreted(graph);
   }
 }
 
@@ -36,43 +37,49 @@ const OPERATIONS = {
   select: (condition, a, b) => (condition !== 0 ? a : b),
 };
 
-/** What is recorded, operation by operation: where pages may not make code, as some servers' policies have it. */
+/** A function (y, p, out) that goes through a recorded graph operation by operation. */
 function interpreted({ nodes, outputs }) {
   const values = new Float64Array(nodes.length ? nodes.at(-1).place + 1 : 0);
-  const given = nodes.filter(({ name }) => name === "y" || name === "p"),
-    made = nodes.filter(({ operands }) => operands.length);
-  const steps = made.map(({ name, place, operands: [a, b = a, c = a] }) => [
-    OPERATIONS[name],
-    place,
-    a.place,
-    b.place,
-    c.place,
-  ]);
-  for (const { name, place, value } of nodes) if (name === "constant") values[place] = value;
+  for (const { name, place, value } of nodes) {
+    if (name === "constant") values[place] = value;
+  }
+  const inputs = nodes.filter(({ name }) => name === "y" || name === "p");
+  const steps = nodes.filter(({ operands }) => operands.length).map(stepOf);
   return (y, p, out) => {
-    for (const { name, place, value } of given) values[place] = (name === "y" ? y : p)[value];
-    for (const [operation, place, a, b, c] of steps)
+    for (const { name, place, value } of inputs) values[place] = (name === "y" ? y : p)[value];
+    for (const { operation, place, a, b, c } of steps) {
       values[place] = operation(values[a], values[b], values[c]);
-    outputs.forEach(({ place }, number) => (out[number] = values[place]));
+    }
+    outputs.forEach(({ place }, number) => {
+      out[number] = values[place];
+    });
   };
+}
+
+/** A node's operation with the places of three operands, of which it uses as many as it has. */
+function stepOf({ name, place, operands }) {
+  const [a, b = a, c = a] = operands;
+  return { operation: OPERATIONS[name], place, a: a.place, b: b.place, c: c.place };
 }
 
 /** The integrator behind the seam of tippetop.integrators.base: Dormand and Prince's steps. */
 export const integrator = (tolerance) => ({
   tolerance,
-  integrate(motion, given, start, end) {
-    const { rates, guards, size, parameters } = motion,
-      values = (y, p) => guards.map((guard) => guard.value(y, p));
-    motion.code ??= [rates, values].map((one) => compiled(one, size, parameters));
+  integrate(motion, begin, start, end) {
+    const { rates, guards, size, parameters } = motion;
+    const guardValues = (y, p) => guards.map((guard) => guard.value(y, p));
+    motion.code ??= [rates, guardValues].map((one) => compiled(one, size, parameters));
+    const [rateCode, guardCode] = motion.code;
     const machinery = new Machinery(
       advance,
       within,
-      ...motion.code,
+      rateCode,
+      guardCode,
       guards.length,
       size,
-      motion.code[1],
+      guardCode,
     );
-    return stepped(motion, machinery, Float64Array.from(given), start, end, tolerance);
+    return stepped(motion, machinery, Float64Array.from(begin), start, end, tolerance);
   },
 });
 
@@ -82,60 +89,78 @@ export const first_of = (numbers, count) => numbers.slice(0, count);
 export const put_from = (numbers, first, values) => numbers.set(values, first);
 
 /** Put values into room for numbers, from one of them on, each for as many as there are abreast. */
-export const put_rows = (numbers, first, values, abreast) =>
-  values.forEach((value, i) =>
-    numbers.fill(value, (first + i) * abreast, (first + i + 1) * abreast),
-  );
+export function put_rows(numbers, first, values, abreast) {
+  values.forEach((value, i) => {
+    numbers.fill(value, (first + i) * abreast, (first + i + 1) * abreast);
+  });
+}
 
-/** A function that makes numbers, of some values each, better again and again: see tippetop.integrators.iteration. */
+/** A function that improves numbers, of some values each, again and again: see tippetop.integrators.iteration. */
 export function iterated(function_, size, parameters, abreast) {
-  const values = new NodeValues(),
-    recorded = unrolled(
-      record((y, p) => function_(y, p, values), size, parameters),
-      abreast,
-    );
-  const once = made(recorded),
-    found = new Float64Array(recorded.outputs.length),
-    last = found.length - 1;
+  const values = new NodeValues();
+  const improvement = record((y, p) => function_(y, p, values), size, parameters);
+  const graph = unrolled(improvement, abreast);
+  const improve = executable(graph);
+  const improved = new Float64Array(graph.outputs.length);
+  const error = improved.length - 1;
   return (y, p, out, enough, most) => {
     for (let turn = 1; ; turn += 1) {
-      once(y, p, found);
-      y.set(found.subarray(0, recorded.size));
-      out.set(found.subarray(recorded.size));
-      if (turn === most || !(found[last] >= enough)) return turn;
+      improve(y, p, improved);
+      y.set(improved.subarray(0, graph.size));
+      out.set(improved.subarray(graph.size));
+      // An error that is no number ends the search, too.
+      if (turn === most || !(improved[error] >= enough)) return turn;
     }
   };
 }
 
-const codes = cached(() => new Map()),
-  readers = new WeakMap();
+const readersOfTops = new WeakMap();
+// Code is shared by tops of one kind, which differ in parameters only.
+const codesOf = cached(() => new Map());
 
-/** What makes readings, of so many numbers, of those of a mode and another one: kept for tops of one surface. */
+/**
+ * What makes readings of a mode with so many numbers: `reader(mode, size)(of, count)` is a function (y, other)
+ * that returns the `count` values of `of(mode, y, other)`, in an array that its next call overwrites.
+ */
 export function reader(mode, size) {
-  const [top, other] = mode.tops,
-    known = (!other && readers.get(top)) || {};
-  if (!other) readers.set(top, known);
-  return (known[`${mode.form} ${size}`] ??= readerOf(mode, size));
+  const [top, second] = mode.tops;
+  if (second) return readerOf(mode, size);
+  if (!readersOfTops.has(top)) readersOfTops.set(top, new Map());
+  const readers = readersOfTops.get(top);
+  const key = `${mode.form} ${size}`;
+  if (!readers.has(key)) readers.set(key, readerOf(mode, size));
+  return readers.get(key);
 }
 
 function readerOf(mode, size) {
-  const kinds = mode.tops.map((top) => top.kind),
-    numbers = mode.tops.flatMap((top) => top.numbers);
-  const known = codes(mode.form, kinds, size),
-    parameters = Float64Array.of(...numbers, 0);
+  const kinds = mode.tops.map((top) => top.kind);
+  const numbers = mode.tops.flatMap((top) => top.numbers);
+  const codes = codesOf(mode.form, kinds, size);
+  const parameters = Float64Array.of(...numbers, 0);
+  const last = numbers.length;
   const values = (of) => (y, p) => {
-    let from = 0;
-    const [top, other] = kinds.map((kind) => kind.top(p.slice(from, (from += kind.numbers))));
-    return [...of(replace(mode, other ? { top, other } : { top }), y, p[from])];
+    const [top, other] = topsOf(kinds, p);
+    return [...of(replace(mode, other ? { top, other } : { top }), y, p[last])];
   };
   return (of, count) => {
-    if (!known.has(of)) known.set(of, compiled(values(of), size, parameters.length));
-    const code = known.get(of),
-      out = new Float64Array(count);
+    if (!codes.has(of)) codes.set(of, compiled(values(of), size, parameters.length));
+    const code = codes.get(of);
+    const out = new Float64Array(count);
     return (y, other = 0) => {
-      parameters[numbers.length] = other;
+      parameters[last] = other;
       code(y, parameters, out);
       return out;
     };
   };
+}
+
+/** Tops of some kinds, whose numbers stand in a row. */
+function topsOf(kinds, numbers) {
+  let first = 0;
+  return kinds.map((kind) => {
+    const end = first + kind.numbers;
+    const top = kind.top(numbers.slice(first, end));
+    first = end;
+    return top;
+  });
 }

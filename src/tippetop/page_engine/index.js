@@ -2,7 +2,7 @@
 import * as m from "./mechanics.js";
 import { plain } from "./runtime.js";
 
-export { InvalidInput, MISSING, extent } from "./mechanics.js";
+export { extent, InvalidInput, MISSING } from "./mechanics.js";
 export { simulate } from "./run.js";
 
 /** What the theory says without a run: where a launch ends, its critical spins, what a body can do at all. */

@@ -14,23 +14,19 @@ export function numbers_of(value, name = "") {
 const TABLE = "a table of its fields";
 
 export class Part {
-  constructor(given = {}) {
-    const { fields, checks } = SCHEMA[this.constructor.title],
-      keys = Object.keys(fields).join(", ");
-    const unknown = Object.keys(given).filter((name) => !(name in fields));
-    const wrong = unknown.map(
-      (name) => new m.InvalidInput(name, given[name], `one of the keys ${keys}`),
-    );
+  /** A part of the values of its fields; throws the first error, which says how many others there are. */
+  constructor(values = {}) {
+    const { fields, checks } = SCHEMA[this.constructor.title];
+    const errors = unknownFields(values, fields);
     for (const [name, field] of Object.entries(fields)) {
-      const value =
-        given[name] === undefined || (given[name] === null && field.default !== undefined)
-          ? field.default
-          : given[name];
-      if (value === undefined)
-        wrong.push(new m.InvalidInput(name, m.MISSING, "a value; it has no default"));
-      else this[name] = taken(name, value, field, wrong);
+      const value = valueOrDefault(values[name], field);
+      if (value === undefined) {
+        errors.push(new m.InvalidInput(name, m.MISSING, "a value; it has no default"));
+      } else {
+        this[name] = checkedValue(name, value, field, errors);
+      }
     }
-    if (wrong.length) throw wrong[0].within("", wrong.length - 1);
+    if (errors.length) throw errors[0].within("", errors.length - 1);
     for (const check of checks) this[check]();
   }
 
@@ -40,11 +36,8 @@ export class Part {
 
   /** A copy with other values, which are not checked. */
   model_copy(changes) {
-    return Object.assign(
-      Object.create(Object.getPrototypeOf(this)),
-      this,
-      Object.fromEntries(changes.entries()),
-    );
+    const copy = Object.create(Object.getPrototypeOf(this));
+    return Object.assign(copy, this, Object.fromEntries(changes.entries()));
   }
 
   model_dump() {
@@ -52,52 +45,87 @@ export class Part {
   }
 }
 
-/** The value of a field, with parts made of their fields; what is wrong with it is added to the rest. */
-function taken(name, value, field, wrong) {
-  const refuse = (where, one, accepted) => wrong.push(new m.InvalidInput(where, one, accepted));
-  const number = (where, one, depth) => {
-    const { gt, ge, lt, le } = field.limits ?? {};
-    if (depth) one.forEach((inner, place) => number(`${where}.${place}`, inner, depth - 1));
-    else if (typeof one !== "number" || !Number.isFinite(one))
-      refuse(where, one, "a finite number");
-    else if (one <= gt || one < ge || one >= lt || one > le) refuse(where, one, field.accepted);
-  };
-  if (value === null && field.default === null) return null;
-  if (field.parts) {
-    if (!(Array.isArray(value) && field.several)) return part(name, value, field.parts, wrong);
-    const found = value.map((inner, place) => part(`${name}.${place}`, inner, field.parts, wrong));
-    if (!found.length) refuse(name, value, TABLE);
-    return found.length === 1 ? found[0] : found;
-  }
-  const listed =
-    Array.isArray(value) &&
-    (field.points ? value.every(Array.isArray) : value.length === field.count);
-  if (field.choices ? !field.choices.includes(value) : (field.points || field.count) && !listed)
-    refuse(name, value, field.accepted);
-  else if (!field.choices) number(name, value, field.points ? 2 : field.count ? 1 : 0);
+/** An error for each name that is no field. */
+function unknownFields(values, fields) {
+  const accepted = `one of the keys ${Object.keys(fields).join(", ")}`;
+  const unknown = Object.keys(values).filter((name) => !(name in fields));
+  return unknown.map((name) => new m.InvalidInput(name, values[name], accepted));
+}
+
+/** The value of a field, or its default where there is none; undefined where there is neither. */
+function valueOrDefault(value, field) {
+  if (value === undefined) return field.default;
+  if (value === null && field.default !== undefined) return field.default;
   return value;
 }
 
-/** A part of one of some kinds. */
-function part(name, value, kinds, wrong) {
+/** The value of a field, with parts made of their fields; what is wrong with it is added to the errors. */
+function checkedValue(name, value, field, errors) {
+  if (value === null && field.default === null) return null;
+  if (field.parts) return checkedParts(name, value, field, errors);
+  const refuse = () => errors.push(new m.InvalidInput(name, value, field.accepted));
+  if (field.choices) {
+    if (!field.choices.includes(value)) refuse();
+  } else if (field.points) {
+    if (!(Array.isArray(value) && value.every(Array.isArray))) refuse();
+    else checkNumbers(name, value, 2, field, errors);
+  } else if (field.count) {
+    if (!(Array.isArray(value) && value.length === field.count)) refuse();
+    else checkNumbers(name, value, 1, field, errors);
+  } else {
+    checkNumbers(name, value, 0, field, errors);
+  }
+  return value;
+}
+
+/** A part, or several of them where the field allows that; one in a list is as one alone. */
+function checkedParts(name, value, field, errors) {
+  if (!(Array.isArray(value) && field.several)) return checkedPart(name, value, field, errors);
+  if (!value.length) errors.push(new m.InvalidInput(name, value, TABLE));
+  const parts = value.map((one, place) => checkedPart(`${name}.${place}`, one, field, errors));
+  return parts.length === 1 ? parts[0] : parts;
+}
+
+/** A part of one of the kinds of a field. */
+function checkedPart(name, value, field, errors) {
   if (value instanceof Part) return value;
   try {
-    return new m[chosen(value, kinds)](value);
+    return new m[kindOf(value, field.parts)](value);
   } catch (error) {
     if (!(error instanceof m.InvalidInput)) throw error;
-    wrong.push(`${error.field}.`.startsWith(`${name}.`) ? error : error.within(name));
+    // Checks of a part may name fields by their whole path.
+    const isWhole = `${error.field}.`.startsWith(`${name}.`);
+    errors.push(isWhole ? error : error.within(name));
     return null;
   }
 }
 
 /** The kind that fields are of, told apart by the one that is called `kind`. */
-function chosen(value, kinds) {
-  if (value === null || typeof value !== "object" || Array.isArray(value))
+function kindOf(value, kinds) {
+  if (value === null || typeof value !== "object" || Array.isArray(value)) {
     throw new m.InvalidInput("", value, TABLE);
+  }
   const words = kinds.map((kind) => SCHEMA[kind].fields.kind?.default);
   if (words[0] === undefined) return kinds[0];
   if (value.kind === undefined) throw new m.InvalidInput("kind", m.MISSING, "a kind of it");
-  if (!words.includes(value.kind))
+  if (!words.includes(value.kind)) {
     throw new m.InvalidInput("kind", value.kind, words.map((word) => `'${word}'`).join(", "));
+  }
   return kinds[words.indexOf(value.kind)];
+}
+
+/** Check a number, or the numbers in lists of some depth. */
+function checkNumbers(name, value, depth, field, errors) {
+  if (depth) {
+    value.forEach((inner, place) => {
+      checkNumbers(`${name}.${place}`, inner, depth - 1, field, errors);
+    });
+    return;
+  }
+  const { gt, ge, lt, le } = field.limits ?? {};
+  if (typeof value !== "number" || !Number.isFinite(value)) {
+    errors.push(new m.InvalidInput(name, value, "a finite number"));
+  } else if (value <= gt || value < ge || value >= lt || value > le) {
+    errors.push(new m.InvalidInput(name, value, field.accepted));
+  }
 }

@@ -1,26 +1,43 @@
-// One launch: followed from mode to mode, its numbers found on the way, and sampled when asked.
-import * as m from "./mechanics.js";
+// Follows one launch from contact mode to contact mode, sums up its metrics, and samples it on demand.
 import { integrator, reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
+import * as m from "./mechanics.js";
 import { plain } from "./runtime.js";
 import { CATALOGUE, GAUSS } from "./tables.js";
 
-const LOOKS = 16,
-  PLACES = Array.from({ length: LOOKS + 1 }, (_, look) => look / LOOKS);
-const rates = (mode, y, pole) => m.Rates.of(mode, y, pole),
-  RATES = 8,
-  FORCE = 7;
-const kept = (mode, y) => m.kept(mode.state(y), mode.top),
-  KEPT = 5;
-// A number in a step of a solution, as it is or with the other sign, as a function of the part that has passed.
-const reading =
-  (solution, step, number, sign = 1) =>
-  (part) =>
-    sign * solution.value(step, number, part);
-// Parts of a step from its ends on in which friction has a direction, which it has not where slip is zero.
-const WITHIN = 1e-8;
-// What is added up: the first of them as they are told, as rates, in `Rates`.
-const [X, Y, TURN, WORK, DRILLED, ROLLED, STRUCK, SUMS] = [0, 1, 2, 3, 4, 5, 6, 7];
+// A search for a root or a least value in a step first looks at the ends of this many intervals.
+const PROBES_PER_STEP = 16;
+const PROBES = Array.from({ length: PROBES_PER_STEP + 1 }, (_, probe) => probe / PROBES_PER_STEP);
+
+// Share of the range of its probes by which a number may still be smaller between them.
+const BETWEEN_PROBES = 0.1;
+// The same of the normal force between and beyond the nodes of Gauss's rule, which are fewer.
+const BETWEEN_NODES = 0.5;
+
+// At the very ends of a step slip may be zero, where the direction of friction is undefined: parts of a step
+// that are read keep this distance from 0 and 1.
+const END_DISTANCE = 1e-8;
+
+// Numbers of a solution: n_z, and in flight the height of the centre of mass.
+const AXIS_Z = 2;
+const HEIGHT = 9;
+
+// What is read off a mode's numbers in a step: functions for `reader`, and how many values each returns.
+const rates = (mode, y, pole) => m.Rates.of(mode, y, pole);
+const RATES = 8;
+const FORCE = 7;
+const conserved = (mode, y) => m.kept(mode.state(y), mode.top);
+const CONSERVED = 5;
+
+// What is integrated along a run. The first six stand in `Rates` at the same place.
+const X = 0;
+const Y = 1;
+const TURN = 2;
+const WORK = 3;
+const DRILLED = 4;
+const ROLLED = 5;
+const STRUCK = 6;
+const SUMS = 7;
 
 /** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
 export function simulate(
@@ -30,231 +47,234 @@ export function simulate(
   m.require_tolerance(tolerance, "compiled");
   const run = new Run(new m.Problem(problem), duration, tolerance, [phase_limit, step_limit]);
   for (const segment of run.trajectory.segments()) {
-    run.take(segment);
+    run.include(segment);
     onProgress?.(run.trajectory.time / run.trajectory.end);
   }
-  return run.finish();
+  run.finish();
+  return run;
 }
 
 class Run {
   constructor(problem, duration, tolerance, limits) {
-    const units = m.natural_units(problem.top),
-      top = m.natural(problem.top),
-      start = m.natural_state(problem.start(), units);
-    m.require_limits(duration, units.time, ...limits);
-    const { liftoff, restitution } = problem.contact,
-      launch = m.rules_for(top, liftoff, restitution).launch(start);
-    const pole = start.axis[2] >= 0 ? 1 : -1,
-      lost = launch.energy_lost;
-    Object.assign(this, {
-      duration,
-      tolerance,
-      units,
-      top,
-      start,
-      pole,
-      pieces: [],
-      turned: NaN,
-      steps: 0,
-    });
-    this.trajectory = new m.Trajectory(
-      launch,
-      duration / units.time,
-      integrator(tolerance),
-      ...limits,
-    );
-    this.sums = Float64Array.of(0, 0, pole * problem.launch.azimuth, -lost, 0, 0, lost);
-    [this.monitor, this.flights] = [new m.Monitor(top, start), new m.Flights()];
-    // Of the tip and, in flights, of the centre of mass: where these are highest, their negatives are least.
-    [this.force, this.down, this.up, this.depth] = [
-      new Least(),
-      new Least(),
-      new Least(),
-      new Least(),
-    ];
+    const { top, contact } = problem;
+    this.duration = duration;
+    this.tolerance = tolerance;
+    this.units = m.natural_units(top);
+    this.top = m.natural(top);
+    this.start = m.natural_state(problem.start(), this.units);
+    m.require_limits(duration, this.units.time, ...limits);
+
+    const rules = m.rules_for(this.top, contact.liftoff, contact.restitution);
+    const launch = rules.launch(this.start);
+    const end = duration / this.units.time;
+    this.trajectory = new m.Trajectory(launch, end, integrator(tolerance), ...limits);
+
+    this.pole = this.start.axis[2] >= 0 ? 1 : -1;
+    this.sums = new Float64Array(SUMS);
+    this.sums[TURN] = this.pole * problem.launch.azimuth;
+    this.sums[WORK] = -launch.energy_lost;
+    this.sums[STRUCK] = launch.energy_lost;
+
+    this.segments = [];
+    this.steps = 0;
+    this.firstHorizontal = NaN;
+    this.monitor = new m.Monitor(this.top, this.start);
+    this.flightRecord = new m.Flights();
+    this.leastForce = new LeastValue();
+    this.leastAxisZ = new LeastValue();
+    // The greatest of these are the least of their negatives.
+    this.mostAxisZ = new LeastValue();
+    this.mostHeight = new LeastValue();
   }
 
-  /** A solution in a mode, with how its numbers are read. */
-  piece(mode, solution, label = mode.label) {
-    const read = reader(mode, solution.size),
-      of = read(rates, RATES),
-      numbers = new Float64Array(solution.size);
-    const at = (step, part) => solution.numbers(step, part, numbers),
-      look = (step, part, pole = 1) => of(at(step, part), pole);
-    const sums = new Float64Array(SUMS * solution.count),
-      rule = GAUSS[mode.touching && solution.degree > 7 ? 8 : 4];
-    const value = (step, number, part) =>
-      look(step, Math.min(Math.max(part, WITHIN), 1 - WITHIN))[number];
-    this.pieces.push({ solution, label, read, at, look, value, sums, poles: [], rule });
-    return this.pieces.at(-1);
-  }
-
-  /** Take in a segment: what is integrated along it, and the extremes of the motion. */
-  take(segment) {
+  /** Take in a segment: what is integrated along it, and the extremes of its motion. */
+  include(segment) {
     const { solution, mode, transition } = segment;
     this.steps += segment.steps;
-    if (!mode.touching) this.flights.take(segment);
-    if (solution.count) {
-      const piece = this.piece(mode, solution),
-        known = piece.read(kept, KEPT),
-        presses = mode.touching && !this.flights.rows.length;
-      for (let step = 0; step < solution.count; step += 1) {
-        const out = known(piece.at(step, 0));
-        this.monitor.see(out[0], out[1], out[2], out[3], out[4], this.sums[WORK]);
-        this.sum(piece, step, presses);
-        this.see(solution, step, 2, this.down, this.up);
-        if (!mode.touching) this.see(solution, step, 9, null, this.depth);
-      }
-    }
+    if (!mode.touching) this.flightRecord.take(segment);
+    if (solution.count) this.includeSteps(mode, solution);
     const lost = transition?.energy_lost ?? 0;
     this.sums[STRUCK] += lost;
     this.sums[WORK] -= lost;
   }
 
-  /** Integrate along a step; and see how small the normal force is. */
-  sum(piece, step, presses) {
-    const { solution, rule } = piece,
-      pole = solution.value(step, 2, rule.nodes[rule.nodes.length >> 1]) >= 0 ? 1 : -1;
+  includeSteps(mode, solution) {
+    const segment = new SegmentReader(mode, solution, mode.label);
+    this.segments.push(segment);
+    const readConserved = segment.read(conserved, CONSERVED);
+    const watchesForce = mode.touching && !this.flightRecord.rows.length;
+    for (let step = 0; step < solution.count; step += 1) {
+      const values = readConserved(segment.numbersAt(step, 0));
+      this.monitor.see(values[0], values[1], values[2], values[3], values[4], this.sums[WORK]);
+      this.integrate(segment, step);
+      if (watchesForce) this.includeForce(segment, step);
+      this.includeAxis(solution, step);
+      if (!mode.touching) this.includeHeight(solution, step);
+    }
+  }
+
+  /** Add what is integrated along a step. */
+  integrate(segment, step) {
+    const { solution, rule } = segment;
+    const middle = rule.nodes[rule.nodes.length >> 1];
+    const pole = solution.value(step, AXIS_Z, middle) >= 0 ? 1 : -1;
     if (pole !== this.pole) {
-      this.sums[TURN] +=
-        (pole - this.pole) * Math.atan2(solution.value(step, 1, 0), solution.value(step, 0, 0));
+      // The turn is psi + pole * phi: regular near that pole, where phi and psi alone are not.
+      const azimuth = Math.atan2(solution.value(step, 1, 0), solution.value(step, 0, 0));
+      this.sums[TURN] += (pole - this.pole) * azimuth;
       this.pole = pole;
     }
-    piece.sums.set(this.sums, SUMS * step);
-    piece.poles.push(pole);
-    this.along(piece, step, 1, pole, this.sums);
-    // Between Gauss's points, and beyond them, it is lower by a part of what it varies by there.
-    const { least, most } = this,
-      bound = least - 0.5 * (most - least);
-    if (presses) this.force.see(least, bound, piece, step, FORCE);
+    segment.sums.set(this.sums, SUMS * step);
+    segment.poles.push(pole);
+    this.addUpTo(1, segment, step, pole, this.sums);
   }
 
-  /** Add to sums what is gained up to a part of a step; the normal forces on the way. */
-  along({ solution, rule, look }, step, part, pole, sums) {
-    const { nodes, weights } = rule,
-      span = part * (solution.knots[step + 1] - solution.knots[step]);
-    [this.least, this.most] = [Infinity, -Infinity];
+  /** Add to sums what is gained up to a part of a step, and note the range of the normal force there. */
+  addUpTo(part, segment, step, pole, sums) {
+    const { knots } = segment.solution;
+    const { nodes, weights } = segment.rule;
+    const span = part * (knots[step + 1] - knots[step]);
+    let lowest = Infinity;
+    let highest = -Infinity;
     for (let i = 0; i < nodes.length; i += 1) {
-      const out = look(step, part * nodes[i], pole),
-        share = weights[i] * span;
-      for (let k = X; k <= ROLLED; k += 1) sums[k] += share * out[k];
-      this.least = Math.min(this.least, out[FORCE]);
-      this.most = Math.max(this.most, out[FORCE]);
+      const gains = segment.ratesAt(step, part * nodes[i], pole);
+      const weight = weights[i] * span;
+      for (let k = X; k <= ROLLED; k += 1) sums[k] += weight * gains[k];
+      lowest = Math.min(lowest, gains[FORCE]);
+      highest = Math.max(highest, gains[FORCE]);
+    }
+    this.lowestForce = lowest;
+    this.highestForce = highest;
+  }
+
+  /** Take in the normal force of the step that was integrated last. */
+  includeForce(segment, step) {
+    const { lowestForce, highestForce } = this;
+    const bound = lowestForce - BETWEEN_NODES * (highestForce - lowestForce);
+    this.leastForce.include(lowestForce, bound, segment, step, FORCE);
+  }
+
+  /** Take in the range of n_z in a step, and when it first falls to zero. */
+  includeAxis(solution, step) {
+    const start = solution.value(step, AXIS_Z, 0);
+    const [low, high] = solution.bounds(step, AXIS_Z);
+    this.leastAxisZ.include(start, low, solution, step, AXIS_Z);
+    this.mostAxisZ.include(-start, -high, solution, step, AXIS_Z, -1);
+    if (low <= 0 && high >= 0 && Number.isNaN(this.firstHorizontal)) {
+      const part = firstFall(reading(solution, step, AXIS_Z), true);
+      this.firstHorizontal = solution.time(step, part);
     }
   }
 
-  /** Take in how far a number of a solution goes down and up in a step. */
-  see(solution, step, number, down, up) {
-    const start = solution.value(step, number, 0),
-      [low, high] = solution.bounds(step, number);
-    down?.see(start, low, solution, step, number);
-    up.see(-start, -high, solution, step, number, -1);
-    const turns = down && low <= 0 && high >= 0 && this.turned !== this.turned;
-    if (turns) this.turned = solution.time(step, firstFall(reading(solution, step, number), true));
+  /** Take in how high the centre of mass is in a step of a flight. */
+  includeHeight(solution, step) {
+    const start = solution.value(step, HEIGHT, 0);
+    const [, high] = solution.bounds(step, HEIGHT);
+    this.mostHeight.include(-start, -high, solution, step, HEIGHT, -1);
   }
 
-  /** First time at which n_z is in a band. */
+  /** Put together what is asked of a run that has ended, in SI. */
+  finish() {
+    const { trajectory, units } = this;
+    const { outcome, detail, state } = trajectory;
+    const judged = this.monitor.concluded(outcome, state, this.sums[WORK], this.tolerance);
+    this.outcome = {
+      name: judged.name.toLowerCase(),
+      advice: [judged.value, detail].filter(Boolean).join(" "),
+    };
+    this.early = judged !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
+    const completed = outcome === m.Outcome.COMPLETED;
+    this.endTime = completed ? this.duration : trajectory.time * units.time;
+    this.events = plain(trajectory.events.map((event) => m.event_in_si(event, units)));
+    this.metrics = this.metricsInSI();
+    this.flights = this.flightRecord.rows.map(([start, end, gap]) => ({
+      start: start * units.time,
+      end: end * units.time,
+      highest_gap: gap * units.length,
+    }));
+    if (!this.segments.length) this.addLaunch();
+  }
+
+  metricsInSI() {
+    const { state, time, events } = this.trajectory;
+    // Of every step the value at its start is taken in: the end of the last one is missing.
+    const lastAxisZ = this.segments.length ? state.axis[2] : NaN;
+    this.leastAxisZ.includeValue(lastAxisZ);
+    this.mostAxisZ.includeValue(-lastAxisZ);
+    const extremes = [this.leastForce, this.leastAxisZ, this.mostAxisZ, this.mostHeight];
+    const ends = m.Ends.of_one(
+      state,
+      time,
+      null,
+      events,
+      this.flightRecord,
+      this.steps,
+      [-this.sums[DRILLED], -this.sums[ROLLED]],
+      extremes.map((extreme) => extreme.refined()),
+      [this.firstHorizontal, this.arrival(m.final_band(state))],
+    );
+    return Object.fromEntries(m.metrics(ends, this.start, this.top, this.units).entries());
+  }
+
+  /** First time at which n_z is in a band; NaN if it never is. */
   arrival([low, high]) {
-    for (const { solution } of this.pieces) {
+    for (const { solution } of this.segments) {
       for (let step = 0; step < solution.count; step += 1) {
-        const start = solution.value(step, 2, 0),
-          [least, most] = solution.bounds(step, 2);
-        if (least > high || most < low) continue;
-        const sign = start > high ? 1 : -1,
-          edge = start > high ? high : low;
-        const part =
-          start <= high && start >= low
-            ? 0
-            : firstFall((x) => sign * (solution.value(step, 2, x) - edge));
+        const part = firstPartInBand(solution, step, low, high);
         if (!Number.isNaN(part)) return solution.time(step, part);
       }
     }
     return NaN;
   }
 
-  finish() {
-    const { trajectory, units, sums } = this,
-      { events, outcome, detail, state } = trajectory,
-      flights = this.flights.rows;
-    const ended = this.monitor.concluded(outcome, state, sums[WORK], this.tolerance);
-    this.outcome = {
-      name: ended.name.toLowerCase(),
-      advice: [ended.value, detail].filter(Boolean).join(" "),
-    };
-    this.early = ended !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
-    this.endTime = outcome === m.Outcome.COMPLETED ? this.duration : trajectory.time * units.time;
-    this.events = plain(events.map((event) => m.event_in_si(event, units)));
-    for (const [way, last] of [
-      [this.down, state.axis[2]],
-      [this.up, -state.axis[2]],
-    ])
-      way.see(this.pieces.length ? last : NaN);
-    const least = [this.force, this.down, this.up, this.depth].map((one) => one.found());
-    const [resisted, when] = [
-      [-sums[DRILLED], -sums[ROLLED]],
-      [this.turned, this.arrival(m.final_band(state))],
-    ];
-    const ends = m.Ends.of_one(
-      state,
-      trajectory.time,
-      null,
-      events,
-      this.flights,
-      this.steps,
-      resisted,
-      least,
-      when,
-    );
-    this.metrics = Object.fromEntries(m.metrics(ends, this.start, this.top, units).entries());
-    this.flights = flights.map(([start, end, gap]) => ({
-      start: start * units.time,
-      end: end * units.time,
-      highest_gap: gap * units.length,
-    }));
-    if (!this.pieces.length) {
-      const [mode, numbers] = m.as_begun(this.start, this.top);
-      const still = DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]);
-      Object.assign(this.piece(mode, still, "sliding"), { sums, poles: [this.pole] });
-    }
-    return this;
+  /** Let a run that ended at its launch be sampled there, as if it slid. */
+  addLaunch() {
+    const [mode, numbers] = m.as_begun(this.start, this.top);
+    const still = DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]);
+    const segment = new SegmentReader(mode, still, "sliding");
+    segment.sums.set(this.sums);
+    segment.poles.push(this.pole);
+    this.segments.push(segment);
   }
 
   /** Every variable of the catalogue's SAMPLED at some times, s, or at so many from start to end. */
   track(when = 2001) {
     const times = typeof when === "number" ? this.grid(when) : Float64Array.from(when);
-    const track = { time: times, mode: [] },
-      count = times.length;
-    for (const [name, variable] of Object.entries(CATALOGUE.sampled))
-      track[name] = new Float64Array(count * variable.width);
-    times.forEach((time, i) => this.sample(track, i, time / this.units.time));
-    smooth(track.orientation);
+    const track = { time: times, mode: [] };
+    for (const [name, variable] of Object.entries(CATALOGUE.sampled)) {
+      track[name] = new Float64Array(times.length * variable.width);
+    }
+    times.forEach((time, i) => {
+      this.sample(track, i, time / this.units.time);
+    });
+    makeContinuous(track.orientation);
     return track;
   }
 
+  /** Times, s, that divide the duration evenly, up to the end of the run. */
   grid(count) {
-    const times = Array.from({ length: count }, (_, i) => this.duration * (i / (count - 1))).filter(
-      (time) => time <= this.endTime,
-    );
+    const times = [];
+    for (let i = 0; i < count; i += 1) {
+      const time = this.duration * (i / (count - 1));
+      if (time <= this.endTime) times.push(time);
+    }
     if (this.early && times.at(-1) < this.endTime) times.push(this.endTime);
     return Float64Array.from(times);
   }
 
-  /** Put what is known of a time, the piece of which is the earlier one where two meet, into a track. */
+  /** Put the variables at a time into a track; where two segments meet, those of the earlier one. */
   sample(track, i, time) {
-    const { pieces } = this,
-      piece = pieces[earliest(pieces.length, (here) => pieces[here].solution.end >= time)];
-    const { solution } = piece,
-      step = solution.step(time),
-      part = solution.part(step, time);
-    const sums = piece.sums.slice(step * SUMS, (step + 1) * SUMS),
-      pole = piece.poles[step];
-    this.along(piece, step, part, pole, sums);
-    const told = m.Instants.unpack(
-      (piece.told ??= piece.read(m.instants, m.TOLD))(solution.numbers(step, part)),
-    );
-    const here = new m.Samples(
+    const { segments } = this;
+    const place = earliest(segments.length, (k) => segments[k].solution.end >= time);
+    const segment = segments[place];
+    const step = segment.solution.step(time);
+    const part = segment.solution.part(step, time);
+    const pole = segment.poles[step];
+    const sums = segment.sums.slice(step * SUMS, (step + 1) * SUMS);
+    this.addUpTo(part, segment, step, pole, sums);
+    const samples = new m.Samples(
       time,
-      told,
+      segment.instantsAt(step, part),
       sums[X],
       sums[Y],
       sums[TURN],
@@ -265,66 +285,135 @@ class Run {
       pole,
       null,
     );
-    for (const [name, value] of m.observe(here, this.top, this.units).entries()) {
+    for (const [name, value] of m.observe(samples, this.top, this.units).entries()) {
       if (typeof value === "number") track[name][i] = value;
       else track[name].set(value, i * value.length);
     }
-    track.mode.push(piece.label);
+    track.mode.push(segment.label);
   }
 }
 
-/** The least value of something along a run: what was seen, and where between there may be less of it. */
-class Least {
-  value = Infinity;
-  places = [];
-
-  /** Take in a value; where there may be less in a step, down to a bound, keep what tells it there. */
-  see(value, bound, solution, step, number, sign) {
-    this.value = Math.min(this.value, value);
-    if (bound < this.value) this.places.push([bound, reading(solution, step, number, sign)]);
+/** A solution in a contact mode, and what is read off its numbers. */
+class SegmentReader {
+  constructor(mode, solution, label) {
+    this.solution = solution;
+    this.label = label;
+    this.read = reader(mode, solution.size);
+    this.readRates = this.read(rates, RATES);
+    this.readInstants = null;
+    this.numbers = new Float64Array(solution.size);
+    // What is integrated up to the start of every step, and the pole that the turn is counted around in it.
+    this.sums = new Float64Array(SUMS * solution.count);
+    this.poles = [];
+    // Gauss's rule with four nodes is exact up to degree 7.
+    this.rule = GAUSS[mode.touching && solution.degree > 7 ? 8 : 4];
   }
 
-  found() {
-    for (const [bound, values] of this.places
-      .filter(([bound]) => bound < this.value)
-      .sort(([a], [b]) => a - b)) {
+  /** The numbers at a part of a step, in an array that the next call overwrites. */
+  numbersAt(step, part) {
+    return this.solution.numbers(step, part, this.numbers);
+  }
+
+  /** `Rates` at a part of a step, in an array that the next call overwrites. */
+  ratesAt(step, part, pole) {
+    return this.readRates(this.numbersAt(step, part), pole);
+  }
+
+  /** One of `Rates` at a part of a step, as `DenseSolution.value` is one of its numbers. */
+  value(step, number, part) {
+    const inside = Math.min(Math.max(part, END_DISTANCE), 1 - END_DISTANCE);
+    return this.ratesAt(step, inside, 1)[number];
+  }
+
+  /** `Instants` at a part of a step. */
+  instantsAt(step, part) {
+    this.readInstants ??= this.read(m.instants, m.TOLD);
+    return m.Instants.unpack(this.readInstants(this.solution.numbers(step, part)));
+  }
+}
+
+/** The least value of a quantity along a run: the values it is known to take, and where it may be less. */
+class LeastValue {
+  value = Infinity;
+  candidates = [];
+
+  includeValue(value) {
+    this.value = Math.min(this.value, value);
+  }
+
+  /** Take in a value in a step, and the step itself if the quantity may be less there, down to a bound. */
+  include(value, bound, source, step, number, sign) {
+    this.value = Math.min(this.value, value);
+    if (bound < this.value) {
+      this.candidates.push({ bound, values: reading(source, step, number, sign) });
+    }
+  }
+
+  /** The least value, searched for in the steps where it may be. */
+  refined() {
+    const candidates = this.candidates.filter(({ bound }) => bound < this.value);
+    candidates.sort((a, b) => a.bound - b.bound);
+    for (const { bound, values } of candidates) {
       if (bound >= this.value) break;
-      let low = Infinity,
-        high = -Infinity,
-        at = 0;
-      for (let look = 0; look <= LOOKS; look += 1) {
-        const value = values(PLACES[look]);
-        if (value < low) [low, at] = [value, look];
-        if (value > high) high = value;
-      }
-      if (low - 0.1 * (high - low) > this.value) continue;
-      const [start, end] = [Math.max(at - 1, 0), Math.min(at + 1, LOOKS)].map(
-        (look) => PLACES[look],
-      );
-      this.value = Math.min(
-        this.value,
-        low,
-        values(m.dip((part) => values(part) - low + (high - low), start, end)[0]),
-      );
+      this.value = Math.min(this.value, leastInStep(values, this.value));
     }
     return this.value;
   }
 }
 
-/** Where a function on [0, 1] first falls to zero from above; nan where it does not. */
+/** One of a source's numbers in a step, or its negative, as a function of the part that has passed. */
+function reading(source, step, number, sign = 1) {
+  return (part) => sign * source.value(step, number, part);
+}
+
+/** The least value of a function on [0, 1]; Infinity where none may be below a threshold. */
+function leastInStep(values, threshold) {
+  let low = Infinity;
+  let high = -Infinity;
+  let lowest = 0;
+  for (let probe = 0; probe <= PROBES_PER_STEP; probe += 1) {
+    const value = values(PROBES[probe]);
+    if (value < low) {
+      low = value;
+      lowest = probe;
+    }
+    if (value > high) high = value;
+  }
+  const range = high - low;
+  if (low - BETWEEN_PROBES * range > threshold) return Infinity;
+  const start = PROBES[Math.max(lowest - 1, 0)];
+  const end = PROBES[Math.min(lowest + 1, PROBES_PER_STEP)];
+  // The search stops at values below zero, so that these are raised above it.
+  const [dip] = m.dip((part) => values(part) - low + range, start, end);
+  return Math.min(low, values(dip));
+}
+
+/** The first part of a step at which n_z is in a band; NaN if it is not in that step. */
+function firstPartInBand(solution, step, low, high) {
+  const start = solution.value(step, AXIS_Z, 0);
+  const [least, most] = solution.bounds(step, AXIS_Z);
+  if (least > high || most < low) return NaN;
+  if (start <= high && start >= low) return 0;
+  if (start > high) return firstFall((part) => solution.value(step, AXIS_Z, part) - high);
+  return firstFall((part) => low - solution.value(step, AXIS_Z, part));
+}
+
+/** Where a function on [0, 1] first falls to zero; NaN where it does not. With `fromAbove` it must be above first. */
 function firstFall(value, fromAbove = false) {
-  const looks = PLACES.map(value);
-  if ((fromAbove ? looks[0] === 0 : looks[0] <= 0) && looks[1] <= 0) return 0;
-  const [found] = m.brackets(PLACES, looks, value, value);
-  return found === undefined ? NaN : m.crossing(value, found[0], found[1]);
+  const probes = PROBES.map(value);
+  const beginsThere = fromAbove ? probes[0] === 0 : probes[0] <= 0;
+  if (beginsThere && probes[1] <= 0) return 0;
+  const [bracket] = m.brackets(PROBES, probes, value, value);
+  return bracket === undefined ? NaN : m.crossing(value, bracket[0], bracket[1]);
 }
 
 /** Give quaternions in a row the signs that let none jump. */
-function smooth(rows) {
-  for (let i = 4; i < rows.length; i += 4) {
-    const before = rows.subarray(i - 4, i),
-      here = rows.subarray(i, i + 4);
-    if (here.reduce((sum, one, k) => sum + one * before[k], 0) < 0)
-      here.forEach((one, k) => (here[k] = -one));
+function makeContinuous(quaternions) {
+  for (let i = 4; i < quaternions.length; i += 4) {
+    let product = 0;
+    for (let k = i; k < i + 4; k += 1) product += quaternions[k] * quaternions[k - 4];
+    if (product < 0) {
+      for (let k = i; k < i + 4; k += 1) quaternions[k] = -quaternions[k];
+    }
   }
 }
