@@ -8,11 +8,17 @@ const VIEWS = { orbit: [3.6, -5.6, 3.1], side: [0, -6.6, 0.7], above: [0, -0.05,
 // The camera and its controls.
 export class Eye {
   constructor(camera, controls) {
-    Object.assign(this, { camera, controls, held: false, sunk: 0 });
+    this.camera = camera;
+    this.controls = controls;
+    // Whether the visitor holds the camera, and by which share of its way it has sunk.
+    this.held = false;
+    this.sunk = 0;
     controls.maxPolarAngle = LOWEST;
     controls.minDistance = 2;
     controls.maxDistance = 30;
-    controls.addEventListener("start", () => (this.held = true));
+    controls.addEventListener("start", () => {
+      this.held = true;
+    });
   }
 
   // Put the camera at one of the `VIEWS`.

@@ -6,7 +6,9 @@ export { createPlayer, stillness };
 
 function render({ model, el }) {
   const host = document.createElement("div");
-  const resize = () => (host.style.height = `${model.get("height")}px`);
+  const resize = () => {
+    host.style.height = `${model.get("height")}px`;
+  };
   resize();
   el.append(host);
   const player = createPlayer(host, { theme: model.get("theme") });

@@ -29,6 +29,9 @@ export function markup(words) {
     ([name, colour]) =>
       `<label><input type="checkbox" data-show="${name}"><i style="background:${colour}"></i> ${words[name]}</label>`,
   );
+  const views = ["orbit", "side", "above"].map(
+    (name) => `<option value="${name}">${words[name]}</option>`,
+  );
   return `
   <div class="tt-stage">
     <canvas class="tt-canvas" tabindex="0" role="img" aria-label="${words.canvas}"></canvas>
@@ -48,7 +51,7 @@ export function markup(words) {
   </div>
   <details class="tt-more"><summary>${words.more}</summary><div class="tt-options">
     <label>${words.speed} <select data-do="speed">${speeds.join("")}</select></label>
-    <label>${words.view} <select data-do="view">${["orbit", "side", "above"].map((name) => `<option value="${name}">${words[name]}</option>`).join("")}</select></label>
+    <label>${words.view} <select data-do="view">${views.join("")}</select></label>
     ${box("do", "climax", true)}${box("do", "loop")}${box("do", "tone")}${box("do", "follow", true)}
     ${box("show", "trace", true)}${box("show", "glass", true)}
     <span class="tt-arrows" role="group" aria-label="${words.arrows}">${arrows.join("")}</span>

@@ -13,43 +13,70 @@ import { Track } from "./track.js";
 // How often numbers that change are written anew, ms.
 export const READING = 80;
 
+// Turns of the camera by keys, rad: across and up.
+const TURNS = {
+  ArrowLeft: [-0.1, 0],
+  ArrowRight: [0.1, 0],
+  ArrowUp: [0, 0.1],
+  ArrowDown: [0, -0.1],
+};
+
 export class Player extends EventTarget {
   constructor(host, { theme = "auto", words = english, open = false } = {}) {
     super();
-    Object.assign(this, { host, labels: words });
-    host.classList.add("tt-player");
-    host.innerHTML = `<style>${STYLE}</style>${markup(words)}`;
-    this.find = (selector) => host.querySelector(selector);
-    this.find(".tt-more").open = open;
-    this.canvas = this.find(".tt-canvas");
-    this.strip = this.find(".tt-strip");
-    this.range = this.find(".tt-scrub input");
-    this.readout = this.find(".tt-time");
-    this.playButton = this.find("[data-do=play]");
+    this.host = host;
+    this.labels = words;
     this.time = 0;
     this.speed = 1;
     this.playing = false;
-    this.dirty = true;
-    this.told = this.marked = -Infinity;
-    this.climax = !stillness();
-    this.find("[data-do=climax]").checked = this.climax;
     this.loop = false;
-    try {
-      this.scene = new Scene(this.canvas);
-      this.sharpness = new Sharpness(this.scene);
-      this.scene.controls.addEventListener("change", () => (this.dirty ||= !this.drawing));
-      this.scene.controls.addEventListener("end", () => this.dispatchEvent(new Event("view")));
-    } catch (error) {
-      this.find(".tt-trouble").textContent = words.noGraphics;
-      this.find(".tt-trouble").hidden = false;
-      this.reason = error;
-    }
+    this.climax = !stillness();
+    // Whether the scene, and whether the strip too, must be drawn anew.
+    this.dirty = true;
+    this.stale = true;
+    // When the time was last written, ms, and the time at which the strip's mark is, s.
+    this.lastReading = -Infinity;
+    this.marked = -Infinity;
+    this.build(words, open);
+    this.buildScene(words);
     this.listen();
     this.setTheme(theme);
     this.resizing = new ResizeObserver(() => this.resize());
     this.resizing.observe(host);
     this.tick = this.tick.bind(this);
     this.frame = requestAnimationFrame(this.tick);
+  }
+
+  find(selector) {
+    return this.host.querySelector(selector);
+  }
+
+  build(words, open) {
+    this.host.classList.add("tt-player");
+    this.host.innerHTML = `<style>${STYLE}</style>${markup(words)}`;
+    this.find(".tt-more").open = open;
+    this.find("[data-do=climax]").checked = this.climax;
+    this.canvas = this.find(".tt-canvas");
+    this.strip = this.find(".tt-strip");
+    this.range = this.find(".tt-scrub input");
+    this.readout = this.find(".tt-time");
+    this.playButton = this.find("[data-do=play]");
+  }
+
+  // Without graphics all but the scene works.
+  buildScene(words) {
+    try {
+      this.scene = new Scene(this.canvas);
+      this.sharpness = new Sharpness(this.scene);
+      this.scene.controls.addEventListener("change", () => {
+        if (!this.drawing) this.dirty = true;
+      });
+      this.scene.controls.addEventListener("end", () => this.dispatchEvent(new Event("view")));
+    } catch (error) {
+      this.find(".tt-trouble").textContent = words.noGraphics;
+      this.find(".tt-trouble").hidden = false;
+      this.reason = error;
+    }
   }
 
   listen() {
@@ -59,21 +86,11 @@ export class Player extends EventTarget {
       on: () => this.step(1),
       flip: () => this.flip(),
     };
-    this.host.addEventListener("click", ({ target }) =>
-      actions[target.closest("button")?.dataset.do]?.(),
-    );
-    this.host.addEventListener("change", ({ target }) => {
-      const { do: what, show } = target.dataset;
-      if (what === "speed") this.speed = Number(target.value);
-      if (what === "view") this.look(target.value);
-      if (what === "climax") this.climax = target.checked;
-      if (what === "loop") this.loop = target.checked;
-      if (what === "tone") this.sing(target.checked);
-      if (what === "follow" && this.scene) this.scene.following = target.checked;
-      if (show) this.show({ [show]: target.checked });
-      this.dirty = true;
-      if (what || show) this.dispatchEvent(new Event("view"));
+    this.host.addEventListener("click", ({ target }) => {
+      const name = target.closest("button")?.dataset.do;
+      actions[name]?.();
     });
+    this.host.addEventListener("change", ({ target }) => this.choose(target));
     this.range.addEventListener("input", () => {
       this.toggle(false);
       this.seek(Number(this.range.value));
@@ -81,13 +98,32 @@ export class Player extends EventTarget {
     this.canvas.addEventListener("keydown", (event) => this.key(event));
   }
 
-  key(event) {
-    const turns = {
-      ArrowLeft: [-0.1, 0],
-      ArrowRight: [0.1, 0],
-      ArrowUp: [0, 0.1],
-      ArrowDown: [0, -0.1],
+  // Take over what a control says that was changed.
+  choose({ dataset, value, checked }) {
+    const choices = {
+      speed: () => {
+        this.speed = Number(value);
+      },
+      view: () => this.look(value),
+      climax: () => {
+        this.climax = checked;
+      },
+      loop: () => {
+        this.loop = checked;
+      },
+      tone: () => this.sing(checked),
+      follow: () => {
+        if (this.scene) this.scene.following = checked;
+      },
     };
+    const { do: what, show } = dataset;
+    choices[what]?.();
+    if (show) this.show({ [show]: checked });
+    this.dirty = true;
+    if (what || show) this.dispatchEvent(new Event("view"));
+  }
+
+  key(event) {
     const keys = {
       " ": () => this.toggle(),
       ArrowLeft: () => this.step(-1),
@@ -98,7 +134,7 @@ export class Player extends EventTarget {
       "-": () => this.scene?.eye.zoom(1 / 0.9),
     };
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.shiftKey && turns[event.key]) this.scene?.eye.turn(...turns[event.key]);
+    if (event.shiftKey && TURNS[event.key]) this.scene?.eye.turn(...TURNS[event.key]);
     else if (keys[event.key]) keys[event.key]();
     else return;
     this.dirty = true;
@@ -117,7 +153,8 @@ export class Player extends EventTarget {
   load(run) {
     this.track = run instanceof Track ? run : new Track(run);
     this.time = this.track.within(this.time);
-    [this.range.min, this.range.max] = [this.track.start, this.duration];
+    this.range.min = this.track.start;
+    this.range.max = this.duration;
     this.scene?.load(this.track);
     this.find(".tt-scale").textContent = this.scene?.scaleText(this.labels.squares) ?? "";
     this.find("[data-do=flip]").disabled = !Number.isFinite(this.turnsOver);
@@ -139,9 +176,9 @@ export class Player extends EventTarget {
   say({ headline, details }) {
     const strong = document.createElement("strong");
     strong.textContent = headline;
-    const rest = document.createElement("span");
-    rest.textContent = details.join(" ");
-    this.find(".tt-words").replaceChildren(strong, rest);
+    const span = document.createElement("span");
+    span.textContent = details.join(" ");
+    this.find(".tt-words").replaceChildren(strong, span);
   }
 
   toggle(playing = !this.playing) {
@@ -271,8 +308,8 @@ export class Player extends EventTarget {
       this.marked = time;
       this.range.value = time;
     }
-    if (this.playing && now - this.told < READING) return;
-    this.told = now;
+    if (this.playing && now - this.lastReading < READING) return;
+    this.lastReading = now;
     const seconds = (count) => `${time.toFixed(count).replace(".", this.labels.point)} s`;
     this.range.setAttribute("aria-valuetext", seconds(3));
     this.readout.textContent = seconds(this.speed < 0.02 ? 5 : 3);

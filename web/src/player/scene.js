@@ -34,6 +34,9 @@ export const MODES = {
   stem: "#7b4fd0",
 };
 
+// How long the longest arrow of a run is, in sizes of the top.
+const LONGEST = { momentum: 2.6, friction: 1.6 };
+
 // How much of a ghost is seen, and where ghosts stand beside the top, in sizes of it.
 const GHOST = 0.45;
 const BESIDE = [
@@ -44,14 +47,17 @@ const BESIDE = [
 
 export class Scene {
   constructor(canvas) {
-    const frugal = (this.frugal = drawnInSoftware());
+    const frugal = drawnInSoftware();
+    this.frugal = frugal;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !frugal, stencil: frugal });
     this.renderer.debug.checkShaderErrors = false;
     this.renderer.shadowMap.enabled = !frugal;
-    this.usual = this.quality = frugal ? 0.7 : Math.min(globalThis.devicePixelRatio || 1, 2);
-    this.best = frugal ? 2 : this.quality;
-    this.least = 0.5;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    // Pixels drawn for each of the screen's: at first, in a moment that is looked at, at least, and now.
+    this.usual = frugal ? 0.7 : Math.min(globalThis.devicePixelRatio || 1, 2);
+    this.best = frugal ? 2 : this.usual;
+    this.least = 0.5;
+    this.quality = this.usual;
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(38, 1, 0.05, 200);
     this.camera.up.set(0, 0, 1);
@@ -60,12 +66,7 @@ export class Scene {
     this.eye = new Eye(this.camera, this.controls);
     this.light();
     this.ink = traceMaterial();
-    this.arrows = {};
-    for (const [name, colour] of Object.entries(ARROWS)) {
-      this.arrows[name] = makeArrow(colour);
-      this.arrows[name].visible = false;
-      this.world.add(this.arrows[name]);
-    }
+    this.addArrows();
     this.shown = { axis: false, momentum: false, friction: false, trace: true, glass: true };
     this.following = true;
     this.ghosts = [];
@@ -75,15 +76,27 @@ export class Scene {
     this.eye.look("orbit");
   }
 
+  addArrows() {
+    this.arrows = {};
+    for (const [name, colour] of Object.entries(ARROWS)) {
+      const arrow = makeArrow(colour);
+      arrow.visible = false;
+      this.arrows[name] = arrow;
+      this.world.add(arrow);
+    }
+  }
+
   // A swipe up or down and a wheel scroll the page; drags turn, and so do wheels once the scene was clicked.
   listen(canvas) {
     canvas.style.touchAction = "pan-y";
-    const wheel = ({ ctrlKey }) =>
-      (this.controls.enableZoom = ctrlKey || document.activeElement === canvas);
+    const wheel = ({ ctrlKey }) => {
+      this.controls.enableZoom = ctrlKey || document.activeElement === canvas;
+    };
+    const press = () => {
+      this.controls.enableZoom = true;
+    };
     canvas.addEventListener("wheel", wheel, { capture: true });
-    canvas.addEventListener("pointerdown", () => (this.controls.enableZoom = true), {
-      capture: true,
-    });
+    canvas.addEventListener("pointerdown", press, { capture: true });
   }
 
   light() {
@@ -94,14 +107,15 @@ export class Scene {
     this.sun.shadow.radius = 5;
     this.sun.shadow.bias = -0.0006;
     this.sun.shadow.normalBias = 0.02;
-    const box = this.sun.shadow.camera;
-    [box.left, box.right, box.bottom, box.top, box.near, box.far] = [-3, 3, -3, 3, 1, 14];
+    const box = { left: -3, right: 3, bottom: -3, top: 3, near: 1, far: 14 };
+    Object.assign(this.sun.shadow.camera, box);
     this.world.add(this.sky, this.sun, this.sun.target);
   }
 
   setTheme(name) {
     this.themed = name;
-    const theme = (this.theme = this.track?.header.scenes[name]);
+    const theme = this.track?.header.scenes[name];
+    this.theme = theme;
     if (!theme) return;
     this.world.background = new THREE.Color(theme.background);
     this.world.fog = new THREE.Fog(theme.background, 14, 34);
@@ -117,42 +131,43 @@ export class Scene {
   // Show another run.
   load(track) {
     this.track = track;
-    const { world } = this;
     const { body } = track.header;
     this.setTheme(this.themed);
     const shape = JSON.stringify(body);
     if (shape !== this.shape) {
       this.shape = shape;
-      this.remove(this.toy, this.table, this.ruler, this.shadow);
-      this.toy = welded(makeToy(body.parts));
-      const { metres, label } = roundLength(body.size / 2);
-      const cell = metres / body.size;
-      this.cell = 5 * cell;
-      this.table = makeTable(cell, this.theme, this.frugal);
-      this.ruler = makeRuler(cell, label, this.theme);
-      this.ruler.position.x = 3 * cell;
-      this.ruler.position.y = 1.9;
-      this.square = `${label(1)} ${label(10).split(" ")[1]}`;
-      world.add(this.toy, this.table, this.ruler);
-      if (this.frugal) {
-        this.shadow = makeShadow(this.toy);
-        paintShadow(this.shadow, this.theme);
-        world.add(this.shadow);
-      }
+      this.loadBody(body);
     }
     this.clearTrace();
     this.trace = makeTrace(track, body.size, this.ink);
-    world.add(this.trace);
-    const pull = track.columns.friction;
-    let strongest = 0;
-    for (let i = 0; i < pull.length; i += 2)
-      strongest = Math.max(strongest, Math.hypot(pull[i], pull[i + 1]));
-    const L = track.columns.momentum;
-    let largest = 0;
-    for (let i = 0; i < L.length; i += 3)
-      largest = Math.max(largest, Math.hypot(L[i], L[i + 1], L[i + 2]));
-    this.scales = { momentum: 2.6 / (largest || 1), friction: 1.6 / (strongest || 1) };
+    this.world.add(this.trace);
+    const { momentum, friction } = track.columns;
+    this.scales = {
+      momentum: LONGEST.momentum / (longestOf(momentum, 3) || 1),
+      friction: LONGEST.friction / (longestOf(friction, 2) || 1),
+    };
     this.show(this.shown);
+  }
+
+  // Show the toy of a body, on a table and beside a ruler of its size.
+  loadBody(body) {
+    this.remove(this.toy, this.table, this.ruler, this.shadow);
+    this.toy = welded(makeToy(body.parts));
+    const { metres, number, unit } = roundLength(body.size / 2);
+    const cell = metres / body.size;
+    this.cell = 5 * cell;
+    this.table = makeTable(cell, this.theme, this.frugal);
+    const label = (count) => (count === 10 ? `${number(count)} ${unit}` : number(count));
+    this.ruler = makeRuler(cell, label, this.theme);
+    this.ruler.position.x = 3 * cell;
+    this.ruler.position.y = 1.9;
+    this.square = `${number(1)} ${unit}`;
+    this.world.add(this.toy, this.table, this.ruler);
+    if (this.frugal) {
+      this.shadow = makeShadow(this.toy);
+      paintShadow(this.shadow, this.theme);
+      this.world.add(this.shadow);
+    }
   }
 
   scaleText(words) {
@@ -252,28 +267,23 @@ export class Scene {
   }
 
   point(pose, centre, time, unit) {
-    const { arrows, shown, track, scales } = this;
-    const place = (name, from, vector) => {
-      if (shown[name]) pointArrow(arrows[name], from, vector);
-      else arrows[name].visible = false;
-    };
-    place(
-      "axis",
-      centre,
-      pose.axis.map((v) => 2.2 * v),
-    );
-    place(
-      "momentum",
-      centre,
-      pose.momentum.map((v) => v * scales.momentum),
-    );
-    const [fx, fy] = [0, 1].map((k) => track.value("friction", time, k, 2) * scales.friction);
+    const { track, scales } = this;
+    this.placeArrow("axis", centre, pose.axis, 2.2);
+    this.placeArrow("momentum", centre, pose.momentum, scales.momentum);
+    const force = [0, 1].map((k) => track.value("friction", time, k, 2));
     const foot = [0, 1].map((k) => track.value("point", time, k, 2) / unit);
-    place("friction", [foot[0], foot[1], 0.05], [fx, fy, 0]);
+    this.placeArrow("friction", [...foot, 0.05], [...force, 0], scales.friction);
     const mode = track.mode(time);
     this.patch.visible = Boolean(mode) && mode !== "flight";
     this.patch.position.set(foot[0], foot[1], 0.006);
     this.patch.material.color.set(MODES[mode] ?? MODES.sliding);
+  }
+
+  placeArrow(name, from, vector, scale) {
+    const arrow = this.arrows[name];
+    const scaled = vector.map((component) => component * scale);
+    if (this.shown[name]) pointArrow(arrow, from, scaled);
+    else arrow.visible = false;
   }
 
   dispose() {
@@ -313,16 +323,26 @@ function drawnInSoftware() {
   return /swiftshader|llvmpipe|softpipe|software/i.test(name);
 }
 
-// The round length (1, 2 or 5 times a power of ten) nearest to one, m, and how to number its multiples.
+// Length of the longest of the vectors in a column, of so many components.
+function longestOf(column, width) {
+  let longest = 0;
+  for (let i = 0; i < column.length; i += width) {
+    longest = Math.max(longest, Math.hypot(...column.subarray(i, i + width)));
+  }
+  return longest;
+}
+
+// The round length (1, 2 or 5 times a power of ten) nearest to one, m, with the unit and the numbers of its multiples.
 function roundLength(length) {
   const power = 10 ** Math.floor(Math.log10(length));
-  const metres = [1, 2, 5, 10]
-    .map((k) => k * power)
-    .reduce((a, b) => (Math.abs(Math.log(b / length)) < Math.abs(Math.log(a / length)) ? b : a));
-  const [factor, name] = metres < 0.001 ? [1e6, "µm"] : metres < 0.5 ? [100, "cm"] : [1, "m"];
-  return {
-    metres,
-    label: (count) =>
-      `${+(count * metres * factor).toPrecision(3)}${count === 10 ? " " + name : ""}`,
-  };
+  const distance = (one) => Math.abs(Math.log(one / length));
+  const lengths = [1, 2, 5, 10].map((k) => k * power);
+  const metres = lengths.reduce((a, b) => (distance(b) < distance(a) ? b : a));
+  const { unit, size } = unitFor(metres);
+  return { metres, unit, number: (count) => `${+((count * metres) / size).toPrecision(3)}` };
+}
+
+function unitFor(metres) {
+  if (metres < 0.001) return { unit: "µm", size: 1e-6 };
+  return metres < 0.5 ? { unit: "cm", size: 1e-2 } : { unit: "m", size: 1 };
 }

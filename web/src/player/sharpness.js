@@ -8,13 +8,20 @@ const STILL = 600;
 
 export class Sharpness {
   constructor(scene) {
-    Object.assign(this, { scene, mean: 0, seen: 0 });
+    this.scene = scene;
+    this.forget();
+  }
+
+  // Forget how late frames came.
+  forget() {
+    this.mean = 0;
+    this.seen = 0;
   }
 
   // What kept frames late the last time may be over.
   begin() {
     const { scene } = this;
-    Object.assign(this, { mean: 0, seen: 0 });
+    this.forget();
     if (scene.quality < scene.usual) scene.setQuality(scene.usual);
   }
 

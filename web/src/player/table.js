@@ -6,9 +6,11 @@ import * as THREE from "three";
 // The table top: a square of squares, `cell` wide, every fifth line heavier.
 export function makeTable(cell, colours, frugal) {
   const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = frugal ? 256 : 512;
+  canvas.width = frugal ? 256 : 512;
+  canvas.height = canvas.width;
   const texture = new THREE.CanvasTexture(canvas);
-  texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
+  texture.wrapS = THREE.RepeatWrapping;
+  texture.wrapT = THREE.RepeatWrapping;
   const cells = 16;
   texture.repeat.set(cells, cells);
   const side = 5 * cell * cells;
@@ -71,9 +73,8 @@ function lightOf({ sky, ground, ambient, sun }, sunny = true) {
     .lerp(new THREE.Color(ground), 0.5)
     .multiplyScalar(ambient / Math.PI);
   const high = SUN.place.z / SUN.place.length();
-  return sunny
-    ? light.add(new THREE.Color(SUN.colour).multiplyScalar((sun * high) / Math.PI))
-    : light;
+  if (!sunny) return light;
+  return light.add(new THREE.Color(SUN.colour).multiplyScalar((sun * high) / Math.PI));
 }
 
 // The flat shadow of a toy on the table: all of it pressed along the sun's rays, darker than the table only once.
@@ -139,30 +140,11 @@ export function layShadow(shadow, toy) {
 
 // A ruler of ten cells that lies on the table, numbered in centimetres (or whatever the cell is).
 export function makeRuler(cell, label, colours) {
-  const canvas = document.createElement("canvas");
-  canvas.width = 2048;
-  canvas.height = 200;
-  const pen = canvas.getContext("2d");
-  const margin = 110;
-  const step = (canvas.width - 2 * margin) / 10;
-  pen.fillStyle = colours.ruler;
-  pen.fillRect(0, 0, canvas.width, canvas.height);
-  pen.fillStyle = pen.strokeStyle = "#2b2418";
-  pen.font = "600 62px system-ui, sans-serif";
-  pen.textAlign = "center";
-  for (let k = 0; k <= 100; k++) {
-    const x = margin + (k * step) / 10;
-    pen.lineWidth = k % 10 ? 3 : 5;
-    pen.beginPath();
-    pen.moveTo(x, 0);
-    pen.lineTo(x, k % 10 ? (k % 5 ? 34 : 54) : 80);
-    pen.stroke();
-    if (k % 10 === 0) pen.fillText(label(k / 10), x, 152);
-  }
+  const { canvas, step } = drawRuler(label, colours.ruler);
   const texture = new THREE.CanvasTexture(canvas);
   texture.colorSpace = THREE.SRGBColorSpace;
   texture.anisotropy = 8;
-  const length = (10 * cell * canvas.width) / (10 * step);
+  const length = (cell * canvas.width) / step;
   const width = (length * canvas.height) / canvas.width;
   const geometry = new THREE.BoxGeometry(length, width, 0.04);
   const plain = new THREE.MeshLambertMaterial({ color: colours.ruler });
@@ -170,6 +152,40 @@ export function makeRuler(cell, label, colours) {
   const ruler = new THREE.Mesh(geometry, [plain, plain, plain, plain, face, plain]);
   ruler.position.z = 0.02;
   ruler.renderOrder = -2;
-  ruler.castShadow = ruler.receiveShadow = true;
+  ruler.castShadow = true;
+  ruler.receiveShadow = true;
   return ruler;
+}
+
+// The face of a ruler, and the pixels between two of its numbers.
+function drawRuler(label, colour) {
+  const ink = "#2b2418";
+  const margin = 110;
+  const canvas = document.createElement("canvas");
+  canvas.width = 2048;
+  canvas.height = 200;
+  const step = (canvas.width - 2 * margin) / 10;
+  const pen = canvas.getContext("2d");
+  pen.fillStyle = colour;
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.fillStyle = ink;
+  pen.strokeStyle = ink;
+  pen.font = "600 62px system-ui, sans-serif";
+  pen.textAlign = "center";
+  for (let k = 0; k <= 100; k++) {
+    const x = margin + (k * step) / 10;
+    pen.lineWidth = k % 10 ? 3 : 5;
+    pen.beginPath();
+    pen.moveTo(x, 0);
+    pen.lineTo(x, heightOfLine(k));
+    pen.stroke();
+    if (k % 10 === 0) pen.fillText(label(k / 10), x, 152);
+  }
+  return { canvas, step };
+}
+
+// How long a ruler's line is, pixels: longest at whole cells, longer at halves.
+function heightOfLine(tenths) {
+  if (tenths % 10 === 0) return 80;
+  return tenths % 5 === 0 ? 54 : 34;
 }

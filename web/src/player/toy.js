@@ -8,39 +8,44 @@ const SEGMENTS = 48;
 // of a ghost, of which but a share is seen, without what is of glass.
 export function makeToy(parts, seen = 1) {
   const toy = new THREE.Group();
-  for (const { name, profile, colours, opacity: own } of parts) {
-    if (own < 1 && seen < 1) continue;
-    const opacity = own * seen;
-    const glass = opacity < 1;
-    const points = profile.map(([r, z]) => new THREE.Vector2(r, z));
-    const angle = (2 * Math.PI) / colours.length;
-    const part = new THREE.Group();
-    part.name = name;
-    colours.forEach((color, k) => {
-      const steps = Math.max(1, Math.round(SEGMENTS / colours.length));
-      // three.js turns profiles about y, from z towards x.
-      const geometry = new THREE.LatheGeometry(
-        points,
-        steps,
-        k * angle + Math.PI / 2,
-        angle,
-      ).rotateX(Math.PI / 2);
-      const material = new THREE.MeshStandardMaterial({
-        color,
-        opacity,
-        transparent: glass,
-        depthWrite: !glass,
-        roughness: glass ? 0.08 : 0.42,
-        metalness: 0,
-      });
-      const mesh = new THREE.Mesh(geometry, material);
-      mesh.castShadow = mesh.receiveShadow = !glass;
-      mesh.renderOrder = glass ? 2 : 0;
-      part.add(mesh);
-    });
-    toy.add(part);
+  for (const part of parts) {
+    const isGlass = part.opacity < 1;
+    if (isGlass && seen < 1) continue;
+    toy.add(makePart(part, part.opacity * seen));
   }
   return toy;
+}
+
+function makePart({ name, profile, colours }, opacity) {
+  const part = new THREE.Group();
+  part.name = name;
+  const points = profile.map(([r, z]) => new THREE.Vector2(r, z));
+  const angle = (2 * Math.PI) / colours.length;
+  const steps = Math.max(1, Math.round(SEGMENTS / colours.length));
+  colours.forEach((colour, k) => {
+    // three.js turns profiles about y, from z towards x.
+    const start = k * angle + Math.PI / 2;
+    const geometry = new THREE.LatheGeometry(points, steps, start, angle).rotateX(Math.PI / 2);
+    part.add(makeSector(geometry, colour, opacity));
+  });
+  return part;
+}
+
+function makeSector(geometry, color, opacity) {
+  const isClear = opacity < 1;
+  const material = new THREE.MeshStandardMaterial({
+    color,
+    opacity,
+    transparent: isClear,
+    depthWrite: !isClear,
+    roughness: isClear ? 0.08 : 0.42,
+    metalness: 0,
+  });
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.castShadow = !isClear;
+  mesh.receiveShadow = !isClear;
+  mesh.renderOrder = isClear ? 2 : 0;
+  return mesh;
 }
 
 // Where the top touches the table, as a ring around it.
@@ -93,38 +98,60 @@ export function traceMaterial() {
   });
 }
 
+// Half the width of a trace, and how far a path goes on at least before it does, in sizes of the top.
+const HALF = 0.02;
+const SHORTEST = 0.012;
+
+// A ribbon along a path: two corners at either end of every straight stretch, two triangles between them.
+class Ribbon {
+  corners = [];
+  triangles = [];
+  last = null;
+  joined = false;
+
+  // Let the path end here, and go on elsewhere.
+  lift() {
+    this.last = null;
+    this.joined = false;
+  }
+
+  goTo(x, y) {
+    if (!this.last) {
+      this.last = [x, y];
+      return;
+    }
+    const [lastX, lastY] = this.last;
+    const length = Math.hypot(x - lastX, y - lastY);
+    if (!(length > SHORTEST)) return;
+    const acrossX = (-(y - lastY) / length) * HALF;
+    const acrossY = ((x - lastX) / length) * HALF;
+    if (!this.joined) this.addCorners(lastX, lastY, acrossX, acrossY);
+    const first = this.corners.length / 3 - 2;
+    this.addCorners(x, y, acrossX, acrossY);
+    this.triangles.push(first, first + 1, first + 3, first, first + 3, first + 2);
+    this.last = [x, y];
+    this.joined = true;
+  }
+
+  addCorners(x, y, acrossX, acrossY) {
+    this.corners.push(x + acrossX, y + acrossY, 0, x - acrossX, y - acrossY, 0);
+  }
+}
+
 // The path of the contact point, a ribbon just above the table; nothing where the top flies.
 export function makeTrace(track, unit, material) {
   const stride = Math.max(1, Math.floor(track.count / 12000));
   const { point, touching } = track.columns;
-  const half = 0.02;
-  const corners = [];
-  const triangles = [];
+  const ribbon = new Ribbon();
   const ends = [];
-  let last = null;
-  let joined = false;
   for (let i = 0; i < track.count; i += stride) {
-    const x = point[2 * i] / unit;
-    const y = point[2 * i + 1] / unit;
-    const length = last ? Math.hypot(x - last[0], y - last[1]) : 0;
-    if (!touching[i] || !last) {
-      last = touching[i] ? [x, y] : null;
-      joined = false;
-    } else if (length > 0.012) {
-      const sx = (-(y - last[1]) / length) * half;
-      const sy = ((x - last[0]) / length) * half;
-      if (!joined) corners.push(last[0] + sx, last[1] + sy, 0, last[0] - sx, last[1] - sy, 0);
-      const a = corners.length / 3 - 2;
-      corners.push(x + sx, y + sy, 0, x - sx, y - sy, 0);
-      triangles.push(a, a + 1, a + 3, a, a + 3, a + 2);
-      last = [x, y];
-      joined = true;
-    }
-    ends.push([track.time[i], triangles.length]);
+    if (touching[i]) ribbon.goTo(point[2 * i] / unit, point[2 * i + 1] / unit);
+    else ribbon.lift();
+    ends.push([track.time[i], ribbon.triangles.length]);
   }
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(corners, 3));
-  geometry.setIndex(triangles);
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(ribbon.corners, 3));
+  geometry.setIndex(ribbon.triangles);
   const trace = new THREE.Mesh(geometry, material);
   trace.frustumCulled = false;
   trace.position.z = 0.004;

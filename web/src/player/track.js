@@ -1,6 +1,9 @@
 // A run in the browser: reads the block of bytes that Python packs (track.py), and says where the top is at any
 // time. No physics: between samples the axis is interpolated with its rate, and the turn about it with the spin.
 
+// What a block begins with: "TTRK".
+const MAGIC = 0x5454524b;
+
 export class Track {
   // Of a block of bytes as Python packs it, or of a header, times and columns.
   constructor(run) {
@@ -19,7 +22,7 @@ export class Track {
 
   unpack(buffer) {
     const view = new DataView(buffer);
-    if (view.getUint32(0) !== 0x5454524b) throw new Error("this is not a run");
+    if (view.getUint32(0) !== MAGIC) throw new Error("this is not a run");
     const length = view.getUint32(4, true);
     this.header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 8, length)));
     const count = this.header.samples;
@@ -63,10 +66,7 @@ export class Track {
 
   // A column at a time, straight between its samples.
   value(name, time, part = 0, width = 1) {
-    const i = this.before(time);
-    const j = Math.min(i + 1, this.count - 1);
-    const step = this.time[j] - this.time[i];
-    const u = step > 0 ? Math.min(Math.max((time - this.time[i]) / step, 0), 1) : 0;
+    const { i, j, u } = this.around(time);
     const column = this.columns[name];
     return (1 - u) * column[i * width + part] + u * column[j * width + part];
   }
@@ -75,12 +75,18 @@ export class Track {
     return this.header.flights.some(([begin, end]) => begin < time && time < end);
   }
 
-  // Where the top is: the same object every time, to be read at once.
-  at(time) {
+  // The samples on either side of a time, how far apart they are, s, and which part of that has passed.
+  around(time) {
     const i = this.before(time);
     const j = Math.min(i + 1, this.count - 1);
     const h = this.time[j] - this.time[i];
     const u = h > 0 ? Math.min(Math.max((time - this.time[i]) / h, 0), 1) : 0;
+    return { i, j, h, u };
+  }
+
+  // Where the top is: the same object every time, to be read at once.
+  at(time) {
+    const { i, j, h, u } = this.around(time);
     const { orientation, momentum, position, velocity } = this.columns;
     const { I1, I3 } = this.header.body;
     const first = slice(orientation, i, 4);
