@@ -1,8 +1,8 @@
 // Builds what the package ships: the player of runs as one module, and the laboratory as one page.
 
-import { build } from "esbuild";
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
 
 const HERE = new URL(".", import.meta.url);
 const OUT = new URL("../src/tippetop/export/built/", HERE);

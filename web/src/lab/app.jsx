@@ -39,6 +39,7 @@ export function App({ lab }) {
   const Panel = PANELS[tab] ?? Story;
   return (
     <>
+      {/* biome-ignore lint/a11y/useValidAnchor: a link, but one that leaves the address as it is */}
       <a
         class="skip"
         href="#panel"
@@ -231,44 +232,48 @@ function PlotSection({ lab, dark }) {
     lab.addEventListener("run", fill);
     return () => lab.removeEventListener("run", fill);
   }, [names.join(), units, dark, document.documentElement.lang]);
-  const choose = (name, on) =>
-    lab.set({
-      plots: Object.keys(QUANTITIES).filter((one) => (one === name ? on : names.includes(one))),
-    });
   return (
     <section class="plots" aria-label={t("plots.title")}>
-      <div class="plots-bar">
-        <h2>{t("plots.title")}</h2>
-        <span class="hint">
-          {t("plots.hint")} {lab.track?.header.flights.length ? t("plots.flights") : ""}
-        </span>
-        <button type="button" onClick={() => lab.plots.zoom(0.5)}>
-          {t("plots.in")}
-        </button>
-        <button type="button" onClick={() => lab.plots.zoom(2)}>
-          {t("plots.out")}
-        </button>
-        <button type="button" onClick={() => lab.plots.zoom(null)}>
-          {t("plots.all")}
-        </button>
-        <details class="curves">
-          <summary>{t("plots.choose")}</summary>
-          <div>
-            {Object.keys(QUANTITIES).map((name) => (
-              <label>
-                <input
-                  type="checkbox"
-                  checked={names.includes(name)}
-                  onChange={(event) => choose(name, event.target.checked)}
-                />{" "}
-                {t(`quantities.${name}.name`)}
-              </label>
-            ))}
-          </div>
-        </details>
-      </div>
+      <PlotsBar lab={lab} names={names} />
       <p class="veil">{t("plots.veiled")}</p>
       <div class="plots-host" ref={host} />
     </section>
+  );
+}
+
+// What is above the plots: how long a time they show, and which there are.
+function PlotsBar({ lab, names }) {
+  const zooms = { in: 0.5, out: 2, all: null };
+  const choose = (name, on) => {
+    const isShown = (one) => (one === name ? on : names.includes(one));
+    lab.set({ plots: Object.keys(QUANTITIES).filter(isShown) });
+  };
+  return (
+    <div class="plots-bar">
+      <h2>{t("plots.title")}</h2>
+      <span class="hint">
+        {t("plots.hint")} {lab.track?.header.flights.length ? t("plots.flights") : ""}
+      </span>
+      {Object.entries(zooms).map(([name, factor]) => (
+        <button type="button" onClick={() => lab.plots.zoom(factor)}>
+          {t(`plots.${name}`)}
+        </button>
+      ))}
+      <details class="curves">
+        <summary>{t("plots.choose")}</summary>
+        <div>
+          {Object.keys(QUANTITIES).map((name) => (
+            <label>
+              <input
+                type="checkbox"
+                checked={names.includes(name)}
+                onChange={(event) => choose(name, event.target.checked)}
+              />{" "}
+              {t(`quantities.${name}.name`)}
+            </label>
+          ))}
+        </div>
+      </details>
+    </div>
   );
 }

@@ -45,8 +45,8 @@ function Pinned({ lab, pin }) {
       <ul>
         {changes.map(([field, before, now]) => (
           <li>
-            {nameOf(field)}: {valueOf(field, before, pin, units)} →{" "}
-            {valueOf(field, now, setup, units)}
+            {nameOf(field)}: {valueText(field, before, pin, units)} →{" "}
+            {valueText(field, now, setup, units)}
           </li>
         ))}
       </ul>
@@ -64,27 +64,20 @@ function Pinned({ lab, pin }) {
 }
 
 function nameOf(field) {
-  return (
-    part(`quantities.${field}`)?.name ?? (field === "friction.kind" ? t("controls.law") : field)
-  );
+  if (field === "friction.kind") return t("controls.law");
+  return part(`quantities.${field}`)?.name ?? field;
 }
 
-function valueOf(field, value, setup, units) {
-  const dial = ALL.find((one) => one.field === field);
+function valueText(field, value, setup, units) {
   if (field === "friction.kind") return t(`laws.${value}`);
-  if (typeof value !== "number" || !dial)
-    return value === undefined ? "–" : typeof value === "string" ? value : JSON.stringify(value);
+  if (value === undefined) return "–";
+  if (typeof value === "string") return value;
+  const dial = ALL.find((one) => one.field === field);
+  if (typeof value !== "number" || !dial) return JSON.stringify(value);
   return shown(value / scaleOf(dial, setup), kindOf(dial, setup), units);
 }
 
 function Table({ ghost, track, units }) {
-  const [was, is] = [ghost.header.metrics, track.header.metrics];
-  const told = (value, kind, name) =>
-    Number.isFinite(value)
-      ? digits(value / unitOf(kind, units).size, 4)
-      : name === "turns_over"
-        ? t("compare.never")
-        : "–";
   return (
     <table>
       <thead>
@@ -95,22 +88,32 @@ function Table({ ghost, track, units }) {
         </tr>
       </thead>
       <tbody>
-        {Object.entries(METRICS).map(([name, kind]) => {
-          const [a, b] = [was[name] ?? NaN, is[name] ?? NaN];
-          const unit = unitOf(kind, units).name;
-          return (
-            <tr data-metric={name}>
-              <th scope="row">
-                {t(`metrics.${name}`)}
-                {unit ? ` (${unit})` : ""}
-              </th>
-              <td>{told(a, kind, name)}</td>
-              <td>{told(b, kind, name)}</td>
-              <td>{told(b - a, kind)}</td>
-            </tr>
-          );
-        })}
+        {Object.keys(METRICS).map((name) => (
+          <Row
+            name={name}
+            before={ghost.header.metrics[name] ?? NaN}
+            now={track.header.metrics[name] ?? NaN}
+            units={units}
+          />
+        ))}
       </tbody>
     </table>
+  );
+}
+
+function Row({ name, before, now, units }) {
+  const { name: unit, size } = unitOf(METRICS[name], units);
+  const missing = name === "turns_over" ? t("compare.never") : "–";
+  const text = (value, otherwise) => (Number.isFinite(value) ? digits(value / size, 4) : otherwise);
+  return (
+    <tr data-metric={name}>
+      <th scope="row">
+        {t(`metrics.${name}`)}
+        {unit ? ` (${unit})` : ""}
+      </th>
+      <td>{text(before, missing)}</td>
+      <td>{text(now, missing)}</td>
+      <td>{text(now - before, "–")}</td>
+    </tr>
   );
 }

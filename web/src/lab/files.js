@@ -22,25 +22,29 @@ export function save(name, content) {
 
 // A problem as TOML: plain values, then tables, then lists of tables.
 export function toml(problem) {
-  const lines = [];
-  const write = (table, name) => {
-    const entries = Object.entries(table).filter(
-      ([, value]) => value !== null && value !== undefined,
-    );
-    const inner = ([, value]) =>
-      typeof value === "object" && (!Array.isArray(value) || typeof value[0] === "object");
-    for (const [key, value] of entries.filter((entry) => !inner(entry)))
-      lines.push(`${key} = ${tomlValue(value)}`);
-    for (const [key, value] of entries.filter(inner)) {
-      const full = name ? `${name}.${key}` : key;
-      for (const one of [value].flat()) {
-        lines.push("", Array.isArray(value) ? `[[${full}]]` : `[${full}]`);
-        write(one, full);
-      }
-    }
-  };
-  write(problem, "");
-  return `${lines.join("\n").trimStart()}\n`;
+  return `${tomlLines(problem, "").join("\n").trimStart()}\n`;
+}
+
+// The lines of a table, whose own name with dots is given.
+function tomlLines(table, name) {
+  const entries = Object.entries(table).filter(
+    ([, value]) => value !== null && value !== undefined,
+  );
+  const plain = entries.filter(([, value]) => !isTable(value));
+  const tables = entries.filter(([, value]) => isTable(value));
+  const lines = plain.map(([key, value]) => `${key} = ${tomlValue(value)}`);
+  for (const [key, value] of tables) {
+    const path = name ? `${name}.${key}` : key;
+    const heading = Array.isArray(value) ? `[[${path}]]` : `[${path}]`;
+    for (const one of [value].flat()) lines.push("", heading, ...tomlLines(one, path));
+  }
+  return lines;
+}
+
+// Whether a value is a table or a list of tables.
+function isTable(value) {
+  if (typeof value !== "object") return false;
+  return !Array.isArray(value) || typeof value[0] === "object";
 }
 
 function tomlValue(value) {
@@ -51,15 +55,16 @@ function tomlValue(value) {
 
 // The command that repeats a run.
 export function commandLine({ header: { problem, asked } }) {
-  const lists = Array.isArray(problem.body.shape);
-  const words = lists ? ["tippetop.toml"] : [];
-  for (const [field, , value] of lists
-    ? []
-    : differences(FIRST, { problem, duration: FIRST.duration })) {
-    if (value !== undefined)
-      words.push(`--set '${field}=${typeof value === "string" ? value : JSON.stringify(value)}'`);
-  }
+  const words = Array.isArray(problem.body.shape) ? ["tippetop.toml"] : settings(problem);
   return ["tippetop simulate", ...words, `--duration ${asked}`].join(" \\\n  ");
+}
+
+// Options of the command that change the first launch into another one.
+function settings(problem) {
+  const text = (value) => (typeof value === "string" ? value : JSON.stringify(value));
+  return differences(FIRST, { problem, duration: FIRST.duration })
+    .filter(([, , value]) => value !== undefined)
+    .map(([field, , value]) => `--set '${field}=${text(value)}'`);
 }
 
 // The moving top as a .glb, y up as the format wants it.
@@ -103,7 +108,9 @@ export async function film(player) {
   const recorder = new MediaRecorder(player.canvas.captureStream(FRAMES), { mimeType: kind });
   const parts = [];
   recorder.ondataavailable = ({ data }) => parts.push(data);
-  const ended = new Promise((done) => (recorder.onstop = done));
+  const ended = new Promise((done) => {
+    recorder.onstop = done;
+  });
   const { loop } = player;
   player.loop = false;
   player.seek(0);

@@ -1,10 +1,10 @@
 // The page's state and what changes it. One launch is shown; what is asked for later overtakes what was asked before.
 
 import { stillness } from "../player/player.js";
-import { refusal } from "./controls.jsx";
 import { Engine } from "./engine.js";
 import { LANGUAGES, preferred, speak, t } from "./i18n.js";
 import { readLink, writeLink } from "./link.js";
+import { refusal } from "./refusal.js";
 import { changed, LONGEST, same } from "./setup.js";
 import { digits, shown } from "./units.js";
 import { tell } from "./words.js";
@@ -20,6 +20,8 @@ export class Lab extends EventTarget {
     super();
     this.engine = new Engine();
     this.ghosts = new Map();
+    // The number of the last request, by which an older one sees that it was overtaken.
+    this.latest = 0;
     this.state = {
       ...this.read(location.hash || location.search),
       busy: null,
@@ -86,24 +88,29 @@ export class Lab extends EventTarget {
   // Follow the launch that is set: quickly while a slider moves.
   async request(play, quick = false) {
     const { setup } = this.state;
-    const asked = (this.asked = (this.asked ?? 0) + 1);
+    this.latest += 1;
+    const request = this.latest;
+    const isLatest = () => request === this.latest;
     const trouble = this.refused(setup);
-    if (trouble) return this.refuse(trouble);
+    if (trouble) {
+      this.refuse(trouble);
+      return;
+    }
     const late = setTimeout(() => this.set({ busy: this.state.busy ?? 0 }), PATIENCE);
+    const onProgress = (share) => {
+      if (isLatest() && this.state.busy !== null) this.set({ busy: share });
+    };
     try {
-      const track = await this.engine.run(
-        { ...setup, quick },
-        (share) => asked === this.asked && this.state.busy !== null && this.set({ busy: share }),
-      );
+      const track = await this.engine.run({ ...setup, quick }, onProgress);
       clearTimeout(late);
       if (!track) return;
       this.good = setup;
-      if (asked === this.asked || !this.playing) this.show(track, play, asked === this.asked);
+      if (isLatest() || !this.playing) this.show(track, play, isLatest());
     } catch (error) {
       clearTimeout(late);
-      if (asked === this.asked) this.refuse(refusal(error, this.state));
+      if (isLatest()) this.refuse(refusal(error, this.state));
     } finally {
-      if (asked === this.asked && this.state.busy !== null) this.set({ busy: null });
+      if (isLatest() && this.state.busy !== null) this.set({ busy: null });
     }
   }
 
@@ -141,7 +148,7 @@ export class Lab extends EventTarget {
 
   stop() {
     this.engine.stop();
-    this.asked += 1;
+    this.latest += 1;
     this.set({
       setup: this.good,
       busy: null,

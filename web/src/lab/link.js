@@ -1,6 +1,6 @@
 // The link is the document: launch, time, view, units, curves and pins, after the # of the page's address.
 
-import { changed, differences, fields, FIRST } from "./setup.js";
+import { changed, differences, FIRST, fields } from "./setup.js";
 import { CHOICES, FIRST as FIRST_UNITS } from "./units.js";
 
 // Longer than any profile that a body may have; addresses may be as long.

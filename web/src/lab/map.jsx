@@ -2,7 +2,7 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 
-import { Chart, fineness } from "./chart.js";
+import { Chart, fineness, HIGHEST } from "./chart.js";
 import { frictionKind } from "./dials.js";
 import { Crew } from "./engine.js";
 import { t } from "./i18n.js";
@@ -11,7 +11,6 @@ import { shown } from "./units.js";
 
 export const COLUMNS = 48;
 export const ROWS = 24;
-const HIGHEST = 250;
 
 // The launches of a map around one: spins to the highest of the slider, friction over a factor of 100.
 export function planOf(setup) {
@@ -39,7 +38,7 @@ export function MapPanel({ lab }) {
   const [tip, point] = useState("");
   const [crew, work] = useState(null);
   const { units, setup } = lab.state;
-  const none = setup.problem.friction.mu === undefined;
+  const hasFriction = setup.problem.friction.mu !== undefined;
   useEffect(() => {
     const chart = new Chart(host.current, {
       choose: (cell) => lab.go(cellOf(chart.plan, cell)),
@@ -67,30 +66,23 @@ export function MapPanel({ lab }) {
     helpers.stop();
     work(null);
   };
+  const stop = () => {
+    crew.stop();
+    work(null);
+  };
   return (
     <div class="map">
       <p>{t("map.intro")}</p>
-      {none ? (
-        <p>{t("map.none")}</p>
-      ) : crew ? (
-        <button
-          type="button"
-          onClick={() => {
-            crew.stop();
-            work(null);
-          }}
-        >
-          {t("map.stop")}
-        </button>
+      {hasFriction ? (
+        <Command crew={crew} isComputed={Boolean(lab.map)} onBegin={begin} onStop={stop} />
       ) : (
-        <button type="button" class="strong" onClick={begin}>
-          {t(lab.map ? "map.again" : "map.compute")}
-        </button>
+        <p>{t("map.none")}</p>
       )}
       <p class="hint" role="status">
         {note}
       </p>
       <div class="chart">
+        {/* biome-ignore lint/a11y/noInteractiveElementToNoninteractiveRole: arrow keys move a mark on the drawing */}
         <canvas ref={host} tabIndex={0} role="application" aria-label={t("map.label")} />
       </div>
       <div class="key" aria-hidden="true">
@@ -105,6 +97,22 @@ export function MapPanel({ lab }) {
         {tip}
       </p>
     </div>
+  );
+}
+
+// The button that begins to compute a map, or stops that.
+function Command({ crew, isComputed, onBegin, onStop }) {
+  if (crew) {
+    return (
+      <button type="button" onClick={onStop}>
+        {t("map.stop")}
+      </button>
+    );
+  }
+  return (
+    <button type="button" class="strong" onClick={onBegin}>
+      {t(isComputed ? "map.again" : "map.compute")}
+    </button>
   );
 }
 
@@ -124,11 +132,10 @@ function wordsOf(plan, { row, column, answer }, units) {
     spin: shown(plan.spins[column], "spin", units),
     mu: shown(plan.frictions[row], frictionKind(plan.setup), units),
   };
-  if (answer.error || !Number.isFinite(answer.tilt))
-    return t("map.failed", {
-      ...gaps,
-      message: answer.error?.message ?? t(`outcomes.${answer.outcome.name}`),
-    });
+  if (answer.error || !Number.isFinite(answer.tilt)) {
+    const message = answer.error?.message ?? t(`outcomes.${answer.outcome.name}`);
+    return t("map.failed", { ...gaps, message });
+  }
   const { tilt, flights } = answer;
   return t(flights ? "map.cellJumps" : "map.cell", {
     ...gaps,

@@ -4,7 +4,7 @@ import { useEffect, useState } from "preact/hooks";
 
 import { t } from "./i18n.js";
 import { changed } from "./setup.js";
-import { FIRST, MATERIALS, bodyOf, massesOf, possible, sectionOf } from "./turning.js";
+import { bodyOf, FIRST, MATERIALS, massesOf, possible, sectionOf } from "./turning.js";
 import { digits, shown } from "./units.js";
 
 const DIALS = {
@@ -15,6 +15,9 @@ const DIALS = {
   knob: [0.0015, 0.012, 0.0005],
 };
 const IN_MM = ["radius", "stem", "knob"];
+// Millimetres to the metre, and the room around the drawing, m.
+const MM = 1e3;
+const EDGE = 0.003;
 
 export function Own({ lab }) {
   const [top, make] = useState(lab.own ?? FIRST);
@@ -27,37 +30,18 @@ export function Own({ lab }) {
   const { mass, alpha, ratio } = massesOf(top);
   const body = bodyOf(top);
   const ahead = useProspects(lab, body);
+  const spin = () => {
+    const launch = { body, rolling_resistance: 0, "contact.liftoff": "fly", duration: 10 };
+    lab.go(changed(lab.state.setup, launch));
+  };
   return (
     <div class="own">
       <p>{t("own.intro")}</p>
       <Section top={top} onDrag={(stem) => set({ stem })} />
-      {Object.entries(DIALS).map(([name, [low, high, step]]) => (
-        <label class="own-dial">
-          <span>
-            {t(`own.${name}`)}{" "}
-            <b>
-              {IN_MM.includes(name) ? `${digits(top[name] * 1e3, 3)} mm` : digits(top[name], 2)}
-            </b>
-          </span>
-          <input
-            type="range"
-            min={low}
-            max={high}
-            step={step}
-            value={top[name]}
-            data-own={name}
-            onInput={(event) => set({ [name]: Number(event.target.value) })}
-          />
-        </label>
+      {Object.keys(DIALS).map((name) => (
+        <Size name={name} value={top[name]} onChange={(value) => set({ [name]: value })} />
       ))}
-      <label class="choice">
-        <span>{t("own.material")}</span>
-        <select value={top.material} onChange={(event) => set({ material: event.target.value })}>
-          {Object.keys(MATERIALS).map((name) => (
-            <option value={name}>{t(`own.${name}`)}</option>
-          ))}
-        </select>
-      </label>
+      <Material value={top.material} onChange={(material) => set({ material })} />
       <dl class="facts">
         <dt>{t("own.mass")}</dt>
         <dd>{digits(mass * 1e3, 3)} g</dd>
@@ -70,24 +54,45 @@ export function Own({ lab }) {
       <p class="own-verdict" role="status">
         {sentence(ahead, units)}
       </p>
-      <button
-        type="button"
-        class="strong"
-        disabled={alpha <= 0}
-        onClick={() =>
-          lab.go(
-            changed(lab.state.setup, {
-              body,
-              rolling_resistance: 0,
-              "contact.liftoff": "fly",
-              duration: 10,
-            }),
-          )
-        }
-      >
+      <button type="button" class="strong" disabled={alpha <= 0} onClick={spin}>
         {t("own.spin")}
       </button>
     </div>
+  );
+}
+
+// A slider for one of the sizes of the shape.
+function Size({ name, value, onChange }) {
+  const [low, high, step] = DIALS[name];
+  return (
+    <label class="own-dial">
+      <span>
+        {t(`own.${name}`)}{" "}
+        <b>{IN_MM.includes(name) ? `${digits(value * MM, 3)} mm` : digits(value, 2)}</b>
+      </span>
+      <input
+        type="range"
+        min={low}
+        max={high}
+        step={step}
+        value={value}
+        data-own={name}
+        onInput={(event) => onChange(Number(event.target.value))}
+      />
+    </label>
+  );
+}
+
+function Material({ value, onChange }) {
+  return (
+    <label class="choice">
+      <span>{t("own.material")}</span>
+      <select value={value} onChange={(event) => onChange(event.target.value)}>
+        {Object.keys(MATERIALS).map((name) => (
+          <option value={name}>{t(`own.${name}`)}</option>
+        ))}
+      </select>
+    </label>
   );
 }
 
@@ -96,13 +101,14 @@ function useProspects(lab, body) {
   const [ahead, say] = useState(undefined);
   const { problem } = lab.state.setup;
   useEffect(() => {
-    let wanted = true;
-    lab.engine.prospects(body, problem).then(
-      (found) => wanted && say(found),
-      () => {},
-    );
+    let isWanted = true;
+    const answer = (prospects) => {
+      if (isWanted) say(prospects);
+    };
+    // A body that the engine refuses has no prospects.
+    lab.engine.prospects(body, problem).then(answer, () => {});
     return () => {
-      wanted = false;
+      isWanted = false;
     };
   }, [JSON.stringify(body), problem.gravity, problem.launch.tilt]);
   return ahead;
@@ -116,64 +122,74 @@ function sentence(ahead, units) {
     touch,
     stem,
   } = ahead;
-  const told = (spin) => shown(spin, "spin", units, 3);
+  const text = (spin) => shown(spin, "spin", units, 3);
   if (ahead.group.startsWith("I") && !ahead.group.startsWith("II")) return t("own.never");
-  if (!Number.isFinite(touch?.spin)) return t("own.half", { spin: told(upright) });
+  if (!Number.isFinite(touch?.spin)) return t("own.half", { spin: text(upright) });
   if (!Number.isFinite(stem?.launch))
-    return t("own.leans", { spin: told(upright), touch: told(touch.spin) });
-  return t("own.can", { spin: told(upright), touch: told(touch.spin), stand: told(stem.launch) });
+    return t("own.leans", { spin: text(upright), touch: text(touch.spin) });
+  return t("own.can", { spin: text(upright), touch: text(touch.spin), stand: text(stem.launch) });
 }
 
 function Section({ top, onDrag }) {
   const { outer, hollow } = sectionOf(top);
-  const [up, down] = [Math.max(top.stem + top.knob, 2.2 * top.radius) + 0.003, top.radius + 0.003];
-  const scale = 1000;
-  const both = (points) => [...points, ...[...points].reverse().map(([r, z]) => [-r, z])];
-  const path = (points) =>
-    points.map(([r, z]) => `${(scale * r).toFixed(2)},${(-scale * z).toFixed(2)}`).join(" ");
-  const drag = (event) => {
-    if (!event.buttons) return;
-    const svg = event.currentTarget.ownerSVGElement;
-    const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(
-      svg.getScreenCTM().inverse(),
-    );
-    onDrag(Math.min(Math.max(-at.y / scale, DIALS.stem[0]), DIALS.stem[1]));
-  };
-  const key = (event) => {
-    const step = { ArrowUp: 0.0005, ArrowDown: -0.0005 }[event.key];
-    if (!step) return;
-    onDrag(Math.min(Math.max(top.stem + step, DIALS.stem[0]), DIALS.stem[1]));
-    event.preventDefault();
-  };
+  const up = Math.max(top.stem + top.knob, 2.2 * top.radius) + EDGE;
+  const down = top.radius + EDGE;
+  const mirrored = (points) => points.map(([r, z]) => [-r, z]);
   return (
     <svg
       class="section"
-      viewBox={`-60 ${-scale * up} 120 ${scale * (up + down)}`}
+      viewBox={`-60 ${-MM * up} 120 ${MM * (up + down)}`}
       role="group"
       aria-label={t("own.drawing")}
     >
-      <line x1="-60" x2="60" y1={scale * top.radius} y2={scale * top.radius} class="ink" />
-      <polygon points={path(both(outer))} class="wood" />
-      <polygon points={path(hollow)} class="empty" />
-      <polygon points={path(hollow.map(([r, z]) => [-r, z]))} class="empty" />
+      <line x1="-60" x2="60" y1={MM * top.radius} y2={MM * top.radius} class="ink" />
+      <polygon points={pathOf([...outer, ...mirrored(outer).reverse()])} class="wood" />
+      <polygon points={pathOf(hollow)} class="empty" />
+      <polygon points={pathOf(mirrored(hollow))} class="empty" />
       <circle cx="0" cy="0" r="0.8" class="dot" />
-      <circle cx="0" cy={scale * massesOf(top).alpha * top.radius} r="1.6" class="mass" />
-      <circle
-        class="grip"
-        cx="0"
-        cy={-scale * top.stem}
-        r={Math.max(scale * top.knob, 5)}
-        tabIndex={0}
-        role="slider"
-        aria-label={t("own.stem")}
-        aria-valuemin={DIALS.stem[0] * 1e3}
-        aria-valuemax={DIALS.stem[1] * 1e3}
-        aria-valuenow={Math.round(top.stem * 1e3)}
-        aria-valuetext={`${digits(top.stem * 1e3, 3)} mm`}
-        onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
-        onPointerMove={drag}
-        onKeyDown={key}
-      />
+      <circle cx="0" cy={MM * massesOf(top).alpha * top.radius} r="1.6" class="mass" />
+      <Grip top={top} onDrag={onDrag} />
     </svg>
+  );
+}
+
+// Points as an SVG's, in mm, with z up.
+function pathOf(points) {
+  return points.map(([r, z]) => `${(MM * r).toFixed(2)},${(-MM * z).toFixed(2)}`).join(" ");
+}
+
+// The end of the stem, to be dragged or moved by keys.
+function Grip({ top, onDrag }) {
+  const [shortest, longest, step] = DIALS.stem;
+  const setStem = (stem) => onDrag(Math.min(Math.max(stem, shortest), longest));
+  const drag = (event) => {
+    if (!event.buttons) return;
+    const screen = event.currentTarget.ownerSVGElement.getScreenCTM();
+    const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(screen.inverse());
+    setStem(-point.y / MM);
+  };
+  const key = (event) => {
+    const direction = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+    if (!direction) return;
+    setStem(top.stem + direction * step);
+    event.preventDefault();
+  };
+  return (
+    <circle
+      class="grip"
+      cx="0"
+      cy={-MM * top.stem}
+      r={Math.max(MM * top.knob, 5)}
+      tabIndex={0}
+      role="slider"
+      aria-label={t("own.stem")}
+      aria-valuemin={shortest * MM}
+      aria-valuemax={longest * MM}
+      aria-valuenow={Math.round(top.stem * MM)}
+      aria-valuetext={`${digits(top.stem * MM, 3)} mm`}
+      onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
+      onPointerMove={drag}
+      onKeyDown={key}
+    />
   );
 }

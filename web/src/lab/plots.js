@@ -18,78 +18,109 @@ export const QUANTITIES = {
 };
 export const USUAL = ["theta", "omega3", "phi_dot", "slip", "energy", "normal_force"];
 
+// Height of a plot and smallest gap between two, pixels.
 const HEIGHT = 168;
-const COLOURS = [
-  "#0b5fa5",
-  "#b3401f",
-  "#1b7f4c",
-  "#6a3fc0",
-  "#8a6100",
-  "#a3195b",
-  "#0f7680",
-  "#5c6670",
-];
-const DARK_COLOURS = [
-  "#66c5f0",
-  "#ff9b78",
-  "#62d09a",
-  "#b79cff",
-  "#e3b34d",
-  "#ff7fb5",
-  "#5fd3dd",
-  "#b4bdc6",
-];
-// How small a change beside the value counts as none: a constant is then seen as one.
-const CONSTANT = 0.02;
-const LEAST = { jellett_error: 1e-6, slip: 1e-7 };
+const GAP = 8;
+// Widths of the page, pixels, from which on plots stand in two and in three columns.
+const TWO_COLUMNS = 560;
+const THREE_COLUMNS = 1000;
+
+// Colours of curves by place in QUANTITIES, of ghosts by place among these, and of the rest, by theme.
+const LIGHT = {
+  curves: ["#0b5fa5", "#b3401f", "#1b7f4c", "#6a3fc0", "#8a6100", "#a3195b", "#0f7680", "#5c6670"],
+  ghosts: ["#a5afb9", "#c0c8cf", "#d0d6db"],
+  ink: "#3b444d",
+  grid: "#e4e8ec",
+  flight: "rgba(11,95,165,.14)",
+};
+const DARK = {
+  curves: ["#66c5f0", "#ff9b78", "#62d09a", "#b79cff", "#e3b34d", "#ff7fb5", "#5fd3dd", "#b4bdc6"],
+  ghosts: ["#76828e", "#5a6570", "#4a545e"],
+  ink: "#c6ced6",
+  grid: "#2c343d",
+  flight: "rgba(102,197,240,.20)",
+};
+
+// A range of values is at least this share of the largest one, so that a constant is seen as one.
+const SMALLEST_RANGE = 0.02;
+// At least as much for any quantity, in SI, and for those that are zero but for rounding.
+const SMALLEST = 1e-9;
+const SMALLEST_OF = { jellett_error: 1e-6, slip: 1e-7 };
+// Room above and below the curves, as a share of their range.
+const MARGIN = 0.07;
+// Share of the values of precession that are left out at either end of its range: its spikes.
+const SPIKES = 0.02;
+
+// Points of a curve across a plot; precession has fewer, each the middle one of many values.
+const BINS = 500;
+const PRECESSION_BINS = 200;
+
+// The shortest time that plots show, s, and where in it the player's time is after a move, as a share.
+const SHORTEST_WINDOW = 0.01;
+const LEAD = 0.02;
+
+// What stands for a ghost that is not there.
+const NO_CURVE = [[0], [null]];
+// How uPlot joins curves: what a curve has none of also blanks the times near it that only others have.
+const NULL_EXPAND = 2;
+
+const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 // A number beside an axis, where there is little room.
 const brief = (value) => digits(value, 4).replace(/[.,]0+e/, "e");
 
 export class Plots {
   constructor(host, { seek, time, playing }) {
-    Object.assign(this, {
-      host,
-      seek,
-      time,
-      playing,
-      charts: [],
-      window: null,
-      ghosts: [],
-      told: -Infinity,
-    });
+    this.host = host;
+    this.seek = seek;
+    this.time = time;
+    this.playing = playing;
+    this.charts = [];
+    this.ghosts = [];
+    this.window = null;
+    this.lastReading = -Infinity;
     this.resizing = new ResizeObserver(() => this.lay());
     this.resizing.observe(host);
   }
 
+  // Plot a run and its ghosts; plots are made anew only where their names, units, colours or words change.
   load(track, ghosts, names, units, dark) {
-    const before = JSON.stringify([this.names, this.units, this.dark]);
+    const design = JSON.stringify([names, units, dark, t("name")]);
+    const canBeKept = design === this.design && this.charts.length > 0;
+    this.design = design;
     Object.assign(this, { track, ghosts, names, units, dark });
     if (this.window && this.window[1] > track.duration) this.window = null;
-    const same =
-      before === JSON.stringify([names, units, dark]) &&
-      this.language === t("name") &&
-      this.charts.length;
-    this.language = t("name");
-    if (same) this.fill();
+    if (canBeKept) this.fill();
     else this.lay(true);
   }
 
-  get span() {
-    return this.window ?? [0, this.track?.duration || 1];
+  get colours() {
+    return this.dark ? DARK : LIGHT;
   }
 
+  get duration() {
+    return this.track?.duration || 1;
+  }
+
+  // Begin and end of the time that is shown, s.
+  get span() {
+    return this.window ?? [0, this.duration];
+  }
+
+  // Show a time longer by a factor around the player's; all of it without one.
   zoom(factor) {
-    const whole = this.track?.duration || 1;
     const [begin, end] = this.span;
-    const length = factor ? Math.max((end - begin) * factor, 0.01) : whole;
+    const length = factor ? Math.max((end - begin) * factor, SHORTEST_WINDOW) : this.duration;
     const now = this.time();
-    const start = Math.min(
-      Math.max(now - ((now - begin) / (end - begin)) * length, 0),
-      whole - length,
-    );
-    this.window = length >= whole ? null : [start, start + length];
+    const start = now - ((now - begin) / (end - begin)) * length;
+    this.window = length >= this.duration ? null : this.windowFrom(start, length);
     this.fill();
+  }
+
+  // A window of some length within the run, from a time on or nearly so.
+  windowFrom(time, length) {
+    const start = clamp(time, 0, this.duration - length);
+    return [start, start + length];
   }
 
   // Make every plot so large, pixels, whatever room there is; without a size, as large as there is room.
@@ -100,11 +131,12 @@ export class Plots {
     this.move();
   }
 
+  // Fit the plots to the host's width.
   lay(anew = false) {
     const width = this.host.clientWidth;
     if (!width || !this.track || this.fixed) return;
-    const columns = width < 560 ? 1 : width < 1000 ? 2 : 3;
-    const room = Math.floor(width / columns) - 8;
+    const columns = columnsFor(width);
+    const room = Math.floor(width / columns) - GAP;
     this.host.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
     if (!anew && this.charts.length) {
       for (const { chart } of this.charts) chart.setSize({ width: room, height: HEIGHT });
@@ -118,68 +150,47 @@ export class Plots {
   make(name, width) {
     const { name: title, symbol } = part(`quantities.${name}`);
     const { name: unit } = unitOf(QUANTITIES[name], this.units);
+    const label = `${symbol}${unit ? ` (${unit})` : ""}`;
     const figure = document.createElement("figure");
     const caption = document.createElement("figcaption");
     const value = document.createElement("b");
-    const label = `${title} ${symbol}${unit ? ` (${unit})` : ""}`;
-    caption.append(label, value);
+    caption.append(`${title} ${label}`, value);
     figure.append(caption);
     figure.dataset.quantity = name;
     this.host.append(figure);
-    const number = Object.keys(QUANTITIES).indexOf(name);
-    const chart = new uPlot(
-      this.options(name, width, number, `${symbol}${unit ? ` (${unit})` : ""}`),
-      null,
-      figure,
-    );
+    const chart = new uPlot(this.options(name, width, label), null, figure);
     chart.root.setAttribute("role", "img");
-    chart.root.setAttribute("aria-label", label);
+    chart.root.setAttribute("aria-label", `${title} ${label}`);
     const cursor = document.createElement("i");
     cursor.className = "plot-now";
     chart.over.append(cursor);
-    this.drag(chart);
+    this.seekByPointer(chart);
     return { name, chart, cursor, value };
   }
 
-  options(name, width, number, label) {
-    const ink = this.dark ? "#c6ced6" : "#3b444d";
-    const faint = this.dark ? "#2c343d" : "#e4e8ec";
+  options(name, width, label) {
+    const { curves, ghosts, ink, grid } = this.colours;
     const axis = {
       stroke: ink,
-      grid: { stroke: faint, width: 1 },
-      ticks: { stroke: faint },
+      grid: { stroke: grid, width: 1 },
+      ticks: { stroke: grid },
       font: "11px system-ui",
       labelFont: "11px system-ui",
       labelSize: 14,
       values: (_, ticks) => ticks.map(brief),
     };
-    const colour = (this.dark ? DARK_COLOURS : COLOURS)[number];
-    const quarters = () =>
-      [0, 1, 2, 3, 4].map((k) => (k * Math.PI) / 4 / unitOf("angle", this.units).size);
-    const turned =
-      name === "theta"
-        ? {
-            splits: (_, __, low, high) =>
-              this.window ? [0, 1, 2, 3, 4].map((k) => low + (k * (high - low)) / 4) : quarters(),
-          }
-        : {};
+    const upright = { ...axis, label, size: 60, space: 30 };
+    if (name === "theta") upright.splits = (_, __, low, high) => this.splitsOfTilt(low, high);
+    const curve = (stroke, thickness) => ({ stroke, width: thickness, points: { show: false } });
+    const colour = curves[Object.keys(QUANTITIES).indexOf(name)];
     return {
       width,
       height: HEIGHT,
       legend: { show: false },
       cursor: { show: false },
       scales: { x: { time: false, range: () => this.span }, y: { range: () => this.range(name) } },
-      axes: [
-        { ...axis, label: t("plots.time"), size: 30, space: 55 },
-        { ...axis, label, size: 60, space: 30, ...turned },
-      ],
-      series: [
-        {},
-        { stroke: this.dark ? "#76828e" : "#a5afb9", width: 1.2, points: { show: false } },
-        { stroke: this.dark ? "#5a6570" : "#c0c8cf", width: 1.2, points: { show: false } },
-        { stroke: this.dark ? "#4a545e" : "#d0d6db", width: 1.2, points: { show: false } },
-        { stroke: colour, width: 1.6, points: { show: false } },
-      ],
+      axes: [{ ...axis, label: t("plots.time"), size: 30, space: 55 }, upright],
+      series: [{}, ...ghosts.map((stroke) => curve(stroke, 1.2)), curve(colour, 1.6)],
       // How wide a plot is beside its numbers is known when it is drawn.
       hooks: {
         drawClear: [(chart) => this.shade(chart)],
@@ -188,106 +199,109 @@ export class Plots {
     };
   }
 
-  // Where the top flies.
+  // Where the axis of the tilt has numbers: at quarters of a half turn where all of it is shown.
+  splitsOfTilt(low, high) {
+    const quarters = [0, 1, 2, 3, 4];
+    if (this.window) return quarters.map((k) => low + (k * (high - low)) / 4);
+    const { size } = unitOf("angle", this.units);
+    return quarters.map((k) => (k * Math.PI) / 4 / size);
+  }
+
+  // Shade the times at which the top flies.
   shade(chart) {
     if (!this.track) return;
     const [begin, end] = this.span;
-    chart.ctx.fillStyle = this.dark ? "rgba(102,197,240,.20)" : "rgba(11,95,165,.14)";
-    // Of flights that lie in one pixel that is shaded once.
-    chart.ctx.beginPath();
+    const { ctx, bbox } = chart;
+    ctx.fillStyle = this.colours.flight;
+    // Flights that lie in one pixel are shaded once.
+    ctx.beginPath();
     for (const [from, to] of this.track.header.flights) {
       if (to < begin || from > end) continue;
-      const [left, right] = [Math.max(from, begin), Math.min(to, end)].map((time) =>
-        chart.valToPos(time, "x", true),
-      );
-      chart.ctx.rect(left, chart.bbox.top, Math.max(right - left, 1), chart.bbox.height);
+      const left = chart.valToPos(Math.max(from, begin), "x", true);
+      const right = chart.valToPos(Math.min(to, end), "x", true);
+      ctx.rect(left, bbox.top, Math.max(right - left, 1), bbox.height);
     }
-    chart.ctx.fill();
+    ctx.fill();
   }
 
-  drag(chart) {
-    const { over } = chart;
+  seekByPointer({ over }) {
     over.style.touchAction = "pan-y";
-    const go = (event) => {
+    const seek = (event) => {
       const box = over.getBoundingClientRect();
-      const share = Math.min(Math.max((event.clientX - box.left) / box.width, 0), 1);
+      const share = clamp((event.clientX - box.left) / box.width, 0, 1);
       const [begin, end] = this.span;
       this.seek(begin + share * (end - begin));
     };
     over.addEventListener("pointerdown", (event) => {
       over.setPointerCapture(event.pointerId);
-      go(event);
+      seek(event);
     });
-    over.addEventListener("pointermove", (event) => event.buttons && go(event));
+    over.addEventListener("pointermove", (event) => {
+      if (event.buttons) seek(event);
+    });
   }
 
   fill() {
     if (!this.charts.length) return;
+    const count = this.colours.ghosts.length;
     for (const { name, chart } of this.charts) {
-      const curves = [...this.ghosts, ...Array(3)]
-        .slice(0, 3)
-        .map((ghost) => ghost && this.curve(ghost, name));
+      const curves = Array.from({ length: count }, (_, k) => {
+        const ghost = this.ghosts[k];
+        return ghost ? this.curve(ghost, name) : NO_CURVE;
+      });
       chart.setData(joined([...curves, this.curve(this.track, name)]));
     }
     this.move();
   }
 
-  // The lowest and highest value in every pixel, or every sample where they are fewer, in the visitor's units.
+  // Times and values of a curve in the visitor's units, as finely as can be seen.
   curve(track, name) {
-    const { time, columns, count } = track;
     const { size } = unitOf(QUANTITIES[name], this.units);
-    const column = columns[name];
+    const column = track.columns[name];
     const [begin, end] = this.span;
     const first = track.before(begin);
-    const last = Math.min(track.before(end) + 1, count - 1);
-    const bins = name === "phi_dot" ? 200 : 500;
-    const points = [[], []];
-    const add = (i) => {
-      points[0].push(time[i]);
-      points[1].push(Number.isFinite(column[i]) ? column[i] / size : null);
-    };
-    if (last - first < 2 * bins) {
-      for (let i = first; i <= last; i++) add(i);
-      return points;
+    const last = Math.min(track.before(end) + 1, track.count - 1);
+    const bins = name === "phi_dot" ? PRECESSION_BINS : BINS;
+    if (last - first >= 2 * bins && name === "phi_dot") {
+      return middles(track.time, column, first, last, bins, size);
     }
-    if (name === "phi_dot") return middles(time, column, first, last, bins, size);
-    for (let bin = 0; bin < bins; bin++) {
-      const from = first + Math.floor(((last - first + 1) * bin) / bins);
-      const to = first + Math.floor(((last - first + 1) * (bin + 1)) / bins);
-      let [low, high] = [from, from];
-      for (let i = from; i < to; i++) {
-        if (column[i] < column[low]) low = i;
-        if (column[i] > column[high]) high = i;
-      }
-      for (const i of low < high ? [low, high] : low > high ? [high, low] : [low]) add(i);
-    }
-    return points;
+    const places =
+      last - first < 2 * bins ? upTo(first, last) : extremes(column, first, last, bins);
+    const values = places.map((i) => (Number.isFinite(column[i]) ? column[i] / size : null));
+    return [places.map((i) => track.time[i]), values];
   }
 
-  // Lowest and highest value to show, in the visitor's units: precession without its spikes.
+  // Lowest and highest value to show, in the visitor's units.
   range(name) {
     const { size } = unitOf(QUANTITIES[name], this.units);
     if (name === "theta" && !this.window) return [0, Math.PI / size];
-    let [low, high] = [Infinity, -Infinity];
+    const [low, high] = this.extent(name);
+    if (!(low <= high)) return [0, 1];
+    const smallest = Math.max(
+      SMALLEST_RANGE * Math.max(Math.abs(low), Math.abs(high)),
+      SMALLEST_OF[name] ?? 0,
+      SMALLEST,
+    );
+    const room = Math.max(MARGIN * (high - low), (smallest - (high - low)) / 2);
+    return [(low - room) / size, (high + room) / size];
+  }
+
+  // Lowest and highest value of a quantity in the time shown, in SI; precession without its spikes.
+  extent(name) {
+    let low = Infinity;
+    let high = -Infinity;
     for (const track of [this.track, ...this.ghosts]) {
       const [first, last] = this.span.map((time) => track.before(Math.min(time, track.duration)));
       const values =
         name === "phi_dot"
-          ? usual(track, first, last)
+          ? withoutSpikes(track, first, last)
           : track.columns[name].subarray(first, last + 2);
       for (const value of values) {
         if (value < low) low = value;
         if (value > high) high = value;
       }
     }
-    if (!(low <= high)) return [0, 1];
-    const least = Math.max(
-      CONSTANT * Math.max(Math.abs(low), Math.abs(high)),
-      LEAST[name] ?? 0,
-      1e-9,
-    );
-    const room = Math.max(0.07 * (high - low), (least - (high - low)) / 2);
-    return [(low - room) / size, (high + room) / size];
+    return [low, high];
   }
 
   // Show the player's time on every plot: the mark where that moves it, numbers as often as they can be read.
@@ -297,21 +311,17 @@ export class Plots {
     const [begin, end] = this.span;
     if (this.window && (time < begin || time > end)) {
       const length = end - begin;
-      const start = Math.min(Math.max(time - 0.02 * length, 0), this.track.duration - length);
-      this.window = [start, start + length];
+      this.window = this.windowFrom(time - LEAD * length, length);
       this.fill();
       return;
     }
+    for (const one of this.charts) this.mark(one);
     const now = performance.now();
-    const reads = !this.playing() || now - this.told >= READING;
-    if (reads) this.told = now;
-    for (const one of this.charts) {
-      this.mark(one);
-      if (reads)
-        one.value.textContent = digits(
-          this.track.value(one.name, time) / unitOf(QUANTITIES[one.name], this.units).size,
-          4,
-        );
+    if (this.playing() && now - this.lastReading < READING) return;
+    this.lastReading = now;
+    for (const { name, value } of this.charts) {
+      const { size } = unitOf(QUANTITIES[name], this.units);
+      value.textContent = digits(this.track.value(name, time) / size, 4);
     }
   }
 
@@ -319,10 +329,8 @@ export class Plots {
   mark(one) {
     if (!one) return;
     const [begin, end] = this.span;
-    const place =
-      Math.round(
-        (2 * (this.time() - begin) * one.chart.bbox.width) / devicePixelRatio / (end - begin),
-      ) / 2;
+    const width = one.chart.bbox.width / devicePixelRatio;
+    const place = Math.round((2 * (this.time() - begin) * width) / (end - begin)) / 2;
     if (place !== one.place) one.cursor.style.transform = `translateX(${place}px)`;
     one.place = place;
   }
@@ -334,30 +342,66 @@ export class Plots {
   }
 }
 
-// Precession without the spikes.
-function usual({ time, columns }, first, last) {
-  const values = middles(time, columns.phi_dot, first, last, Math.min(200, last - first + 1), 1)[1];
-  const known = Float64Array.from(values.filter((value) => value !== null)).sort();
-  return known.subarray(Math.floor(0.02 * known.length), Math.ceil(0.98 * known.length));
+function columnsFor(width) {
+  if (width < TWO_COLUMNS) return 1;
+  return width < THREE_COLUMNS ? 2 : 3;
 }
 
-// The middle value of every pixel: of precession, which has spikes where the axis passes the vertical.
-function middles(time, column, first, last, bins, size) {
-  const points = [[], []];
+// Whole numbers from one to another.
+function upTo(first, last) {
+  return Array.from({ length: last - first + 1 }, (_, k) => first + k);
+}
+
+// The samples of a bin, from the first of it to that after the last.
+function binOf(first, last, bin, bins) {
+  const edge = (k) => first + Math.floor(((last - first + 1) * k) / bins);
+  return [edge(bin), edge(bin + 1)];
+}
+
+// Places of the lowest and the highest value in every bin, in order.
+function extremes(column, first, last, bins) {
+  const places = [];
   for (let bin = 0; bin < bins; bin++) {
-    const from = first + Math.floor(((last - first + 1) * bin) / bins);
-    const to = Math.max(first + Math.floor(((last - first + 1) * (bin + 1)) / bins), from + 1);
-    const values = column.slice(from, to).filter(Number.isFinite).sort();
-    points[0].push(time[(from + to - 1) >> 1]);
-    points[1].push(values.length ? values[values.length >> 1] / size : null);
+    const [from, to] = binOf(first, last, bin, bins);
+    let low = from;
+    let high = from;
+    for (let i = from; i < to; i++) {
+      if (column[i] < column[low]) low = i;
+      if (column[i] > column[high]) high = i;
+    }
+    places.push(Math.min(low, high));
+    if (low !== high) places.push(Math.max(low, high));
   }
-  return points;
+  return places;
+}
+
+// The middle value of every bin: of precession, which has spikes where the axis passes the vertical.
+function middles(time, column, first, last, bins, size) {
+  const times = [];
+  const values = [];
+  for (let bin = 0; bin < bins; bin++) {
+    const [from, edge] = binOf(first, last, bin, bins);
+    const to = Math.max(edge, from + 1);
+    const sorted = column.slice(from, to).filter(Number.isFinite).sort();
+    times.push(time[(from + to - 1) >> 1]);
+    values.push(sorted.length ? sorted[sorted.length >> 1] / size : null);
+  }
+  return [times, values];
+}
+
+// The values of precession but for the largest and smallest ones, in increasing order.
+function withoutSpikes({ time, columns }, first, last) {
+  const bins = Math.min(PRECESSION_BINS, last - first + 1);
+  const [, values] = middles(time, columns.phi_dot, first, last, bins, 1);
+  const sorted = Float64Array.from(values.filter((value) => value !== null)).sort();
+  const { length } = sorted;
+  return sorted.subarray(Math.floor(SPIKES * length), Math.ceil((1 - SPIKES) * length));
 }
 
 // Curves with times of their own as one table.
 function joined(curves) {
   return uPlot.join(
-    curves.map((curve) => curve ?? [[0], [null]]),
-    curves.map(() => [2, 2]),
+    curves,
+    curves.map(() => [NULL_EXPAND, NULL_EXPAND]),
   );
 }

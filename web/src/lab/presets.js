@@ -1,10 +1,10 @@
 // Launches to start from, by what happens in them; and tables, by what they are made of.
 
-import { PRESETS as GIVEN } from "engine-tables";
+import { PRESETS as PACKAGED } from "engine-tables";
 
 import { changed, FIRST } from "./setup.js";
 
-const { bodies, problems } = GIVEN;
+const { bodies, problems } = PACKAGED;
 const DRILL = { kind: "contensou", mu: 0.3, patch_radius: 3e-4, pressure: "hertz" };
 
 // Where the report's figures stand beside what this package makes of them.

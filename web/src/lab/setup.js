@@ -6,6 +6,9 @@ export const FIRST = { problem: PRESETS.problems.report, duration: 20 };
 
 export const LONGEST = 120;
 
+// The friction coefficient of a law that is chosen where there is no friction.
+const USUAL_FRICTION = 0.3;
+
 // What each law has beside the friction coefficient, and where that starts.
 const LAWS = {
   viscous: {},
@@ -14,9 +17,9 @@ const LAWS = {
   contensou: { patch_radius: 3e-4, pressure: "hertz" },
 };
 
-export function valueOf({ problem, duration }, field) {
+export function fieldValue({ problem, duration }, field) {
   if (field === "duration") return duration;
-  return field.split(".").reduce((found, name) => found?.[name], problem);
+  return field.split(".").reduce((table, name) => table?.[name], problem);
 }
 
 // A copy with some fields replaced, named with dots; another law keeps the friction coefficient.
@@ -24,17 +27,27 @@ export function changed(setup, changes) {
   const copy = structuredClone(setup);
   for (const [field, value] of Object.entries(changes)) {
     if (field === "duration") copy.duration = value;
-    else if (field === "friction.kind") {
-      const { mu = 0.3, kind } = copy.problem.friction;
-      if (kind !== value) copy.problem.friction = { kind: value, mu: mu || 0.3, ...LAWS[value] };
-    } else {
-      const names = field.split(".");
-      const last = names.pop();
-      const table = names.reduce((found, name) => (found[name] ??= {}), copy.problem);
-      table[last] = value;
-    }
+    else if (field === "friction.kind") changeLaw(copy.problem, value);
+    else setField(copy.problem, field, value);
   }
   return copy;
+}
+
+function changeLaw(problem, kind) {
+  const { friction } = problem;
+  if (friction.kind === kind) return;
+  problem.friction = { kind, mu: friction.mu || USUAL_FRICTION, ...LAWS[kind] };
+}
+
+function setField(problem, field, value) {
+  const names = field.split(".");
+  const last = names.pop();
+  let table = problem;
+  for (const name of names) {
+    table[name] ??= {};
+    table = table[name];
+  }
+  table[last] = value;
 }
 
 export function same(one, other) {

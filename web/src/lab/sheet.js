@@ -2,7 +2,7 @@
 
 import { ALL, kindOf, scaleOf } from "./dials.js";
 import { part, t } from "./i18n.js";
-import { valueOf } from "./setup.js";
+import { fieldValue } from "./setup.js";
 import { digits, shown } from "./units.js";
 import { tell } from "./words.js";
 
@@ -48,7 +48,7 @@ function table({ state: { setup, units } }) {
     return line;
   };
   const rows = ALL.map((dial) => {
-    const value = valueOf(setup, dial.field);
+    const value = fieldValue(setup, dial.field);
     if (!value) return null;
     return row(
       part(`quantities.${dial.field}`).name,

@@ -5,31 +5,35 @@ import { edge } from "../run/arc.js";
 // Facets around the axis, and around a circle of the profile.
 const FACETS = 180;
 const MM = 1e3;
+// Bytes of a binary STL before its triangles, and of each of them.
+const HEADER = 84;
+const RECORD = 50;
 
 // The body as binary STL.
 export function stl(body) {
   const triangles = turned(line(body), FACETS);
-  const view = new DataView(new ArrayBuffer(84 + 50 * triangles.length));
+  const view = new DataView(new ArrayBuffer(HEADER + RECORD * triangles.length));
   view.setUint32(80, triangles.length, true);
   triangles.forEach((corners, k) => {
-    const [a, b, c] = corners;
-    const normal = unit(cross(minus(b, a), minus(c, a)));
-    [normal, a, b, c]
-      .flat()
-      .forEach((value, i) =>
-        view.setFloat32(84 + 50 * k + 4 * i, i < 3 ? value : MM * value, true),
-      );
+    writeTriangle(view, HEADER + RECORD * k, corners);
   });
   return view.buffer;
 }
 
+function writeTriangle(view, offset, [a, b, c]) {
+  const normal = unit(cross(minus(b, a), minus(c, a)));
+  const corners = [a, b, c].flat().map((value) => MM * value);
+  [...normal, ...corners].forEach((value, i) => {
+    view.setFloat32(offset + 4 * i, value, true);
+  });
+}
+
 // Points of a body from below, m: of its profile, or else of what is drawn of it.
 function line({ profile, parts, size }) {
-  if (!profile)
-    return chained(parts.filter(({ opacity }) => opacity === 1)).map(([r, z]) => [
-      Math.max(r, 0) * size,
-      z * size,
-    ]);
+  if (!profile) {
+    const opaque = parts.filter(({ opacity }) => opacity === 1);
+    return chained(opaque).map(([r, z]) => [Math.max(r, 0) * size, z * size]);
+  }
   const edges = profile.slice(1).map((point, k) => edge(profile[k], point, (2 * Math.PI) / FACETS));
   return edges.flatMap((points, k) => (k ? points.slice(1) : points));
 }

@@ -1,10 +1,11 @@
 // The guided story: each step sets a launch, asks for a prediction, shows what happens and says why.
 
 import { part, t } from "./i18n.js";
-import { preset, PRESETS } from "./presets.js";
+import { PRESETS, preset } from "./presets.js";
 import { changed } from "./setup.js";
 
-// Of each step: its launch, the arrows and curves it shows, and the preset whose figure in the report shows it too.
+// Of each step: its launch, the arrows and curves it shows, the preset whose figure in the report shows it too, and
+// what the visitor may go on to.
 const STEPS = [
   {
     from: "turns",
@@ -50,6 +51,7 @@ const STEPS = [
     setup: preset("stem"),
     show: ["trace", "glass", "axis"],
     plots: ["theta", "height", "normal_force"],
+    extra: "thin",
   },
   {
     setup: changed(preset("dry"), { duration: 8 }),
@@ -59,7 +61,6 @@ const STEPS = [
   },
   { setup: preset("turns"), show: ["trace", "glass"], plots: ["theta", "omega3"], extra: "own" },
 ];
-STEPS[7].extra = "thin";
 
 export function Story({ lab }) {
   const { step, guess } = lab.state;
@@ -67,7 +68,7 @@ export function Story({ lab }) {
   const words = part("story.steps")[number];
   const told = guess?.step === number;
   const go = (next) => {
-    set(lab, next, { step: next, guess: null });
+    setStep(lab, next, { step: next, guess: null });
   };
   return (
     <article class="story">
@@ -163,7 +164,7 @@ function Why({ lab, number, words, guess }) {
         </p>
       )}
       {extra && (
-        <button type="button" onClick={() => more(lab, extra)}>
+        <button type="button" onClick={() => showExtra(lab, extra)}>
           {t(`story.extra.${extra}`)}
         </button>
       )}
@@ -171,13 +172,13 @@ function Why({ lab, number, words, guess }) {
   );
 }
 
-function more(lab, extra) {
+function showExtra(lab, extra) {
   if (extra === "own") lab.set({ tab: "own" });
   else lab.go(preset(extra));
 }
 
 // Put a step's launch on the table, seen as it is best seen.
-function set(lab, number, others, play = false) {
+function setStep(lab, number, others, play = false) {
   const { setup, show, plots } = STEPS[number];
   const { player } = lab;
   for (const name of ["axis", "momentum", "friction", "trace", "glass"])
@@ -190,7 +191,7 @@ function set(lab, number, others, play = false) {
 
 // Show what happens in a step.
 function spin(lab, number, answer) {
-  set(lab, number, { guess: { step: number, answer } }, true);
+  setStep(lab, number, { guess: { step: number, answer } }, true);
 }
 
 // Whether what happens is not to be seen yet, as it is still to be guessed.

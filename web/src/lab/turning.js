@@ -26,7 +26,9 @@ const GAUSS = [
 // The line that is turned, in three parts from below: points (distance from the axis, height above the ball's
 // middle) with their radius where arcs end. All arcs have their centre on the axis.
 function partsOf({ radius, face, hollow, stem, knob }) {
-  const [cut, slim, inner] = [face * radius, 0.75 * knob, (1 - WALL) * radius];
+  const cut = face * radius;
+  const slim = 0.75 * knob;
+  const inner = (1 - WALL) * radius;
   const bottom = cut - hollow * (1 + face) * radius + WALL * radius;
   const across = (ball, z) => Math.sqrt(Math.max(ball ** 2 - z ** 2, 0));
   // Cut too high there is no way in.
@@ -60,7 +62,10 @@ function profileOf(top) {
 export function weigh(top) {
   const density = MATERIALS[top.material];
   const points = profileOf(top);
-  let [mass, moment, along, across] = [0, 0, 0, 0];
+  let mass = 0;
+  let moment = 0;
+  let along = 0;
+  let across = 0;
   points.slice(1).forEach(([r, z, arc], k) => {
     const [before, from] = points[k];
     if (z === from) return;

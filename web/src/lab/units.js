@@ -39,5 +39,6 @@ export function shown(value, kind, units, count = 4) {
 }
 
 export function withUnit(text, { name }) {
-  return name === "°" ? `${text}°` : name ? `${text} ${name}` : text;
+  if (name === "°") return `${text}°`;
+  return name ? `${text} ${name}` : text;
 }

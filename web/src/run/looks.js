@@ -25,22 +25,24 @@ export function toyParts(body) {
   }
   const whole = profile ?? outline(body);
   const size = extent(whole);
-  let pieces = whole.map((piece) => piece.map(([r, z]) => [r / size, z / size]));
-  if (pieces.length === 1) {
-    const [one] = pieces;
-    const middle = one.length >> 1;
-    pieces = [
-      one.slice(0, middle - BAND + 1),
-      one.slice(middle - BAND, middle + BAND + 1),
-      one.slice(middle + BAND),
-    ];
-  }
-  return pieces.map((profile, k) => ({
+  const lines = whole.map((line) => line.map(([r, z]) => [r / size, z / size]));
+  const belts = lines.length === 1 ? withBand(lines[0]) : lines;
+  return belts.map((profile, k) => ({
     name: `belt ${k}`,
     profile,
     colours: k % 2 ? looks.band : looks.bowl,
     opacity: 1,
   }));
+}
+
+// A profile in three parts, of which the middle one is a narrow band.
+function withBand(profile) {
+  const middle = profile.length >> 1;
+  return [
+    profile.slice(0, middle - BAND + 1),
+    profile.slice(middle - BAND, middle + BAND + 1),
+    profile.slice(middle + BAND),
+  ];
 }
 
 // Whether a body is known to be an eccentric sphere, and nothing else of it.
@@ -62,5 +64,10 @@ function ownProfile(body) {
     const [next, up] = points[(k + 1) % points.length];
     area += r * up - next * z;
   });
-  return ownOutline(body, area < 0 ? edges.reverse().map((line) => line.reverse()) : edges);
+  const isClockwise = area < 0;
+  if (!isClockwise) return ownOutline(body, edges);
+  return ownOutline(
+    body,
+    edges.reverse().map((line) => line.reverse()),
+  );
 }

@@ -13,17 +13,17 @@ export function numbers({ problem, duration }) {
   const columns = [["time (s)", (i) => track.time[i]]];
   for (const [name, { units, width }] of Object.entries(CATALOGUE.sampled)) {
     const unit = units && units !== "1" ? ` (${units})` : "";
-    PARTS[width].forEach((part, k) =>
-      columns.push([`${name}${part}${unit}`, (i) => track[name][width * i + k]]),
-    );
+    PARTS[width].forEach((part, k) => {
+      columns.push([`${name}${part}${unit}`, (i) => track[name][width * i + k]]);
+    });
   }
   columns.push(["mode", (i) => track.mode[i]]);
   const rows = Array.from(track.time, (_, i) =>
-    columns.map(([, value]) => told(value(i))).join(","),
+    columns.map(([, value]) => cellOf(value(i))).join(","),
   );
   return { csv: `${[columns.map(([name]) => name).join(","), ...rows].join("\n")}\n` };
 }
 
-function told(value) {
+function cellOf(value) {
   return Number.isNaN(value) ? "" : value;
 }

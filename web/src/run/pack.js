@@ -3,7 +3,7 @@
 import { lowestSurface } from "engine";
 
 import { foresee } from "./foresee.js";
-import { sizeOf, toyParts, SCENES } from "./looks.js";
+import { SCENES, sizeOf, toyParts } from "./looks.js";
 
 // Angle by which the body may turn between samples, rad, samples per second of even the slowest, and at most.
 const TURN = 0.6;
