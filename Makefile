@@ -44,6 +44,7 @@ check: lint types contract test ## All that a change must pass
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	web/run.sh $(BIN)/python biome check --error-on-warnings
 	$(BIN)/codespell
 
 types: $(VENV)/.installed-dev
