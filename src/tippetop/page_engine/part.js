@@ -63,19 +63,23 @@ function valueOrDefault(value, field) {
 function checkedValue(name, value, field, errors) {
   if (value === null && field.default === null) return null;
   if (field.parts) return checkedParts(name, value, field, errors);
-  const refuse = () => errors.push(new m.InvalidInput(name, value, field.accepted));
-  if (field.choices) {
-    if (!field.choices.includes(value)) refuse();
-  } else if (field.points) {
-    if (!(Array.isArray(value) && value.every(Array.isArray))) refuse();
-    else checkNumbers(name, value, 2, field, errors);
-  } else if (field.count) {
-    if (!(Array.isArray(value) && value.length === field.count)) refuse();
-    else checkNumbers(name, value, 1, field, errors);
-  } else {
-    checkNumbers(name, value, 0, field, errors);
-  }
+  if (!hasForm(value, field)) errors.push(new m.InvalidInput(name, value, field.accepted));
+  else if (!field.choices) checkNumbers(name, value, depthOf(field), field, errors);
   return value;
+}
+
+/** Whether a value is one of the choices of a field, or a list where the field is one. */
+function hasForm(value, field) {
+  if (field.choices) return field.choices.includes(value);
+  if (field.points) return Array.isArray(value) && value.every(Array.isArray);
+  if (field.count) return Array.isArray(value) && value.length === field.count;
+  return true;
+}
+
+/** How deep in lists the numbers of a field lie. */
+function depthOf(field) {
+  if (field.points) return 2;
+  return field.count ? 1 : 0;
 }
 
 /** A part, or several of them where the field allows that; one in a list is as one alone. */

@@ -76,7 +76,8 @@ export function* fields(value, prefix = "") {
 // In what two launches differ: field, value in one, value in the other.
 export function differences(one, other) {
   const flat = (setup) => new Map([...fields(setup.problem), ["duration", setup.duration]]);
-  const [a, b] = [flat(one), flat(other)];
+  const a = flat(one);
+  const b = flat(other);
   return [...new Set([...a.keys(), ...b.keys()])]
     .map((field) => [field, a.get(field), b.get(field)])
     .filter(([, x, y]) => JSON.stringify(x) !== JSON.stringify(y));

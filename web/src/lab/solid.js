@@ -59,7 +59,8 @@ function turned(points, facets) {
   );
   const triangles = [];
   for (let row = 1; row < rings.length; row++) {
-    const [below, above] = [rings[row - 1], rings[row]];
+    const below = rings[row - 1];
+    const above = rings[row];
     for (let k = 0; k < facets; k++) {
       const next = (k + 1) % facets;
       if (points[row - 1][0]) triangles.push([below[k], below[next], above[next]]);

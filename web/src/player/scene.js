@@ -327,9 +327,11 @@ function drawnInSoftware() {
 function longestOf(column, width) {
   let longest = 0;
   for (let i = 0; i < column.length; i += width) {
-    longest = Math.max(longest, Math.hypot(...column.subarray(i, i + width)));
+    let square = 0;
+    for (let k = i; k < i + width; k++) square += column[k] ** 2;
+    longest = Math.max(longest, square);
   }
-  return longest;
+  return Math.sqrt(longest);
 }
 
 // The round length (1, 2 or 5 times a power of ten) nearest to one, m, with the unit and the numbers of its multiples.

@@ -4,28 +4,37 @@ import * as THREE from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
 export function welded(toy) {
-  const alike = new Map();
+  const whole = new THREE.Group();
+  for (const { name, meshes } of alikeIn(toy)) whole.add(weld(name, meshes));
+  return whole;
+}
+
+// The meshes of a toy by their material; what is of glass keeps its name, by which it is hidden.
+function alikeIn(toy) {
+  const groups = new Map();
   for (const part of toy.children) {
     for (const mesh of [part, ...part.children].filter(({ isMesh }) => isMesh)) {
       const { opacity, roughness } = mesh.material;
-      const key = opacity < 1 ? `${part.name} ${opacity}` : String(roughness);
-      if (!alike.has(key)) alike.set(key, { name: opacity < 1 ? part.name : "solid", meshes: [] });
-      alike.get(key).meshes.push(mesh);
+      const isClear = opacity < 1;
+      const key = isClear ? `${part.name} ${opacity}` : String(roughness);
+      if (!groups.has(key)) groups.set(key, { name: isClear ? part.name : "solid", meshes: [] });
+      groups.get(key).meshes.push(mesh);
     }
   }
-  const whole = new THREE.Group();
-  for (const { name, meshes } of alike.values()) {
-    const mesh = new THREE.Mesh(mergeGeometries(meshes.map(coloured)), meshes[0].material);
-    mesh.material.color.set("#ffffff");
-    mesh.material.vertexColors = true;
-    mesh.name = name;
-    mesh.castShadow = meshes[0].castShadow;
-    mesh.receiveShadow = meshes[0].receiveShadow;
-    mesh.renderOrder = meshes[0].renderOrder;
-    whole.add(mesh);
-    for (const one of meshes) one.geometry.dispose();
-  }
-  return whole;
+  return groups.values();
+}
+
+function weld(name, meshes) {
+  const [first] = meshes;
+  const mesh = new THREE.Mesh(mergeGeometries(meshes.map(coloured)), first.material);
+  mesh.material.color.set("#ffffff");
+  mesh.material.vertexColors = true;
+  mesh.name = name;
+  mesh.castShadow = first.castShadow;
+  mesh.receiveShadow = first.receiveShadow;
+  mesh.renderOrder = first.renderOrder;
+  for (const { geometry } of meshes) geometry.dispose();
+  return mesh;
 }
 
 // A mesh's geometry with its colour at every corner.

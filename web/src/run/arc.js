@@ -4,7 +4,8 @@ import looks from "../generated/looks.json";
 
 // Points from one of a profile to the next, on the arc of the radius that this has, so far apart, rad, at most.
 export function edge([r, z], [toR, toZ, radius = 0], apart = looks.meridian.arc_step) {
-  const [across, up] = [toR - r, toZ - z];
+  const across = toR - r;
+  const up = toZ - z;
   if (!radius)
     return [
       [r, z],
@@ -14,7 +15,8 @@ export function edge([r, z], [toR, toZ, radius = 0], apart = looks.meridian.arc_
   const steps = Math.max(1, Math.ceil((2 * Math.abs(half)) / apart - 1e-9));
   return Array.from({ length: steps + 1 }, (_, k) => {
     const along = Math.sin((k / steps) * half) / Math.sin(half);
-    const [x, y] = [Math.cos((k / steps - 1) * half), Math.sin((k / steps - 1) * half)];
+    const x = Math.cos((k / steps - 1) * half);
+    const y = Math.sin((k / steps - 1) * half);
     return [r + along * (across * x - up * y), z + along * (across * y + up * x)];
   });
 }
