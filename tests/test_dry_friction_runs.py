@@ -164,9 +164,14 @@ def test_the_command_line_finds_the_same():
 
 
 def test_theory_that_knows_no_sticking_says_so():
-    for ask in (tt.predict, tt.critical_spins, tt.steady_states, tt.standing_time):
+    for ask in (tt.predict, tt.critical_spins, tt.standing_time):
         with pytest.raises(tt.InvalidInput, match=r"friction = .* sticks"):
             ask(dry("coulomb"))
+
+
+def test_steady_states_are_the_same_whatever_friction():
+    states = tt.steady_states(dry("coulomb"))
+    assert states == tt.steady_states(dry("viscous"))
 
 
 def test_another_law_keeps_what_it_has_in_common_and_takes_the_rest():

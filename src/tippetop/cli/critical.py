@@ -9,11 +9,13 @@ from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 
 if TYPE_CHECKING:
     from tippetop.theory.overview import Judged, Outlook
+    from tippetop.theory.stability import Spectrum
     from tippetop.theory.steady import SteadyState
 
 TOLD = (
     *("inertia_ratio", "eccentricity", "group", "lambda_up", "lambda_down", "jellett", "swings"),
     *("mu_flip_time", "flip_time", "flip_time_needs", "standing_time", "surface", "tilts"),
+    *("creeps", "sticks", "standing", "lying", "resting_center"),
 )
 """What programs are told under the names that it has."""
 
@@ -43,25 +45,17 @@ def _plain(found: "Outlook") -> dict[str, Any]:
     return {
         **{name: getattr(found, name) for name in TOLD},
         "group_description": found.group and found.group.description,
-        "omega_c1": found.critical_spins.upright,
-        "omega_c2": found.critical_spins.inverted,
+        "omega_c1": found.critical_spins and found.critical_spins.upright,
+        "omega_c2": found.critical_spins and found.critical_spins.inverted,
         "omega_c_tilt": found.tilt,
-        "stays": (
-            None if stays is None else "stable" if stays.spectrum.stable else "until disturbed"
-        ),
+        "stays": (None if stays is None else "stable" if stays.stable else "until disturbed"),
         "final": final,
         "final_certain": possible and len(possible) == 1,
         "final_possible": possible,
         "steady_states": [
             {
                 **vars(judged.state),
-                "stable": judged.spectrum.stable,
-                "growth_rate": judged.spectrum.growth_rate,
-                "frame_rate": judged.spectrum.frame_rate,
-                "eigenvalues": [
-                    [value.real, value.imag] for value in judged.spectrum.eigenvalues.tolist()
-                ],
-                "neutral": judged.spectrum.neutral,
+                **_plain_spectrum(judged.spectrum),
             }
             for judged in found.steady
         ],
@@ -69,10 +63,38 @@ def _plain(found: "Outlook") -> dict[str, Any]:
     }
 
 
+def _plain_spectrum(spectrum: "Spectrum | None") -> dict[str, Any]:
+    """The stability of a steady state for programs: null where nothing is linear."""
+    if spectrum is None:
+        return dict.fromkeys(("stable", "growth_rate", "frame_rate", "eigenvalues", "neutral"))
+    return {
+        "stable": spectrum.stable,
+        "growth_rate": spectrum.growth_rate,
+        "frame_rate": spectrum.frame_rate,
+        "eigenvalues": [[value.real, value.imag] for value in spectrum.eigenvalues.tolist()],
+        "neutral": spectrum.neutral,
+    }
+
+
+STICKS = (
+    "Dry friction of a point: the contact sticks wherever the table can hold it, and the top then"
+    " rolls without loss. Stability does not decide where it ends, so there are no critical spins."
+    " Under friction that creeps, of a patch or viscous, there are: try"
+    " --set friction.kind=contensou --set friction.patch_radius=0.0005."
+)
+RESISTED = (
+    "Rolling resistance holds an axis that hardly moves, and takes energy from every precession:"
+    " there are no critical spins. Without it there are: try --set rolling_resistance=0."
+)
+FLAT = "This body lies flat when its axis is vertical: it has no vertical spin."
+
+
 def _sentences(found: "Outlook") -> Iterator[Any]:
     """The record for people."""
-    if found.group is not None:
+    if found.group is not None and found.creeps:
         yield f"[bold]Group {found.group.value}[/]: {found.group.description}."
+    if not found.creeps:
+        yield STICKS if found.sticks else RESISTED if found.steady else FLAT
     yield facts(_rows(found))
     if found.tilts != (0.0, math.pi):
         low, high = found.tilts
@@ -80,7 +102,7 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
             f"Of its surface {found.surface} alone, from θ = {low:.6g} to {high:.6g} rad: beyond,"
             " another touches."
         )
-    if found.group is not None:
+    if found.group is not None and found.creeps:
         yield (
             f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and"
             " rates.[/]"
@@ -92,38 +114,38 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
         )
     if found.flip_time_needs is not None:
         yield f"[dim]Of launches, the flip time is known only of {found.flip_time_needs}.[/]"
-    headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth rate")
-    rows = (_state_row(judged) for judged in found.steady)
-    yield listing("Steady states of this launch", headings, rows, words=("kind", ""))
-    for judged in found.steady:
+    if found.steady:
+        headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "grows e-fold in")
+        rows = (_state_row(judged) for judged in found.steady)
+        yield listing("Steady states of this launch", headings, rows, words=("kind", ""))
+    judged_ones = [judged for judged in found.steady if judged.spectrum is not None]
+    for judged in judged_ones:
         yield f"[dim]{judged.state.kind.value}:[/] {_eigenvalues(judged)}"
-    yield (
-        "[dim]rad, rad/s, J; eigenvalues in 1/s, in the frame that turns with the precession (for"
-        " vertical spins, a frame at rest), without the zeros of symmetry.[/]"
-    )
+    if judged_ones:
+        yield (
+            "[dim]rad, rad/s, J, s; eigenvalues in 1/s, in the frame that turns with the precession"
+            " (for vertical spins, a frame at rest), without the zeros of symmetry.[/]"
+        )
 
 
 def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
-    upright, inverted = found.critical_spins.upright, found.critical_spins.inverted
-    sphere, kept = found.group is not None, "" if found.conserved else ", not conserved"
-    rows = [
-        (
-            "upright spin is left above ω_c1" if sphere else "upright changes at",
-            spelled(upright),
-            "rad/s",
-        ),
-        (
-            "inverted spin holds above ω_c2" if sphere else "inverted changes at",
-            spelled(inverted),
-            "rad/s",
-        ),
-        ("λ_up", spelled(found.lambda_up), "kg m³/s"),
-        ("λ_down", spelled(found.lambda_down), "kg m³/s"),
-        ("λ of this launch", spelled(found.jellett), "kg m³/s" + kept),
-    ]
+    rows = []
     if found.inertia_ratio is not None and found.eccentricity is not None:
-        rows.insert(0, ("γ = I1/I3, α", f"{found.inertia_ratio:.6g}, {found.eccentricity:.6g}", ""))
-    rows += _end_rows(found)
+        rows.append(("γ = I1/I3, α", f"{found.inertia_ratio:.6g}, {found.eccentricity:.6g}", ""))
+    rows += [*_critical_rows(found), *_end_rows(found), *_standing_rows(found)]
+    if found.lying is not None and math.isfinite(found.lying.rate):
+        on = " and ".join(map(str, found.lying.surfaces))
+        where = "its waist" if len(found.lying.surfaces) == 1 else f"surfaces {on}"
+        rows.append(
+            (
+                f"lying on {where}, it rises above",
+                spelled(found.lying.rate, 6),
+                "rad/s about the vertical",
+            )
+        )
+    if found.resting_center is not None and not found.conserved:
+        what = "rolls at this tilt about its centre at"
+        rows.append((what, spelled(found.resting_center.precession, 6), "rad/s about the vertical"))
     if found.standing_time is not None:
         vertical = found.tilt in (0.0, math.pi)
         what = "drilling lets it stand" if vertical else "inverted with this λ it would stand"
@@ -135,6 +157,67 @@ def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
     return rows
 
 
+def _critical_rows(found: "Outlook") -> list[tuple[str, str, str]]:
+    """Critical spins and Jellett's integrals, where slip creeps."""
+    jellett = (
+        "λ of this launch",
+        spelled(found.jellett),
+        "kg m³/s" + ("" if found.conserved else ", not conserved"),
+    )
+    if found.critical_spins is None or found.lambda_up is None or found.lambda_down is None:
+        return [jellett]
+    sphere = found.group is not None
+    upright, inverted = found.critical_spins.upright, found.critical_spins.inverted
+    names = ("upright spin is left above ω_c1", "inverted spin holds above ω_c2")
+    if not sphere:
+        names = ("upright changes at", "inverted changes at")
+    return [
+        _threshold(names[0], upright, "rad/s"),
+        _threshold(names[1], inverted, "rad/s"),
+        _threshold("λ_up", found.lambda_up, "kg m³/s"),
+        _threshold("λ_down", found.lambda_down, "kg m³/s"),
+        jellett,
+    ]
+
+
+def _threshold(name: str, value: float, unit: str) -> tuple[str, str, str]:
+    """A row for a threshold, which may not exist."""
+    return (name, spelled(value), unit) if math.isfinite(value) else (name, "no spin", "")
+
+
+def _standing_rows(found: "Outlook") -> list[tuple[str, str, str]]:
+    """What keeps a top-heavy body on end: its gyroscopic thresholds, and how creep undoes it."""
+    standing = found.standing
+    if standing is None:
+        return []
+    rows = [
+        ("sleeps on a contact that rolls above", spelled(standing.rolling.spin, 6), "rad/s"),
+        ("sleeps on a fixed point (textbooks) above", spelled(standing.pivot.spin, 6), "rad/s"),
+        ("sleeps on a smooth table above", spelled(standing.smooth.spin, 6), "rad/s"),
+        (
+            "without spin it falls, e-fold in",
+            spelled(1.0 / standing.rolling.growth_rate_at_rest, 3),
+            "s",
+        ),
+    ]
+    for table, threshold in (("rolling", standing.rolling), ("smooth", standing.smooth)):
+        if threshold.growth_rate > 0.0:
+            what = f"falls now ({table}), e-fold in"
+            rows.append((what, spelled(1.0 / threshold.growth_rate, 3), "s"))
+    if math.isfinite(standing.creep_time):
+        below = ("slip that creeps tips it below", spelled(standing.creep_spin, 6), "rad/s")
+        always = ("slip that creeps tips it", "at any spin", "")
+        rows += [
+            below if math.isfinite(standing.creep_spin) else always,
+            (
+                f"at {spelled(standing.creep_time_spin, 3)} rad/s, e-fold in at least",
+                spelled(standing.creep_time, 3),
+                "s",
+            ),
+        ]
+    return rows
+
+
 def _end_rows(found: "Outlook") -> list[tuple[str, str, str]]:
     """Where the launch ends: nowhere, where it is, or where friction takes it."""
     rows = []
@@ -142,10 +225,10 @@ def _end_rows(found: "Outlook") -> list[tuple[str, str, str]]:
         low, high = found.swings
         rows.append(("swings for ever in θ", f"{low:.9g} to {high:.9g}", "rad"))
     if found.stays is not None:
-        state, stable = found.stays.state, found.stays.spectrum.stable
+        state, stable = found.stays.state, found.stays.stable
         until = "" if stable else " until disturbed"
         rows.append(("stays exactly on", _told(state), f"rad{until}"))
-    if found.prediction is not None and not (found.stays and found.stays.spectrum.stable):
+    if found.prediction is not None and not (found.stays and found.stays.stable):
         rows.append(
             ("and then ends as" if found.stays else "ends as", _told(found.prediction.final), "rad")
         )
@@ -160,18 +243,16 @@ def _told(state: "SteadyState[float]") -> str:
 
 def _state_row(judged: "Judged") -> tuple[str, ...]:
     state, spectrum = judged.state, judged.spectrum
-    verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "neutral"
+    verdict, growth = "", ""
+    if spectrum is not None:
+        verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "neutral"
+        growth = f"{1.0 / spectrum.growth_rate:.4g}" if spectrum.unstable else ""
     motion = (spelled(value, 6) for value in (state.tilt, state.precession, state.spin))
-    return (
-        state.kind.value,
-        *motion,
-        f"{state.energy:.5g}",
-        verdict,
-        f"{spectrum.growth_rate:.5g}",
-    )
+    return (state.kind.value, *motion, f"{state.energy:.5g}", verdict, growth)
 
 
 def _eigenvalues(judged: "Judged") -> str:
     """The eigenvalues in a row; of each pair of conjugates, the one above stands for both."""
+    assert judged.spectrum is not None
     shown = [value for value in judged.spectrum.eigenvalues.tolist() if value.imag >= 0]
     return ", ".join(f"{v.real:.5g} ± {v.imag:.6g}i" if v.imag else f"{v.real:.5g}" for v in shown)

@@ -3,13 +3,16 @@
 import math
 from dataclasses import dataclass, replace
 
-from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.hull import Hull, is_edge
+from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.top import Top
 from tippetop.problem.frictions import ViscousFriction
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.drilling import standing_time
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
+from tippetop.theory.level import Lying, lying
 from tippetop.theory.prediction import (
     Prediction,
     hull_of,
@@ -18,17 +21,27 @@ from tippetop.theory.prediction import (
     steady_launch,
     tilts_held,
 )
-from tippetop.theory.requirements import require_creep
-from tippetop.theory.stability import Spectrum, spectrum
+from tippetop.theory.requirements import creeps, sticks
+from tippetop.theory.resting_center import RestingCenter, resting_center_on
+from tippetop.theory.sleeping import Sleeping, sleeping
+from tippetop.theory.stability import Spectrum, fastest_growth, has_spectrum, spectrum
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyKind,
     SteadyState,
+    has_level_spin,
     jellett_of_launch,
+    level_spin,
     vertical_spin,
 )
 from tippetop.theory.steady import steady_states as all_steady_states
-from tippetop.theory.thresholds import CriticalSpins, critical_jellett, critical_spins
+from tippetop.theory.thresholds import (
+    CriticalSpins,
+    critical_jellett,
+    critical_spin,
+    critical_spins,
+    stands,
+)
 
 
 @dataclass(frozen=True)
@@ -36,7 +49,40 @@ class Judged:
     """A steady state with the eigenvalues of its linear motion."""
 
     state: SteadyState[float]
-    spectrum: Spectrum
+    spectrum: Spectrum | None
+    """None where the motion about it is not linear, or the state does not last."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether every small disturbance decays."""
+        return self.spectrum is not None and self.spectrum.stable
+
+
+NEAR_POLE = 0.5 * math.sqrt(2.0)
+"""Sine of the tilt from which on a launch has little to do with standing on end."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How a top-heavy body stands on its axis, at the end that the launch is nearer to."""
+
+    kind: SteadyKind
+    """The upright or the inverted spin."""
+    smooth: Sleeping
+    """Its gyroscopic threshold on a smooth table."""
+    rolling: Sleeping
+    """Its gyroscopic threshold where the contact rolls without slip."""
+    pivot: Sleeping
+    """Its gyroscopic threshold on a fixed point where it touches, as in textbooks."""
+    creep_spin: float
+    """Axial spin, rad/s, above which slip that creeps does not tip it either; inf if at none."""
+    creep_time: float
+    """Time in which creep below `creep_spin` makes a small tilt e times larger, s, under the
+    viscous friction that does so fastest: at the launch's spin if it is between the thresholds, and
+    else half-way between them; inf where it never does.
+    """
+    creep_time_spin: float
+    """That spin, rad/s."""
 
 
 @dataclass(frozen=True)
@@ -48,13 +94,15 @@ class Outlook:
     """gamma = I1 / I3 and alpha; None for a shape other than an eccentric sphere."""
     group: Group | None
     """How such tops behave, or None; also on a tip that the centre of mass is outside of."""
-    lambda_up: float
-    lambda_down: float
+    lambda_up: float | None
+    lambda_down: float | None
     """Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted gains
-    stability.
+    stability; None where slip does not creep (see `creeps`).
     """
-    critical_spins: CriticalSpins
-    """The spins of launches with this one's tilt and rates, rad/s, that have those integrals."""
+    critical_spins: CriticalSpins | None
+    """The spins of launches with this one's tilt and rates, rad/s, that have those integrals; None
+    where slip does not creep.
+    """
     tilt: float
     """Tilt of this launch, rad."""
     jellett: float
@@ -71,7 +119,7 @@ class Outlook:
     """
     steady: tuple[Judged, ...]
     """Steady states, by tilt: all with the launch's lambda, or for a shape that does not conserve
-    it, the two vertical spins at the launch's axial spin.
+    it, the two vertical spins at the launch's axial spin and the level spin at its precession.
     """
     mu_flip_time: float | None
     """mu times the time (s^2/m) until within 0.01 rad of the end, in the limit of small friction;
@@ -92,6 +140,18 @@ class Outlook:
     the inverted one with its lambda; None without drilling, and for a body that leans and is no
     sphere.
     """
+    creeps: bool
+    """Whether friction is proportional to small slip. It is not under dry friction of a point,
+    which sticks, with rolling resistance, and of a body that lies flat.
+    """
+    sticks: bool
+    """Whether slip ends, under dry friction of a point; the top then rolls without loss."""
+    standing: Standing | None
+    """Of a body that is top-heavy at its nearer end; None for others."""
+    lying: Lying | None
+    """How the body lies, and when it rises from there; None if it does not."""
+    resting_center: RestingCenter | None
+    """How it rolls at the launch's tilt with its centre of mass at rest; None if it does not."""
     surface: int = 0
     tilts: tuple[float, float] = (0.0, math.pi)
     """Number of the surface that it is launched on, which alone all this is of, and the tilts, rad,
@@ -100,20 +160,19 @@ class Outlook:
 
 
 def outlook(problem: Problem) -> Outlook:
-    """What the theory says of a launch: of a body of several surfaces, on the one that it is
-    launched on.
+    """Return what the theory says of a launch: of several surfaces, on the one it is launched on.
 
     Raises `InvalidInput` if it turns so fast that the theory cannot tell, or hardly on dry
-    friction; if a dry point rubs, or rolling is resisted.
+    friction of a patch.
     """
     top = problem.top
     if isinstance(top.surface, Hull):
         return _on_one_of_several(problem)
-    require_creep(top)
     jellett = jellett_of_launch(problem)
     sphere, vertical = top.conserves_jellett, problem.launch.tilt in (0.0, math.pi)
     drills, smooth = not top.torque_free, problem.friction.vanishes
-    stays = None if drills else steady_launch(problem)
+    edge, creeping = is_edge(top.surface), creeps(top)
+    stays = None if drills or edge or sticks(top) else steady_launch(problem)
     grouped = sphere and 0.0 < eccentricity(top) < 1.0
     limit, time, known_of = (
         _flip_times(problem) if grouped and stays is None else (None, None, None)
@@ -122,23 +181,55 @@ def outlook(problem: Problem) -> Outlook:
         inertia_ratio=inertia_ratio(top) if sphere else None,
         eccentricity=eccentricity(top) if sphere else None,
         group=classify_top(top) if grouped else None,
-        lambda_up=critical_jellett(SteadyKind.UPRIGHT, top),
-        lambda_down=critical_jellett(SteadyKind.INVERTED, top),
-        critical_spins=critical_spins(problem),
+        lambda_up=critical_jellett(SteadyKind.UPRIGHT, top) if creeping else None,
+        lambda_down=critical_jellett(SteadyKind.INVERTED, top) if creeping else None,
+        critical_spins=critical_spins(problem) if creeping else None,
         tilt=problem.launch.tilt,
         jellett=jellett,
-        stays=None if stays is None else Judged(stays, spectrum(stays, top)),
+        stays=None if stays is None else _judged(stays, top),
         swings=_swings(problem) if top.surface.spherical and smooth else None,
-        prediction=predict(problem) if sphere and not smooth else None,
-        steady=tuple(Judged(state, spectrum(state, top)) for state in steady_states(problem)),
+        prediction=predict(problem) if sphere and creeping and not smooth else None,
+        steady=tuple(_judged(state, top) for state in steady_states(problem)),
         mu_flip_time=limit,
         flip_time=time,
         flip_time_needs=known_of,
         conserved=sphere,
         standing_time=standing_time(problem)
-        if drills and (vertical or top.surface.spherical)
+        if creeping and drills and (vertical or top.surface.spherical)
         else None,
+        creeps=creeping,
+        sticks=sticks(top),
+        standing=None if edge else _standing(problem, top),
+        lying=lying(top, problem.launch.tilt),
+        resting_center=None if vertical else resting_center_on(problem.launch.tilt, top),
     )
+
+
+def _judged(state: SteadyState[float], top: Top) -> Judged:
+    return Judged(state, spectrum(state, top) if has_spectrum(state.kind, top) else None)
+
+
+def _standing(problem: Problem, top: Top) -> Standing | None:
+    """How a top-heavy body stands on the end that its launch is nearer to."""
+    launch, kind = problem.launch, SteadyKind.UPRIGHT
+    if launch.tilt > math.pi / 2:
+        kind = SteadyKind.INVERTED
+    if not stands(kind, top):
+        return None
+    smooth, rolling = (sleeping(kind, top, launch.spin, rolls=rolls) for rolls in (False, True))
+    if not rolling.spin or math.sin(launch.tilt) > NEAR_POLE:
+        return None
+    pole = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
+    point = SphereSurface(0.0, -pole * float(top.surface.height(pole)))
+    pivot = sleeping(kind, top._replace(surface=point), launch.spin, rolls=True)
+    creep = critical_spin(kind, top)
+    spin, time = abs(launch.spin), math.inf
+    if rolling.spin < creep:
+        if not rolling.spin < spin < creep:
+            spin = 2.0 * rolling.spin if math.isinf(creep) else 0.5 * (rolling.spin + creep)
+        growth = fastest_growth(kind, top, spin)
+        time = 1.0 / growth if growth > 0.0 else math.inf
+    return Standing(kind, smooth, rolling, pivot, creep, time, spin)
 
 
 def _on_one_of_several(problem: Problem) -> Outlook:
@@ -160,6 +251,8 @@ def _on_one_of_several(problem: Problem) -> Outlook:
         mu_flip_time=None,
         flip_time=None,
         flip_time_needs=None,
+        standing=found.standing if low == 0.0 or high == math.pi else None,
+        lying=lying(problem.top._replace(surface=hull), problem.launch.tilt),
         surface=hull.active,
         tilts=(low, high),
     )
@@ -169,14 +262,14 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
     """Steady states that a launch might end in, by increasing tilt.
 
     All with its Jellett's integral, or where that is not conserved, both vertical spins at its
-    axial spin. Of a body of several surfaces, those on the one that it is launched on, at tilts
-    where no other touches.
+    axial spin, and the level spin at its precession. Of a body of several surfaces, those on the
+    one that it is launched on, at tilts where no other touches. A body that lies flat when its axis
+    is vertical has none of these.
 
     Raises
     ------
     InvalidInput
-        If it turns so fast that the theory cannot tell, or hardly on dry friction; if a dry point
-        rubs, or rolling is resisted.
+        If it turns so fast that the theory cannot tell.
 
     Examples
     --------
@@ -193,10 +286,15 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
         low, high = tilts_held(hull, problem.launch.tilt)
         states = steady_states(on_surface(problem, hull.active))
         return [state for state in states if low <= state.tilt <= high]
-    require_creep(problem.top)
-    if problem.top.conserves_jellett:
-        return all_steady_states(problem.top, jellett_of_launch(problem))
-    return [vertical_spin(kind, problem.top, problem.launch.spin) for kind in VERTICAL_SPINS]
+    top, launch = problem.top, problem.launch
+    if top.conserves_jellett:
+        return all_steady_states(top, jellett_of_launch(problem))
+    if is_edge(top.surface):
+        return []
+    states = [vertical_spin(kind, top, launch.spin) for kind in VERTICAL_SPINS]
+    if has_level_spin(top) and launch.precession:
+        states.insert(1, level_spin(top, launch.precession))
+    return states
 
 
 def _swings(problem: Problem) -> tuple[float, float]:

@@ -60,10 +60,23 @@ def require_creep(top: Top) -> None:
         raise InvalidInput(
             "rolling_resistance", arm, "0: with it a spin about the vertical has no linear motion"
         )
-    if is_set_valued(top.friction) and slip_length(top.friction) is None:
+    if sticks(top):
         raise InvalidInput(
             "friction",
             "dry friction of a point",
             "viscous, regularized or Contensou friction, by which slip never ends while the top"
             " spins; on this one it sticks, and may roll for ever in a state that is not stable",
         )
+
+
+def sticks(top: Top) -> bool:
+    """Return whether slip of a spinning top ends: under dry friction of a point."""
+    return is_set_valued(top.friction) and slip_length(top.friction) is None
+
+
+def creeps(top: Top) -> bool:
+    """Return whether friction is proportional to small slip about a vertical spin.
+
+    Of a body of several surfaces, the active one counts.
+    """
+    return not (is_edge(top.surface) or top.resists_rolling or sticks(top))

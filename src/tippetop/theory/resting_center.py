@@ -39,9 +39,14 @@ def resting_center(tilt: float, top: Top) -> RestingCenter | None:
     For a thin disk of radius R this is Omega^2 = 4 g / (R s), and for two balls that touch,
     cos(theta) = 2/5 - g / (Omega^2 R).
     """
+    lowest = lowest_surface(top.surface, math.cos(tilt))
+    return resting_center_on(tilt, top._replace(surface=lowest))
+
+
+def resting_center_on(tilt: float, top: Top) -> RestingCenter | None:
+    """Return how a body rolls on its active surface; see `resting_center`."""
     s, c = math.sin(tilt), math.cos(tilt)
-    lowest = lowest_surface(top.surface, c)
-    x, _, z = contact_vector((s, 0.0, c), lowest)
+    x, _, z = contact_vector((s, 0.0, c), top.surface)
     along, across = x * s + z * c, -x * c + z * s
     resisting = s * (top.axial_inertia * s * along / across - top.transverse_inertia * c)
     turned = top.mass * top.gravity * (across * c - along * s)

@@ -26,6 +26,7 @@ from scipy.linalg import expm
 
 from tippetop.integrators.base import Array
 from tippetop.mechanics.branches import on_branch
+from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.motion import sliding_rates
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import SlidingState
@@ -35,7 +36,7 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.derivatives import derivative, jacobian
-from tippetop.theory.requirements import require_creep
+from tippetop.theory.requirements import creeps, require_creep
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyKind,
@@ -143,6 +144,27 @@ def eigenvalues(steady: SteadyState[Scalar], top: Top, frame_rate: Scalar = None
 def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
     """Growth rates of the vertical spin at these axial spins (rad/s), 1/s, shape (n,)."""
     return np.asarray(eigenvalues(vertical_spin(kind, top, spins), top)[:, 0].real)
+
+
+def has_spectrum(kind: SteadyKind, top: Top) -> bool:
+    """Return whether the motion about steady states of a kind is linear: see `spectrum`."""
+    return creeps(top) and (kind in VERTICAL_SPINS or top.friction.torque_free)
+
+
+def fastest_growth(kind: SteadyKind, top: Top, spin: float) -> float:
+    """Return the growth rate of a vertical spin, 1/s, under the viscous friction that tips it most.
+
+    The result is not positive where no viscous friction does. Friction of both extremes does not:
+    without any there is no creep, and with very much the contact rolls.
+    """
+    unit = natural_units(top)
+    rates = [
+        float(
+            vertical_growth_rates(kind, top._replace(friction=ViscousLaw(mu)), np.array([spin]))[0]
+        )
+        for mu in np.geomspace(1e-3, 1e3, 61) / float(unit.speed)
+    ]
+    return max(rates)
 
 
 def linear_tilts(steady: SteadyState[float], top: Top, start: SlidingState, times: Array) -> Array:
