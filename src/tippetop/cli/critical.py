@@ -115,7 +115,7 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
     if found.flip_time_needs is not None:
         yield f"[dim]Of launches, the flip time is known only of {found.flip_time_needs}.[/]"
     if found.steady:
-        headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "grows e-fold in")
+        headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth time")
         rows = (_state_row(judged) for judged in found.steady)
         yield listing("Steady states of this launch", headings, rows, words=("kind", ""))
     judged_ones = [judged for judged in found.steady if judged.spectrum is not None]
@@ -123,8 +123,9 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
         yield f"[dim]{judged.state.kind.value}:[/] {_eigenvalues(judged)}"
     if judged_ones:
         yield (
-            "[dim]rad, rad/s, J, s; eigenvalues in 1/s, in the frame that turns with the precession"
-            " (for vertical spins, a frame at rest), without the zeros of symmetry.[/]"
+            "[dim]rad, rad/s, J; growth time: s in which a small tilt grows e times; eigenvalues in"
+            " 1/s, in the frame that turns with the precession (for vertical spins, a frame at"
+            " rest), without the zeros of symmetry.[/]"
         )
 
 
