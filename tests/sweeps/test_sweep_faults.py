@@ -361,5 +361,5 @@ def test_names_that_no_file_can_have_are_told_in_a_sentence(tmp_path, name):
 def test_another_layout_is_refused(tmp_path, monkeypatch):
     Store.create(tmp_path / "a.zarr", quick())
     monkeypatch.setattr(store_layout, "FORMAT", "tippetop sweep 99")
-    with pytest.raises(FileTrouble, match="laid out as 'tippetop sweep 2'"):
+    with pytest.raises(FileTrouble, match="laid out as 'tippetop sweep 3'"):
         read_sweep(tmp_path / "a.zarr")

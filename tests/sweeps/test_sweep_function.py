@@ -31,7 +31,7 @@ def test_tables_and_draws_are_sweeps_too():
     found = sweep(problem, geometric, duration=0.05)
     assert found["launch.spin"].values == pytest.approx([10, 40, 160])
     draws = sweep(problem, Draws((Range("launch.spin", 10, 20),), 4), duration=0.05)
-    assert draws["final_theta"].dims == ("draw",)
+    assert draws["final_theta"].dims == ("sample",)
 
 
 def test_a_sweep_is_kept_where_it_is_told_to(tmp_path):
@@ -103,7 +103,7 @@ def test_draws_carry_units_too():
     ranges = Range("friction.mu", 0.1, 0.2), Range("friction.eps", 1e-3, 1e-2)
     dry = report_problem().model_copy(update={"friction": RegularizedCoulombFriction(mu=0.1)})
     found = sweep(dry, Draws(ranges, 2), duration=0.01)
-    assert [found[name].attrs["units"] for name in ("draw", "friction.mu", "friction.eps")] == [
+    assert [found[name].attrs["units"] for name in ("sample", "friction.mu", "friction.eps")] == [
         "1",
         "1",
         "m s-1",

@@ -83,7 +83,7 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
         return _panels(sweep, variable)
     figure, axes = mark.panels(4.6)
     axes.set_title(_title(sweep, variable))
-    if values.dims == ("draw",):
+    if values.dims == ("sample",):
         _scatter(figure, axes, sweep, variable)
     elif values.ndim == 1:
         _curve(axes, sweep, variable)
@@ -182,7 +182,7 @@ def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
 
 
 def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> None:
-    fields = [str(name) for name in sweep.coords if name != "draw"]
+    fields = [str(name) for name in sweep.coords if name != "sample"]
     values = _shown(sweep, variable)
     if len(fields) == 1:
         axes.plot(sweep[fields[0]].values, values, ".", color=CONVERGED)
@@ -219,7 +219,7 @@ def _title(sweep: xr.Dataset, variable: str) -> str:
             for ending, words in UNFINISHED.items()
             if (sweep["outcome"].values == ending).any()
         ]
-    single = sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("draw" in sweep.coords)
+    single = sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("sample" in sweep.coords)
     sign = "no point" if single else "grey"
     return f"{title}; {sign}: {', '.join(means)}" if means else title
 

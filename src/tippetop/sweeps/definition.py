@@ -16,6 +16,7 @@ from tippetop.support.parsing import parse_toml
 from tippetop.support.validation import Number, Part, Positive, in_order
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.grid import Draws, Product
+from tippetop.sweeps.launch_samples import LaunchSamples
 from tippetop.theory.requirements import require_jellett
 
 DEFAULT_TOLERANCE = 1e-9
@@ -31,12 +32,15 @@ TASKS = 16
 """A task is a chunk of the store: about a 16th of the cells, within these bounds."""
 
 
+GRIDS = {"axes": Product, "draws": Draws, "samples": LaunchSamples}
+"""The ways to state the cells of a sweep, by the names that they are written under."""
+
 Task: TypeAlias = tuple[int, ...]
 """The place of a task among those along every dimension."""
 
 
 class Sweep(Part):
-    """What to compute, over a `grid` of cells, which is either `axes` or `draws`.
+    """What to compute, over a `grid` of cells: `axes`, `draws` or `samples`.
 
     Raises `InvalidInput` if a field is none, the duration is not positive, or the tolerance is out
     of range; or if runs are to end when they have settled, and the tops do not conserve Jellett's
@@ -47,7 +51,8 @@ class Sweep(Part):
     """The problem whose fields are changed."""
     axes: Annotated[Product, BeforeValidator(Product.of)] | None = None
     draws: Draws | None = None
-    """The cells: `Product` of axes, or `Draws`."""
+    samples: LaunchSamples | None = None
+    """The cells: `Product` of axes, `Draws` or `LaunchSamples`."""
     duration: Positive = 20.0
     """Length of every run, s."""
     tolerance: Annotated[Number, Field(ge=LEAST_TOLERANCE, le=1e-3)] = DEFAULT_TOLERANCE
@@ -63,7 +68,7 @@ class Sweep(Part):
         )
         grid = fields.pop("grid", None)
         if grid is not None:
-            kind = "axes" if isinstance(grid, Product) else "draws"
+            kind = next(name for name, cells in GRIDS.items() if isinstance(grid, cells))
             if fields.get(kind) is None:
                 fields.pop(kind, None)
             fields = in_order(type(self), [kind], (grid,), fields)
@@ -71,17 +76,19 @@ class Sweep(Part):
 
     @model_validator(mode="after")
     def _can_be_computed(self) -> Self:
-        if (self.axes is None) == (self.draws is None):
-            raise InvalidInput("axes and draws", "both" if self.axes else MISSING, "one of them")
+        chosen = [name for name in GRIDS if getattr(self, name) is not None]
+        if len(chosen) != 1:
+            given = " and ".join(chosen) or MISSING
+            raise InvalidInput(", ".join(GRIDS), given, "one of them")
         if self.settled is not None:
             require_jellett(self.problem.top)
         cells_of(self.problem, self.grid.values(np.arange(1)))
         return self
 
     @cached_property
-    def grid(self) -> Product | Draws:
+    def grid(self) -> Product | Draws | LaunchSamples:
         """The cells."""
-        found = self.axes or self.draws
+        found = self.axes or self.draws or self.samples
         assert found is not None
         return found
 
@@ -139,6 +146,4 @@ class Sweep(Part):
 
 def is_sweep(fields: Mapping[str, Any]) -> bool:
     """Whether the tables of a TOML file are those of a sweep rather than of a problem."""
-    return bool({"axes", "draws", "duration"} & set(fields)) or isinstance(
-        fields.get("problem"), dict | str
-    )
+    return bool({*GRIDS, "duration"} & set(fields)) or isinstance(fields.get("problem"), dict | str)

@@ -21,6 +21,12 @@ from tippetop.sweeps.axes import Flat as Flat
 
 _Kind = TypeVar("_Kind")
 
+ENTRIES = {"from", "to", "values", "law", "distribution"}
+"""Keys of which a table that states the values of a field has one, and no other table."""
+
+SAMPLE = "sample"
+"""The dimension of launches that are drawn or sampled."""
+
 
 class Product(Entry):
     """Every combination of the values of some axes; the last axis changes fastest."""
@@ -33,7 +39,7 @@ class Product(Entry):
 
     @model_validator(mode="after")
     def _crosses(self) -> Self:
-        _check_fields("axes", self.dimensions)
+        check_fields("axes", self.dimensions)
         if math.prod(self.shape) > MOST_CELLS:
             raise InvalidInput(
                 "axes", " x ".join(map(str, self.shape)), f"at most {MOST_CELLS} cells"
@@ -43,7 +49,7 @@ class Product(Entry):
     @classmethod
     def of(cls, table: Any) -> "Product":
         """The product of a table of axes by their fields, or of pairs."""
-        return table if isinstance(table, cls) else cls(_read("axes", table, Axis.of))
+        return table if isinstance(table, cls) else cls(read_fields("axes", table, Axis.of))
 
     @model_serializer
     def _written(self) -> dict[str, Any]:
@@ -128,19 +134,19 @@ class Draws(Entry):
     --------
     >>> import tippetop as tt
     >>> draws = tt.Draws((tt.Range("launch.spin", 10.0, 200.0),), count=3, seed=1)
-    >>> tt.sweep(tt.presets.report_problem(), draws, duration=0.1).sizes["draw"]
+    >>> tt.sweep(tt.presets.report_problem(), draws, duration=0.1).sizes["sample"]
     3
     """
 
     ranges: Annotated[
-        tuple[Range, ...], BeforeValidator(lambda given: _read("fields", given, Range.of))
+        tuple[Range, ...], BeforeValidator(lambda given: read_fields("fields", given, Range.of))
     ] = Field(alias="fields")
     count: Count
     seed: Annotated[Whole, Field(ge=0)] = 0
 
     @model_validator(mode="after")
     def _differ(self) -> Self:
-        _check_fields("fields", [entry.field for entry in self.ranges])
+        check_fields("fields", [entry.field for entry in self.ranges])
         return self
 
     @field_serializer("ranges")
@@ -154,8 +160,8 @@ class Draws(Entry):
 
     @property
     def dimensions(self) -> tuple[str, ...]:
-        """One dimension: the draws."""
-        return ("draw",)
+        """One dimension: the draws, which are samples."""
+        return (SAMPLE,)
 
     def values(self, cells: Flat) -> dict[str, Array]:
         """The values of the fields in these draws."""
@@ -165,21 +171,30 @@ class Draws(Entry):
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
         """The number of every draw, and the values drawn."""
-        found: dict[str, tuple[str, NDArray[Any]]] = {"draw": ("draw", np.arange(self.count))}
-        found |= {field: ("draw", values) for field, values in self._drawn(0, self.count).items()}
+        found: dict[str, tuple[str, NDArray[Any]]] = {SAMPLE: (SAMPLE, np.arange(self.count))}
+        found |= {field: (SAMPLE, values) for field, values in self._drawn(0, self.count).items()}
         return found
 
     def _drawn(self, first: int, last: int) -> dict[str, Array]:
         """The draws from first to before last, without making those before."""
         found = {}
         for place, entry in enumerate(self.ranges):
-            source = np.random.PCG64([self.seed, place]).advance(first)
-            shares = np.random.Generator(source).random(last - first)
+            shares = shares_of(self.seed, place, first, last)
             found[entry.field] = between(entry.low, entry.high, shares, entry.law == "log-uniform")
         return found
 
 
-def _check_fields(name: str, fields: Sequence[str]) -> None:
+def shares_of(seed: int, place: int, first: int, last: int) -> Array:
+    """Return uniform random numbers in (0, 1) of the draws from a first to before a last.
+
+    They follow from the seed, the number of the field (`place`) and that of the draw alone.
+    """
+    source = np.random.PCG64([seed, place]).advance(first)
+    return np.random.Generator(source).random(last - first) + 0.5**54
+
+
+def check_fields(name: str, fields: Sequence[str]) -> None:
+    """Raise `InvalidInput` unless there are fields, and none of them twice."""
     if not fields or len(set(fields)) < len(fields):
         raise InvalidInput(name, ", ".join(fields), "at least one field, and none of them twice")
 
@@ -189,8 +204,8 @@ def _table(entries: Iterable[Axis | Range]) -> dict[str, Any]:
     return {entry.field: entry.model_dump(by_alias=True, exclude={"field"}) for entry in entries}
 
 
-def _read(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind, ...]:
-    """The axes, or ranges, of a table, or of pairs of a field and what stands there."""
+def read_fields(name: str, table: Any, of: Callable[[str, Any], _Kind]) -> tuple[_Kind, ...]:
+    """Return the axes, ranges or columns of a table, or of pairs of a field and an entry."""
     if isinstance(table, tuple):
         return table
     if not (_pairs(table) or isinstance(table, Mapping)):
@@ -214,7 +229,7 @@ def _flattened(name: str, table: Mapping[str, Any], prefix: str = "") -> Iterato
             raise InvalidInput(
                 name, field, "names with single dots between them, such as launch.spin"
             )
-        if isinstance(value, Mapping) and not {"from", "values", "to"} & set(value):
+        if isinstance(value, Mapping) and not ENTRIES & set(value):
             if field.count(".") >= DEEPEST:
                 raise InvalidInput(name, value, f"tables nested at most {DEEPEST} deep")
             yield from _flattened(name, value, f"{field}.")

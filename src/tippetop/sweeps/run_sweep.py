@@ -10,10 +10,11 @@ import numpy as np
 import xarray as xr
 
 from tippetop.problem.problem import Problem
-from tippetop.support.errors import InvalidInput, require
+from tippetop.support.errors import MISSING, InvalidInput, require
 from tippetop.support.validation import require_callback
 from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
 from tippetop.sweeps.grid import Draws, Product
+from tippetop.sweeps.launch_samples import LaunchSamples
 from tippetop.sweeps.schedulers import Cluster, Found, need_workers, results
 from tippetop.sweeps.store import Store
 from tippetop.sweeps.store_layout import CONTENTS, Status, coordinate_attributes, layout_attributes
@@ -113,8 +114,11 @@ def compute(
 
 def sweep(
     problem: Problem,
-    over: Mapping[str, Any] | Product | Draws,
+    over: Mapping[str, Any] | Product | Draws | None = None,
     *,
+    samples: Any = None,
+    n: int | None = None,
+    seed: int = 0,
     duration: float = 20.0,
     tolerance: float = DEFAULT_TOLERANCE,
     settled: float | None = None,
@@ -135,7 +139,16 @@ def sweep(
     over
         Fields, named with dots, and their values in SI units: arrays, lists, or tables such as
         ``{"from": 0.05, "to": 1, "count": 40, "spacing": "geometric"}``, of which all combinations
-        are launched; or `Draws`.
+        are launched; or `Draws`. Left out where launches are sampled.
+    samples
+        Fields and how each is sampled: one number a launch (a list, an array, a Series), a frozen
+        distribution of `scipy.stats`, or a table ``{"law": "normal", "mean": 150, "std": 5}`` or
+        ``{"law": "lognormal", "median": 0.3, "sigma": 0.1}``; or a DataFrame with a column a field
+        and a row a launch, in which they may be correlated.
+    n
+        How many samples; left out where values are listed.
+    seed
+        What random samples follow from: a sample does not depend on how many there are.
     duration
         Length of every run, s.
     tolerance
@@ -179,7 +192,13 @@ def sweep(
     >>> [round(float(tilt), 2) for tilt in found["final_theta"]]
     [0.0, 1.5, 3.14]
     """
-    grid = over if isinstance(over, Draws) else Product.of(over)
+    if (over is None) == (samples is None):
+        given = MISSING if over is None else "both"
+        raise InvalidInput("over, samples", given, "one of them")
+    if samples is not None:
+        grid: Product | Draws | LaunchSamples = LaunchSamples.of(samples, n, seed)
+    else:
+        grid = over if isinstance(over, Draws) else Product.of(over)
     chosen = Sweep(problem, grid, duration, tolerance, settled)
     require_callback("callback", callback)
     for field, asked in {"overwrite": overwrite, "resume": resume}.items():

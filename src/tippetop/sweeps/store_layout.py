@@ -21,8 +21,9 @@ from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, s
 from tippetop.support.files import refuse_overwriting
 from tippetop.support.validation import Quantity
 from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.grid import SAMPLE, Product
 
-FORMAT = "tippetop sweep 2"
+FORMAT = "tippetop sweep 3"
 """Name and version of the layout; a store of another is refused."""
 METADATA = "zarr.json"
 DIGEST = "digest"
@@ -106,12 +107,13 @@ def layout_attributes(sweep: Sweep) -> dict[str, Any]:
         "duration": sweep.duration,
         "tolerance": sweep.tolerance,
         "tippetop_version": __version__,
+        **({} if isinstance(sweep.grid, Product) else {"seed": sweep.grid.seed}),
     }
 
 
 def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
     """The attributes of a coordinate by the CF conventions."""
-    kind = Quantity("1", "number of the draw") if name == "draw" else sweep.problem.quantity(name)
+    kind = Quantity("1", "number of the sample") if name == SAMPLE else sweep.problem.quantity(name)
     return Variable(kind.long_name, kind.units).attributes
 
 
