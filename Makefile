@@ -6,7 +6,7 @@ OUT ?= tippetop-report
 
 BUILT = src/tippetop/export/built/lab.html
 
-.PHONY: reproduce page test test-browser test-docs doctest chromium check lint types contract docs bench quick dist review clean
+.PHONY: reproduce page test test-browser test-docs doctest map chromium check lint types contract docs bench quick dist review clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 	-@! command -v node >/dev/null || $(MAKE) --no-print-directory page  # then a run plays in it
@@ -31,6 +31,9 @@ doctest: $(VENV)/.installed-dev ## Run the examples of the docstrings and every 
 
 docs: $(BUILT) $(VENV)/.installed-docs ## Build the documentation into docs/_build/html, with every notebook run
 	$(BIN)/python -m sphinx -W --keep-going -q -j auto -b html docs docs/_build/html
+
+map: $(VENV)/.installed-dev ## Draw the rooms of CONTRIBUTING.md anew from the imports
+	$(BIN)/python docs/house.py
 
 test-docs: $(BUILT) $(VENV)/.installed-docs ## Look at every page of the documentation that is built, in a browser
 	DOCS=docs/_build/html $(BIN)/python -m pytest -m browser tests/test_site.py

@@ -1,96 +1,92 @@
-"""The source as a whole: no circles among its imports, and no class name used twice."""
+"""The source as a whole: no circular imports, no class name used twice, and a map that is true."""
 
 import ast
 import importlib.util
+import json
+import re
+import subprocess
+import sys
 from collections import Counter
-from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
-from typing import TypeGuard
+from types import ModuleType
+
+import grimp
+import pytest
 
 import tippetop
+from tippetop.integrators import has_taylor
 
 SOURCE = Path(tippetop.__file__).parent
-MODULES = {
-    ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts).removesuffix(".__init__"): path
-    for path in SOURCE.rglob("*.py")
-}
+ROOT = Path(__file__).parents[1]
+GUIDE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+FIRST_CALLS = """
+import json, sys
+import tippetop as tt
+problem, calls = tt.presets.report_problem(), {}
+def note(frame, event, argument):
+    if event == "call":
+        calls.setdefault((frame.f_code.co_filename, frame.f_code.co_qualname))
+tt.simulate
+sys.setprofile(note)
+tt.simulate(problem, 0.5)
+sys.setprofile(None)
+print(json.dumps(list(calls)))
+"""
 
 
-def is_for_types(node: ast.AST) -> TypeGuard[ast.If]:
-    return isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
-
-
-def run_nodes(node: ast.AST) -> Iterator[ast.AST]:
-    """Everything below a node but what only type checkers read."""
-    children = node.orelse if is_for_types(node) else ast.iter_child_nodes(node)
-    for child in children:
-        yield child
-        yield from run_nodes(child)
-
-
-def imported(module: str, path: Path) -> set[str]:
-    """The modules of the package that a module imports, wherever in it."""
-    package = module if path.stem == "__init__" else module.rpartition(".")[0]
-    return imported_by(module, package, path.read_text(encoding="utf-8"))
-
-
-def imported_by(module: str, package: str, text: str) -> set[str]:
-    """The same of a module's text."""
-    found = set()
-    for node in run_nodes(ast.parse(text)):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            home = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
-            for alias in node.names:
-                name = f"{home}.{alias.name}"
-                found.add(name if name in MODULES else home)
-    return found & set(MODULES) - {module}
-
-
-def circle(graph: dict[str, set[str]]) -> list[str]:
-    """One of the circles of a graph, if there is any."""
-    try:
-        TopologicalSorter(graph).prepare()
-    except CycleError as error:
-        return list(error.args[1])
-    return []
+@pytest.fixture(scope="module")
+def house() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("house", ROOT / "docs" / "house.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def test_no_module_imports_itself_by_way_of_others() -> None:
-    graph = {module: imported(module, path) for module, path in MODULES.items()}
-    assert sum(map(len, graph.values())) > len(graph), "they do import each other"
-    assert circle(graph) == []
+    graph = grimp.build_graph("tippetop", exclude_type_checking_imports=True, cache_dir=None)
+    imports = {module: graph.find_modules_directly_imported_by(module) for module in graph.modules}
+    assert sum(map(len, imports.values())) > len(imports), "they do import each other"
+    try:
+        TopologicalSorter(imports).prepare()
+    except CycleError as error:
+        pytest.fail(" imports ".join(error.args[1][::-1]))
 
 
 def test_no_two_classes_share_a_name() -> None:
     names = Counter(
         node.name
-        for path in MODULES.values()
+        for path in SOURCE.rglob("*.py")
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, ast.ClassDef)
     )
     assert {name for name, count in names.items() if count > 1} == set()
 
 
-def test_a_circle_is_found_wherever_it_hides() -> None:
-    """Inside functions and classes, but not where only type checkers look."""
-    hidden = """
-if TYPE_CHECKING:
-    from tippetop.problem.bodies import Body
-else:
-    import tippetop.problem.presets
-class Deep:
-    def inside(self):
-        from tippetop.support import errors
-        from .support.files import written_beside
-"""
-    found = imported_by("tippetop.deep", "tippetop", hidden)
-    assert found == {
-        "tippetop.problem.presets",
-        "tippetop.support.errors",
-        "tippetop.support.files",
-    }
-    assert circle({"a": {"b"}, "b": {"c"}, "c": {"a"}})
-    assert circle({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []
+def test_the_map_shows_the_imports_that_there_are(house: ModuleType) -> None:
+    assert house.PICTURE.read_text(encoding="utf-8") == house.picture(), "run `make map`"
+
+
+def test_the_map_leaves_out_what_is_reached_through_another_room(house: ModuleType) -> None:
+    imports = {"a": {"b", "c", "d"}, "b": {"c"}, "c": set(), "d": {"c"}}
+    assert house.reduced(imports) == {"a": {"b", "d"}, "b": {"c"}, "c": set(), "d": {"c"}}
+    assert house.ranks(imports) == {"c": 0, "b": 1, "d": 1, "a": 2}
+
+
+def test_every_path_in_the_guide_exists() -> None:
+    paths = re.findall(r"`((?:[\w.-]+/)+[\w.-]*|\w+\.(?:md|py|toml))`|\]\((.+?)\)", GUIDE)
+    named = [quoted or linked for quoted, linked in paths]
+    assert len(named) > 40
+    assert [path for path in named if not any((at / path).exists() for at in (ROOT, SOURCE))] == []
+
+
+@pytest.mark.skipif(not has_taylor(), reason="another method is the best where heyoka is not")
+def test_a_launch_goes_the_way_that_the_guide_tells() -> None:
+    told = re.findall(r"^\d+\. `src/tippetop/([\w/]+\.py)`, `([\w.]+)`", GUIDE, re.MULTILINE)
+    done = subprocess.run(
+        [sys.executable, "-c", FIRST_CALLS], capture_output=True, text=True, check=True
+    )
+    calls = [tuple(call) for call in json.loads(done.stdout)]
+    first = [calls.index((str(SOURCE / path), name)) for path, name in told]
+    assert len(told) == 20
+    assert first == sorted(first)
