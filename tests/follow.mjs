@@ -2,7 +2,7 @@
 import { createInterface } from "node:readline";
 import { pathToFileURL } from "node:url";
 
-const { InvalidInput, criticalSpins, predict, prospects, simulate } = await import(
+const { InvalidInput, criticalSpins, doubts, predict, prospects, simulate } = await import(
   pathToFileURL(process.argv[2])
 );
 
@@ -32,6 +32,7 @@ function foreseen({ problem }) {
     predict: () => predict(problem),
     critical: () => criticalSpins(problem),
     prospects: () => prospects(problem.body),
+    doubts: () => doubts(problem),
   };
   const told = (ask) => {
     try {

@@ -23,6 +23,7 @@ from .problem.frictions import ViscousFriction as ViscousFriction
 from .problem.hertz_patch import MATERIALS as MATERIALS
 from .problem.hertz_patch import Material as Material
 from .problem.hertz_patch import hertz_patch_radius as hertz_patch_radius
+from .problem.implausible import Implausible as Implausible
 from .problem.launch import Launch as Launch
 from .problem.problem import Problem as Problem
 from .problem.shapes import EccentricSphere as EccentricSphere

@@ -19,6 +19,7 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
+from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.results.dataset import assemble
 from tippetop.results.metrics import metrics
@@ -49,7 +50,7 @@ def simulate(
     step_limit: int = STEP_LIMIT,
     callback: Callable[[float], None] | None = None,
 ) -> xr.Dataset:
-    """Simulate a problem.
+    """Simulate a problem; warn with `Implausible` of numbers that no top has.
 
     Parameters
     ----------
@@ -115,6 +116,7 @@ def simulate(
     grid = sample_times(duration, samples, times)
     top = natural(problem.top)
     method = integrator_of(integrator, tolerance, step, units)
+    warn_if_implausible(problem)
     state = natural_state(problem.start(), units)
     launch = rules_of(problem.contact, top, units).launch(state)
     trajectory = Trajectory(launch, duration / units.time, method, phase_limit, step_limit)

@@ -311,6 +311,22 @@ def test_the_headline_is_true_of_other_bodies(
 
 
 @pytest.mark.parametrize(
+    ("language", "said"),
+    [
+        ("en", "Implausible: the spin at launch is 12000 rad/s, beyond 10000 rad/s."),
+        ("de", "Unwahrscheinlich: Die Drehung beim Start"),
+    ],
+)
+def test_an_implausible_launch_is_said_to_be_so_beside_the_headline(
+    lab: Lab, language: str, said: str
+) -> None:
+    visitor = lab(f"lang={language}&launch.spin=12000&duration=1")
+    visitor.page.locator(".tt-words", has_text=said).wait_for()
+    visitor = lab(f"lang={language}&launch.spin=155&duration=1")
+    assert said.partition(":")[0] not in visitor.page.locator(".tt-words").inner_text()
+
+
+@pytest.mark.parametrize(
     "body",
     [*(group(ratio) for ratio in (0.6, 0.94, 1.4)), tt.presets.EGG],
     ids=["one mark", "two marks", "the other mark", "an egg"],

@@ -8,6 +8,7 @@ import pytest
 
 import tippetop as tt
 from launches import in_javascript, launch_of
+from tippetop.problem.plausibility import doubts
 from tippetop.theory.prospects import prospects
 
 SEEDS = range(300)
@@ -51,7 +52,7 @@ def assert_alike(theirs: Any, ours: Any, where: str) -> None:
 def test_what_is_foreseen_is_the_same() -> None:
     launches = [launch_of(seed) for seed in SEEDS]
     answers = in_javascript([{"problem": fields, "theory": True} for fields in launches])
-    refused = ends = stems = 0
+    refused = ends = stems = doubtful = 0
     for seed, fields, theirs in zip(SEEDS, launches, answers, strict=True):
         try:
             problem = tt.Problem(**fields)
@@ -62,11 +63,14 @@ def test_what_is_foreseen_is_the_same() -> None:
             "predict": told(lambda problem=problem: tt.predict(problem)),
             "critical": told(lambda problem=problem: tt.critical_spins(problem)),
             "prospects": told(lambda body=body: prospects(body, list(body.shapes))),
+            "doubts": [{"kind": doubt.kind, "gaps": dict(doubt.gaps)} for doubt in doubts(problem)],
         }
         assert_alike(theirs, ours, f"seed {seed}:")
         ends += "stable" in ours["predict"]
         refused += "refused" in ours["predict"]
+        doubtful += bool(ours["doubts"])
         stems += bool(ours["prospects"] and ours["prospects"].get("stem"))
     assert ends > 20
     assert refused > 100
     assert stems > 0
+    assert doubtful > 20

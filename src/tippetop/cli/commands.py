@@ -3,7 +3,8 @@ code.
 """
 
 import sys
-from typing import Annotated, Any
+import warnings
+from typing import Annotated, Any, TextIO
 
 import typer
 from pydantic import ValidationError
@@ -99,8 +100,21 @@ def tippetop(
     """A laboratory for the tippe top, the toy that turns itself upside down."""
 
 
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """Show a warning in one line, without the place in the code that Python shows."""
+    typer.echo(f"tippetop: {message}", err=True)
+
+
 def run() -> None:
     """Run the command that is asked for; misuse ends with one sentence and exit code 2."""
+    warnings.showwarning = _show_warning
     try:
         app()
     except TippetopError as error:

@@ -26,9 +26,11 @@ def critical(
     as_json: Json = False,
 ) -> None:
     """Say what the theory knows of a launch: its critical spins, its end, and how long it takes."""
-    from tippetop.theory.overview import outlook  # noqa: PLC0415 - slow to import
+    from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415 - slow to import
+    from tippetop.theory.overview import outlook  # noqa: PLC0415
 
     problem = choice.problem()
+    warn_if_implausible(problem)
     found = outlook(problem)
     if as_json:
         told = {"critical_spins_tilt": problem.launch.tilt, "problem": problem.model_dump()}

@@ -85,7 +85,9 @@ def sweep(
     force: Force = False,
 ) -> None:
     """See what becomes of many launches: over axes that cross, or draws at random."""
-    from tippetop.sweeps import Store, fill  # noqa: PLC0415 - slow to import
+    from tippetop.problem.implausible import warn  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps import Store, fill  # noqa: PLC0415
+    from tippetop.sweeps.implausible_cells import implausible_cells  # noqa: PLC0415
     from tippetop.sweeps.schedulers import need_workers  # noqa: PLC0415
     from tippetop.sweeps.store_layout import kept_sweep, refuse_existing  # noqa: PLC0415
 
@@ -103,6 +105,8 @@ def sweep(
         for path in pictures.values():
             place_for(path, force or resume)
         store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
+        if doubt := implausible_cells(chosen):
+            warn(doubt)
         progress: list[Progress] = []
         try:
             with progress_bar() as tell:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from tippetop.mechanics.top import natural_units
 from tippetop.problem.problem import Problem
 from tippetop.support.errors import InvalidInput
-from tippetop.theory.prediction import Prediction, predict
+from tippetop.theory.prediction import Prediction, predicted
 from tippetop.theory.steady import SteadyKind, SteadyState
-from tippetop.theory.thresholds import CriticalSpins, critical_spins
+from tippetop.theory.thresholds import CriticalSpins, stability_limits
 
 NEAR = 0.05
 """How close to a vertical the axis must end to count as there, rad."""
@@ -59,7 +59,7 @@ def known_spins(problem: Problem) -> CriticalSpins | None:
     if not problem.top.conserves_jellett:
         return None
     try:
-        return critical_spins(problem)
+        return stability_limits(problem)
     except InvalidInput:
         return None
 
@@ -71,7 +71,7 @@ def known_end(problem: Problem) -> Prediction | None:
     if problem.friction.vanishes:
         return None
     try:
-        prediction = predict(problem)
+        prediction = predicted(problem)
     except InvalidInput:
         return None
     return prediction if prediction.reachable else None

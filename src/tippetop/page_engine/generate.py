@@ -18,6 +18,7 @@ ROOTS = (
     "tippetop.contact.choice",
     "tippetop.contact.trajectory",
     "tippetop.problem.problem",
+    "tippetop.problem.plausibility",
     "tippetop.theory.prediction",
     "tippetop.theory.prospects",
     "tippetop.mechanics.view",
@@ -40,6 +41,7 @@ GIVEN = {
     "tippetop.integrators.iteration": "./compile.js",
     "tippetop.integrators.rates": "",
     "tippetop.integrators.evaluation": "",
+    "tippetop.problem.implausible": "",
     "tippetop.support.validation": "./part.js",
     "tippetop.support.field_paths": "./part.js",
     "tippetop.support.files": "",
@@ -56,6 +58,7 @@ LEFT = {
     "Body.turned",
     "Contact.rules",
     "require_problem",
+    "warn_if_implausible",
     *(
         "TippetopError",
         "FileTrouble",

@@ -15,6 +15,11 @@ export function prospects(body, gravity, tilt) {
   const whole = new m.Body(body);
   return plain(m.prospects(whole, whole.shapes, gravity, tilt));
 }
+/** What is implausible about a launch: kinds, and texts for the gaps in their sentences. */
+export const doubts = (problem) =>
+  m
+    .doubts(new m.Problem(problem))
+    .map(({ kind, gaps }) => ({ kind, gaps: Object.fromEntries(gaps) }));
 
 /** The surface of a body that touches at cos(tilt): `height` and `slope` of its support function. */
 export function lowestSurface(body) {

@@ -13,6 +13,7 @@ from tippetop.problem import presets
 from tippetop.problem.bodies import Body
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.frictions import Friction
+from tippetop.problem.implausible import SENTENCES
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem
 from tippetop.problem.shapes import Shape
@@ -45,6 +46,7 @@ def tables(command: str) -> str:
         ),
         "CATALOGUE": {"sampled": {name: _variable(one) for name, one in catalogue.SAMPLED.items()}},
         "NEAR_FINAL": catalogue.NEAR_FINAL,
+        "DOUBTS": SENTENCES,
     }
     numbers = {
         "SHORTEST": SHORTEST,

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from tippetop.problem.implausible import warn
 from tippetop.problem.problem import Problem
 from tippetop.support.errors import MISSING, InvalidInput, require
 from tippetop.support.validation import require_callback
 from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
 from tippetop.sweeps.grid import Draws, Product
+from tippetop.sweeps.implausible_cells import implausible_cells
 from tippetop.sweeps.launch_samples import LaunchSamples
 from tippetop.sweeps.schedulers import Cluster, Found, need_workers, results
 from tippetop.sweeps.store import Store
@@ -209,6 +211,8 @@ def sweep(
         raise InvalidInput(
             "overwrite", overwrite, "False with resume=True, which keeps what is there"
         )
+    if doubt := implausible_cells(chosen):
+        warn(doubt)
     if out is None:
         return compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
     with need_workers(chosen, workers, scheduler) as cluster:

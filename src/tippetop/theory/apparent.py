@@ -15,7 +15,7 @@ from tippetop.problem.problem import Problem
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.stability import linear_tilts, vertical_growth_rates
 from tippetop.theory.steady import SteadyKind, vertical_spin
-from tippetop.theory.thresholds import CriticalSpins, critical_spins, jellett_line
+from tippetop.theory.thresholds import CriticalSpins, jellett_line, stability_limits
 
 _SEARCH = 1.05
 
@@ -75,7 +75,7 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
         raise InvalidInput("visible", visible, "a distance between 0 and the launch's tilt")
     if not window > 0.0:
         raise InvalidInput("window", window, "a positive time")
-    real = critical_spins(problem)
+    real = stability_limits(problem)
     top, line = problem.top, jellett_line(problem)
     per_spin = vertical_spin(SteadyKind.UPRIGHT, top, 1.0).jellett
 

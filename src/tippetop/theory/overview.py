@@ -17,7 +17,7 @@ from tippetop.theory.prediction import (
     Prediction,
     hull_of,
     on_surface,
-    predict,
+    predicted,
     steady_launch,
     tilts_held,
 )
@@ -39,7 +39,7 @@ from tippetop.theory.thresholds import (
     CriticalSpins,
     critical_jellett,
     critical_spin,
-    critical_spins,
+    stability_limits,
     stands,
 )
 
@@ -183,12 +183,12 @@ def outlook(problem: Problem) -> Outlook:
         group=classify_top(top) if grouped else None,
         lambda_up=critical_jellett(SteadyKind.UPRIGHT, top) if creeping else None,
         lambda_down=critical_jellett(SteadyKind.INVERTED, top) if creeping else None,
-        critical_spins=critical_spins(problem) if creeping else None,
+        critical_spins=stability_limits(problem) if creeping else None,
         tilt=problem.launch.tilt,
         jellett=jellett,
         stays=None if stays is None else _judged(stays, top),
         swings=_swings(problem) if top.surface.spherical and smooth else None,
-        prediction=predict(problem) if sphere and creeping and not smooth else None,
+        prediction=predicted(problem) if sphere and creeping and not smooth else None,
         steady=tuple(_judged(state, top) for state in steady_states(problem)),
         mu_flip_time=limit,
         flip_time=time,
@@ -241,7 +241,7 @@ def _on_one_of_several(problem: Problem) -> Outlook:
     found = outlook(on_surface(problem, hull.active))
     low, high = tilts_held(hull, problem.launch.tilt)
     try:
-        prediction = predict(problem) if found.prediction else None
+        prediction = predicted(problem) if found.prediction else None
     except InvalidInput:
         prediction = None
     return replace(

@@ -21,6 +21,7 @@ from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
+from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.requirements import require_creep, require_jellett
@@ -85,6 +86,12 @@ def predict(problem: Problem) -> Prediction:
     ('inverted', -82.87, True)
     """
     require_problem(problem)
+    warn_if_implausible(problem)
+    return predicted(problem)
+
+
+def predicted(problem: Problem) -> Prediction:
+    """Return what `predict` does, also of a part of a body, and without a warning."""
     top = problem.top
     if isinstance(top.surface, Hull):
         return _on_one_of_several(problem, hull_of(problem))
@@ -111,7 +118,7 @@ def _on_one_of_several(problem: Problem, hull: Hull) -> Prediction:
     nods beside that path goes with the launch and the friction.
     """
     alone = on_surface(problem, hull.active)
-    found = predict(alone)
+    found = predicted(alone)
     available = float(energy(alone.start(), alone.top))
     ends = touching_tilts(hull, problem.launch.tilt)
     for tilt, number in ends.items():

@@ -22,8 +22,8 @@ from tippetop.theory.thresholds import (
     CriticalSpins,
     critical_jellett,
     critical_spin,
-    critical_spins,
     jellett_line,
+    stability_limits,
 )
 
 
@@ -104,7 +104,7 @@ def prospects(
         if isinstance(shapes[-1], Sphere) and len(shapes) > 1
         else None
     )
-    return Prospects(sphere.eccentricity, group, critical_spins(problem), tilt, touch, stem)
+    return Prospects(sphere.eccentricity, group, stability_limits(problem), tilt, touch, stem)
 
 
 def _touch(problem: Problem, surfaces: tuple[Surface, ...], group: Group) -> Touch | None:

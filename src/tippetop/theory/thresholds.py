@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
+from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.steady import (
@@ -92,6 +93,12 @@ def critical_spins(problem: Problem) -> CriticalSpins:
     (27.84, 77.23)
     """
     require_problem(problem)
+    warn_if_implausible(problem)
+    return stability_limits(problem)
+
+
+def stability_limits(problem: Problem) -> CriticalSpins:
+    """Return what `critical_spins` does, also of a part of a body, and without a warning."""
     require_creep(problem.top)
     if not problem.top.conserves_jellett:
         return CriticalSpins(*(critical_spin(kind, problem.top) for kind in VERTICAL_SPINS))

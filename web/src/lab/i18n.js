@@ -1,14 +1,17 @@
 // The page's words, in one catalogue for each language.
 
+import { DOUBTS } from "engine-tables";
+
 import de from "../../texts/de.json";
 import en from "../../texts/en.json";
 
-export const LANGUAGES = { en, de };
+// The sentences of doubts are Python's in English.
+export const LANGUAGES = { en: { ...en, doubts: DOUBTS }, de };
 
-let words = en;
+let words = LANGUAGES.en;
 
 export function speak(language) {
-  words = LANGUAGES[language] ?? en;
+  words = LANGUAGES[language] ?? LANGUAGES.en;
 }
 
 export function preferred() {

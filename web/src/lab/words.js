@@ -1,6 +1,6 @@
 // What became of a launch, in words: a headline, and sentences beside it.
 
-import { t } from "./i18n.js";
+import { decimal, t } from "./i18n.js";
 import { digits, shown } from "./units.js";
 
 // How near a vertical counts as there, how near all along as having stayed there, rad; the end of a run, its share.
@@ -21,12 +21,18 @@ export function tell(track, prospect, units) {
   }
   const jumps = jumpsOf(header);
   if (jumps) details.unshift(jumps);
+  details.unshift(...header.doubts.map(doubtInWords));
   return { headline: headline(track, prospect, units), details };
 }
 
 export function heading({ ends, certain }, units) {
   const texts = ends.map((end) => endInWords(end, units));
   return t(certain ? "controls.heads" : "controls.headsMany", { end: texts.join(" / ") });
+}
+
+function doubtInWords({ kind, gaps }) {
+  const texts = Object.entries(gaps).map(([name, text]) => [name, decimal(text)]);
+  return t("words.doubt", { doubt: t(`doubts.${kind}`, Object.fromEntries(texts)) });
 }
 
 // Whether a run has hardly moved, though its end is elsewhere.

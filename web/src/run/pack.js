@@ -1,6 +1,6 @@
 // A run of the engine as the player and the plots take it: a header, times and columns, all to be transferred.
 
-import { lowestSurface } from "engine";
+import { doubts, lowestSurface } from "engine";
 
 import { foresee } from "./foresee.js";
 import { SCENES, sizeOf, toyParts } from "./looks.js";
@@ -64,6 +64,7 @@ export function pack(problem, run, samples) {
     scenes: SCENES,
     problem,
     prospect: foresee(problem),
+    doubts: doubts(problem),
     asked: run.duration,
     outcome: run.outcome,
     metrics,

@@ -1,0 +1,65 @@
+"""Warnings of implausible problems: the category, and its sentences."""
+
+import sys
+import warnings
+
+from tippetop.problem.plausibility import Doubt, doubts
+from tippetop.problem.problem import Problem
+
+SENTENCES = {
+    "moment": (
+        "{name} = {value} is above m r^2 = {bound}, r = {radius}:"
+        " no mass inside the surface has as much"
+    ),
+    "core": "{name} = {value} is less than a thousandth of m r^2 = {bound}, r = {radius}",
+    "centre": "the centre of mass is {distance} outside the surface",
+    "mass": "the mass is {value}; most tops have 0.1 g to 5 kg",
+    "size": "the body is {across} across and {height} high; most tops have 1 mm to 0.5 m",
+    "patch": (
+        "the contact patch has a radius of {patch}, more than half of the body's, {radius}:"
+        " friction is that of a small patch"
+    ),
+    "tilt": "the tilt at launch is {value}, above pi/2: the axis points down",
+    "spin": "the spin at launch is {value}, beyond 10000 rad/s",
+    "heavy": "the centre of mass is {height} above the ball's centre: it does not turn over",
+    "light": "a mass of {value} in a volume of {volume} floats on air",
+}
+"""What is said of each kind of doubt; gaps in braces."""
+
+
+class Implausible(UserWarning):
+    """A problem is simulated whose numbers no top has, or that were meant in other units.
+
+    Examples
+    --------
+    >>> import tippetop as tt, warnings
+    >>> heavy = tt.presets.report_problem().replace({"body.mass": 20.0})
+    >>> with warnings.catch_warnings(record=True, action="always") as said:
+    ...     run = tt.simulate(heavy, duration=0.1)
+    >>> print(said[-1].message)
+    the mass is 20 kg; most tops have 0.1 g to 5 kg
+    >>> warnings.filterwarnings("ignore", category=tt.Implausible)  # says none of them any more
+    """
+
+
+def sentence(doubt: Doubt) -> str:
+    """Return a doubt in words."""
+    return SENTENCES[doubt.kind].format(**dict(doubt.gaps))
+
+
+def warn_if_implausible(problem: Problem) -> None:
+    """Warn of everything that is implausible about a problem."""
+    for doubt in doubts(problem):
+        warn(sentence(doubt))
+
+
+def warn(text: str) -> None:
+    """Warn with `Implausible`, in the line outside of this package that led here."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back and frame.f_globals.get("__name__", "").startswith(CALLERS):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(text, Implausible, stacklevel=level)
+
+
+CALLERS = ("tippetop.", "numpy.")
+"""Modules whose lines nobody looks for a warning in: numpy's wrap ours."""
