@@ -33,6 +33,7 @@ def rules_for(top: Top, liftoff: str, restitution: float) -> Rules:
     return StopAtLiftOff(top) if liftoff == "stop" else Bilateral(top)
 
 
+# translate: skip
 def rules_of(way: Contact, top: Top, units: Units) -> Rules:
     """The rules of a top in natural units: those that its problem's contact brings, or the
     usual.

@@ -49,7 +49,7 @@ class OnTwo(StatedMode):
     @property
     def form(self) -> str:
         """How it rolls decides what its numbers say of the couple."""
-        return f"{self.name} {self.rolls}"
+        return f"{self.name} {self.rolls:g}"
 
     @property
     def label(self) -> str:

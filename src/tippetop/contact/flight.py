@@ -1,5 +1,7 @@
 """The top flies, in closed form."""
 
+# translate module: numbers
+
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -126,6 +126,7 @@ def instants(mode: Mode, y: Row) -> tuple[Scalar, ...]:
     return Instants.of(mode, y).pack()
 
 
+# translate: skip
 def read(reading: Reading, mode: Mode, y: Array, *others: Scalar, total: int = 0) -> Array:
     """Read numbers off those of a mode.
 
@@ -159,6 +160,7 @@ def read(reading: Reading, mode: Mode, y: Array, *others: Scalar, total: int = 0
     return found
 
 
+# translate: skip
 def _compiled(reading: Reading, mode: Mode, size: int, others: int) -> Evaluation | None:
     """A reading of modes of this kind, compiled, if it can be and they are all alike."""
     if not isinstance(mode, IntegratedMode) or not mode.lasting:
@@ -171,6 +173,7 @@ def _compiled(reading: Reading, mode: Mode, size: int, others: int) -> Evaluatio
     )
 
 
+# translate: skip
 @lru_cache
 def _of_kind(reading: Reading, form: Any, kind: Kind) -> Rows:
     """A reading of modes of this kind as a function of their numbers and those of their tops."""

@@ -92,6 +92,7 @@ class Node:
             return self is other
         raise NotRecordable(NO_CHOICE)
 
+    # translate: skip
     def __hash__(self) -> int:
         return self.place
 
@@ -115,7 +116,7 @@ class Graph:
 
     def node(self, name: str, operands: tuple[Node, ...], value: float = 0.0) -> Node:
         """The node of this description, which is made if there is none."""
-        key = " ".join([name, repr(value), *[str(operand.place) for operand in operands]])
+        key = " ".join([name, f"{value:.17g}", *[str(operand.place) for operand in operands]])
         found = self._known.get(key)
         if found is None:
             found = Node(self, name, operands, value, len(self.nodes))
@@ -181,6 +182,7 @@ class Graph:
             return a if condition else b
         return self.node(SELECT, (condition, self.taken(a), self.taken(b)))
 
+    # translate: skip
     def rarely(self, condition: Any, a: Any, b: Any) -> Any:
         """The same; the first is computed only where launches abreast have need of it."""
         return self.node(RARELY, (self.taken(condition), self.taken(a), self.taken(b)))

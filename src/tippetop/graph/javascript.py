@@ -14,9 +14,9 @@ def javascript_source(recorded: Recorded, name: str) -> str:
 def _written(node: Node) -> str:
     names = [f"t{operand.place}" for operand in node.operands]
     if node.name == CONSTANT:
-        return repr(node.value)
+        return f"{node.value:.17g}"
     if node.name in (STATE, PARAMETER):
-        return f"{node.name}[{node.value}]"
+        return f"{node.name}[{int(node.value)}]"
     if node.name in ("+", "-", "*", "/"):
         return f"{names[0]} {node.name} {names[1]}"
     if node.name == NEGATIVE:

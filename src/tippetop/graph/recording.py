@@ -51,6 +51,7 @@ def record(function: Function, size: int, parameters: int, more: int = 0) -> Rec
     )
 
 
+# translate: skip
 def recordable(function: Function, size: int, parameters: int) -> Recorded | None:
     """What a function does, see `record`; None where it asks nodes for what only numbers have."""
     try:

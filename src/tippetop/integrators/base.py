@@ -64,6 +64,7 @@ class Guard:
     value: Function
     """A function of state and parameters, positive while the motion may go on."""
 
+    # translate: skip
     def with_parameters(self, parameters: Sequence[Scalar]) -> Callable[[Array], float]:
         """The value as a function of the state alone."""
         return lambda state: float(self.value(state.tolist(), parameters))

@@ -2,6 +2,8 @@
 method.
 """
 
+# translate module: by hand in dense.js
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache

@@ -5,6 +5,8 @@ error estimate, step sizes and dense output are as in SciPy's DOP853. Sums are c
 rounding takes from the state in a step is given back in the next.
 """
 
+# translate module: arrays
+
 import math
 from collections.abc import Callable
 from typing import Any, TypeAlias

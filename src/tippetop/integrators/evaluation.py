@@ -1,5 +1,7 @@
 """Functions of states and parameters for many states at once, compiled."""
 
+# translate module: skip
+
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any, TypeAlias

@@ -1,5 +1,7 @@
 """Where a guard falls through zero within a step of an integrator."""
 
+# translate module: numbers
+
 import math
 from collections.abc import Callable, Iterator, Sequence
 

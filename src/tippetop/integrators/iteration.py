@@ -2,6 +2,8 @@
 be.
 """
 
+# translate module: by hand in compile.js
+
 import ctypes
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias

@@ -1,5 +1,7 @@
 """First zeros and extremes of many polynomials at once, each on its own interval from zero."""
 
+# translate module: skip
+
 from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
 from typing import Any, TypeAlias

@@ -2,6 +2,8 @@
 it.
 """
 
+# translate module: numbers
+
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 

@@ -12,6 +12,8 @@ it responds much more to friction than another, as sliding does on a small patch
 lasts: equations that are stiff.
 """
 
+# translate module: numbers
+
 import math
 from dataclasses import dataclass
 from typing import Self

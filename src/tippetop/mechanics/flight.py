@@ -5,6 +5,8 @@ I1, and the centre of mass falls (Landau and Lifshitz, Mechanics, sections 33 an
 the axis so obeys y''' = -w^2 y', and every other one of the state y''' = 0.
 """
 
+# translate module: numbers
+
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top

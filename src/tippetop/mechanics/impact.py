@@ -30,6 +30,8 @@ the impact goes on until it is zero.
 Jellett's integral is conserved: P acts at the fixed arm, and a.(a x P) = 0.
 """
 
+# translate module: numbers
+
 from typing import NamedTuple
 
 from tippetop.mechanics.dry_impact import DryProcess, is_dry
@@ -85,7 +87,7 @@ def impact(state: State, restitution: float, top: Top, beside: Top | None = None
     """
     if not 0.0 <= restitution <= 1.0:
         raise ValueError(
-            f"the coefficient of restitution must lie between 0 and 1, but is {restitution}"
+            f"the coefficient of restitution must lie between 0 and 1, but is {restitution:g}"
         )
     body = Striking.of(state, top)
     process = process_of(body, beside)

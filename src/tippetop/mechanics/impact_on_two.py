@@ -9,6 +9,8 @@ table does at the other contact is a force and a torque at the first, too: that 
 it.
 """
 
+# translate module: numbers
+
 from dataclasses import dataclass, replace
 from typing import Self
 

@@ -1,5 +1,7 @@
 """Impacts under a friction law, and how one is integrated."""
 
+# translate module: numbers
+
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence

@@ -1,5 +1,7 @@
 """A body that is struck at its contact point, and what impulses of the table do to it."""
 
+# translate module: numbers
+
 from collections.abc import Callable, Sequence
 from operator import mul
 from typing import NamedTuple, TypeAlias

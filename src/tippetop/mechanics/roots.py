@@ -1,5 +1,7 @@
 """Roots of functions of one number: the first one, with proof, and the one between two signs."""
 
+# translate module: numbers
+
 from collections.abc import Callable
 from typing import TypeAlias
 

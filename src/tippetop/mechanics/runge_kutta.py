@@ -3,6 +3,8 @@
 Hairer, Norsett and Wanner 1993, Solving Ordinary Differential Equations I, section II.10.
 """
 
+# translate module: numbers
+
 import math
 from collections.abc import Callable, Sequence
 from operator import mul

@@ -1,5 +1,7 @@
 """The gap of a body in free flight as a function of time."""
 
+# translate module: numbers
+
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -6,6 +6,8 @@ chapter 11; Jorba and Zou 2005, Experimental Mathematics 14). The coefficients m
 number a launch, or expressions that are compiled for such arrays.
 """
 
+# translate module: series
+
 from collections.abc import Callable, Sequence
 from operator import mul
 from typing import Any, Protocol

@@ -10,6 +10,8 @@ time at which its last terms are small. Solutions nearby decay to it like exp(-1
 integrator goes on.
 """
 
+# translate module: series
+
 import math
 from collections.abc import Callable, Sequence
 from operator import mul

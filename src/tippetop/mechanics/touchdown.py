@@ -36,6 +36,8 @@ that counts as a touch. Any shape will do that is written in plain operators and
 1].
 """
 
+# translate module: numbers
+
 from enum import IntEnum
 
 from tippetop.mechanics.roots import Triple, crossing, first_root

@@ -61,7 +61,7 @@ def power(base: Scalar, exponent: float) -> Scalar:
     """A power that is not whole; no number of a negative float, of which Python makes a complex
     number.
     """
-    return nan if isinstance(base, float) and base < 0.0 else base**exponent
+    return nan if isinstance(base, (int, float)) and base < 0.0 else base**exponent
 
 
 def solve(matrix: list[list[Scalar]], right: list[Scalar]) -> list[Scalar]:

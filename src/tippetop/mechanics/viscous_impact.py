@@ -1,5 +1,7 @@
 """An impact with viscous friction, in closed form."""
 
+# translate module: numbers
+
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -1,18 +1,24 @@
 """The engine's generated modules: mechanics and contact modes as JavaScript, tables and the
 method.
+
+`ROOTS` and what they import are translated. How a module or a definition is treated stands in that
+module, in comments that begin with ``# translate`` (see `tippetop.translate.declarations`).
 """
 
 import ast
 import importlib
 import inspect
 import re
+from collections.abc import Mapping
+from pathlib import Path
 
 from tippetop.integrators.tableau import written_out
-from tippetop.page_engine import COMMAND
+from tippetop.page_engine import COMMAND, HERE
 from tippetop.page_engine.tables import tables
 from tippetop.translate.definitions import Definitions
 from tippetop.translate.layout import laid_out
 from tippetop.translate.program import Program
+from tippetop.translate.refusal import Untranslatable
 
 ROOTS = (
     "tippetop.contact.choice",
@@ -34,84 +40,37 @@ ROOTS = (
 )
 """What the engine asks for: these, and what they import, are translated."""
 
-GIVEN = {
-    "tippetop.results.catalogue": "./tables.js",
-    "tippetop.integrators.dense": "./dense.js",
-    "tippetop.integrators.polynomials": "",
-    "tippetop.integrators.iteration": "./compile.js",
-    "tippetop.integrators.rates": "",
-    "tippetop.integrators.evaluation": "",
-    "tippetop.problem.implausible": "",
-    "tippetop.support.validation": "./part.js",
-    "tippetop.support.field_paths": "./part.js",
-    "tippetop.support.files": "",
-    "tippetop.support.parsing": "",
-    "tippetop.support.accepted_values": "",
-}
-"""What is written by hand, and where; nothing is asked of those without a place."""
-
-LEFT = {
-    "rules_of",
-    "touching",
-    "_shape",
-    "_a_profile",
-    "Body.turned",
-    "Contact.rules",
-    "require_problem",
-    "warn_if_implausible",
-    *(
-        "TippetopError",
-        "FileTrouble",
-        "Unavailable",
-        "InvalidInput.__reduce__",
-        "require",
-        "one_of",
-    ),
-    *("is_number", "is_whole", "short", "_typed"),
-    *("read", "recordable", "_compiled", "_of_kind", "continuous", "Guard.with_parameters"),
-    *("Ends.unknown", "Ends.put", "ending", "turning_time", "arrival_time"),
-    *("Monitor.energy_error", "Graph.rarely"),
-    *("precession_branch", "state_of", "is_held", "steady_launch"),
-    *(
-        f"Problem.{name}"
-        for name in ("replace", "to_toml", "to_json", "from_toml", "from_json", "read")
-    ),
-}
-"""What no page asks for, or what it has of the runtime."""
-
-INDEXED = {"tippetop.mechanics.series", "tippetop.mechanics.slip_onset"}
-"""Where what is indexed may be a series."""
-
-PLAIN = {
-    *(f"tippetop.integrators.{name}" for name in ("falls", "stepping")),
-    *(f"tippetop.mechanics.{name}" for name in ("flight", "roots", "separation", "touchdown")),
-    *(
-        f"tippetop.mechanics.{name}"
-        for name in ("dry_impact", "impact", "impact_on_two", "impact_process")
-    ),
-    *(f"tippetop.mechanics.{name}" for name in ("impulse", "runge_kutta", "viscous_impact")),
-    "tippetop.contact.flight",
-}
-"""Where arithmetic is with numbers alone: no series, and nothing that is recorded."""
-
 METHOD = "tippetop.integrators.dormand_prince"
 """Its coefficients are written out beside it."""
+
+IS_LEAF = re.compile(r"^# translate module: (?:skip|by hand in .*)$", re.M)
+"""Declaration of a module that is not translated."""
 
 SLIDING = 8
 """Numbers of a sliding top, for which a browser takes two thirds of the time without loops."""
 
-NUMERIC = {METHOD}
-"""Where all is numbers, and arrays of them."""
-
 
 def generated() -> dict[str, str]:
-    """The texts of the modules by their names."""
-    return {"mechanics.js": translated(), "tables.js": tables(COMMAND)}
+    """Return the texts of the modules by their names.
+
+    Raises
+    ------
+    Untranslatable
+        If the modules use what has no translation, or a declaration in them does not hold.
+    """
+    constants = tables(COMMAND)
+    return {"mechanics.js": translated({"tables.js": constants}), "tables.js": constants}
 
 
-def translated() -> str:
-    """The module of mechanics and contact modes."""
-    program = Program(sources(), GIVEN, LEFT, INDEXED, PLAIN, NUMERIC)
+def translated(generated_files: Mapping[str, str]) -> str:
+    """Return the module of mechanics and contact modes.
+
+    Parameters
+    ----------
+    generated_files
+        Texts of generated modules that it imports, by their names.
+    """
+    program = Program(*sources())
     lines = list[str]()
     for module in program.trees:
         lines += ["", f"// {module}"]
@@ -123,30 +82,48 @@ def translated() -> str:
         'import * as py from "./runtime.js";',
     ]
     for path, names in program.imported.items():
-        if path and names & used:
+        if names & used:
+            require_exports(path, names & used, generated_files)
             head.append(f'import {{ {", ".join(sorted(names & used))} }} from "{path}";')
     tail = ["", "export {", *(f"  {name}," for name in sorted(program.made)), "};"]
     return "\n".join([*head, *lines, *tail]) + "\n"
 
 
-def sources() -> dict[str, str]:
-    """The texts of the translated modules by their names, each after those it imports."""
-    found: dict[str, str] = {}
+def require_exports(path: str, names: set[str], generated_files: Mapping[str, str]) -> None:
+    """Refuse to import names that a JavaScript file written by hand does not export."""
+    file = path.removeprefix("./")
+    text = generated_files.get(file) or (HERE / file).read_text(encoding="utf-8")
+    exported = set(re.findall(r"^export (?:const|class|function\*?) (\w+)", text, re.M))
+    for name in sorted(names - exported):
+        raise Untranslatable(str(HERE / file), 1, f"the file exports no '{name}'")
+
+
+def sources() -> tuple[dict[str, str], dict[str, str]]:
+    """Return the texts and the files of the modules by their names, each after those it imports.
+
+    Modules that declare a counterpart by hand, or that they are skipped, are among them without
+    what they import.
+    """
+    texts: dict[str, str] = {}
+    files: dict[str, str] = {}
 
     def visit(module: str) -> None:
-        if module in found or module in GIVEN or not module.startswith("tippetop."):
+        if module in texts or not module.startswith("tippetop."):
             return
-        text = _text(module)
-        for node in ast.parse(text).body:
-            if isinstance(node, ast.ImportFrom):
-                visit(str(node.module))
-        found[module] = text
+        loaded = importlib.import_module(module)
+        text, file = inspect.getsource(loaded), str(loaded.__file__)
+        if not IS_LEAF.search(text):
+            for node in ast.parse(text).body:
+                if isinstance(node, ast.ImportFrom):
+                    visit(str(node.module))
+        texts[module] = text + written_out(SLIDING) if module == METHOD else text
+        files[module] = str(Path(file).relative_to(Path.cwd())) if in_folder(file) else file
 
     for module in ROOTS:
         visit(module)
-    return found
+    return texts, files
 
 
-def _text(module: str) -> str:
-    text = inspect.getsource(importlib.import_module(module))
-    return text + written_out(SLIDING) if module == METHOD else text
+def in_folder(file: str) -> bool:
+    """Return whether a file is in the folder that the command runs in."""
+    return Path(file).is_relative_to(Path.cwd())

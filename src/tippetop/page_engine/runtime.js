@@ -5,10 +5,10 @@ export * from "./words.js";
 
 export class ArithmeticError extends Error {}
 export class ZeroDivisionError extends ArithmeticError {}
+export class ValueError extends Error {}
+export class NotImplementedError extends Error {}
+export class AssertionError extends Error {}
 export const NotImplemented = null;
-export const ValueError = Error;
-export const NotImplementedError = Error;
-export const AssertionError = Error;
 
 // Blocks under way in which undefined results are no errors, but no numbers, as in arrays.
 let lenientBlocks = 0;
@@ -93,8 +93,48 @@ function finite(result, operand) {
   return result;
 }
 
-export const floordiv = (a, b) => Math.floor(a / b);
-export const mod = (a, b) => a - b * Math.floor(a / b);
+/** Quotient and remainder as Python has them: the remainder is exact, with the sign of the divisor. */
+function divided(a, b) {
+  if (b === 0) throw new ZeroDivisionError("division by zero");
+  let remainder = a % b;
+  let quotient = (a - remainder) / b;
+  if (remainder !== 0 && remainder < 0 !== b < 0) {
+    remainder += b;
+    quotient -= 1;
+  }
+  const whole = Math.floor(quotient);
+  return [quotient - whole > 0.5 ? whole + 1 : whole, remainder];
+}
+
+export function floordiv(a, b) {
+  if (typeof a === "number" && typeof b === "number") return divided(a, b)[0];
+  return applied(a, b, "__floordiv__", "__rfloordiv__", floordiv);
+}
+
+export function mod(a, b) {
+  if (typeof a === "number" && typeof b === "number") return divided(a, b)[1];
+  return applied(a, b, "__mod__", "__rmod__", mod);
+}
+
+function truths(a, b) {
+  if (typeof a !== "boolean" || typeof b !== "boolean")
+    throw new TypeError("| and & are of truth values only");
+}
+export function either(a, b) {
+  truths(a, b);
+  return a || b;
+}
+export function both(a, b) {
+  truths(a, b);
+  return a && b;
+}
+
+/** A sum for `+=` of what is no list: a list would be extended in place. */
+export function add_in_place(a, b) {
+  if (Array.isArray(a))
+    throw new TypeError("it is not known whether a list or a tuple is extended");
+  return add(a, b);
+}
 
 export function neg(a) {
   if (typeof a === "number") return -a;
@@ -103,15 +143,30 @@ export function neg(a) {
 }
 
 export const abs = (a) => (typeof a === "number" ? Math.abs(a) : a.__abs__());
-export const float = (a) => (a === "inf" ? Infinity : Number(a));
-export const int = (a) => Math.trunc(Number(a));
-
-export function str(a) {
-  if (a instanceof Error) return a.message;
-  if (a instanceof Enum) return a.name;
-  return typeof a === "string" ? a : repr(a);
+export function float(a) {
+  if (typeof a !== "string") return Number(a);
+  const text = a.trim().toLowerCase();
+  if (/^[+-]?(inf|infinity)$/.test(text)) return text.startsWith("-") ? -Infinity : Infinity;
+  const number = Number(text);
+  if (text !== "nan" && (!text || Number.isNaN(number) || /[xob]/.test(text)))
+    throw new ValueError(`could not convert string to float: ${repr(a)}`);
+  return number;
 }
-
+export function int(a) {
+  if (typeof a === "string" && !/^\s*[+-]?\d+\s*$/.test(a))
+    throw new ValueError(`invalid literal for int() with base 10: ${repr(a)}`);
+  const number = Math.trunc(Number(a));
+  if (Number.isNaN(number)) throw new ValueError("cannot convert float NaN to integer");
+  if (!Number.isFinite(number))
+    throw new ArithmeticError("cannot convert float infinity to integer");
+  return number;
+}
+export function str(a) {
+  if (typeof a === "string") return a;
+  if (a instanceof Error) return a.message;
+  if (a instanceof StrEnum) return a.value;
+  return a instanceof Enum ? `${a.constructor.name}.${a.name}` : repr(a);
+}
 export const sum = (values, start = 0) =>
   tuple(values).reduce((total, value) => add(total, value), start);
 
@@ -119,6 +174,8 @@ export function truth(a) {
   if (typeof a === "number") return a !== 0;
   if (a === null || a === undefined || typeof a !== "object") return Boolean(a);
   if (typeof a.__bool__ === "function") return a.__bool__();
+  if (a instanceof Set) return a.size > 0;
+  if (ArrayBuffer.isView(a)) throw new TypeError("an array has no truth value");
   return a instanceof NamedTuple || a.length === undefined ? true : a.length > 0;
 }
 const or_ = (a, other) => (truth(a) ? a : other());
@@ -126,12 +183,31 @@ const and_ = (a, other) => (truth(a) ? other() : a);
 
 export { and_ as and, or_ as or, truth as bool };
 
+function within_domain(x, holds) {
+  if (!holds && !Number.isNaN(x)) throw new ValueError("math domain error");
+  return x;
+}
+
+function whole(number) {
+  if (number > 2 ** 53) throw new ArithmeticError("integers are exact up to 2**53 only");
+  return number;
+}
+
 export const math = {
   __proto__: Math,
   pi: Math.PI,
   inf: Infinity,
   nan: NaN,
-  factorial: (count) => (count > 1 ? count * math.factorial(count - 1) : 1),
+  sqrt: (x) => Math.sqrt(within_domain(x, x >= 0)),
+  log: (x) => Math.log(within_domain(x, x > 0)),
+  log10: (x) => Math.log10(within_domain(x, x > 0)),
+  log1p: (x) => Math.log1p(within_domain(x, x > -1)),
+  acos: (x) => Math.acos(within_domain(x, x >= -1 && x <= 1)),
+  asin: (x) => Math.asin(within_domain(x, x >= -1 && x <= 1)),
+  exp: (x) => finite(Math.exp(x), x),
+  expm1: (x) => finite(Math.expm1(x), x),
+  isnan: Number.isNaN,
+  factorial: (count) => whole(count > 1 ? count * math.factorial(count - 1) : 1),
   isfinite: Number.isFinite,
   isinf: (x) => Math.abs(x) === Infinity,
   sinh: (x) => finite(Math.sinh(x), x),
@@ -143,7 +219,11 @@ const identity = (one) => one;
 
 /** What is asked of NumPy: arrays to be filled, those of two dimensions as lists of arrays; and numbers for arrays. */
 export const np = {
-  __proto__: math,
+  __proto__: Math,
+  pi: Math.PI,
+  inf: Infinity,
+  nan: NaN,
+  isfinite: Number.isFinite,
   arctan2: Math.atan2,
   minimum: Math.min,
   maximum: Math.max,
@@ -185,10 +265,15 @@ export class Record extends Thing {}
 
 export function replace(one, changes) {
   const { fields } = one.constructor;
+  for (const name of Object.keys(changes))
+    if (!fields.includes(name)) throw new TypeError(`${one.constructor.name} has no field ${name}`);
   return new one.constructor(
     ...fields.map((name) => (name in changes ? changes[name] : one[name])),
   );
 }
+
+/** Its members are numbers. */
+export class IntEnum extends Thing {}
 
 export class Enum {
   constructor(name, value) {
@@ -200,6 +285,9 @@ export class Enum {
     return Object.values(this)[Symbol.iterator]();
   }
 }
+
+/** Its members equal their values. */
+export class StrEnum extends Enum {}
 
 /** Records, tuples with names and words of an enumeration as plain objects, arrays and strings. */
 export function plain(one) {
@@ -213,19 +301,33 @@ export function plain(one) {
 
 const isRow = (a) => Array.isArray(a) || a instanceof NamedTuple;
 
+const isPlain = (a) => a === null || (typeof a !== "object" && typeof a !== "boolean");
+
 export function eq(a, b) {
   if (a === b) return true;
+  if (isPlain(a) && isPlain(b)) return false;
+  if (takes(a, "__eq__")) return a.__eq__(b);
+  if (takes(b, "__eq__")) return b.__eq__(a);
   if (isRow(a) && isRow(b)) {
-    return len(a) === len(b) && [...a].every((one, place) => eq(one, b[place]));
+    const [one, other] = [[...a], [...b]];
+    return one.length === other.length && one.every((each, place) => eq(each, other[place]));
   }
-  if (a instanceof Record && a.constructor === b?.constructor) {
+  if (a instanceof Record && a.constructor === b?.constructor)
     return a.constructor.fields.every((name) => eq(a[name], b[name]));
-  }
-  return typeof a === "boolean" && typeof b === "number" ? Number(a) === b : false;
+  if (a instanceof StrEnum || b instanceof StrEnum) return said(a) === said(b);
+  for (const one of [a, b])
+    if (one instanceof Map || one instanceof Set || ArrayBuffer.isView(one))
+      throw new TypeError("equality of sets, dicts and arrays is not known");
+  if (typeof a === "boolean" || typeof b === "boolean")
+    return isNumber(a) && isNumber(b) && Number(a) === Number(b);
+  return false;
 }
+const said = (a) => (a instanceof StrEnum ? a.value : a);
+const isNumber = (a) => typeof a === "number" || typeof a === "boolean";
 
 export function contains(all, one) {
-  if (all instanceof Map || all instanceof Set) return all.has(one);
+  if (all instanceof Map || all instanceof Set) return all.has(place_of(one));
+  if (typeof all === "string") return all.includes(one);
   return [...all].some((each) => eq(each, one));
 }
 
@@ -234,6 +336,7 @@ let identityCount = 0;
 
 /** A text that is the same for values that are equal. */
 function key(a) {
+  if (typeof a === "string") return JSON.stringify(a);
   if (a === null || (typeof a !== "object" && typeof a !== "function")) return String(a);
   if (Array.isArray(a)) return `(${a.map(key).join()})`;
   if (a instanceof NamedTuple || a instanceof Record) {
@@ -258,12 +361,22 @@ export function cached(function_, most = 1024) {
   };
 }
 
+/** What stands in a set or a dict: tuples and records would be told apart though they are equal. */
+function place_of(one) {
+  if (isRow(one) || one instanceof Record)
+    throw new TypeError("tuples and records in sets and dicts are not known");
+  return one;
+}
+
 export class Dict extends Map {
   get length() {
     return this.size;
   }
   get(one, other = null) {
-    return this.has(one) ? super.get(one) : other;
+    return this.has(place_of(one)) ? super.get(one) : other;
+  }
+  set(one, value) {
+    return super.set(place_of(one), value);
   }
   [Symbol.iterator]() {
     return this.keys();
@@ -275,11 +388,17 @@ export class Dict extends Map {
 export function item(all, place) {
   if (
     typeof place === "number" &&
-    (Array.isArray(all) || all instanceof NamedTuple || ArrayBuffer.isView(all))
+    (Array.isArray(all) ||
+      typeof all === "string" ||
+      all instanceof NamedTuple ||
+      ArrayBuffer.isView(all))
   ) {
     return all[place < 0 ? len(all) + place : place];
   }
-  if (all instanceof Dict) return all.get(place);
+  if (all instanceof Dict) {
+    if (!all.has(place)) throw new TypeError(`a dict has no ${place}`);
+    return all.get(place);
+  }
   return all.__getitem__ === undefined ? all[place] : all.__getitem__(place);
 }
 
@@ -296,9 +415,29 @@ export function slice(all, from, to, step) {
   return tuple(all).slice(start, end).reverse();
 }
 
-export const len = (all) =>
-  all instanceof NamedTuple ? all.constructor.fields.length : all.length;
-
+export function len(all) {
+  if (all instanceof NamedTuple) return all.constructor.fields.length;
+  const count = all instanceof Set ? all.size : all.length;
+  if (count === undefined) throw new TypeError("it has no length");
+  return count;
+}
+/** Extend a list in place, as all who have it see. */
+export function extend(all, values) {
+  for (const value of list(values)) all.push(value);
+  return all;
+}
+export function index(all, one) {
+  const place = typeof all === "string" ? all.indexOf(one) : list(all).findIndex((a) => eq(a, one));
+  if (place < 0) throw new ValueError("it is not in the list");
+  return place;
+}
+export function pop(all) {
+  if (!all.length) throw new TypeError("pop from an empty list");
+  return all.pop();
+}
+export const add_to = (all, one) => {
+  all.add(place_of(one));
+};
 /** So many values: `Array.from`, and spreading of what is no list, take ten times as long. */
 function filled(count, value) {
   const values = [];
@@ -310,13 +449,12 @@ export const list = (all = []) =>
   ArrayBuffer.isView(all) ? filled(all.length, (place) => all[place]) : [...all];
 export const tuple = (all = []) => (Array.isArray(all) ? all : list(all));
 export const dict = (pairs = []) => new Dict(pairs);
-
-export function range(start, stop = null, step = 1) {
-  if (stop === null) return filled(start, identity);
-  return filled(Math.ceil((stop - start) / step), (place) => start + place * step);
-}
-
-export const enumerate = (all) => Array.from(all, (one, place) => [place, one]);
+export const set = (all = []) => new Set(list(all).map(place_of));
+export const range = (start, stop = null, step = 1) =>
+  stop === null
+    ? filled(start, (place) => place)
+    : filled(Math.ceil((stop - start) / step), (place) => start + place * step);
+export const enumerate = (all, start = 0) => Array.from(all, (one, place) => [start + place, one]);
 export const reversed = (all) => [...all].reverse();
 
 export function zip(...sequences) {
@@ -324,22 +462,33 @@ export function zip(...sequences) {
   const shortest = rows.reduce((a, b) => (b.length < a.length ? b : a));
   return shortest.map((_, place) => rows.map((row) => row[place]));
 }
-
-export function map(function_, ...sequences) {
-  if (sequences.length !== 2) return zip(...sequences).map((row) => function_(...row));
-  const [a, b] = sequences.map(tuple);
+/** `zip` of rows that must be as long as each other. */
+export function zip_equal(...rows) {
+  const all = rows.map(tuple);
+  if (all.some((row) => row.length !== all[0].length))
+    throw new ValueError("zip() has arguments of different lengths");
+  return zip(...all);
+}
+export function map(function_, ...rows) {
+  const [a, b] = rows.map(tuple);
+  if (rows.length !== 2) return zip(...rows).map((row) => function_(...row));
   return filled(Math.min(a.length, b.length), (place) => function_(a[place], b[place]));
 }
 
 export const pairwise = (all) => zip(all, all.slice(1));
 export const any = (all) => [...all].some(truth);
 export const all = (each) => [...each].every(truth);
-export const next = ([first], otherwise) => (first === undefined ? otherwise : first);
+export function next([first], ...otherwise) {
+  if (first === undefined && !otherwise.length) throw new TypeError("there is no next one");
+  return first === undefined ? otherwise[0] : first;
+}
 
 function isBelow(a, b) {
-  if (!isRow(a)) return a < b;
-  const place = [...a].findIndex((one, i) => one !== b[i]);
-  return place >= 0 && isBelow(a[place], b[place]);
+  if (!isRow(a) || !isRow(b)) return a < b;
+  const [one, other] = [[...a], [...b]];
+  const place = one.findIndex((each, i) => i >= other.length || !eq(each, other[i]));
+  if (place < 0) return one.length < other.length;
+  return place < other.length && isBelow(one[place], other[place]);
 }
 
 /** The best of some values, or of those in one sequence; `key` and `default` may be the last operand's. */
@@ -376,15 +525,32 @@ export function sorted(all, { key: worth = identity } = {}) {
 
 // ---- objects
 
-export const is_number = Number.isFinite;
-export const is_whole = Number.isInteger;
-export const getattr = (one, name, otherwise) => (hasattr(one, name) ? one[name] : otherwise);
-export const bound = (one, name) => one[name].bind(one);
+export const is_number = Number.isFinite,
+  is_whole = Number.isInteger;
+export function getattr(one, name, ...otherwise) {
+  if (hasattr(one, name)) return member(one, name);
+  if (!otherwise.length && typeof one !== "function") throw new TypeError(`it has no ${name}`);
+  return typeof one === "function" && name in one ? one[name] : otherwise[0];
+}
+/** A field, or a method with the object or class it belongs to. */
+export function member(one, name) {
+  const value = one[name];
+  return typeof value === "function" && isMethod(one, name) ? value.bind(one) : value;
+}
+function isMethod(one, name) {
+  if (typeof one === "function") return true;
+  if (Object.hasOwn(one, name)) return false;
+  let above = Object.getPrototypeOf(one);
+  while (above !== null && !Object.hasOwn(above, name)) above = Object.getPrototypeOf(above);
+  return above !== null && "value" in Object.getOwnPropertyDescriptor(above, name);
+}
 export const type = (one) => one.constructor;
 
 export function isinstance(one, kind) {
   if (Array.isArray(kind)) return kind.some((each) => isinstance(one, each));
   if (kind === float || kind === int) return typeof one === "number" || typeof one === "boolean";
-  if (kind === tuple || kind === list) return Array.isArray(one);
+  if (kind === tuple) return isRow(one);
+  if (kind === str) return typeof one === "string";
+  if (kind === truth) return typeof one === "boolean";
   return one instanceof kind;
 }

@@ -1,10 +1,32 @@
 // What Python makes of values and texts in words.
-export const repr = (a) =>
-  typeof a === "string"
-    ? `'${JSON.stringify(a).slice(1, -1).replaceAll('\\"', '"')}'`
-    : Object.is(a, -0)
-      ? "-0"
-      : String(a);
+
+/** A string as Python writes it in code, with its choice of quotes. */
+function quoted(text) {
+  const quote = text.includes("'") && !text.includes('"') ? '"' : "'";
+  const shown = Array.from(text, (letter) => {
+    if (letter === quote || letter === "\\") return `\\${letter}`;
+    if (letter in ESCAPES) return ESCAPES[letter];
+    return isprintable(letter) ? letter : escaped(letter.codePointAt(0));
+  });
+  return quote + shown.join("") + quote;
+}
+const ESCAPES = { "\n": "\\n", "\r": "\\r", "\t": "\\t" };
+
+function escaped(code) {
+  const [sign, width] = code < 0x100 ? ["x", 2] : code < 0x10000 ? ["u", 4] : ["U", 8];
+  return `\\${sign}${code.toString(16).padStart(width, "0")}`;
+}
+
+/** Strings, numbers, truth values and None as Python's `repr`; whole numbers are taken for integers. */
+export function repr(a) {
+  if (typeof a === "string") return quoted(a);
+  if (typeof a === "number") return Object.is(a, -0) ? "-0.0" : typed(a, WHOLE);
+  if (typeof a === "boolean") return a ? "True" : "False";
+  if (a === null) return "None";
+  throw new TypeError("only strings, numbers and truth values are written as text");
+}
+const WHOLE = 2 ** 53;
+
 export const join = (between, all) => [...all].join(between);
 export const isprintable = (text) => !/[\p{C}\p{Zl}\p{Zp}]|(?! )\p{Zs}/u.test(text);
 export const removeprefix = (text, part) =>
@@ -16,10 +38,37 @@ export function typed(value, most = 1e16) {
     plainly = value === 0 || (size >= 1e-4 && size < most);
   return plainly ? String(value) : value.toExponential().replace(/([+-])(\d)$/, "$10$2");
 }
-/** The same of so many digits, as the format `g` says. */
+
+/** A number with so many digits, as Python's format `g`: half-way cases go to the even digit. */
 export function format(value, how_) {
+  if (typeof value !== "number") throw new TypeError("only numbers have a format");
+  if (!Number.isFinite(value)) return typed(value);
   const digits = how_.length > 1 ? Number(how_.slice(1, -1)) : 6;
-  return typed(Number(value.toPrecision(digits)), 10 ** digits);
+  const sign = value < 0 || Object.is(value, -0) ? "-" : "";
+  const [figures, power] = rounded(Math.abs(value), digits);
+  if (power >= -4 && power < digits) {
+    const text = power < 0 ? "0".repeat(-power) + figures : figures.padEnd(power + 1, "0");
+    const whole = Math.max(power, 0) + 1;
+    return sign + trimmed(text.slice(0, whole), text.slice(whole));
+  }
+  const size = String(Math.abs(power)).padStart(2, "0");
+  return `${sign}${trimmed(figures[0], figures.slice(1))}e${power < 0 ? "-" : "+"}${size}`;
+}
+
+function trimmed(whole, part) {
+  const shown = part.replace(/0+$/, "");
+  return shown ? `${whole}.${shown}` : whole;
+}
+
+/** The first digits of a positive number, or of zero, and the power of ten of the first of them. */
+function rounded(size, digits) {
+  const split = (count) => {
+    const [figures, power] = size.toExponential(count - 1).split("e");
+    return [figures.replace(".", ""), Number(power)];
+  };
+  const [exact, power] = split(Math.min(digits + 40, 101));
+  const isHalfWay = /^50*$/.test(exact.slice(digits)) && Number(exact[digits - 1]) % 2 === 0;
+  return isHalfWay ? [exact.slice(0, digits), power] : split(digits);
 }
 
 /** A value in a sentence, as it would be typed. */

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tippetop.lathe.workpiece import Insert, Workpiece
 
 
+# translate: skip
 def _a_profile(
     points: tuple[tuple[float, ...], ...] | None,
 ) -> tuple[tuple[float, ...], ...] | None:
@@ -95,6 +96,7 @@ class Body(Part):
             return Hull.of(tuple(shape.surface for shape in self.shape))
         return self.shape.surface
 
+    # translate: skip
     @classmethod
     def turned(
         cls,
@@ -156,6 +158,7 @@ class Body(Part):
         )
 
 
+# translate: skip
 def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
     """The surfaces that a turned body touches the table with, as seen from its centre of mass.
 
@@ -182,6 +185,7 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
     return shapes
 
 
+# translate: skip
 def _shape(zone: "Zone", center: float) -> Shape:
     if zone.radius == 0.0 and zone.tube:
         return Sphere(radius=zone.tube, center=center)

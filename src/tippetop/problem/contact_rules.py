@@ -35,6 +35,7 @@ class Contact(Variant):
     liftoff: Literal["fly", "stop", "ignore"] = "fly"
     restitution: Annotated[Fraction, Quantity("1", "coefficient of restitution")] = 0.0
 
+    # translate: skip
     def rules(self, top: Top, units: Units) -> Any:
         """What follows where contact begins or ends, in natural units, where that is not as
         described here.

@@ -6,6 +6,7 @@ import warnings
 from tippetop.problem.plausibility import Doubt, doubts
 from tippetop.problem.problem import Problem
 
+# translate: skip
 SENTENCES = {
     "moment": (
         "{name} = {value} is above m r^2 = {bound}, r = {radius}:"
@@ -27,6 +28,7 @@ SENTENCES = {
 """What is said of each kind of doubt; gaps in braces."""
 
 
+# translate: skip
 class Implausible(UserWarning):
     """A problem is simulated whose numbers no top has, or that were meant in other units.
 
@@ -42,17 +44,20 @@ class Implausible(UserWarning):
     """
 
 
+# translate: skip
 def sentence(doubt: Doubt) -> str:
     """Return a doubt in words."""
     return SENTENCES[doubt.kind].format(**dict(doubt.gaps))
 
 
+# translate: drop
 def warn_if_implausible(problem: Problem) -> None:
     """Warn of everything that is implausible about a problem."""
     for doubt in doubts(problem):
         warn(sentence(doubt))
 
 
+# translate: skip
 def warn(text: str) -> None:
     """Warn with `Implausible`, in the line outside of this package that led here."""
     frame, level = sys._getframe(1), 2
@@ -61,5 +66,6 @@ def warn(text: str) -> None:
     warnings.warn(text, Implausible, stacklevel=level)
 
 
+# translate: skip
 CALLERS = ("tippetop.", "numpy.")
 """Modules whose lines nobody looks for a warning in: numpy's wrap ours."""

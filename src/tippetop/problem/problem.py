@@ -104,7 +104,7 @@ class Problem(Part):
     def top(self) -> Top:
         """The problem's numbers as the mechanics takes them, SI."""
         body, arm = self.body, self.rolling_resistance
-        resistance = None if isinstance(arm, float) and not arm else RollingResistance(arm)
+        resistance = None if isinstance(arm, (int, float)) and not arm else RollingResistance(arm)
         return Top(
             body.mass, body.I1, body.I3, body.surface, self.friction.law, self.gravity, resistance
         )
@@ -135,6 +135,7 @@ class Problem(Part):
             velocity=touching.velocity if launch.velocity is None else launch.velocity,
         )
 
+    # translate: skip
     def replace(self, changes: Mapping[str, Any]) -> Self:
         """Copy with some fields replaced, named with dots: ``problem.replace({"launch.spin":
         100.0})``.
@@ -177,14 +178,17 @@ class Problem(Part):
             table[last] = value
         return type(self)(**fields)
 
+    # translate: skip
     def to_toml(self) -> str:
         """Write the problem as TOML."""
         return tomli_w.dumps(json.loads(self.to_json()))
 
+    # translate: skip
     def to_json(self) -> str:
         """Write the problem as JSON."""
         return self.model_dump_json(exclude_none=True)
 
+    # translate: skip
     @classmethod
     def from_toml(cls, text: str) -> Self:
         """Read a problem from TOML text.
@@ -196,6 +200,7 @@ class Problem(Part):
         """
         return cls(**parse_toml(text, "problem"))
 
+    # translate: skip
     @classmethod
     def from_json(cls, text: str) -> Self:
         """Read a problem from JSON text.
@@ -207,6 +212,7 @@ class Problem(Part):
         """
         return cls(**parse_json(text, "problem"))
 
+    # translate: skip
     @classmethod
     def read(cls, path: Path | str) -> Self:
         """Read a problem from a .toml or .json file.
@@ -225,6 +231,7 @@ class Problem(Part):
             return cls(**fields)
 
 
+# translate: drop
 def require_problem(problem: object) -> None:
     """Refuse what is no problem, with `InvalidInput`."""
     require("problem", problem, Problem, "a Problem, such as presets.report_problem() makes")

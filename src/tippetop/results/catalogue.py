@@ -1,5 +1,7 @@
 """Every variable of a result: what it is called, what it is, its SI unit and how plots name it."""
 
+# translate module: by hand in tables.js
+
 import re
 from collections.abc import Mapping
 from enum import IntEnum

@@ -68,6 +68,7 @@ class Ends:
     arrived: Scalar
     """First time n_z was in the band of `final_band`; nan if it never was."""
 
+    # translate: skip
     @classmethod
     def unknown(cls, count: int) -> "Ends":
         """Ends that nothing is known of yet."""
@@ -120,6 +121,7 @@ class Ends:
             *when,
         )
 
+    # translate: skip
     def put(self, where: NDArray[np.intp], found: "Ends") -> None:
         """Put what was found of some launches in its places."""
         for field in fields(self):
@@ -131,6 +133,7 @@ class Ends:
                 mine[where] = theirs
 
 
+# translate: skip
 def turning_time(tip: Polynomials) -> Array:
     """First times at which n_z falls through 0 from above, nan where it does not, shape (n,).
 
@@ -139,6 +142,7 @@ def turning_time(tip: Polynomials) -> Array:
     return tip.first_fall(from_above=True)
 
 
+# translate: skip
 def arrival_time(tip: Polynomials, low: Scalar, high: Scalar) -> Array:
     """First times at which n_z is between `low` and `high`, shape (n,); nan where it is not."""
     start = tip.unit[0]
@@ -202,6 +206,7 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
     }
 
 
+# translate: skip
 def ending(ends: Ends) -> NDArray[np.int8]:
     """Numbers of `tippetop.results.catalogue.Ending`, shape (n,)."""
     final = tilt(ends.state)

@@ -51,6 +51,7 @@ class Monitor:
         self._imbalance, self._least, self._most = 0.0, jellett, jellett
         self._largest, self._off_unit, self._sunk = abs(self._energy), 0.0, 0.0
 
+    # translate: skip
     @property
     def energy_error(self) -> Scalar:
         """Largest error so far of the balance of energy and work, relative to the energy."""

@@ -93,6 +93,7 @@ def event_in_si(event: Event, units: Units) -> Event:
     )
 
 
+# translate: skip
 def continuous(quaternions: Array) -> Array:
     """Quaternions, shape (k, 4), with the signs that let none jump."""
     jumps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0

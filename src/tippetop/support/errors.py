@@ -16,6 +16,7 @@ from typing import TypeGuard
 
 
 class _Missing:
+    # translate: skip
     def __repr__(self) -> str:
         return "(nothing)"
 
@@ -28,6 +29,7 @@ OVERWRITE, RESUME, OTHER_OUT = "overwrite=True", "resume=True", "another out"
 """How sentences name what is asked for in Python; a command has its own words for these."""
 
 
+# translate: skip
 class TippetopError(Exception):
     """Base of every error this package raises on purpose.
 
@@ -98,10 +100,12 @@ class InvalidInput(TippetopError, ValueError):
         field = ".".join([name for name in (part, self.field) if name])
         return InvalidInput(field, self.value, self.accepted, self.others + more, self.file)
 
+    # translate: skip
     def __reduce__(self) -> tuple[type["InvalidInput"], tuple[object, ...]]:
         return type(self), (self.field, self.value, self.accepted, self.others, self.file)
 
 
+# translate: skip
 class FileTrouble(TippetopError, OSError):
     """A file that cannot be read or written, or that exists and may not be overwritten.
 
@@ -116,6 +120,7 @@ class FileTrouble(TippetopError, OSError):
     """
 
 
+# translate: skip
 class Unavailable(TippetopError, RuntimeError):
     """Something optional that is asked for and not installed.
 
@@ -127,12 +132,14 @@ class Unavailable(TippetopError, RuntimeError):
     """
 
 
+# translate: drop
 def require(field: str, value: object, kind: type, accepted: str) -> None:
     """Raise `InvalidInput` unless a value is of a kind."""
     if not isinstance(value, kind):
         raise InvalidInput(field, value, accepted)
 
 
+# translate: runtime
 def is_number(value: object) -> bool:
     """Whether a value is a finite real number, as a float too."""
     try:
@@ -141,11 +148,13 @@ def is_number(value: object) -> bool:
         return False
 
 
+# translate: runtime
 def is_whole(value: object) -> TypeGuard[int]:
     """Whether a value is a whole number, also of numpy, and no truth value."""
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
+# translate: runtime
 def short(value: object, limit: int = 60) -> str:
     """A value as it would be typed, numbers as briefly as can be, cut to at most `limit`
     characters.
@@ -160,6 +169,7 @@ def short(value: object, limit: int = 60) -> str:
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 
+# translate: skip
 def _typed(value: object) -> str:
     if isinstance(value, list | tuple) and not hasattr(value, "_fields"):
         inner = ", ".join(map(_typed, value))
@@ -168,6 +178,7 @@ def _typed(value: object) -> str:
     return repr(float(value) + 0.0).removesuffix(".0") if isinstance(value, float) else repr(value)
 
 
+# translate: skip
 def one_of(given: object, choices: list[str]) -> str:
     """The choices as a phrase, with the likeliest meant one first when there is one."""
     listing = ", ".join(choices)

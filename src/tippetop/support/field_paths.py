@@ -1,5 +1,7 @@
 """Fields in parts of parts, by their names with dots."""
 
+# translate module: by hand in part.js
+
 from collections.abc import Iterator, Mapping
 from typing import Any
 

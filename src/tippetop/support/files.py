@@ -1,5 +1,7 @@
 """Files that are either whole or not there, and never overwritten unasked."""
 
+# translate module: skip
+
 import contextlib
 import os
 import secrets

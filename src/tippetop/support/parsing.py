@@ -1,5 +1,7 @@
 """The fields that texts in JSON and TOML hold."""
 
+# translate module: skip
+
 import json
 import tomllib
 from collections.abc import Callable

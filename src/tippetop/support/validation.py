@@ -1,5 +1,7 @@
 """The base of every part of a problem: frozen, validated, and clear about what it refuses."""
 
+# translate module: by hand in part.js
+
 import inspect
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args

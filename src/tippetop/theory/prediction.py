@@ -185,6 +185,7 @@ def _meetings(one: Hull, other: Hull) -> list[float]:
     return roots_between(gap, 0.0, math.pi, ROUNDING * float(one.size))
 
 
+# translate: skip
 def steady_launch(problem: Problem) -> SteadyState[float] | None:
     """The steady state that a launch is exactly on, to rounding, or None: nothing but its azimuth
     changes.
@@ -221,6 +222,7 @@ def steady_launch(problem: Problem) -> SteadyState[float] | None:
     return steady if max(map(abs, off)) <= ROUNDING * quickest else None
 
 
+# translate: skip
 def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
     """Whether the energy that is left holds an eccentric sphere's tilt within `closeness`, rad, for
     good.

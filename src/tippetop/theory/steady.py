@@ -117,6 +117,7 @@ def precession_rate_squared(c: Scalar, top: Top) -> Scalar:
     return weight_moment(c, top) / gyroscopic_reaction(c, top)
 
 
+# translate: skip
 def precession_branch(top: Top, tilts: Array) -> SteadyState[Array]:
     """The steady precessions with phi' > 0 at these tilts (rad, any shape), 0 and pi as limits.
 
@@ -225,6 +226,7 @@ def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) 
     return potential + 0.5 * jellett**2 / inertia
 
 
+# translate: skip
 def state_of(steady: SteadyState[float], top: Top) -> SlidingState:
     """The mechanical state of a steady state, leaning along x."""
     angles = Angles(steady.tilt, 0.0, 0.0, steady.precession, steady.spin, (0.0, 0.0))

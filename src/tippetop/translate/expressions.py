@@ -2,13 +2,17 @@
 
 import ast
 import json
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Sequence
+from itertools import pairwise
 
-from tippetop.translate.program import Program, given, safe
+from tippetop.translate.inference import Inference
+from tippetop.translate.program import ENUMERATIONS, Program, names_in, safe
+from tippetop.translate.runtime_names import MODULES
+from tippetop.translate.types import ROWS, Type, is_only, kinds_of
 
 ARROW, OR, AND, BITS, EQUAL, LESS, SUM, PRODUCT, UNARY, ATOM = range(10)
-"""How tightly an expression binds."""
+"""Precedence of JavaScript's operators, loosest first."""
 
 ARITHMETIC = {
     ast.Add: ("add", "+", SUM),
@@ -18,19 +22,25 @@ ARITHMETIC = {
     ast.Pow: ("pow", "", ATOM),
     ast.FloorDiv: ("floordiv", "", ATOM),
     ast.Mod: ("mod", "", ATOM),
-    ast.BitOr: ("or", "|", BITS),
-    ast.BitAnd: ("and", "&", BITS),
+    ast.BitOr: ("either", "", ATOM),
+    ast.BitAnd: ("both", "", ATOM),
 }
 COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 
+LARGEST = 2**53
+"""Integers beyond this are not exact in JavaScript."""
 
-class Untranslatable(SyntaxError):
-    """Something of Python that the program does not use so far, and the translator does not
-    know.
-    """
+PURE = {"abs", "float", "len"}
+"""Functions that may be called twice where Python calls them once."""
+
+ORDERED = ("any", "bool", "int", "float", "str", "instance", "array")
+"""Kinds whose order JavaScript's operators tell: instances have a runtime check."""
+
+ROW_MAKERS = ("py.zip(", "py.zip_equal(", "py.range(", "py.enumerate(", "py.list(", "[")
+"""Beginnings of expressions that make a new array."""
 
 
-class Expressions(ABC):
+class Expressions(Inference):
     """Translates the expressions of a module.
 
     Parameters
@@ -42,92 +52,98 @@ class Expressions(ABC):
     """
 
     def __init__(self, program: Program, module: str) -> None:
-        self.program, self.module = program, module
-        self.plain, self.numeric = module in program.plain, module in program.numeric
-        self.scopes, self.declared, self.rows = [set[str]()], set[str](), dict[str, str]()
+        super().__init__(program, module)
+        words = program.declared[module].words
+        self.arrays = "arrays" in words
+        self.numbers = self.arrays or "numbers" in words
+        self.series = "series" in words
+        self.declared, self.rows = set[str](), dict[str, str]()
 
     @abstractmethod
     def call(self, node: ast.Call) -> str:
-        """A call."""
+        """Return a call."""
 
     @abstractmethod
     def function(self, node: ast.FunctionDef | ast.Lambda) -> str:
-        """The parameters of a function, with their defaults."""
+        """Return the parameters of a function, with their defaults."""
 
-    def refused(self, node: ast.AST) -> Untranslatable:
-        """What is said of what is not known."""
-        return Untranslatable(f"{self.module}: {ast.unparse(node)}")
-
-    def name(self, name: str) -> str:
-        """What a name is called."""
-        if any(name in names for names in self.scopes):
+    def name(self, node: ast.Name) -> str:
+        """Return JavaScript's name of a name; one that nothing defines is refused."""
+        name = node.id
+        if self.is_local(name):
             return safe(name)
-        if name in ("self", "cls"):
+        if name in ("self", "cls") and self.owner is not None:
             return "this"
-        return self.program.names.get((self.module, name)) or f"py.{safe(name)}"
+        if (self.module, name) in self.program.names:
+            return self.program.names[self.module, name]
+        if name in self.program.runtime or name in MODULES:
+            return f"py.{safe(name)}"
+        raise self.refusal(node, f"no translated module and not the runtime has '{name}'")
 
     def text(self, node: ast.expr, binds: int = ARROW) -> str:
-        """An expression, in parentheses where it binds less."""
-        found, own = self._found(node)
-        return f"({found})" if own < binds else found
+        """Return an expression, in parentheses where its operator binds looser than `binds`."""
+        text, precedence = self._text(node)
+        return f"({text})" if precedence < binds else text
 
     def arguments(self, nodes: Sequence[ast.expr]) -> str:
-        """Expressions in a row."""
+        """Return expressions with commas between them."""
         return ", ".join(self.text(node) for node in nodes)
 
     def truth(self, node: ast.expr, binds: int = ARROW) -> str:
-        """Whether an expression is true."""
+        """Return the truth value of an expression."""
         match node:
-            case (
-                ast.Compare()
-                | ast.UnaryOp(op=ast.Not())
-                | ast.Call(func=ast.Name("bool" | "isinstance"))
-            ):
+            case ast.UnaryOp(op=ast.Not()) | ast.Call(func=ast.Name("bool" | "isinstance")):
+                return self.text(node, binds)
+            case ast.Compare():
                 return self.text(node, binds)
             case ast.BoolOp(op=op, values=values):
-                sign, own = ("||", OR) if isinstance(op, ast.Or) else ("&&", AND)
-                found = f" {sign} ".join(self.truth(value, own + 1) for value in values)
-                return f"({found})" if own < binds else found
+                sign, precedence = ("||", OR) if isinstance(op, ast.Or) else ("&&", AND)
+                text = f" {sign} ".join(self.truth(value, precedence + 1) for value in values)
+                return f"({text})" if precedence < binds else text
         return f"py.truth({self.text(node)})"
 
     def pattern(self, node: ast.expr) -> str:
-        """What is bound, or assigned to."""
+        """Return what is bound, or assigned to."""
         match node:
             case ast.Tuple(elts=parts):
-                known = ["" if ast.unparse(part) == "_" else self.pattern(part) for part in parts]
-                return f"[{', '.join(known).rstrip(', ')}]"
-            case ast.Name() | ast.Attribute() | ast.Starred():
-                return self.text(node)
-        raise self.refused(node)
+                if any(isinstance(part, ast.Starred) for part in parts[:-1]):
+                    raise self.refusal(node, "only the last of several targets may be starred")
+                texts = ["" if ast.unparse(part) == "_" else self.pattern(part) for part in parts]
+                return f"[{', '.join(texts).rstrip(', ')}]"
+            case ast.Name():
+                return self.name(node)
+            case ast.Attribute(value=value, attr=attr):
+                return f"{self.text(value, ATOM)}.{attr}"
+            case ast.Starred(value=value):
+                return f"...{self.pattern(value)}"
+        raise self.refusal(node, "such a target is not translated")
 
-    def _found(self, node: ast.expr) -> tuple[str, int]:
-        """An expression, and how tightly it binds."""
+    def _text(self, node: ast.expr) -> tuple[str, int]:
+        """Return an expression and its precedence."""
         match node:
-            case ast.Constant(value=value):
-                return json.dumps(value, ensure_ascii=False), ATOM
-            case ast.Name(id=name):
-                return self.name(name), ATOM
+            case ast.Constant():
+                return self._constant(node), ATOM
+            case ast.Name():
+                return self.name(node), ATOM
             case ast.Tuple(elts=parts) | ast.List(elts=parts):
                 return f"[{self.arguments(parts)}]", ATOM
             case ast.Starred(value=value):
                 return f"...{self.text(value, ATOM)}", ARROW
-            case ast.Attribute(value=value, attr=attr) if self.program.is_method(attr):
-                return f'py.bound({self.text(value)}, "{attr}")', ATOM
-            case ast.Attribute(value=value, attr=attr):
-                return f"{self.text(value, ATOM)}.{attr}", ATOM
+            case ast.Attribute():
+                return self._attribute(node), ATOM
             case ast.BinOp():
                 return self._arithmetic(node)
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 return f"!{self.truth(operand, UNARY)}", UNARY
-            case ast.UnaryOp(operand=operand) if self.plain or isinstance(operand, ast.Constant):
-                return f"-{self.text(operand, ATOM)}", UNARY
-            case ast.UnaryOp(operand=operand):
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                if self.numbers or isinstance(operand, ast.Constant):
+                    return f"-{self.text(operand, ATOM)}", UNARY
                 return f"py.neg({self.text(operand)})", ATOM
             case ast.BoolOp(op=op, values=values):
-                word, found = "or" if isinstance(op, ast.Or) else "and", self.text(values[-1])
+                word, text = "or" if isinstance(op, ast.Or) else "and", self.text(values[-1])
                 for value in reversed(values[:-1]):
-                    found = f"py.{word}({self.text(value)}, () => {found})"
-                return found, ATOM
+                    text = f"py.{word}({self.text(value)}, () => {text})"
+                return text, ATOM
             case ast.Compare():
                 return self._comparison(node)
             case ast.IfExp(test=test, body=body, orelse=orelse):
@@ -140,132 +156,275 @@ class Expressions(ABC):
             case ast.Subscript():
                 return self._item(node), ATOM
             case ast.Lambda(body=body):
-                return f"{self.function(node)} => {self._inside(given(node), body)}", ARROW
+                text = f"{self.function(node)} => "
+                self.enter(self.function_scope(node))
+                inner = self.text(body)
+                self.scopes.pop()
+                return text + (f"({inner})" if inner.startswith("{") else inner), ARROW
             case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element):
                 return self._comprehension(node.generators, element), ATOM
             case ast.SetComp(elt=element):
-                return f"new Set({self._comprehension(node.generators, element)})", ATOM
+                return f"py.set({self._comprehension(node.generators, element)})", ATOM
+            case ast.Set(elts=parts):
+                return f"py.set([{self.arguments(parts)}])", ATOM
             case ast.DictComp(key=key, value=value):
                 pair = ast.Tuple([key, value], ast.Load())
-                return f"new py.Dict({self._comprehension(node.generators, pair)})", ATOM
+                return f"py.dict({self._comprehension(node.generators, pair)})", ATOM
             case ast.Dict(keys=keys, values=values):
                 pairs = [
-                    f"[{self.text(k)}, {self.text(v)}]"
-                    if k
-                    else f"...{self.text(v, ATOM)}.entries()"
-                    for k, v in zip(keys, values, strict=True)
+                    f"[{self.text(key)}, {self.text(value)}]"
+                    if key
+                    else f"...{self.text(value, ATOM)}.entries()"
+                    for key, value in zip(keys, values, strict=True)
                 ]
-                return f"new py.Dict([{', '.join(pairs)}])", ATOM
+                return f"py.dict([{', '.join(pairs)}])", ATOM
             case ast.Call():
                 return self.call(node), ATOM
             case ast.Yield(value=value):
                 return f"yield {self.text(value) if value else ''}", ARROW
-        raise self.refused(node)
+        raise self.refusal(node, "such an expression is not translated")
 
-    def _inside(self, names: set[str], body: ast.expr) -> str:
-        """An expression where other names hold."""
-        self.scopes.append(names)
-        found = self.text(body)
-        self.scopes.pop()
-        return f"({found})" if found.startswith("{") else found
+    def _constant(self, node: ast.Constant) -> str:
+        value = node.value
+        if value is not None and not isinstance(value, bool | int | float | str):
+            raise self.refusal(node, "such a constant is not translated")
+        if isinstance(value, int) and abs(value) > LARGEST:
+            raise self.refusal(node, "JavaScript's integers are exact up to 2**53 only")
+        return json.dumps(value, ensure_ascii=False)
+
+    def _attribute(self, node: ast.Attribute) -> str:
+        """Return a field, a property, a member of `math` or NumPy, or a method with its object."""
+        value, attr = node.value, node.attr
+        if isinstance(value, ast.Name) and value.id in MODULES and not self.is_local(value.id):
+            if attr not in MODULES[value.id]:
+                raise self.refusal(node, f"the runtime has no {value.id}.{attr}")
+            return f"{self.text(value)}.{attr}"
+        receiver = self.type_of(value)
+        members = self.members(receiver, attr)
+        for one in {id(member.owner): member.owner for member in members}.values():
+            if one.kind == "py.IntEnum" and attr in ("name", "value"):
+                raise self.refusal(node, f"a member of {one.node.name} is a number in JavaScript")
+        if not members:
+            classes = {part for part in (receiver, *receiver.parts) if part.cls is not None}
+            is_enumeration = any(
+                one.cls and one.cls.kind in ENUMERATIONS[:2] for one in classes
+            ) or is_only(receiver, "any")
+            if not (attr in ("name", "value") and is_enumeration):
+                raise self.refusal(node, f"{self._described(receiver)} has no '{attr}'")
+        if any(member.is_method for member in members):
+            # Where the class decides whether it is a method, the runtime looks at the object.
+            return f'py.member({self.text(value)}, "{attr}")'
+        return f"{self.text(value, ATOM)}.{attr}"
+
+    def _described(self, kind: Type) -> str:
+        """Return a type in words."""
+        if kind.cls is not None:
+            return f"class {kind.cls.node.name}"
+        article = "an" if kind.kind[0] in "aeiou" else "a"
+        return "no class" if kind.kind in ("any", "union") else f"{article} {kind.kind}"
 
     def _arithmetic(self, node: ast.BinOp) -> tuple[str, int]:
+        if type(node.op) not in ARITHMETIC:
+            raise self.refusal(node, "such an operator is not translated")
         word, sign, binds = ARITHMETIC[type(node.op)]
-        if sign and (binds == BITS or self.numeric or (self.plain and is_of_numbers(node))):
+        left, right = self.type_of(node.left), self.type_of(node.right)
+        for one in (left, right):
+            if kinds_of(one) & {"set", "dict"}:
+                raise self.refusal(node, "operators of sets and dicts are not translated")
+        if isinstance(node.op, ast.Mod | ast.FloorDiv) and "str" in kinds_of(left):
+            raise self.refusal(node, "formatting with % is not translated; write an f-string")
+        if isinstance(node.op, ast.Pow) and isinstance(node.left, ast.Constant):
+            self._require_exact(node)
+        if sign and (self.arrays or (self.numbers and self._is_of_numbers(node))):
             return f"{self.text(node.left, binds)} {sign} {self.text(node.right, binds + 1)}", binds
         return f"py.{word}({self.text(node.left)}, {self.text(node.right)})", ATOM
 
+    def _require_exact(self, node: ast.BinOp) -> None:
+        match node.left, node.right:
+            case ast.Constant(value=int(base)), ast.Constant(value=int(exponent)):
+                if abs(base) > 1 and (exponent > 64 or abs(base**exponent) > LARGEST):
+                    raise self.refusal(node, "JavaScript's integers are exact up to 2**53 only")
+
+    def _is_of_numbers(self, node: ast.BinOp) -> bool:
+        """Return whether JavaScript's operator means the same, where operands are numbers.
+
+        Lists have operators too, and division by zero is an error in Python.
+        """
+        for one in (node.left, node.right):
+            kind = self.type_of(one)
+            if kinds_of(kind) & {"instance", "class", "function"}:
+                reason = f"the module declares its operands numbers, but {self._described(kind)}"
+                raise self.refusal(node, f"{reason} is none")
+            if kinds_of(kind) & {*ROWS, "str", "iterator"} or is_list(one):
+                return False
+        return not isinstance(node.op, ast.Div) or isinstance(node.right, ast.Constant)
+
     def _comparison(self, node: ast.Compare) -> tuple[str, int]:
         sides = [node.left, *node.comparators]
-        found = [
-            self._compared(a, op, b) for a, op, b in zip(sides, node.ops, sides[1:], strict=False)
+        for side in sides[1:-1]:
+            for inner in ast.walk(side):
+                if isinstance(inner, ast.Call) and ast.unparse(inner.func) not in PURE:
+                    reason = "a call between two comparisons would be made twice; name its value"
+                    raise self.refusal(node, reason)
+        texts = [
+            self._compared(node, left, op, right)
+            for (left, right), op in zip(pairwise(sides), node.ops, strict=True)
         ]
-        if len(found) == 1:
-            return found[0]
-        return " && ".join(f"({text})" if own < AND else text for text, own in found), AND
+        if len(texts) == 1:
+            return texts[0]
+        return " && ".join(f"({text})" if own < AND else text for text, own in texts), AND
 
-    def _compared(self, a: ast.expr, op: ast.cmpop, b: ast.expr) -> tuple[str, int]:
+    def _compared(
+        self, node: ast.Compare, left: ast.expr, op: ast.cmpop, right: ast.expr
+    ) -> tuple[str, int]:
+        kinds = self.type_of(left), self.type_of(right)
         if type(op) in COMPARISONS:
-            return f"{self.text(a, SUM)} {COMPARISONS[type(op)]} {self.text(b, SUM)}", LESS
-        left, right = self.text(a, LESS), self.text(b, LESS)
+            for side, kind in zip((left, right), kinds, strict=True):
+                is_row = is_list(side) or not kinds_of(kind) <= {*ORDERED, "module"}
+                if is_row or self._is_tuple(kind):
+                    reason = f"the order of {self._described(kind)} is not translated"
+                    raise self.refusal(node, f"{reason}; compare numbers or strings")
+            return f"{self.text(left, SUM)} {COMPARISONS[type(op)]} {self.text(right, SUM)}", LESS
+        a, b = self.text(left, LESS), self.text(right, LESS)
         negated = isinstance(op, ast.NotEq | ast.IsNot | ast.NotIn)  # codespell:ignore
         if isinstance(op, ast.In | ast.NotIn):  # codespell:ignore
-            found = f"py.contains({right}, {left})"
-        elif (
-            self.numeric or isinstance(op, ast.Is | ast.IsNot) or ast.Constant in (type(a), type(b))
-        ):
-            return f"{left} {'!' if negated else '='}== {right}", EQUAL
+            text = f"py.contains({b}, {a})"
+        elif isinstance(op, ast.Is | ast.IsNot):
+            self._require_identity(node, left, right)
+            return f"{a} {'!' if negated else '='}== {b}", EQUAL
+        elif self.arrays or self._is_equal_by_identity(left, right):
+            return f"{a} {'!' if negated else '='}== {b}", EQUAL
         else:
-            found = f"py.eq({left}, {right})"
-        return (f"!{found}", UNARY) if negated else (found, ATOM)
+            rows = [kinds_of(kind) & {"list", "tuple"} for kind in kinds]
+            if rows[0] and rows[1] and not rows[0] & rows[1]:
+                raise self.refusal(node, "a list never equals a tuple in Python")
+            if (kinds_of(kinds[0]) | kinds_of(kinds[1])) & {"set", "dict"}:
+                raise self.refusal(node, "equality of sets and dicts is not translated")
+            text = f"py.eq({a}, {b})"
+        return (f"!{text}", UNARY) if negated else (text, ATOM)
+
+    def _is_tuple(self, kind: Type) -> bool:
+        return kind.cls is not None and kind.cls.kind == "py.NamedTuple"
+
+    def _is_equal_by_identity(self, left: ast.expr, right: ast.expr) -> bool:
+        """Return whether JavaScript's `===` means Python's `==`."""
+        kinds = [kinds_of(self.type_of(one)) for one in (left, right)]
+        numbers = {"int", "float"}
+        if kinds[0] and kinds[1] and kinds[0] | kinds[1] <= numbers:
+            return True
+        if kinds[0] == kinds[1] and kinds[0] in ({"str"}, {"bool"}):
+            return True
+        is_number = any(
+            isinstance(one, ast.Constant) and type(one.value) in (int, float)
+            for one in (left, right)
+        )
+        return self.numbers and is_number
+
+    def _require_identity(self, node: ast.Compare, left: ast.expr, right: ast.expr) -> None:
+        for one in (left, right):
+            if isinstance(one, ast.Constant):
+                if one.value is None or isinstance(one.value, bool):
+                    return
+                raise self.refusal(node, "identity of constants is not translated; write ==")
+        for one in (left, right):
+            if kinds_of(self.type_of(one)) & {"int", "float", "str", "bool", "function"}:
+                reason = "identity of numbers, strings and methods is not translated"
+                raise self.refusal(node, f"{reason}; write ==")
 
     def _formatted(self, part: ast.expr) -> str:
         match part:
-            case ast.FormattedValue(value=inner, format_spec=None):
+            case ast.FormattedValue(value=inner, conversion=-1, format_spec=None):
+                self.require_words(inner)
                 return f"${{py.str({self.text(inner)})}}"
-            case ast.FormattedValue(value=inner, format_spec=ast.expr() as spec) if (
-                "g'" in ast.unparse(spec)
+            case ast.FormattedValue(value=inner, conversion=114, format_spec=None):
+                return f"${{py.repr({self.text(inner)})}}"
+            case ast.FormattedValue(
+                value=inner, conversion=-1, format_spec=ast.JoinedStr() as spec
             ):
-                return f'${{py.format({self.text(inner)}, "{ast.unparse(spec)[2:-1]}")}}'
-            case ast.Constant(value=text):
-                return json.dumps(text)[1:-1].replace("`", "\\`").replace("${", "\\${")
-        raise self.refused(part)
+                text = ast.unparse(spec)[2:-1]
+                if text == "g" or (
+                    text[:1] == "."
+                    and text[-1:] == "g"
+                    and text[1:-1].isdigit()
+                    and int(text[1:-1])
+                ):
+                    return f'${{py.format({self.text(inner)}, "{text}")}}'
+                raise self.refusal(part, f"format '{text}' is not translated; write 'g' or '.3g'")
+            case ast.Constant(value=str(text)):
+                return (
+                    json.dumps(text, ensure_ascii=False)[1:-1]
+                    .replace("`", "\\`")
+                    .replace("${", "\\${")
+                    .replace('\\"', '"')
+                )
+        raise self.refusal(part, "such a format is not translated")
+
+    def require_words(self, node: ast.expr) -> None:
+        """Refuse to write a value as text where JavaScript cannot tell what Python writes."""
+        kinds = kinds_of(self.type_of(node))
+        if "float" in kinds:
+            raise self.refusal(node, "a float as text needs a format, such as {value:.6g}")
+        if kinds & {*ROWS, "set", "dict", "iterator", "array", "class", "function"}:
+            raise self.refusal(node, "only strings and integers are written as text")
 
     def _item(self, node: ast.Subscript) -> str:
-        whole = self.text(node.value, ATOM)
+        value = self.text(node.value, ATOM)
         match node.slice:
             case ast.Slice(lower=low, upper=high, step=None):
+                if self._is_tuple(self.type_of(node.value)):
+                    raise self.refusal(node, "parts of tuples with names are not translated")
                 parts = [self.text(low) if low else "0", *([self.text(high)] if high else [])]
-                return f"{whole}.slice({', '.join(parts)})"
+                return f"{value}.slice({', '.join(parts)})"
             case ast.Slice(lower=low, upper=high, step=step):
                 parts = [self.text(one) if one else "null" for one in (low, high, step)]
-                return f"py.slice({whole}, {', '.join(parts)})"
+                return f"py.slice({value}, {', '.join(parts)})"
             case ast.Tuple(elts=places):
-                row = f"{whole}[{self.text(places[0])}]"
+                row = f"{value}[{self.text(places[0])}]"
                 return self.rows.get(row, row) + "".join(
                     f"[{self.text(place)}]" for place in places[1:]
                 )
-            case _ if self.numeric:
-                return f"{whole}[{self.text(node.slice)}]"
-            case ast.Constant(value=int(number)) if self.module not in self.program.indexed:
-                return f"{whole}[{number}]"
-        return f"py.item({whole}, {self.text(node.slice)})"
+            case ast.UnaryOp(op=ast.USub()) if self.arrays:
+                raise self.refusal(node, "negative places are not translated in modules of arrays")
+            case _ if self.arrays:
+                return f"{value}[{self.text(node.slice)}]"
+            case ast.Constant(value=int(number)) if not self.series:
+                if not is_only(self.type_of(node.value), "dict"):
+                    return f"{value}[{number}]"
+        return f"py.item({value}, {self.text(node.slice)})"
 
     def _comprehension(self, generators: Sequence[ast.comprehension], element: ast.expr) -> str:
-        first, *rest = generators
-        whole = self.text(first.iter, ATOM)
-        if not whole.startswith(ROWS):
-            whole = f"[...{whole}]"
-        bound = {n.id for n in ast.walk(first.target) if isinstance(n, ast.Name)}
-        self.scopes.append(bound)
+        first, *others = generators
+        rows = self.text(first.iter, ATOM)
+        if not rows.startswith(ROW_MAKERS):
+            rows = f"[...{rows}]"
+        self._require_no_late_function(first, element)
+        self.enter(self.comprehension_scope(first))
         target = self.pattern(first.target)
         for test in first.ifs:
-            whole = f"{whole}.filter(({target}) => {self.truth(test)})"
-        if rest:
-            whole = f"{whole}.flatMap(({target}) => {self._comprehension(rest, element)})"
+            rows = f"{rows}.filter(({target}) => {self.truth(test)})"
+        if others:
+            rows = f"{rows}.flatMap(({target}) => {self._comprehension(others, element)})"
         elif (inner := self.text(element)) != target:
-            whole = f"{whole}.map(({target}) => {inner})"
+            rows = f"{rows}.map(({target}) => {f'({inner})' if inner.startswith('{') else inner})"
         self.scopes.pop()
-        return whole
+        return rows
 
-
-def is_of_numbers(node: ast.BinOp) -> bool:
-    """Whether an operator means the same in both, of numbers; not of lists, nor where zero may
-    divide.
-    """
-    if isinstance(node.op, ast.Div):
-        return isinstance(node.right, ast.Constant)
-    return not (is_list(node.left) or is_list(node.right))
+    def _require_no_late_function(self, first: ast.comprehension, element: ast.expr) -> None:
+        """Refuse functions that are collected: in Python all of them read the last value."""
+        parts = element.elts if isinstance(element, ast.Tuple | ast.List) else [element]
+        bound = set(names_in(first.target))
+        for part in parts:
+            if isinstance(part, ast.Lambda):
+                read = {one.id for one in ast.walk(part.body) if isinstance(one, ast.Name)}
+                if bound & read:
+                    reason = "functions collected in a comprehension would all read the last value"
+                    raise self.refusal(part, f"{reason}; make them in a function of their own")
 
 
 def is_list(node: ast.expr) -> bool:
-    """Whether an expression is a list that is written there, a part of one, or made of such."""
+    """Return whether an expression is a list that is written out, a part of one, or their sum."""
     if isinstance(node, ast.BinOp):
         return is_list(node.left) or is_list(node.right)
     if isinstance(node, ast.Subscript):
         return isinstance(node.slice, ast.Slice)
     return isinstance(node, ast.List | ast.ListComp | ast.Tuple)
-
-
-ROWS = ("py.zip(", "py.range(", "py.enumerate(", "py.list(", "[")
-"""How what is a list by itself begins."""
