@@ -1,7 +1,5 @@
 """The rates of a motion as arrays, and their derivatives."""
 
-# translate module: skip
-
 from collections.abc import Sequence
 
 import numpy as np

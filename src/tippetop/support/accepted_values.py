@@ -1,7 +1,5 @@
 """What fields accept, in words."""
 
-# translate module: skip
-
 import math
 from collections.abc import Mapping
 from typing import Any, get_args, get_origin

@@ -272,7 +272,9 @@ class Expressions(Inference):
         ]
         if len(texts) == 1:
             return texts[0]
-        return " && ".join(f"({text})" if own < AND else text for text, own in texts), AND
+        return " && ".join(
+            f"({text})" if precedence < AND else text for text, precedence in texts
+        ), AND
 
     def _compared(
         self, node: ast.Compare, left: ast.expr, op: ast.cmpop, right: ast.expr
@@ -418,7 +420,7 @@ class Expressions(Inference):
                 read = {one.id for one in ast.walk(part.body) if isinstance(one, ast.Name)}
                 if bound & read:
                     reason = "functions collected in a comprehension would all read the last value"
-                    raise self.refusal(part, f"{reason}; make them in a function of their own")
+                    raise self.refusal(part, f"{reason}; make them by a function that takes it")
 
 
 def is_list(node: ast.expr) -> bool:

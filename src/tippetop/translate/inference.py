@@ -318,14 +318,16 @@ class Inference:
         Where its class has none, it is one of the classes derived from it: code asks with
         `isinstance` first. Where the class is unknown, it is any that has such a member.
         """
-        found = list[Member]()
+        members = list[Member]()
         for part in alternatives_of(kind) or (ANY,):
             if part.kind == "any" or (part.kind in ("instance", "class") and part.cls is None):
-                found += [one.members[name] for one in self.program.classes if name in one.members]
+                members += [
+                    one.members[name] for one in self.program.classes if name in one.members
+                ]
             elif part.kind in ("instance", "class") and part.cls is not None:
                 member = part.cls.member(name)
-                found += [member] if member else self._derived(part.cls, name)
-        return found
+                members += [member] if member else self._derived(part.cls, name)
+        return members
 
     def _derived(self, one: Class, name: str) -> list[Member]:
         is_protocol = one.kind == "protocol"
@@ -400,10 +402,10 @@ class Inference:
             case ast.Dict(keys=keys, values=values):
                 if None in keys:
                     return Type("dict")
-                whole = [
+                item_types = [
                     union([self.type_of(one) for one in ones if one]) for ones in (keys, values)
                 ]
-                return Type("dict", tuple(whole) if keys else ())
+                return Type("dict", tuple(item_types) if keys else ())
             case ast.DictComp(key=key, value=value):
                 parts_ = (self._inside(node.generators, key), self._inside(node.generators, value))
                 return Type("dict", parts_)

@@ -3,6 +3,7 @@
 import ast
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 
 from tippetop.translate.declarations import declarations_of
 from tippetop.translate.refusal import Untranslatable
@@ -75,7 +76,7 @@ class Class:
         """Return a member of the class or of its bases."""
         if name in self.members:
             return self.members[name]
-        return next((found for base in self.bases if (found := base.member(name))), None)
+        return next((member for base in self.bases if (member := base.member(name))), None)
 
     def is_a(self, other: "Class") -> bool:
         """Return whether the class is another one or derives from it."""
@@ -361,12 +362,17 @@ def parameters_and_rest(node: ast.FunctionDef | ast.Lambda) -> set[str]:
     return {*parameters(node), *([node.args.vararg.arg] if node.args.vararg else [])}
 
 
-def within(node: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes in a function, without those in functions inside it."""
+@cache
+def within(node: ast.AST) -> tuple[ast.AST, ...]:
+    """Return the nodes in a function, without those in functions inside it."""
+    return tuple(_within(node))
+
+
+def _within(node: ast.AST) -> Iterator[ast.AST]:
     for child in ast.iter_child_nodes(node):
         yield child
         if not isinstance(child, SCOPED):
-            yield from within(child)
+            yield from _within(child)
 
 
 def marks_of(node: ast.FunctionDef | ast.ClassDef) -> list[str]:

@@ -83,8 +83,8 @@ def kinds_of(one: Type) -> set[str]:
 
 def is_only(one: Type, *kinds: str) -> bool:
     """Return whether a type is known to be of some kinds."""
-    found = kinds_of(one)
-    return bool(found) and found <= set(kinds)
+    possible = kinds_of(one)
+    return bool(possible) and possible <= set(kinds)
 
 
 def item_of(one: Type, place: int | None = None) -> Type:
