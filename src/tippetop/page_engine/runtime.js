@@ -108,12 +108,12 @@ function divided(a, b) {
 
 export function floordiv(a, b) {
   if (typeof a === "number" && typeof b === "number") return divided(a, b)[0];
-  return applied(a, b, "__floordiv__", "__rfloordiv__", floordiv);
+  return operate(a, b, "__floordiv__", "__rfloordiv__", floordiv);
 }
 
 export function mod(a, b) {
   if (typeof a === "number" && typeof b === "number") return divided(a, b)[1];
-  return applied(a, b, "__mod__", "__rmod__", mod);
+  return operate(a, b, "__mod__", "__rmod__", mod);
 }
 
 function truths(a, b) {
@@ -306,8 +306,8 @@ const isPlain = (a) => a === null || (typeof a !== "object" && typeof a !== "boo
 export function eq(a, b) {
   if (a === b) return true;
   if (isPlain(a) && isPlain(b)) return false;
-  if (takes(a, "__eq__")) return a.__eq__(b);
-  if (takes(b, "__eq__")) return b.__eq__(a);
+  if (hasattr(a, "__eq__")) return a.__eq__(b);
+  if (hasattr(b, "__eq__")) return b.__eq__(a);
   if (isRow(a) && isRow(b)) {
     const [one, other] = [[...a], [...b]];
     return one.length === other.length && one.every((each, place) => eq(each, other[place]));
