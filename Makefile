@@ -4,9 +4,12 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 OUT ?= tippetop-report
 
+# Tests start hundreds of processes: none is to compile the sources again.
+unexport PYTHONDONTWRITEBYTECODE
+
 BUILT = src/tippetop/export/built/lab.html
 
-.PHONY: reproduce page test test-browser test-docs doctest map chromium check lint types contract docs bench quick dist review clean
+.PHONY: reproduce page test test-all campaigns test-browser test-docs doctest map chromium check lint types contract docs bench quick dist review clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
 	-@! command -v node >/dev/null || $(MAKE) --no-print-directory page  # then a run plays in it
@@ -20,8 +23,20 @@ $(BUILT): $(shell find web src/tippetop -name node_modules -prune -o -name built
 	$(BIN)/python -m tippetop.page_engine
 	web/build.sh "$(abspath $(BIN)/python)"
 
+# With xdist's `worksteal` no worker is left with a queue of long tests when the others are done.
+PYTEST = $(BIN)/python -m pytest -n auto --dist worksteal
+
 test: $(VENV)/.installed-dev ## Run the tests
-	$(BIN)/python -m pytest -n auto
+	@echo "This takes about five minutes on two processors that have nothing else to do."
+	$(PYTEST)
+
+test-all: $(VENV)/.installed-dev ## Run the tests, and a sample of every campaign
+	@echo "This takes about twelve minutes on two processors that have nothing else to do."
+	$(PYTEST) -m "not (browser or campaign)"
+
+campaigns: $(VENV)/.installed-dev ## Run every campaign in the size that is claimed, and search at random
+	@echo "This takes hours."
+	$(PYTEST) -m "slow or campaign or hypothesis" --hypothesis-profile=search
 
 test-browser: $(BUILT) $(VENV)/.installed-dev ## Run the tests of the laboratory's page; they need Debian's chromium
 	$(BIN)/python -m pytest -m browser

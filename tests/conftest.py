@@ -1,18 +1,21 @@
-"""How hypothesis behaves in every test, and what stands in for what is not built.
+"""How hypothesis behaves in every test, what stands in for what is not built, and what must not be
+left running.
 
-Hypothesis: reproducibly where a machine checks, freely where a person does.
-
-HYPOTHESIS_PROFILE=thorough looks at twenty times as many examples.
+Hypothesis searches with fixed seeds, so that a check fails for a change and for nothing else.
+`--hypothesis-profile=search`, which `make campaigns` asks for, searches at random and for longer.
 """
 
 import os
 import subprocess
 import sys
+import uuid
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from browsing import browser, visit
+from children import RUN, end_leftovers, signals_heard
 from tippetop.export import bundle
 from tippetop.page_engine import HERE
 
@@ -22,23 +25,39 @@ SOURCE = HERE.parent
 GENERATED = (HERE / "mechanics.js", HERE / "tables.js")
 
 anywhere = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.register_profile("default", anywhere)
-settings.register_profile("ci", anywhere, derandomize=True)
-settings.register_profile("thorough", anywhere, max_examples=2000)
-settings.load_profile(
-    os.environ.get("HYPOTHESIS_PROFILE", "ci" if "CI" in os.environ else "default")
-)
+settings.register_profile("fixed", anywhere, max_examples=50, derandomize=True, database=None)
+settings.register_profile("search", anywhere, max_examples=2000, print_blob=True)
+settings.load_profile("fixed")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Generate the page's engine if a source is newer; pytest's workers need not."""
     if hasattr(config, "workerinput"):
         return
+    os.environ[RUN] = uuid.uuid4().hex  # all that is started from here on inherits it
     sources = [path.stat().st_mtime for path in SOURCE.rglob("*.py")]
     if any(not path.exists() or path.stat().st_mtime < max(sources) for path in GENERATED):
         subprocess.run([sys.executable, "-m", "tippetop.page_engine"], check=True)
         for path in GENERATED:
             path.touch()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_sessionfinish(session: pytest.Session) -> Iterator[None]:
+    """Fail if a test left a process behind, once pytest's workers have ended."""
+    yield
+    if hasattr(session.config, "workerinput"):
+        return
+    if left := end_leftovers(os.environ[RUN]):
+        print("\nThese tests left processes running, which were ended:", *left, sep="\n")
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+@pytest.fixture
+def heard_signals() -> Iterator[None]:
+    """Let a test hear Ctrl-C wherever the tests are started from; see `signals_heard`."""
+    with signals_heard():
+        yield
 
 
 @pytest.fixture(autouse=True, scope="session")

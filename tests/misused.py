@@ -1,19 +1,26 @@
-"""What `tippetop` says where it is misused, in a process of its own."""
+"""What `tippetop` says where it is misused."""
 
-import subprocess
+import contextlib
+import io
 import sys
 from pathlib import Path
+from unittest import mock
+
+import pytest
+
+from tippetop.cli.commands import run
 
 
 def misused(folder: Path | str, *arguments: str) -> str:
-    """What it says in a folder with these arguments, which is all it says, with exit code 2."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-m", "tippetop", *arguments],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    assert (done.stdout, done.returncode) == ("", 2), done.stderr
-    return done.stderr
+    """Return what the command says in a folder, all of it to standard error, with exit code 2."""
+    out, said = io.StringIO(), io.StringIO()
+    with (
+        contextlib.chdir(folder),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(said),
+        mock.patch.object(sys, "argv", ["tippetop", *arguments]),
+        pytest.raises(SystemExit) as ending,
+    ):
+        run()
+    assert (out.getvalue(), ending.value.code) == ("", 2), said.getvalue()
+    return said.getvalue()

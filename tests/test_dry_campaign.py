@@ -1,18 +1,14 @@
-"""Random tops and launches under dry friction keep what every one of them must keep, to rounding.
+"""Random tops under dry friction keep energy, the limits of friction and Jellett's integral."""
 
-TIPPETOP_DRY=300 asks for as many a law instead of the few that every check takes.
-"""
-
-import os
 from typing import Any
 
 import numpy as np
 import pytest
 
 import tippetop as tt
+from campaigns import seed_ranges
 from tippetop.integrators import has_taylor
 
-COUNT = int(os.environ.get("TIPPETOP_DRY", "24"))
 DURATION = 1.0
 LAWS: dict[str, dict[str, Any]] = {
     "coulomb": {"kind": "coulomb"},
@@ -72,11 +68,12 @@ def ordinary(law: dict[str, Any], random: np.random.Generator) -> tt.Problem:
 
 @pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
 @pytest.mark.parametrize("law", RESISTED)
+@pytest.mark.parametrize("seeds", seed_ranges(check=8, sample=24, claim=150, size=63))
 def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_couple(
-    law: str,
+    law: str, seeds: range
 ) -> None:
     given_up = rested = held_for = 0
-    for seed in (*range(COUNT // 2), *HARD_RESISTED.get(law, ())):
+    for seed in (*seeds, *(HARD_RESISTED.get(law, ()) if 0 in seeds else ())):
         random = np.random.default_rng(1000 + seed)
         problem = ordinary(RESISTED[law], random)
         arm = problem.body.shape.surface.size * 10.0 ** random.uniform(-4.0, -1.5)
@@ -104,19 +101,19 @@ def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_
         assert np.all(couple <= arm * force[:, 2] * (1 + 1e-12) + 1e-18), said
         names = np.array(run["mode"].attrs["flag_meanings"].split())[run["mode"].values]
         held_for += int(np.char.endswith(names, "without_rolling").sum())
-    assert given_up <= 0.2 * COUNT / 2, "few tops may be too stiff"
+    assert given_up <= 0.2 * len(seeds), "few tops may be too stiff"
     # A patch that drills creeps on, and keeps its tops rolling for longer than this.
     assert held_for > 0 or law == "ellipsoidal", "some of them should come to be held"
 
 
 @pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("part", range(2))
+@pytest.mark.parametrize("seeds", seed_ranges(check=8, sample=32, claim=300, size=67))
 def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(
-    law: str, part: int
+    law: str, seeds: range
 ) -> None:
     given_up = stuck_for = 0
-    for seed in (*range(part, COUNT, 2), *(HARD.get(law, ()) if part else ())):
+    for seed in (*seeds, *(HARD.get(law, ()) if 0 in seeds else ())):
         problem = ordinary(LAWS[law], np.random.default_rng(seed))
         run = tt.simulate(problem, DURATION, samples=201)
         said = law, seed, problem.to_json()
@@ -149,5 +146,5 @@ def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(
         assert slip[stuck].max(initial=0.0) < 1e-12 * speed, said
         if problem.top.conserves_jellett:
             assert float(run["jellett_drift"]) < 1e-11, said
-    assert given_up <= 0.2 * COUNT / 2, "few tops may be too stiff"
+    assert given_up <= 0.2 * len(seeds), "few tops may be too stiff"
     assert stuck_for > 0, "some of them should come to stick"

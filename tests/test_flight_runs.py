@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tippetop as tt
+from campaigns import examples
 from independent_flights import Toy, slide_and_fly
 from tippetop.problem.presets import REPORT, report_problem
 
@@ -108,7 +109,7 @@ bodies = st.one_of(
 )
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(check=60, claim=3000))
 @given(bodies, launches)
 def test_what_must_hold_through_slides_flights_and_impacts(body, launch):
     problem = tt.Problem(

@@ -1,10 +1,7 @@
 """Problems that nobody would ask for: each ends with an outcome within its budget, or with a
 sentence.
-
-TIPPETOP_HOSTILE=10000 asks for as many of them instead of the few that every check takes.
 """
 
-import os
 import warnings
 from collections import Counter
 from typing import Any
@@ -14,6 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 import tippetop as tt
+from campaigns import seed_ranges
 from tippetop.contact import closing, several
 from tippetop.integrators import has_llvm, has_numba, has_taylor, make_integrator, sampling
 from tippetop.integrators.base import Motion
@@ -23,7 +21,6 @@ from tippetop.support.errors import TippetopError
 from tippetop.sweeps import taylor_step
 from tippetop.sweeps.taylor_stepper import stepper
 
-COUNT, PARTS = int(os.environ.get("TIPPETOP_HOSTILE", "64")), 8
 STEPS, MODES = 2_000, 200
 CLOSE = 1e-6
 """How far a completed run may be off what its motion keeps, relatively: what is promised of the
@@ -126,10 +123,10 @@ def outcome_of(seed: int) -> str:
 
 
 @pytest.mark.skipif(not has_taylor(), reason="the other integrators take minutes")
-@pytest.mark.parametrize("part", range(PARTS))
-def test_hostile_problems_end_with_an_outcome_or_a_sentence(part: int) -> None:
-    outcomes = Counter(outcome_of(seed) for seed in range(part, COUNT, PARTS))
-    assert outcomes["completed"] > 0.2 * COUNT / PARTS, outcomes
+@pytest.mark.parametrize("seeds", seed_ranges(check=32, sample=256, claim=10_000, size=116))
+def test_hostile_problems_end_with_an_outcome_or_a_sentence(seeds: range) -> None:
+    outcomes = Counter(outcome_of(seed) for seed in seeds)
+    assert outcomes["completed"] > 0.2 * len(seeds), outcomes
 
 
 @pytest.mark.skipif(not has_taylor(), reason="the other integrators take minutes")

@@ -1,24 +1,23 @@
 """Ctrl-C at the command line: one line, the exit code of shells, no half-written file, and no
 waiting.
-
-TIPPETOP_INTERRUPTS=50 asks for as many random moments instead of the few that every check takes.
 """
 
 import os
 import random
 import signal
-import subprocess
 import sys
 import time
 
 import pytest
 
+from campaigns import seeds
+from children import ended, started
+
 SAID = "tippetop: interrupted\n"
-MOMENTS = int(os.environ.get("TIPPETOP_INTERRUPTS", "2"))
 MAIN = "from tippetop.cli.main import main; print('begun', flush=True); main()"
 
 
-@pytest.mark.parametrize("moment", range(MOMENTS))
+@pytest.mark.parametrize("moment", seeds(check=1, sample=4, claim=50))
 @pytest.mark.parametrize(
     ("arguments", "longest"),
     [
@@ -30,20 +29,11 @@ MAIN = "from tippetop.cli.main import main; print('begun', flush=True); main()"
 def test_interrupted_command_says_so_and_leaves_nothing(tmp_path, arguments, longest, moment):
     """Whenever it is: while modules are imported, while processes start, and while they work."""
     wait = random.Random(f"{arguments}{moment}").uniform(0.0, longest)
-    process = subprocess.Popen(
-        [sys.executable, "-c", MAIN, *arguments.split()],
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    assert process.stdout is not None
-    assert process.stdout.readline() == "begun\n"
-    time.sleep(wait)
-    os.killpg(process.pid, signal.SIGINT)
-    out, said = process.communicate(timeout=60)
-    assert (out, said, process.returncode) == ("", SAID, 130), f"after {wait} s"
+    with started([sys.executable, "-c", MAIN, *arguments.split()], cwd=tmp_path) as process:
+        assert process.stdout.readline() == "begun\n"
+        time.sleep(wait)
+        os.killpg(process.pid, signal.SIGINT)
+        assert ended(process) == ("", SAID, 130), f"after {wait} s"
     assert list(tmp_path.rglob("*")) == []
 
 
@@ -68,15 +58,10 @@ sys.meta_path.insert(0, Finder())
 
 @pytest.mark.parametrize("lost", [False, True])
 def test_ctrl_c_of_which_an_import_makes_something_else_is_still_ctrl_c(tmp_path, lost):
-    done = subprocess.run(
-        [sys.executable, "-c", MASKED.format(lost=lost) + MAIN, "simulate", "--out", "run.nc"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
-    assert (done.stdout, done.stderr, done.returncode) == ("begun\n", SAID, 130)
+    program = MASKED.format(lost=lost) + MAIN
+    command = [sys.executable, "-c", program, "simulate", "--out", "run.nc"]
+    with started(command, cwd=tmp_path) as process:
+        assert ended(process) == ("begun\n", SAID, 130)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -102,17 +87,9 @@ def compiler(*_, **__):
 def test_a_compiler_does_not_keep_ctrl_c_waiting(tmp_path, integrator, module, name):
     pytest.importorskip(module)
     program = DEAF.format(module=module, name=name) + MAIN
-    process = subprocess.Popen(
-        [sys.executable, "-c", program, "simulate", "--integrator", integrator],
-        cwd=tmp_path,
-        env={**os.environ, "TIPPETOP_CACHE": str(tmp_path / "cache")},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    assert process.stdout is not None
-    assert [process.stdout.readline() for _ in range(2)] == ["begun\n"] * 2
-    os.killpg(process.pid, signal.SIGINT)
-    out, said = process.communicate(timeout=60)
-    assert (out, said, process.returncode) == ("", SAID, 130)
+    command = [sys.executable, "-c", program, "simulate", "--integrator", integrator]
+    environment = {**os.environ, "TIPPETOP_CACHE": str(tmp_path / "cache")}
+    with started(command, cwd=tmp_path, env=environment) as process:
+        assert [process.stdout.readline() for _ in range(2)] == ["begun\n"] * 2
+        os.killpg(process.pid, signal.SIGINT)
+        assert ended(process) == ("", SAID, 130)

@@ -12,6 +12,7 @@ from typing import Any
 import psutil
 import pytest
 
+from children import ended, started
 from tippetop.support.errors import InvalidInput, Unavailable
 from tippetop.support.processes import RESTARTS, Job, Worker, shared
 
@@ -153,15 +154,11 @@ except KeyboardInterrupt:
 @pytest.mark.parametrize("wait", [0.01, 0.1, 0.2, 1.0])
 def test_ctrl_c_ends_all_of_it_without_a_traceback(wait: float) -> None:
     """Whenever it is pressed: processes that start just then hear it no more than others."""
-    command = [sys.executable, "-c", INTERRUPTED]
-    process = subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
-    assert process.stdout is not None
-    assert process.stdout.readline() == "begun\n"
-    time.sleep(wait)
-    os.killpg(process.pid, signal.SIGINT)
-    assert process.communicate(timeout=20) == ("interrupted\n", "")
+    with started([sys.executable, "-c", INTERRUPTED]) as process:
+        assert process.stdout.readline() == "begun\n"
+        time.sleep(wait)
+        os.killpg(process.pid, signal.SIGINT)
+        assert ended(process)[:2] == ("interrupted\n", "")
 
 
 BLOCKED = """

@@ -16,6 +16,7 @@ from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
 
 import tippetop as tt
+from campaigns import examples
 from strategies import numbers
 from tippetop.integrators import has_numba, has_taylor, make_integrator
 from tippetop.problem.presets import REPORT, report_problem
@@ -163,7 +164,7 @@ def test_spin_of_50_ends_in_the_steady_state_of_constant_tilt():
 
 
 @pytest.mark.skipif(not has_taylor(), reason="200 long runs take minutes without heyoka")
-@settings(few_and_slow, max_examples=200)
+@settings(few_and_slow, max_examples=examples(check=40, claim=2000))
 @given(tippe_tops())
 def test_jellett_and_energy_hold_for_every_tippe_top(problem):
     """The invariants over 20 s, to the rounding of the numbers they are made of.

@@ -10,10 +10,8 @@ import pytest
 import xarray as xr
 
 import tippetop as tt
+from campaigns import seeds
 from tippetop.results import netcdf
-
-MANY = int(os.environ.get("TIPPETOP_FAULTS", "1"))
-"""How many times more faults than in a quick run."""
 
 
 @pytest.fixture(scope="module")
@@ -48,15 +46,16 @@ def damages(content, rng, count):
             yield bytes(damaged)
 
 
-def test_damage_at_any_place_is_seen(written, tmp_path):
+@pytest.mark.parametrize("seed", seeds(check=1, sample=3, claim=20))
+def test_damage_at_any_place_is_seen(written, tmp_path, seed):
     path, content = tmp_path / "run.nc", written.read_bytes()
     refused = 0
-    for damaged in damages(content, np.random.default_rng(11), 1000 * MANY):
+    for damaged in damages(content, np.random.default_rng(seed), 1000):
         path.write_bytes(damaged)
         with pytest.raises(tt.FileTrouble, match=r"cannot be read: it is (damaged|not a result)"):
             tt.read_run(path)
         refused += 1
-    assert refused > 800 * MANY
+    assert refused > 800
 
 
 def test_others_read_the_file_as_it_is(written):

@@ -57,7 +57,7 @@ def test_a_key_that_python_means_otherwise_is_a_key_like_any(table, key):
     told(with_option, f"{table}.{key}=1" if table else f"{key}=1")
 
 
-@pytest.mark.parametrize("depth", [30, 300, 900, 1000, 5000, 100_000])
+@pytest.mark.parametrize("depth", [30, 300, 900, 1000, 5000, 20_000])
 def test_what_is_nested_deep_is_refused(depth):
     for text in (f'{{"gravity": {nested(depth)}}}', nested(depth)):
         assert "20 deep" in told(tt.Problem.from_json, text)

@@ -9,6 +9,7 @@ import subprocess
 import numpy as np
 import pytest
 
+from campaigns import among
 from every_motion import CASES, SURFACES, everything, states
 from node import NODE
 from tippetop.contact.sliding import sliding_motion
@@ -125,8 +126,10 @@ def by_llvm(recorded, rows, parameters, abreast=8):
 
 
 @pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
-@pytest.mark.parametrize("shape", SURFACES)
-@pytest.mark.parametrize("abreast", [1, llvm.ABREAST])
+@pytest.mark.parametrize(
+    ("shape", "abreast"),
+    among([(shape, abreast) for abreast in (1, llvm.ABREAST) for shape in SURFACES], check=2),
+)
 def test_machine_code_computes_what_the_mechanics_does(shape, abreast, monkeypatch):
     monkeypatch.setattr(
         llvm, "ROUNDING", ""

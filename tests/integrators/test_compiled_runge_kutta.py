@@ -3,13 +3,13 @@
 import itertools
 import math
 import os
-import subprocess
 import sys
 
 import numpy as np
 import pytest
 from exact_motions import KEPLER, whole
 
+from children import ended, started
 from every_motion import CASES, states
 from tippetop.integrators import Guard, Motion, dormand_prince, has_numba, make_integrator, stepping
 from tippetop.problem.presets import report_problem
@@ -42,7 +42,11 @@ def test_its_steps_are_those_of_scipys_method():
 
 @pytest.mark.parametrize(
     "name",
-    ["hull coulomb and rolling sliding", "spheroid ellipsoidal sticking", "hull viscous two"],
+    [
+        "hull coulomb and rolling sliding",
+        "spheroid ellipsoidal sticking",
+        pytest.param("hull viscous two", marks=pytest.mark.slow),  # long to compile
+    ],
 )
 def test_motions_of_tops_end_where_scipys_do(name):
     case = next(case for case in CASES if case.name.startswith(name))
@@ -209,32 +213,30 @@ assert abs(arc.end_state[0] + 1.0) < 1e-12, arc
 """
 
 
-def started(folder):
+def compiling(folder):
     environment = {**os.environ, VARIABLE: str(folder)}
-    command = [sys.executable, "-W", "error", "-c", RUN]
-    return subprocess.Popen(
-        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    )
+    return started([sys.executable, "-W", "error", "-c", RUN], env=environment)
 
 
-def ended(process):
-    said, _ = process.communicate(timeout=120)
-    assert (said, process.returncode) == ("", 0)
+def compile_in(folder):
+    with compiling(folder) as process:
+        assert ended(process) == ("", "", 0)
 
 
 def contents(folder):
     return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
+@pytest.mark.slow
 def test_processes_share_what_they_compile_and_damage_is_thrown_away(tmp_path):
-    for process in [started(tmp_path), started(tmp_path)]:
-        ended(process)
+    with compiling(tmp_path) as one, compiling(tmp_path) as another:
+        assert ended(one) == ended(another) == ("", "", 0)
     whole_ones = contents(tmp_path)
     assert len(list(tmp_path.glob(f"*/{SEAL}"))) == 3, (
         "the loop, the motion, and its guards at all looks"
     )
     assert not any(MAKING.fullmatch(path.name) for path in tmp_path.iterdir())
-    ended(started(tmp_path))
+    compile_in(tmp_path)
     assert contents(tmp_path) == whole_ones, "nothing was compiled again"
     code = [path for path in whole_ones if path.suffix == ".nbc"]
     for path in code:
@@ -242,7 +244,7 @@ def test_processes_share_what_they_compile_and_damage_is_thrown_away(tmp_path):
         content[len(content) // 2] ^= 0x40
         path.write_bytes(content)
     damaged = contents(tmp_path)
-    ended(started(tmp_path))
+    compile_in(tmp_path)
     repaired = contents(tmp_path)
     assert code
     assert all(repaired[path] != damaged[path] for path in code)
@@ -268,7 +270,7 @@ def test_what_was_left_of_compiling_is_removed_by_the_next_who_compiles(tmp_path
 
 def test_a_cache_that_cannot_be_written_is_done_without(tmp_path):
     (tmp_path / "file").write_text("no folder")
-    ended(started(tmp_path / "file"))
+    compile_in(tmp_path / "file")
 
 
 def test_the_reports_run_is_that_of_the_other_integrators():

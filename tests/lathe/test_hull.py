@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from profiles import BALL, brute_support, profiles
 
+from campaigns import examples
 from tippetop.lathe.hull import hull_of
 from tippetop.lathe.profile import profile_of
 
@@ -17,7 +18,7 @@ def hull(*points):
     return hull_of(profile_of(points))
 
 
-@settings(max_examples=80)
+@settings(max_examples=examples(check=26, claim=800))
 @given(profile=profiles())
 def test_the_hull_is_that_of_all_points_of_the_profile(profile):
     found = hull_of(profile)
@@ -33,7 +34,7 @@ def test_the_hull_is_that_of_all_points_of_the_profile(profile):
     assert (support - brute_support(profile, tilts) <= abs(missed) + within).all()
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(check=15, claim=400))
 @given(profile=profiles())
 def test_its_surfaces_follow_each_other_from_tilt_to_tilt(profile):
     found = hull_of(profile)
@@ -46,7 +47,7 @@ def test_its_surfaces_follow_each_other_from_tilt_to_tilt(profile):
         assert low[:3] != high[:3]
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(check=15, claim=400))
 @given(profile=profiles())
 def test_how_far_a_whole_surface_would_reach_out(profile):
     found = hull_of(profile)

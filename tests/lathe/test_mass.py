@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from profiles import BALL, lines, made, profiles
 
+from campaigns import examples
 from strategies import numbers
 from tippetop.lathe.mass import mass_properties
 from tippetop.lathe.profile import profile_of
@@ -119,7 +120,7 @@ def test_several_densities():
         assert found.mass == pytest.approx(RHO * 4 / 3 * math.pi * parts, rel=1e-13)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(check=15, claim=400))
 @given(points=lines(), density=numbers(100.0, 2e4))
 def test_the_parts_of_a_body_cut_by_a_plane_add_up(points, density):
     middle = next(k for k, point in enumerate(points) if point[0] and point[1] == 0.0)
@@ -139,7 +140,7 @@ def test_the_parts_of_a_body_cut_by_a_plane_add_up(points, density):
     )
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(check=15, claim=400))
 @given(profile=profiles(), lift=numbers(-0.1, 0.1), factor=numbers(0.1, 10.0))
 def test_a_body_moved_up_and_enlarged_keeps_its_proportions(profile, lift, factor):
     moved = [

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from profiles import BALL, lines
 
 import tippetop as tt
+from campaigns import examples
 from strategies import numbers
 
 R = 0.02
@@ -99,7 +100,7 @@ def test_a_top_with_a_stem_stands_on_two_spheres():
     assert (tip.radius, tip.center) == pytest.approx((0.005, 0.013 - center), rel=1e-9)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(check=20, claim=600))
 @given(points=lines(), low=numbers(0.005, 0.04), high=numbers(0.005, 0.04), straight=st.booleans())
 def test_the_body_is_as_high_over_the_table_as_its_hull(points, low, high, straight):
     """What the mechanics makes of the surfaces, against the hull of the profile, between flat

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from campaigns import examples
 from strategies import numbers, slides, spheres, spheroids, tops
 from tippetop.mechanics.flight import fly, gap, gap_rate
 from tippetop.mechanics.friction import ViscousLaw
@@ -370,14 +371,14 @@ def lift_offs(draw):
     return top._replace(gravity=gravity), state
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(check=15, claim=400))
 @given(lift_offs())
 def test_the_first_touch_after_lift_off(case):
     top, state = case
     check_touchdown(state, top, Start.LIFT_OFF, 30.0 * time_unit(top))
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(check=15, claim=400))
 @given(flights())
 def test_the_first_touch_after_a_throw(case):
     top, state = case
@@ -386,7 +387,7 @@ def test_the_first_touch_after_a_throw(case):
     check_touchdown(state, top, Start.AIRBORNE, 30.0 * time_unit(top))
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(check=15, claim=400))
 @given(flights(), numbers(-9.0, 1.0), st.sampled_from([Start.REBOUND, Start.RELEASE]))
 def test_the_first_touch_after_a_rebound_or_a_release(case, magnitude, start):
     top, state = case
@@ -486,7 +487,7 @@ def tumbling(draw):
     )
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(check=20, claim=600))
 @given(tumbling())
 @example(Tumbling(EDGES["edge"], 1.2, -40.0, 0.01, 0.5, 0.0))
 @example(Tumbling(EDGES["edge of a face"], 1.0, 25.0, 0.01, 0.5, 0.3))

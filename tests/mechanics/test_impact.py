@@ -9,11 +9,12 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from campaigns import examples
 from strategies import numbers, slides, spheres, tops
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.friction import RegularizedCoulombLaw, Traction, ViscousLaw
 from tippetop.mechanics.impact import Impact, impact
-from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.invariants import jellett
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
@@ -93,8 +94,16 @@ class Rigid:
         )
 
 
-def lose(before, after, top):
-    return energy(before, top) - energy(after, top)
+def kinetic_energy_lost(before, after, top):
+    """Return -(m dv.(v- + v+) + dL.(omega- + omega+)) / 2, in which nothing large cancels.
+
+    The difference of two energies is off by the rounding of each, and the potential energy, which
+    an impact does not change, may be 10^8 times what a slow impact takes.
+    """
+    inverse_inertia = Rigid(before, top).inverse_inertia
+    v, V = np.array(before.velocity), np.array(after.velocity)
+    L, M = np.array(before.momentum), np.array(after.momentum)
+    return -0.5 * (top.mass * (V - v) @ (V + v) + (M - L) @ inverse_inertia @ (M + L))
 
 
 # What no impact can do
@@ -111,7 +120,7 @@ def check_laws_of_impact(state, restitution, top):
 
     assert result.energy_lost >= 0.0
     assert result.energy_lost == pytest.approx(
-        lose(state, after, top), rel=1e-11, abs=1e-13 * scale
+        kinetic_energy_lost(state, after, top), rel=1e-11, abs=1e-13 * scale
     )
     assert (after.axis, after.height) == (state.axis, state.height)
     assert gap(after, top) == gap(state, top)
@@ -133,13 +142,22 @@ def check_laws_of_impact(state, restitution, top):
     return result
 
 
-@settings(max_examples=300)
+SLOW = (
+    State((0.6, 0.0, 0.8), (0.0, 0.0, 0.0), (0.0, 0.0, -1e-5), 0.0152),
+    0.3,
+    Top(0.02, 3e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8),
+)
+"""A fall whose kinetic energy is 10^-9 of its potential energy."""
+
+
+@example(SLOW)
+@settings(max_examples=examples(check=60, claim=3000))
 @given(collisions(viscous()))
 def test_impacts_obey_the_laws_of_mechanics_with_viscous_friction(collision):
     check_laws_of_impact(*collision)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(check=20, claim=600))
 @given(collisions(coulomb()))
 def test_impacts_obey_the_laws_of_mechanics_with_coulomb_friction(collision):
     check_laws_of_impact(*collision)
@@ -311,7 +329,7 @@ def check_against_integration(state, restitution, top, method, rtol, tolerance):
     return result, end
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(check=20, claim=600))
 @given(collisions(viscous()))
 def test_viscous_friction_against_integration(collision):
     check_against_integration(*collision, "DOP853", 1e-12, 1e-9)
@@ -341,7 +359,7 @@ class Unnamed(NamedTuple):
         return ViscousLaw(self.mu).traction(slip, angular_velocity)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(check=15, claim=400))
 @given(collisions(viscous(), roughest=3.0))
 def test_the_closed_form_and_the_general_way_agree(collision):
     state, restitution, top = collision
@@ -379,7 +397,9 @@ def test_a_law_with_torque_against_integration(spin, restitution):
     turned = np.array(result.state.momentum) - rigid.momentum
     assert turned == pytest.approx(np.cross(rigid.arm, end[3:6]) + end[6:9], rel=1e-6, abs=1e-10)
     assert abs(end[8]) > 1e-8
-    assert result.energy_lost == pytest.approx(lose(state, result.state, top), rel=1e-10)
+    assert result.energy_lost == pytest.approx(
+        kinetic_energy_lost(state, result.state, top), rel=1e-10
+    )
 
 
 class SteadyDrilling(NamedTuple):
@@ -424,7 +444,9 @@ def test_slip_that_is_held_against_a_torque_stays_held(restitution):
     assert turned == pytest.approx(
         np.cross(rigid.arm, impulse) + angular_impulse, rel=1e-9, abs=1e-15
     )
-    assert result.energy_lost == pytest.approx(lose(state, result.state, top), rel=1e-10)
+    assert result.energy_lost == pytest.approx(
+        kinetic_energy_lost(state, result.state, top), rel=1e-10
+    )
 
 
 # Painleve's paradox and Poisson's hypothesis

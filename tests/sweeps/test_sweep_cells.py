@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from strategies import problems
 from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.problem.presets import REPORT_THIN_STEM, WOODEN, report_problem
@@ -41,7 +42,7 @@ def as_problem(problem, field, value):
         return None
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(check=15, claim=400))
 @given(
     problems(),
     st.sampled_from(["body.mass", "body.I1", "launch.tilt", "launch.spin", "friction.mu"]),

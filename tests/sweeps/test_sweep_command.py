@@ -4,7 +4,6 @@ import json
 import os
 import re
 import signal
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -16,6 +15,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import tippetop as tt
+from children import ended, started
 from tippetop.cli import commands
 from tippetop.cli.sweep import sweep as command
 from tippetop.problem.presets import report_problem
@@ -307,18 +307,14 @@ def test_ctrl_c_leaves_a_line_and_a_store_that_resumes(tmp_path, workers):
     script, out = tmp_path / "run.py", tmp_path / "a.zarr"
     script.write_text(INTERRUPTED)
     options = ["--axis", "launch.spin=1:250:120", "--axis", "friction.mu=0.1:1:100", "--no-maps"]
-    process = subprocess.Popen(
-        [sys.executable, script, *options, "--workers", str(workers), "--out", out],
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    while not list(out.glob("status/c/*/*")):
-        assert process.poll() is None
-        time.sleep(0.05)
-    os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=60)
-    assert process.returncode == 130
+    command = [sys.executable, script, *options, "--workers", str(workers), "--out", out]
+    with started(command) as process:
+        while not list(out.glob("status/c/*/*")):
+            assert process.poll() is None
+            time.sleep(0.05)
+        os.killpg(process.pid, signal.SIGINT)
+        _, said, code = ended(process)
+    assert code == 130
     assert "interrupted" in said
     assert "--resume" in said
     assert "Traceback" not in said

@@ -18,6 +18,8 @@ import pytest
 import xarray as xr
 from sweep_cases import lively, stored
 
+from campaigns import seeds
+from children import started
 from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble
 from tippetop.sweeps import (
@@ -36,8 +38,9 @@ from tippetop.sweeps import (
 
 zarr = pytest.importorskip("zarr")
 
-DAMAGES = int(os.environ.get("TIPPETOP_DAMAGES", "40"))
-"""In how many places a store is damaged; more takes longer, and shows more."""
+
+DAMAGES = 20
+"""In how many places a store is damaged, one after the other."""
 
 
 def quick():
@@ -63,9 +66,10 @@ def lose(data, random):
     return None
 
 
-def test_nothing_damaged_is_read_and_what_can_be_mended_is(tmp_path, monkeypatch):
+@pytest.mark.parametrize("seed", seeds(check=1, sample=4, claim=50))
+def test_nothing_damaged_is_read_and_what_can_be_mended_is(tmp_path, monkeypatch, seed):
     monkeypatch.setattr(definition, "LEAST_CELLS_A_TASK", 12)
-    path, random = tmp_path / "a.zarr", np.random.default_rng(7)
+    path, random = tmp_path / "a.zarr", np.random.default_rng(seed)
     truth = compute(quick())
     stored(quick(), path, workers=1)
     names = ["status", *SWEPT]
@@ -216,33 +220,31 @@ def test_a_disk_that_does_not_take_it_leaves_the_task_undone(tmp_path, small_tas
 SLOW = """
 import sys, time
 sys.path.insert(0, {folder!r})
-from test_sweep_faults import quick
+from sweep_cases import lively
 from tippetop.sweeps import definition
 from tippetop.sweeps import Store
 from tippetop.sweeps import fill
 definition.LEAST_CELLS_A_TASK, definition.TASKS = 4, 1000
-store = Store.create({path!r}, quick())
+store = Store.create({path!r}, lively("fly", 7, 3, 0.05, 1e-9))
 print("filling", flush=True)
-fill(store, workers=1, callback=lambda progress: time.sleep(1.0))
+fill(store, workers=1, callback=lambda progress: progress.done and time.sleep(1e6))
 """
 
 
 def test_a_sweep_that_is_being_filled_is_not_replaced(tmp_path, small_tasks):
     path = tmp_path / "a.zarr"
     script = SLOW.format(folder=str(Path(__file__).parent), path=str(path))
-    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE)
-    assert process.stdout.readline() == b"filling\n"
-    while not list(path.glob("status/c/*")):
-        time.sleep(0.05)
     other = lively("stop", 7, 3, 0.05, 1e-9)
-    for overwrite in (True, False):
-        with pytest.raises(
-            FileTrouble, match="being filled by another process" if overwrite else "exists"
-        ):
-            stored(other, path, overwrite=overwrite, workers=1)
-    process.kill()
-    process.wait()
-    process.stdout.close()
+    with started([sys.executable, "-c", script]) as process:
+        assert process.stdout.readline() == "filling\n"
+        while not list(path.glob("status/c/*")):
+            assert process.poll() is None
+            time.sleep(0.05)
+        for overwrite in (True, False):
+            with pytest.raises(
+                FileTrouble, match="being filled by another process" if overwrite else "exists"
+            ):
+                stored(other, path, overwrite=overwrite, workers=1)
     assert [item.name for item in tmp_path.iterdir()] == ["a.zarr"]
     assert 0 < len(Store.resume(path, quick()).remaining()) < len(quick().tasks)
     stored(other, path, overwrite=True, workers=1)
@@ -295,11 +297,11 @@ def test_of_several_that_make_one_store_one_does(tmp_path, small_tasks):
 KILLED = """
 import os, signal, sys
 sys.path.insert(0, {folder!r})
-from test_sweep_faults import quick
+from sweep_cases import lively
 from tippetop.sweeps import Store
 from tippetop.sweeps import store
 store.bring_to_disk = lambda paths: os.kill(os.getpid(), signal.SIGKILL)
-Store.create({path!r}, quick())
+Store.create({path!r}, lively("fly", 7, 3, 0.05, 1e-9))
 """
 
 

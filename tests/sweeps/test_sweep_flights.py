@@ -7,6 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from strategies import slides, spheres, spheroids, tops
 from tippetop.mechanics import impact_process
 from tippetop.mechanics.contensou_hertz import HertzLaw
@@ -54,7 +55,7 @@ def flown(kind, numbers, state, vanishing, horizon=50.0):
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # a sweep ignores what is no number
-@settings(max_examples=60)
+@settings(max_examples=examples(check=20, claim=600))
 @given(slides(tops()), st.floats(0.01, 5.0), st.floats(-3.0, 3.0))
 def test_a_throw_lands_when_a_single_one_does(slide, gap, rise):
     kind, numbers, state = natural(*slide)
@@ -73,7 +74,7 @@ def test_a_throw_lands_when_a_single_one_does(slide, gap, rise):
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # a sweep ignores what is no number
-@settings(max_examples=60)
+@settings(max_examples=examples(check=20, claim=600))
 @given(slides(VISCOUS), st.floats(1e-4, 2.0))
 def test_a_rebound_lands_when_a_single_one_does(slide, rise):
     kind, numbers, state = natural(*slide)
@@ -86,7 +87,7 @@ def test_a_rebound_lands_when_a_single_one_does(slide, rise):
     assert found.duration[0] == pytest.approx(landing, rel=1e-9)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(check=20, claim=600))
 @given(slides(tops(st.one_of(spheres(), spheroids()), (ViscousLaw,))), st.floats(0.01, 5.0))
 def test_an_impact_is_the_single_one(slide, speed):
     kind, numbers, state = natural(*slide)
@@ -144,7 +145,7 @@ def test_pieces_of_flights_are_what_a_closer_look_finds_and_rarely_need_it(surfa
 def test_impacts_are_rarely_left_out():
     spheres_struck = []
 
-    @settings(max_examples=100, database=None)
+    @settings(max_examples=examples(check=33, claim=1000), database=None)
     @given(slides(VISCOUS))
     def look(slide):
         kind, numbers, state = natural(*slide)

@@ -3,7 +3,6 @@
 import errno
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -14,6 +13,8 @@ import pytest
 import xarray as xr
 from sweep_cases import lively, same, stored
 
+from campaigns import seeds
+from children import started
 from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble, InvalidInput
 from tippetop.sweeps import (
@@ -32,9 +33,6 @@ from tippetop.sweeps import (
 from tippetop.sweeps.axes import Spaced
 
 zarr = pytest.importorskip("zarr")
-
-KILLS = int(os.environ.get("TIPPETOP_KILLS", "3"))
-"""How often the sweep is killed; more often takes longer, and shows more."""
 
 
 def quick(cells=24, **options):
@@ -266,33 +264,31 @@ def test_a_folder_in_which_nothing_can_be_written_is_said_to_be(tmp_path):
 FILL = """
 import sys
 sys.path.insert(0, {folder!r})
-from test_sweep_store import quick
+from sweep_cases import lively
 from tippetop.sweeps import definition
 definition.LEAST_CELLS_A_TASK, definition.TASKS = 4, 1000
 from tippetop.sweeps import Store
 from tippetop.sweeps import fill
 from pathlib import Path
 if __name__ == "__main__":
-    path = Path({path!r})
-    store = Store.resume(path, quick(80)) if path.exists() else Store.create(path, quick(80))
+    path, sweep = Path({path!r}), lively("fly", 20, 4, 0.1, 1e-9)
+    store = Store.resume(path, sweep) if path.exists() else Store.create(path, sweep)
     print("filling", flush=True)
     fill(store, workers=1)
 """
 
 
-def test_a_sweep_killed_at_random_moments_loses_nothing(tmp_path, small_tasks):
+@pytest.mark.parametrize("seed", seeds(check=1, sample=3, claim=20))
+def test_a_sweep_killed_at_random_moments_loses_nothing(tmp_path, small_tasks, seed):
     path = tmp_path / "a.zarr"
     script = tmp_path / "fill.py"
     script.write_text(FILL.format(folder=str(Path(__file__).parent), path=str(path)))
-    random = np.random.default_rng(11)
+    random = np.random.default_rng(seed)
     left = []
-    for _ in range(KILLS):
-        process = subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE)
-        assert process.stdout.readline() == b"filling\n"
-        time.sleep(random.uniform(0.0, 0.4))
-        process.send_signal(signal.SIGKILL)
-        process.wait()
-        process.stdout.close()
+    for _ in range(2):
+        with started([sys.executable, script]) as process:
+            assert process.stdout.readline() == "filling\n"
+            time.sleep(random.uniform(0.0, 0.4))
         left.append(len(Store.resume(path).remaining()))
     assert left == sorted(left, reverse=True)
     subprocess.run([sys.executable, script], check=True, stdout=subprocess.DEVNULL)

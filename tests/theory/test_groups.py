@@ -7,6 +7,7 @@ import pytest
 from full_runs import alphas, gammas, jellett_unit, sphere
 from hypothesis import assume, given, settings
 
+from campaigns import examples
 from strategies import numbers
 from tippetop import presets
 from tippetop.mechanics.friction import ViscousLaw
@@ -57,7 +58,7 @@ def looked_at(top):
     }
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(check=16, claim=500))
 @given(gammas, alphas)
 def test_the_group_says_what_the_energies_show(gamma, alpha):
     boundaries = (
