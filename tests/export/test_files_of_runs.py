@@ -1,3 +1,5 @@
+"""Tables, films and models of a run hold its numbers, and are refused where they cannot be made."""
+
 import csv
 import shutil
 import struct

@@ -1,3 +1,5 @@
+"""The mesh of a toy touches the table where the model does, and rays meet it where it is."""
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb

@@ -1,3 +1,5 @@
+"""Poses of a toy between the samples of a run converge to the run at fourth order."""
+
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,3 +1,5 @@
+"""The block of data that the player is given holds the run, its flights and its losses."""
+
 import json
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""The sentences about a run state the events and the end that its numbers have."""
+
 import numpy as np
 import pytest
 

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from campaigns import among
 from strategies import angles, numbers, spheres, tops
 from tippetop.mechanics.euler import published_energy, published_normal_force, published_rates
 from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
@@ -74,7 +75,9 @@ def launch(spin):
     return Angles(0.1, 0.0, 0.0, 0.0, spin, (0.0, 0.0))
 
 
-@pytest.fixture(scope="module", params=[50.0, 155.0], ids=lambda spin: f"{spin:g} rad/s")
+@pytest.fixture(
+    scope="module", params=among([50.0, 155.0], check=1), ids=lambda spin: f"{spin:g} rad/s"
+)
 def spin(request):
     return request.param
 

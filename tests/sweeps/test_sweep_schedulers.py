@@ -245,7 +245,7 @@ def cluster(tmp_path):
     ("lost", "pause", "sentence"),
     [
         ("scheduler", 0.0, "was lost (CancelledError)"),
-        ("scheduler", 1.0, "was lost (CancelledError)"),
+        pytest.param("scheduler", 1.0, "was lost (CancelledError)", marks=pytest.mark.slow),
         ("worker", 0.0, "has had no workers for 2 s"),
     ],
 )
