@@ -12,13 +12,13 @@ import pytest
 from hypothesis import settings
 
 
-def seeds(check: int, sample: int, claim: int) -> list[Any]:
+def seeds(check: int, sample: int, claim: int, always: Sequence[int] = ()) -> list[Any]:
     """Return the seeds of a campaign as parameters.
 
-    Every check runs those below `check`, `make test-all` those below `sample`, and `make campaigns`
-    those below `claim`.
+    Every check runs those below `check` and those of `always`, `make test-all` those below `sample`,
+    and `make campaigns` those below `claim`.
     """
-    return [_marked(seed, seed, check, sample) for seed in range(claim)]
+    return [_marked(k, -1 if k in always else k, check, sample) for k in range(claim)]
 
 
 def seed_ranges(check: int, sample: int, claim: int, size: int) -> list[Any]:
@@ -54,6 +54,7 @@ def examples(check: int, claim: int) -> int:
 
 
 def _marked(value: Any, first: int, check: int, sample: int, **options: Any) -> Any:
+    """Return a parameter whose first seed says who runs it."""
     if first < check:
         return pytest.param(value, **options)
     mark = pytest.mark.slow if first < sample else pytest.mark.campaign
