@@ -15,8 +15,8 @@ from hypothesis import settings
 def seeds(check: int, sample: int, claim: int, always: Sequence[int] = ()) -> list[Any]:
     """Return the seeds of a campaign as parameters.
 
-    Every check runs those below `check` and those of `always`, `make test-all` those below `sample`,
-    and `make campaigns` those below `claim`.
+    Every check runs those below `check` and those of `always`, `make test-all` those below
+    `sample`, and `make campaigns` those below `claim`.
     """
     return [_marked(k, -1 if k in always else k, check, sample) for k in range(claim)]
 
