@@ -12,6 +12,7 @@ from typing import Any
 import psutil
 import pytest
 
+from campaigns import among
 from children import ended, started
 from tippetop.support.errors import InvalidInput, Unavailable
 from tippetop.support.processes import RESTARTS, Job, Worker, shared
@@ -151,7 +152,7 @@ except KeyboardInterrupt:
 """
 
 
-@pytest.mark.parametrize("wait", [0.01, 0.1, 0.2, 1.0])
+@pytest.mark.parametrize("wait", among([0.01, 0.1, 0.2, 1.0], check=2))
 def test_ctrl_c_ends_all_of_it_without_a_traceback(wait: float) -> None:
     """Whenever it is pressed: processes that start just then hear it no more than others."""
     with started([sys.executable, "-c", INTERRUPTED]) as process:

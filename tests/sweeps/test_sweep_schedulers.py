@@ -33,40 +33,6 @@ def test_several_processes_find_what_one_does(small_tasks):
     assert same(arrays(compute(quick(), workers=1)), arrays(compute(quick(), workers=2)))
 
 
-def test_processes_that_are_killed_are_started_again(small_tasks):
-    sweep = quick()
-    kept = {}
-    killed = False
-    for task, found in schedulers.results(sweep, sweep.tasks, workers=2):
-        kept[task] = found
-        if not killed:
-            workers = [
-                child
-                for child in psutil.Process().children()
-                if "spawn" in " ".join(child.cmdline())
-            ]
-            os.kill(workers[-1].pid, signal.SIGKILL)
-            killed = True
-    assert sorted(kept) == sweep.tasks
-    assert sum(found["outcome"].size for found in kept.values()) == sweep.cells
-
-
-def test_no_process_outlives_its_use(small_tasks):
-    sweep = quick()
-    before = psutil.Process().children(recursive=True)
-    results = schedulers.results(sweep, sweep.tasks, workers=2)
-    next(results)
-    started = [
-        child
-        for child in psutil.Process().children(recursive=True)
-        if child not in before and "resource_tracker" not in " ".join(child.cmdline())
-    ]
-    assert started
-    results.close()
-    _, alive = psutil.wait_procs(started, timeout=10)
-    assert alive == []
-
-
 UNGUARDED = """
 from tippetop.problem.presets import report_problem
 from tippetop.sweeps import Axis
