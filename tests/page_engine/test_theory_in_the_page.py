@@ -48,7 +48,7 @@ def assert_alike(theirs: Any, ours: Any, where: str) -> None:
         assert theirs == ours, where
 
 
-@pytest.mark.parametrize("seeds", seed_ranges(check=60, sample=300, claim=1000, size=240))
+@pytest.mark.parametrize("seeds", seed_ranges(check=300, sample=300, claim=1000, size=350))
 def test_what_is_foreseen_is_the_same(seeds: range) -> None:
     launches = [launch_of(seed) for seed in seeds]
     answers = in_javascript([{"problem": fields, "theory": True} for fields in launches])

@@ -152,7 +152,7 @@ def test_every_launch_gets_an_answer_or_a_sentence(body):
             check_what_is_said(problem)
 
 
-@settings(max_examples=examples(check=20, claim=600), deadline=None)
+@settings(max_examples=examples(check=10, claim=600), deadline=None)
 @given(
     st.sampled_from(list(BODIES)),
     st.sampled_from(FRICTION),
