@@ -1,6 +1,7 @@
 """Impacts that are known exactly, impacts integrated independently, and what no impact can do."""
 
 import math
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from campaigns import examples
+from campaigns import among, examples
 from strategies import numbers, slides, spheres, tops
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.friction import RegularizedCoulombLaw, Traction, ViscousLaw
@@ -335,11 +336,12 @@ def test_viscous_friction_against_integration(collision):
     check_against_integration(*collision, "DOP853", 1e-12, 1e-9)
 
 
-@pytest.mark.parametrize("eps", [1e-3, 1e-5])
-@pytest.mark.parametrize("restitution", [0.0, 0.8, 1.0])
-@pytest.mark.parametrize("mu", [0.2, 0.7])
+SHAPES = [SphereSurface(0.02, 0.006), SpheroidSurface(0.02, 0.034)]
+
+
 @pytest.mark.parametrize(
-    "shape", [SphereSurface(0.02, 0.006), SpheroidSurface(0.02, 0.034)], ids=["sphere", "egg"]
+    ("shape", "mu", "restitution", "eps"),
+    among(list(product(SHAPES, (0.2, 0.7), (0.0, 0.8, 1.0), (1e-3, 1e-5))), check=5),
 )
 def test_steep_coulomb_friction_against_integration(shape, mu, restitution, eps):
     top = Top(0.02, 3.0e-6, 3.3e-6, shape, RegularizedCoulombLaw(mu, eps), 9.8)

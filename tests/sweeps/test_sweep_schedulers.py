@@ -16,6 +16,7 @@ import psutil
 import pytest
 from sweep_cases import lively, same, stored
 
+from campaigns import among
 from children import LONGEST, ended, started
 from tippetop.support.errors import InvalidInput, Unavailable
 from tippetop.sweeps import SWEPT, Store, compute, fill, read_sweep, schedulers
@@ -150,7 +151,7 @@ def test_a_cluster_without_workers_is_refused_and_one_that_is_lost_is_told_of(sm
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize(
     ("raised_in", "expected"),
-    [("distributed.cfexecutor", Unavailable), ("tippetop.sweeps", ValueError)],
+    among([("distributed.cfexecutor", Unavailable), ("tippetop.sweeps", ValueError)], check=1),
 )
 def test_the_library_that_stumbles_over_a_lost_result_means_a_lost_cluster(
     monkeypatch, raised_in, expected
