@@ -10,6 +10,7 @@ from .figures.overview import plot as plot
 from .lab.notebook import view as view
 from .lathe.design import design_bowl as design_bowl
 from .lathe.design import design_insert as design_insert
+from .lathe.files import read_workpiece as read_workpiece
 from .lathe.workpiece import Insert as Insert
 from .lathe.workpiece import Workpiece as Workpiece
 from .problem import presets as presets

@@ -31,9 +31,9 @@ def files(tmp_path, monkeypatch):
     return tmp_path
 
 
-def said(*words):
+def said(*words, code=0):
     done = CliRunner().invoke(app, ["body", *words], env={"COLUMNS": "200", "TERM": "dumb"})
-    assert done.exit_code == 0, done.output
+    assert done.exit_code == code, done.output
     return done.stdout
 
 
@@ -68,8 +68,9 @@ def test_people_are_told_too(files):
         "2.46746",
     ):
         assert text in lines
-    cut_off = said("bowl.csv", "--density", "700", "--unit", "mm")
+    cut_off = said("bowl.csv", "--density", "700", "--unit", "mm", code=2)
     assert "Cannot be simulated: profile = 'a sphere cut off" in cut_off
+    assert "--whole" in cut_off
     assert "lies flat" in cut_off
     assert "up to a tilt of 1.5708" in cut_off
     assert "Cannot be simulated" not in said(

@@ -1,4 +1,4 @@
-"""Workpieces in TOML, and profiles in CSV and SVG."""
+"""Workpieces in TOML, and profiles in CSV and SVG; see `test_drawings` for drawings."""
 
 import math
 
@@ -23,10 +23,6 @@ MASS = 700.0 * 4 / 3 * math.pi * 0.02**3
     ],
 )
 def test_a_ball_is_read(tmp_path, name, text):
-    if name.endswith("svg"):
-        pytest.importorskip(
-            "svg.path", reason="SVG is read with svg.path; it comes with the lathe extra"
-        )
     (tmp_path / name).write_text(text)
     fields = {} if name.endswith("toml") else {"density": 700.0, "unit": "mm"}
     piece = read_workpiece(tmp_path / name, **fields)
@@ -36,18 +32,15 @@ def test_a_ball_is_read(tmp_path, name, text):
 
 
 def test_up_is_up_and_large_arcs_are_large(tmp_path):
-    pytest.importorskip(
-        "svg.path", reason="SVG is read with svg.path; it comes with the lathe extra"
-    )
     (tmp_path / "ring.svg").write_text(SVG.format("M 20 0 A 5 5 0 1 1 25 -5 L 20 -5 Z"))
-    ring = read_workpiece(tmp_path / "ring.svg", density=1.0).mass_properties
+    ring = read_workpiece(tmp_path / "ring.svg", density=1.0, unit="m", axis="x=0").mass_properties
     # Three quarters of a disk: by Pappus, with the moment of the quarter below and outside that is
     # missing.
     assert ring.mass == pytest.approx(2 * math.pi * (20 * 75 / 4 * math.pi - 5**3 / 3), rel=1e-12)
     assert ring.center > 5.0
     (tmp_path / "cone.svg").write_text(SVG.format("M 0 0 L 10 -10 H 0"))
     assert read_workpiece(
-        tmp_path / "cone.svg", density=1.0
+        tmp_path / "cone.svg", density=1.0, unit="m"
     ).mass_properties.center == pytest.approx(7.5)
 
 
@@ -81,15 +74,19 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
         ("a.csv", "O,-2O\n1,2\n0,1\n", "row 1 = 'O,-2O' in "),
         ("a.csv", "", "0 points"),
         ("a.svg", "<svg", "accepted: XML"),
-        ("a.svg", "<svg/>", "0 paths"),
-        ("a.svg", SVG.format("M 0 0 C 1 2 3 4 0 5"), "path = 'CubicBezier'"),
-        ("a.svg", SVG.format("M 0 0 A 1 2 0 0 0 0 2"), "path = 'Arc'"),
-        ("a.svg", SVG.format("M 0 0 L 1 1 M 2 2 L 0 2"), "path = 'Move'"),
-        ("a.svg", SVG.format("rubbish"), "accepted: a path of SVG"),
+        ("a.svg", "<html/>", "accepted: a file whose outermost element is <svg>"),
+        ("a.svg", "<svg/>", "profile = 'a drawing without lines'"),
+        ("a.svg", SVG.format("rubbish"), "profile = 'a drawing without lines'"),
         (
             "a.svg",
-            SVG.format("M 0 0 L 1 1 L 0 1").replace("<g>", '<g transform="scale(2)">'),
-            "transformations",
+            SVG.format("M 0 0 L 1 1 L 5 7"),
+            "profile = 'an open line from (0, 0) to (1.32292",
+        ),
+        ("a.svg", SVG.format("M 0 0 L 5 1 L 7 9 Z"), "whose two sides differ by"),
+        (
+            "a.svg",
+            SVG.format("M 0 0 h 4 v 4 h -4 z M 9 0 h 4 v 4 h -4 z"),
+            "which is beside path 1",
         ),
         ("a.toml", "profile = [", "workpiece = 'a.toml' is not possible; accepted: TOML"),
         ("a.toml", "profile = 'b.csv'", "b.csv cannot be read"),
@@ -99,14 +96,10 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
             "density = 700\nprofile = [[0, 0], [1, 1], [0, 1]]\ncolour = 'red'",
             "colour = 'red' in a.toml",
         ),
-        ("a.txt", "0,0", "accepted: one whose name ends in .toml, .csv or .svg"),
+        ("a.txt", "0,0", "accepted: one whose name ends in .toml, .csv, .svg, .dxf or .stl"),
     ],
 )
 def test_what_cannot_be_read_is_refused(tmp_path, name, text, sentence):
-    if name.endswith("svg"):
-        pytest.importorskip(
-            "svg.path", reason="SVG is read with svg.path; it comes with the lathe extra"
-        )
     (tmp_path / name).write_text(text)
     fields = {} if name.endswith("toml") else {"density": 700.0}
     with pytest.raises(tt.TippetopError) as refusal:
@@ -143,7 +136,7 @@ def test_the_file_of_the_points_is_named_where_they_cannot_be(tmp_path, bad, sen
 
 
 def test_what_is_not_installed_is_said(tmp_path, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "svg.path", None)
-    (tmp_path / "a.svg").write_text(SVG.format("M 0 0 L 1 1 L 0 1"))
+    monkeypatch.setitem(__import__("sys").modules, "ezdxf", None)
+    (tmp_path / "a.dxf").write_text("")
     with pytest.raises(tt.Unavailable, match=r"tippetop\[lathe\]"):
-        read_workpiece(tmp_path / "a.svg", density=1.0)
+        read_workpiece(tmp_path / "a.dxf", density=1.0)

@@ -38,7 +38,6 @@ def insert(*points, density=0.0):
             "accepted: an arc that stays beside the axis",
         ),
         ([(0, 0), (2, 0, 0.5), (0, 2)], "profile.1.2 = 0.5"),
-        ([(0, 0), (2, 0), (2, 0), (0, 1)], "accepted: a point away from the one before"),
         ([(0, 0, 3), (2, 0), (0, 1)], "at the first point no arc ends"),
         ([(0, 0), (2,), (0, 1)], "profile.1 = [2]"),
         ([(0, 0), ("a", 2), (0, 1)], "profile.1.0 = 'a'"),

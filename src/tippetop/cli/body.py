@@ -20,9 +20,35 @@ ENDINGS = {"plot": DRAWINGS, "stl": (".stl",), "3mf": (".3mf",)}
 
 
 def body(
-    file: Annotated[Path, typer.Argument(help="Workpiece (.toml), or its profile (.csv or .svg).")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="Workpiece (.toml), or its profile: points (.csv), a drawing (.svg or .dxf) or a"
+            " surface (.stl)."
+        ),
+    ],
     density: Annotated[float | None, typer.Option(help="Density, kg/m^3.")] = None,
-    unit: Annotated[str | None, typer.Option(help="Unit of the profile: m, cm, mm or in.")] = None,
+    unit: Annotated[
+        str | None,
+        typer.Option(
+            help="Unit of the profile's numbers: m, cm, mm or in. Left out, m in .toml and .csv, mm"
+            " in .stl, and the physical size of a drawing."
+        ),
+    ] = None,
+    axis: Annotated[
+        str | None,
+        typer.Option(
+            help="Axis of a drawing, such as x=10 in its numbers, or x or y for its direction; of a"
+            " surface x, y or z. Found if left out."
+        ),
+    ] = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            help="How far the body may be from points that arcs are fitted to, in sizes of it;"
+            " 0.0001 if left out, 0 to fit none."
+        ),
+    ] = None,
     whole: Annotated[
         bool, typer.Option("--whole", help="Take surfaces that are cut off as if they were whole.")
     ] = False,
@@ -37,25 +63,29 @@ def body(
     as_json: Json = False,
     force: Force = False,
 ) -> None:
-    """Say what a body turned on a lathe weighs, what it stands on, and whether it turns over."""
-    from tippetop.lathe.files import read_workpiece  # noqa: PLC0415 - slow to import
+    """Say what a body turned on a lathe weighs, what it stands on, and whether it turns over.
+
+    A drawing shows half an outline from the axis to the axis, or a whole one on both sides, and
+    bores inside it. A body that cannot be simulated is weighed all the same, and ends with exit
+    code 2.
+    """
+    from tippetop.lathe.files import read_with_remarks  # noqa: PLC0415 - slow to import
 
     wanted = {"plot": plot, "stl": stl, "3mf": three_mf}
     files = {kind: path for kind, path in wanted.items() if path is not None}
     for kind, path in files.items():
         require_ending(f"--{kind}", path, ENDINGS[kind])
         place_for(path, force)
-    given = {"density": density, "unit": unit}
-    piece = read_workpiece(
-        file, **{name: value for name, value in given.items() if value is not None}
-    )
+    given = {"density": density, "unit": unit, "tolerance": tolerance}
+    stated = {name: value for name, value in given.items() if value is not None}
+    piece, remarks = read_with_remarks(file, axis=axis, **stated)
     if as_toml and as_json:
         raise InvalidInput("--toml", "with --json", "one of the two")
     if as_toml:
         turned = tt.Body.turned(piece, whole=whole)
         written = commented_toml(tt.presets.report_problem().model_copy(update={"body": turned}))
     else:
-        told = _told(piece, whole)
+        told = {"remarks": [*remarks, *_fit(piece)], **_told(piece, whole)}
     for path in files.values():
         _write(piece, path, force)
     if as_toml:
@@ -65,6 +95,19 @@ def body(
         show_json({**told, "files": names})
     else:
         show(*_sentences(told), files=files.values())
+    if not as_toml and told["trouble"]:
+        raise typer.Exit(2)
+
+
+def _fit(piece: "tt.Workpiece") -> list[str]:
+    """How the profile was fitted to points, if it was."""
+    fit = piece.fit
+    if fit.edges == fit.stated and not fit.deviation:
+        return []
+    return [
+        f"{fit.edges} arcs and lines for the {fit.stated} edges of the profile, at most"
+        f" {1e3 * piece.deviation:.2g} mm from its points."
+    ]
 
 
 def _told(piece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
@@ -154,6 +197,8 @@ def _sentences(told: dict[str, Any]) -> Iterator[Any]:
             f" That is on its sphere, up to a tilt of {upto:.6g} rad." if upto < math.pi else ""
         )
         yield f"[bold]Group {told['group']}[/]: {told['group_description']}.{within}"
+    for remark in told["remarks"]:
+        yield escape(remark)
     yield facts(_rows(told))
     headings = ("surface", "radius", "tube", "height of its centre", "from tilt", "to tilt")
     rows = (_surface_row(one) for one in told["surfaces"])

@@ -1,137 +1,166 @@
-"""Workpieces read from files: whole from TOML, or their profile from CSV or SVG."""
+"""Workpieces read from files: whole from TOML, or their profile from points, drawings and
+meshes.
+"""
 
 import csv
-import xml.etree.ElementTree as ElementTree
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from tippetop.lathe.workpiece import Workpiece
-from tippetop.support.errors import InvalidInput, Unavailable
-from tippetop.support.files import made_of, named, path_of, read_text
+from tippetop.lathe.fitting import TOLERANCE
+from tippetop.lathe.sheet import Reading, read_sheet
+from tippetop.lathe.workpiece import UNITS, Workpiece
+from tippetop.support.errors import InvalidInput
+from tippetop.support.files import in_words, made_of, named, path_of, read_text
 from tippetop.support.parsing import parse_toml
 
-ACCEPTED = "a workpiece in TOML, or a profile in CSV or SVG"
+ACCEPTED = "a workpiece in TOML, or a profile in CSV, SVG, DXF or STL"
 
+DRAWINGS = (".svg", ".dxf", ".stl")
+"""How the names of drawings and meshes end, which have a unit of their own."""
 
 STARTS = "0123456789+-."
 """What numbers begin with, also those with a slip further on: no cell of a heading begins so."""
 
 
-def read_workpiece(path: Path | str, **fields: Any) -> Workpiece:
-    """Read a workpiece from a .toml file, or its profile from a .csv or .svg file.
+def read_workpiece(path: Path | str, *, axis: str | None = None, **fields: Any) -> Workpiece:
+    """Read a workpiece from a .toml file, or its profile from a .csv, .svg, .dxf or .stl file.
 
     In TOML a profile may be the name of such a file, beside this one. A CSV file has two or three
     columns, with or without a heading: distance from the axis, height and radius of the arc that
-    ends there. An SVG file has one path, of lines and circular arcs, in no moved or turned group,
-    with the axis at x = 0.
+    ends there. A drawing shows half an outline from the axis to the axis, or a whole one on both
+    sides, and bores inside; its lengths are physical (a pixel is a 96th of an inch) unless `unit`
+    says what its numbers are in. A mesh is the surface of a body of revolution, in mm unless `unit`
+    says otherwise.
+
+    The axis of a drawing is x = 10 or y = 10, a place in its numbers, or x or y alone for its
+    direction; that of a mesh x, y or z. Without one it is found.
 
     Fields that are given are set, or are other than in the file. Raises `FileTrouble` if a file
-    cannot be read, `InvalidInput` if it does not hold what it should, `Unavailable` if SVG cannot
-    be read here.
+    cannot be read, `InvalidInput` if it does not hold what it should, `Unavailable` if what reads
+    it is not installed here.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> from pathlib import Path
+    >>> drawing = '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm"'
+    >>> circle = ' viewBox="0 0 40 40"><circle cx="20" cy="20" r="15"/></svg>'
+    >>> _ = Path("ball.svg").write_text(drawing + circle)
+    >>> round(1e3 * tt.read_workpiece("ball.svg", density=700).mass_properties.mass, 3)  # g
+    9.896
     """
+    return read_with_remarks(path, axis=axis, **fields)[0]
+
+
+def read_with_remarks(
+    path: Path | str, *, axis: str | None = None, **fields: Any
+) -> tuple[Workpiece, list[str]]:
+    """Read a workpiece as `read_workpiece` does, with sentences on how drawings were read."""
     path = path_of(path)
-    whole = path.suffix.lower() == ".toml"
-    told = (
+    is_toml = path.suffix.lower() == ".toml"
+    stated = (
         parse_toml(read_text(path, ACCEPTED), "workpiece", path.name)
-        if whole
+        if is_toml
         else {"profile": path.name}
     )
-    found = {**told, **fields}
-    inserts = found.get("inserts")
-    parts = {"": found}
+    content = {**stated, **fields}
+    inserts = content.get("inserts")
+    parts = {"": content}
     if isinstance(inserts, list):
         # What is read is put in, and not into what was given.
-        found["inserts"] = inserts = [
+        content["inserts"] = inserts = [
             dict(part) if isinstance(part, dict) else part for part in inserts
         ]
         parts |= {f"inserts.{number}.": part for number, part in enumerate(inserts)}
+    remarks: list[str] = []
     with ExitStack() as files:
-        if whole:
+        if is_toml:
             files.enter_context(made_of(path, fields))
-        for name, part in parts.items():
+        for prefix, part in parts.items():
             if isinstance(part, dict) and isinstance(part.get("profile"), str):
                 beside = path.parent / part["profile"]
-                part["profile"] = read_points(beside)
-                files.enter_context(made_of(beside, part=f"{name}profile"))
-        return Workpiece(**found)
+                field = f"{prefix}profile"
+                reading = _read(beside, axis, content, field, is_toml)
+                part["profile"] = reading.profile
+                remarks += reading.remarks
+                if reading.cavities:
+                    _add_cavities(content, reading, field)
+                files.enter_context(made_of(beside, part=field))
+        return Workpiece(**content), remarks
 
 
-def read_points(path: Path) -> list[list[float]]:
-    """The points of the profile in a .csv or .svg file; see `read_workpiece`."""
-    text = read_text(path, ACCEPTED)
-    match path.suffix.lower():
-        case ".csv":
-            return _from_csv(text, path)
-        case ".svg":
-            return _from_svg(text, path)
-    raise InvalidInput("file", named(path), "one whose name ends in .toml, .csv or .svg")
+def _add_cavities(content: dict[str, Any], reading: Reading, field: str) -> None:
+    """Add the cavities of a drawing to the inserts of a workpiece."""
+    if field != "profile":
+        raise InvalidInput(field, "a drawing with bores", "one outline: an insert has no bores")
+    cavities = [{"profile": points, "density": 0.0} for points in reading.cavities]
+    content["inserts"] = [*(content.get("inserts") or ()), *cavities]
 
 
-def _from_csv(text: str, path: Path) -> list[list[float]]:
+def _read(
+    path: Path, axis: str | None, content: dict[str, Any], field: str, is_in_toml: bool
+) -> Reading:
+    """The profile in a file; what it is measured in is the workpiece's unit after this.
+
+    The numbers of a drawing are physical lengths, and of a mesh mm, unless a unit is stated; then
+    they are in this unit.
+    """
+    suffix = path.suffix.lower()
+    if suffix == ".csv":
+        return Reading(_from_csv(read_text(path, ACCEPTED), path), [], [])
+    if suffix not in DRAWINGS:
+        raise InvalidInput(
+            "file", named(path), "one whose name ends in .toml, .csv, .svg, .dxf or .stl"
+        )
+    unit = content.get("unit")
+    tolerance = content.get("tolerance", TOLERANCE)
+    if not isinstance(tolerance, float | int) or not 0.0 <= tolerance <= 1.0:
+        tolerance = TOLERANCE  # What is wrong with it, the workpiece says.
+    with in_words(path, "read"):
+        if suffix == ".stl":
+            from tippetop.lathe.scan import read_stl  # noqa: PLC0415 - slow to import
+
+            reading = read_stl(path, axis, named(path))
+        elif suffix == ".dxf":
+            from tippetop.lathe.dxf import read_dxf  # noqa: PLC0415 - slow to import
+
+            reading = read_sheet(read_dxf(path, unit, named(path)), axis, tolerance, field)
+        else:
+            from tippetop.lathe.svg import read_svg  # noqa: PLC0415 - slow to import
+
+            sheet = read_svg(read_text(path, ACCEPTED), unit, named(path))
+            reading = read_sheet(sheet, axis, tolerance, field)
+    if unit is not None:
+        return reading
+    if not is_in_toml:
+        content["unit"] = "mm"
+        return reading
+    scale = UNITS["mm"] / UNITS["m"]
+    return reading._replace(
+        profile=_scaled(reading.profile, scale),
+        cavities=[_scaled(points, scale) for points in reading.cavities],
+    )
+
+
+def _scaled(points: list[tuple[float, ...]], scale: float) -> list[tuple[float, ...]]:
+    return [tuple(scale * number for number in point) for point in points]
+
+
+def _from_csv(text: str, path: Path) -> list[tuple[float, ...]]:
     rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
     if rows and not any(cell.strip()[:1] in STARTS for cell in rows[0] if cell.strip()):
         rows = [[], *rows[1:]]
     return [_numbers(number, row, path) for number, row in enumerate(rows, 1) if row]
 
 
-def _numbers(number: int, row: list[str], path: Path) -> list[float]:
+def _numbers(number: int, row: list[str], path: Path) -> tuple[float, ...]:
     """The numbers of a row, which may end in empty cells, but has none between others."""
     cells = [cell.strip() for cell in row]
     while not cells[-1]:
         cells.pop()
     try:
-        return [float(cell) for cell in cells]
+        return tuple(float(cell) for cell in cells)
     except ValueError:
         accepted = "two or three numbers, with commas between them"
         raise InvalidInput(f"row {number}", ",".join(row), accepted, file=named(path)) from None
-
-
-def _from_svg(text: str, path: Path) -> list[list[float]]:
-    try:
-        from svg.path import parse_path  # noqa: PLC0415 - optional
-    except ImportError:
-        raise Unavailable(
-            "SVG files are read with svg.path, which is not installed: pip install"
-            ' "tippetop[lathe]"'
-        ) from None
-    try:
-        elements = list(ElementTree.fromstring(text).iter())
-    except ElementTree.ParseError as error:
-        raise InvalidInput("SVG", named(path), f"XML; {error}") from None
-    lines = [
-        element.get("d", "") for element in elements if element.tag.rpartition("}")[2] == "path"
-    ]
-    if len(lines) != 1 or any("transform" in element.attrib for element in elements):
-        raise InvalidInput(
-            "SVG", f"{len(lines)} paths in {named(path)}", "one path, without transformations"
-        )
-    try:
-        return _drawn(parse_path(lines[0]))
-    except InvalidInput:
-        raise
-    except (ValueError, IndexError, TypeError):
-        raise InvalidInput("path", lines[0], "a path of SVG") from None
-
-
-def _drawn(line: Any) -> list[list[float]]:
-    """The points of a line; up is less y there, so that arcs turn the other way."""
-    found: list[list[float]] = []
-    for segment in line:
-        match type(segment).__name__:
-            case "Move" if not found:
-                ends = [(segment.end, 0.0)]
-            case "Line" | "Close":
-                ends = [(segment.end, 0.0)] if segment.end != segment.start else []
-            case "Arc" if abs(segment.radius.real - segment.radius.imag) <= 1e-9 * abs(
-                segment.radius
-            ):
-                radius = -segment.radius.real if segment.sweep else segment.radius.real
-                halves = (0.5, 1.0) if segment.arc else (1.0,)
-                ends = [(segment.point(share), radius) for share in halves]
-            case kind:
-                raise InvalidInput(
-                    "path", kind, "one line of straight pieces and circular arcs (M L H V A Z)"
-                )
-        found += [[end.real, -end.imag, radius] for end, radius in ends]
-    return found

@@ -214,11 +214,23 @@ class _Pieces:
             (max(tilt, float(rises[first])), first) if rises[first] < math.pi else (math.pi, number)
         )
 
+    def _joined_to(self, number: int) -> list[int]:
+        """The arcs that end at a point; the ends of an arc, and the arcs that go on smoothly."""
+        if number not in self.ends:
+            return [n for n, ends in self.ends.items() if number in ends]
+        start, end = self.ends[number]
+        before = [n for n in self.ends if self.ends[n][1] == start]
+        after = [n for n in self.ends if self.ends[n][0] == end]
+        smooth = [n for n in before if abs(self.high[n] - self.low[number]) < _CLOSE]
+        smooth += [n for n in after if abs(self.low[n] - self.high[number]) < _CLOSE]
+        return [start, end, *smooth]
+
     def _rises(self, number: int, tilt: float) -> NDArray[np.float64]:
         """The tilts at which the circles and points come to be further out than one of them, from a
         tilt on.
 
-        Where arcs meet their own ends the two are equally far out, and this is not looked for.
+        Where arcs meet their own ends, or others that go on smoothly, the two are equally far out,
+        and this is not looked for.
         """
         across, along = self.radius - self.radius[number], self.height - self.height[number]
         apart = np.hypot(across, along)
@@ -228,6 +240,5 @@ class _Pieces:
         found = np.arctan2(along, across) + np.arcsin(np.where(touching, sine, 0.0))
         found = tilt - _CLOSE + np.mod(found - tilt + _CLOSE, math.tau)
         found[~touching] = math.inf
-        own = self.ends.get(number, ()) or [n for n, ends in self.ends.items() if number in ends]
-        found[list(own)] = math.inf
+        found[self._joined_to(number)] = math.inf
         return np.asarray(found)

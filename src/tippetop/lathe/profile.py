@@ -27,6 +27,9 @@ SHORT = 1e-6
 MOST = 2000
 """Most points of a profile."""
 
+MOST_STATED = 100_000
+"""Most points of a profile that is fitted to them."""
+
 LARGEST = 1e6
 """Largest number of a profile, and the inverse of the smallest size."""
 
@@ -121,7 +124,7 @@ def profile_of(
     Raises `InvalidInput` if they are not the edge of a body: an open line, one that meets itself or
     crosses the axis, an arc too tight for its ends, or nothing inside.
     """
-    _refuse_points(points, field)
+    require_points(points, field, MOST)
     size = max(max(abs(point[0]), abs(point[1] - points[0][1])) for point in points)
     if not 1.0 / LARGEST <= size <= LARGEST:
         raise InvalidInput(
@@ -140,10 +143,12 @@ def area_of(edges: Sequence[Edge]) -> float:
     return sum(float(points.real @ weights) for points, weights in (edge.nodes() for edge in edges))
 
 
-def _refuse_points(points: Sequence[Sequence[float]], field: str) -> None:
-    """Refuse too few or too many points, and what is no point beside the axis."""
-    if not 2 <= len(points) <= MOST:
-        raise InvalidInput(field, f"{len(points)} points", f"2 to {MOST} points")
+def require_points(points: Sequence[Sequence[float]], field: str, most: int = MOST_STATED) -> None:
+    """Raise `InvalidInput` unless points beside the axis are stated, and neither too few nor too
+    many.
+    """
+    if not 2 <= len(points) <= most:
+        raise InvalidInput(field, f"{len(points)} points", f"2 to {most} points")
     for number, point in enumerate(points):
         if len(point) not in (2, 3):
             wanted = "distance from the axis, height and, at the end of an arc, its radius"

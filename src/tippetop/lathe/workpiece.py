@@ -2,14 +2,16 @@
 them.
 """
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from tippetop.lathe.fitting import TOLERANCE, Fit, fit
 from tippetop.lathe.hull import ConvexHull, hull_of
 from tippetop.lathe.mass import MassProperties, mass_properties
-from tippetop.lathe.profile import Profile, area_of, profile_of
+from tippetop.lathe.profile import Profile, area_of, profile_of, require_points
 from tippetop.support.errors import InvalidInput
 from tippetop.support.validation import NotNegative, Part, Points, Positive, Quantity
 
@@ -60,6 +62,10 @@ class Workpiece(Part):
         Cavities and weights in it; one may be in another.
     unit
         What the numbers of profiles are in: "m", "cm", "mm" or "in".
+    tolerance
+        How far the body may be from the points of its profile, in sizes of the profile. Points in a
+        row along an arc or another smooth curve stand for it, as `fit` says; with 0, every edge is
+        as it is stated.
 
     Examples
     --------
@@ -73,6 +79,9 @@ class Workpiece(Part):
     density: Annotated[Positive, Field(le=DENSEST), Quantity("kg m-3", "density of the body")]
     inserts: tuple[Insert, ...] = ()
     unit: Literal["m", "cm", "mm", "in"] = "m"
+    tolerance: Annotated[NotNegative, Field(le=0.05), Quantity("1", "tolerance of the fit")] = (
+        TOLERANCE
+    )
 
     @model_validator(mode="after")
     def _is_a_body(self) -> Self:
@@ -95,15 +104,29 @@ class Workpiece(Part):
         return self
 
     @cached_property
+    def fit(self) -> Fit:
+        """The profile that the points of the body stand for, in its unit."""
+        return _fit(self.profile, self.tolerance, "profile")
+
+    @property
+    def deviation(self) -> float:
+        """Largest distance of a point of the profile from the body, m."""
+        return UNITS[self.unit] * self.fit.deviation
+
+    @cached_property
     def outline(self) -> Profile:
         """The profile of the body, m."""
-        return profile_of(self.profile, UNITS[self.unit])
+        return profile_of(self.fit.points, UNITS[self.unit])
 
     @cached_property
     def insides(self) -> tuple[Profile, ...]:
         """The profiles of the inserts, m."""
         return tuple(
-            profile_of(insert.profile, UNITS[self.unit], f"inserts.{number}.profile")
+            profile_of(
+                _fit(insert.profile, self.tolerance, f"inserts.{number}.profile").points,
+                UNITS[self.unit],
+                f"inserts.{number}.profile",
+            )
             for number, insert in enumerate(self.inserts)
         )
 
@@ -135,6 +158,11 @@ class Workpiece(Part):
     def hull(self) -> ConvexHull:
         """What it touches the table with."""
         return hull_of(self.outline)
+
+
+def _fit(points: Sequence[Sequence[float]], tolerance: float, field: str) -> Fit:
+    require_points(points, field)
+    return fit(points, tolerance)
 
 
 def _within(inner: Profile, outer: Profile) -> bool:

@@ -105,27 +105,36 @@ class Body(Part):
         *,
         inserts: "Sequence[Insert | Mapping[str, Any]] | None" = None,
         unit: Literal["m", "cm", "mm", "in"] | None = None,
+        tolerance: float | None = None,
+        axis: str | None = None,
         whole: bool = False,
     ) -> Self:
         """The body that a lathe makes: mass, moments of inertia and the surfaces it touches the
         table with.
 
         They are exact for the profile, whose edges are straight or arcs of circles, and which
-        pictures show.
+        pictures show. Points in a row along a smooth curve stand for arcs, within the tolerance.
 
         Parameters
         ----------
         profile
             Points (distance from the axis, height) or, at the end of an arc, (distance, height,
             radius), as in `tippetop.lathe.workpiece.Workpiece`; or such a workpiece; or a .toml,
-            .csv or .svg file, as in `tippetop.lathe.files.read_workpiece`.
+            .csv, .svg, .dxf or .stl file, as in `tippetop.lathe.files.read_workpiece`.
         density
             Density, kg/m^3.
         inserts
             Cavities and weights: `tippetop.lathe.workpiece.Insert` or their fields, profile and
             density.
         unit
-            What the numbers of the profile are in: "m" if left out.
+            What the numbers of the profile are in: "m" if left out; of a drawing, its physical
+            size, and of a mesh mm.
+        tolerance
+            How far the body may be from the points of the profile, in sizes of it: 1e-4 if left
+            out; with 0, every edge is as it is stated.
+        axis
+            Where the axis of a drawing is, as "x=10", or its direction in a mesh, as "z"; it is
+            found if left out.
         whole
             Take spheres and rings that the body has only a part of as whole. Otherwise it is
             refused if it does not stay within them.
@@ -141,13 +150,13 @@ class Body(Part):
         from tippetop.lathe.files import read_workpiece  # noqa: PLC0415 - slow to import
         from tippetop.lathe.workpiece import Workpiece  # noqa: PLC0415
 
-        given = {"density": density, "inserts": inserts, "unit": unit}
+        given = {"density": density, "inserts": inserts, "unit": unit, "tolerance": tolerance}
         fields = {name: value for name, value in given.items() if value is not None}
         match profile:
             case Workpiece():
                 piece = profile.model_copy(update=fields)
             case str() | Path():
-                piece = read_workpiece(profile, **fields)
+                piece = read_workpiece(profile, axis=axis, **fields)
             case _:
                 piece = Workpiece(**{"profile": profile, **fields})
         mass, center, I1, I3 = piece.mass_properties
@@ -165,7 +174,8 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
     Raises `InvalidInput` if there are others than spheres and rings; or, unless they may be taken
     as whole, if one of these, were it whole, would be outside of the body.
     """
-    center, hull, reach = piece.mass_properties.center, piece.hull, PROTRUDING * piece.outline.size
+    center, hull = piece.mass_properties.center, piece.hull
+    reach = PROTRUDING * piece.outline.size + 2.0 * piece.deviation
     if len(hull.zones) > MOST:
         many = f"a body that stands on {len(hull.zones)} surfaces"
         raise InvalidInput("profile", many, f"at most {MOST}: arcs rather than many short edges")
@@ -175,7 +185,7 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
             part = f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
             wanted = (
                 "surfaces that stay inside the body where it does not stand on them, or to take"
-                " them as whole"
+                " them as whole with whole=True, at the command line --whole"
             )
             raise InvalidInput("profile", part, wanted)
     shapes = [found[zone] for zone in hull.whole(reach)]

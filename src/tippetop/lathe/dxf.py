@@ -1,0 +1,78 @@
+"""Drawings in DXF, read with ezdxf: lines, polylines, arcs, circles, ellipses and splines."""
+
+import math
+from itertools import pairwise
+from pathlib import Path as FilePath
+from typing import Any
+
+from tippetop.lathe.sheet import Sheet
+from tippetop.lathe.strokes import Path, Stroke, ellipse, line
+from tippetop.support.errors import InvalidInput, Unavailable
+
+MM = {1: 25.4, 4: 1.0, 5: 10.0, 6: 1000.0, 13: 1e-3, 14: 100.0}
+"""Sizes of the units that a DXF file may state, by its code for them, mm."""
+
+MM_CODE = 4
+"""The code of mm, which a file without a unit is in."""
+
+
+def read_dxf(path: FilePath, unit: str | None, name: str) -> Sheet:
+    """Return what a DXF file shows, in mm or, with a unit stated, in the file's numbers, which are
+    in that unit.
+
+    Raises `InvalidInput` if it is no DXF, `Unavailable` if ezdxf is not installed.
+    """
+    try:
+        import ezdxf  # noqa: PLC0415 - optional
+        import ezdxf.filemanagement  # noqa: PLC0415
+    except ImportError:
+        raise Unavailable(
+            'DXF files are read with ezdxf, which is not installed: pip install "tippetop[lathe]"'
+        ) from None
+    try:
+        document = ezdxf.filemanagement.readfile(path)
+    except (OSError, ValueError, LookupError, ezdxf.lldxf.const.DXFError):
+        raise InvalidInput("DXF", name, "a drawing in the format DXF") from None
+    scale = 1.0 if unit else MM.get(document.units, 1.0)
+    paths = [
+        (f"{entity.dxftype().lower()} {entity.dxf.handle or ''}".strip(), path)
+        for entity in _simple(document.modelspace())
+        for path in _paths(entity, scale, ezdxf)
+    ]
+    return Sheet(paths, unit or "mm")
+
+
+def _simple(entities: Any) -> Any:
+    """The entities, with polylines and blocks in their parts."""
+    for entity in entities:
+        if entity.dxftype() in ("LWPOLYLINE", "POLYLINE", "INSERT"):
+            yield from _simple(entity.virtual_entities())
+        else:
+            yield entity
+
+
+def _paths(entity: Any, scale: float, ezdxf: Any) -> list[Path]:
+    """The paths of an entity; none of what is no line, such as texts and dimensions."""
+
+    def place(point: Any) -> complex:
+        return scale * complex(point[0], point[1])
+
+    dxf = entity.dxf
+    match entity.dxftype():
+        case "LINE":
+            return [[line(place(dxf.start), place(dxf.end))]]
+        case "CIRCLE" | "ARC" | "ELLIPSE":
+            arc = entity if entity.dxftype() == "ELLIPSE" else entity.copy()
+            if entity.dxftype() != "ELLIPSE":
+                arc = ezdxf.entities.Ellipse.from_arc(entity)
+            center, one = place(arc.dxf.center), place(arc.dxf.major_axis)
+            turn = 1j if arc.dxf.extrusion[2] > 0.0 else -1j
+            begin, end = float(arc.dxf.start_param), float(arc.dxf.end_param)
+            end += math.tau if end <= begin else 0.0
+            return [[ellipse(center, one, turn * arc.dxf.ratio * one, begin, end)]]
+        case "SPLINE":
+            spline = entity.construction_tool()
+            knots = sorted({float(knot) for knot in spline.knots()})
+            spans = [(low, high) for low, high in pairwise(knots) if high <= spline.max_t]
+            return [[Stroke(lambda t: place(spline.point(t)), *span) for span in spans]]
+    return []

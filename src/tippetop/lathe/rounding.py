@@ -1,0 +1,155 @@
+"""Numbers of profiles as they were meant: rounded when they were written, and seen to be so by
+their digits.
+"""
+
+import cmath
+import math
+from collections.abc import Callable, Sequence
+from decimal import Decimal
+
+from tippetop.lathe.edges import Edge
+
+COARSEST = 1e-4
+"""Largest rounding that is undone, in sizes of the profile: a profile of two digits is meant as it
+is.
+"""
+
+FINEST = 1e-9
+"""Smallest one: computed numbers."""
+
+EXACT = 1e-14
+"""How far a place on a circle may be from it by the rounding of floating-point numbers, relative.
+"""
+
+Point = tuple[float, ...]
+RoundingAt = Callable[[Point], float]
+
+
+def rounding_of(number: float) -> float:
+    """Return half a unit of the last decimal of a number, 0 of a whole number.
+
+    Examples
+    --------
+    >>> round(rounding_of(14.142), 6), rounding_of(20.0)
+    (0.0005, 0.0)
+    """
+    exponent = Decimal(repr(float(number))).normalize().as_tuple().exponent
+    return 0.5 * 10.0**exponent if isinstance(exponent, int) and exponent < 0 else 0.0
+
+
+def usual_rounding(points: Sequence[Point]) -> float:
+    """Return the rounding that half of the numbers of points do not exceed, but for whole ones."""
+    roundings = sorted(filter(None, (rounding_of(number) for point in points for number in point)))
+    return roundings[len(roundings) // 2] if roundings else 0.0
+
+
+def unrounded(points: Sequence[Point], rounding: float | None = None) -> tuple[Point, ...]:
+    """Return the points of a profile with arcs around the axis where the digits allow it, and
+    without edges shorter than the digits.
+
+    The rounding of every number follows from its digits unless it is stated.
+    """
+    heights = [point[1] for point in points]
+    size = max(*(abs(point[0]) for point in points), max(heights) - min(heights))
+
+    def rounding_at(point: Point) -> float:
+        if rounding is not None:
+            return rounding
+        return min(COARSEST * size, max(FINEST * size, *map(rounding_of, point)))
+
+    kept = _without_short_edges(list(points), rounding_at)
+    return _around_axis(kept, rounding_at)
+
+
+def _without_short_edges(points: list[Point], rounding_at: RoundingAt) -> list[Point]:
+    """The points without straight edges shorter than the rounding of their ends."""
+    kept = [points[0]]
+    for k, point in enumerate(points[1:], start=1):
+        before = kept[-1]
+        short = math.dist(point[:2], before[:2]) <= rounding_at(point) + rounding_at(before)
+        is_straight = len(point) == 2 or not point[2]
+        if not (short and is_straight and len(points) > 3):
+            kept.append(point)
+        elif k == len(points) - 1 and len(kept) > 1:
+            kept[-1] = (*point[:2], *before[2:])
+    return kept
+
+
+def _around_axis(points: list[Point], rounding_at: RoundingAt) -> tuple[Point, ...]:
+    """The points with the centres of arcs on the axis that are there but for rounding."""
+    places = [complex(*point[:2]) for point in points]
+    roundings = [rounding_at(point) for point in points]
+    circles: list[tuple[complex, float] | None] = [None] * len(points)
+    for k in range(1, len(points)):
+        radius = points[k][2] if len(points[k]) == 3 else 0.0
+        if radius:
+            within = 2.0 * max(roundings[k - 1], roundings[k])
+            circles[k] = _circle(places[k - 1], places[k], radius, within, circles[k - 1])
+    for k in reversed(range(1, len(points) - 1)):
+        # An arc that ends on the axis says where the centre of the one before is.
+        before, after = circles[k], circles[k + 1]
+        within = 4.0 * max(roundings[k - 1 : k + 2])
+        if before and after and _are_same(before, after, within) and places[k + 1].real == 0.0:
+            circles[k] = after
+    for k, place in enumerate(places):
+        beside = [circle for circle in circles[k : k + 2] if circle]
+        if beside:
+            places[k] = _on_circles(place, beside, k in (0, len(points) - 1))
+    found = []
+    for k, (point, place) in enumerate(zip(points, places, strict=True)):
+        circle = circles[k]
+        end = (math.copysign(circle[1], point[2]),) if circle else point[2:]
+        found.append((place.real, place.imag, *end))
+    return tuple(found)
+
+
+def _circle(
+    start: complex,
+    end: complex,
+    radius: float,
+    within: float,
+    before: tuple[complex, float] | None,
+) -> tuple[complex, float] | None:
+    """Centre on the axis and radius of an arc, that of the arc before if both are on one; None if
+    the centre is elsewhere.
+    """
+    size = abs(radius)
+    share = abs(end - start) / (2.0 * size)
+    if not 0.0 < share <= 1.0 + 1e-6:
+        return None
+    half = math.copysign(math.asin(min(1.0, share)), radius)
+    stated = Edge(start, end, 2.0 * half)
+    ends = [end for end in (start, end) if end.real <= within]
+    if ends:
+        center = ends[0].imag + math.copysign(size, stated.center.imag - ends[0].imag)
+    else:
+        below = [
+            point.imag
+            + math.copysign(
+                math.sqrt(max(0.0, size**2 - point.real**2)), stated.center.imag - point.imag
+            )
+            for point in (start, end)
+        ]
+        # The flatter end says where the centre is: there the root has all digits.
+        center = below[0] if start.real < end.real else below[1]
+    found = complex(0.0, center)
+    if before and _are_same(before, (found, size), 2.0 * within):
+        found, size = before
+    apart = max(abs(abs(point - found) - size) for point in (start, end))
+    is_same_side = abs(found - stated.center) <= 0.1 * size
+    return (found, size) if apart <= within and is_same_side else None
+
+
+def _are_same(one: tuple[complex, float], other: tuple[complex, float], within: float) -> bool:
+    return max(abs(one[0] - other[0]), abs(one[1] - other[1])) <= within
+
+
+def _on_circles(place: complex, circles: list[tuple[complex, float]], is_end: bool) -> complex:
+    """A place moved to the circle that it is on; where two circles differ, to the last."""
+    center, radius = circles[-1]
+    arm = place - center
+    if abs(abs(arm) - radius) <= EXACT * radius:
+        return place
+    if is_end and place.real <= FINEST * radius:
+        return complex(0.0, center.imag + math.copysign(radius, arm.imag))
+    return center + cmath.rect(radius, cmath.phase(arm))

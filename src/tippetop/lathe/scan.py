@@ -1,0 +1,290 @@
+"""Meshes of bodies of revolution, read with trimesh: their axis, meridian, and how round they are.
+
+The meridian is where a half-plane from the axis cuts the mesh, as if its edges were straight in
+cylindrical coordinates: facets around the axis then leave no trace. Vertices lie on the body, so
+the meridian goes through them, and the half-plane only tells how they follow each other.
+"""
+
+import math
+from importlib.util import find_spec
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.lathe.sheet import Reading
+from tippetop.support.errors import InvalidInput, Unavailable
+
+NOT_ROUND = 0.01
+"""How far a surface may be from one of revolution, in sizes of the body."""
+
+LARGEST = 2**28
+"""Largest file that is read, bytes."""
+
+SLIVER = 1e-7
+"""Angle by which the half-plane misses vertices, rad."""
+
+SAME = 1e-5
+"""Distance of vertices that are one point of the meridian, in sizes of the body: single precision
+leaves a tenth of it.
+"""
+
+HALF_PLANES = 5
+"""Half-planes in which the meridian is compared with all vertices."""
+
+WIDEST = math.radians(30.0)
+"""Angle around the axis up to which an edge stands for an arc around it, rad."""
+
+DENSE = 3.0
+"""Ratio of distinct vertices to points of the meridian from which on the vertices are scattered."""
+
+Vectors = NDArray[np.float64]
+Line = NDArray[np.complex128]
+"""Distance from the axis and, times i, height along it."""
+
+
+def read_stl(path: Path, axis: str | None, name: str) -> Reading:
+    """Return the profile of a body of revolution from its surface, in the numbers of the file.
+
+    The axis is the one stated, x, y or z through the middle of the body; or else the one about
+    which the surface is roundest.
+
+    Raises `InvalidInput` if the surface is not closed, or differs from one of revolution by more
+    than `NOT_ROUND`; `Unavailable` if trimesh is not installed.
+    """
+    mesh = _mesh(path, name)
+    size = float(np.ptp(mesh.vertices, axis=0).max())
+    if axis is not None and axis not in ("x", "y", "z"):
+        raise InvalidInput("axis", axis, "x, y or z, the direction of the axis of a mesh")
+    surfaces = [
+        _Surface(mesh, origin, direction, size)
+        for direction in _directions(mesh, axis)
+        for origin in _origins(mesh, direction, size)
+    ]
+    surface = min(surfaces, key=lambda one: one.out_of_round)
+    share = surface.out_of_round / size
+    if not share <= NOT_ROUND:
+        raise InvalidInput(
+            "STL",
+            f"a surface out of round by {100.0 * share:.3g} % of its size",
+            f"one of revolution, to {100.0 * NOT_ROUND:g} %: without parts that are not round;"
+            " --axis x, y or z says which axis is meant",
+            file=name,
+        )
+    lines = sorted((surface.through_vertices(line) for line in surface.meridian), key=_area)
+    along = ", ".join(f"{number + 0.0:.4g}" for number in surface.direction)
+    remark = (
+        f"The axis is along ({along}); the surface differs from a round one by"
+        f" {100.0 * share:.2g} % of its size at most."
+    )
+    return Reading(lines[-1], lines[:-1], [remark])
+
+
+def _mesh(path: Path, name: str) -> Any:
+    if not all(find_spec(one) for one in ("trimesh", "networkx")):
+        raise Unavailable(
+            'STL files are read with trimesh, which is not installed: pip install "tippetop[lathe]"'
+        )
+    import trimesh  # noqa: PLC0415 - optional
+
+    if path.stat().st_size > LARGEST:
+        raise InvalidInput("STL", name, f"a file of at most {LARGEST:,} bytes")
+    try:
+        mesh = trimesh.load_mesh(path, file_type="stl")
+    except Exception:  # noqa: BLE001 - trimesh raises what its parsers do
+        raise InvalidInput("STL", name, "a mesh in the format STL") from None
+    if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) < 8:
+        raise InvalidInput("STL", name, "a mesh in the format STL, of a closed surface")
+    size = float(np.ptp(mesh.vertices, axis=0).max())
+    if not (math.isfinite(size) and size > 0.0):
+        raise InvalidInput("STL", name, "a mesh of finite size")
+    mesh.merge_vertices()
+    if not mesh.is_watertight:
+        raise InvalidInput("STL", "a surface with holes", "a closed surface", file=name)
+    return mesh
+
+
+def _directions(mesh: Any, axis: str | None) -> list[Vectors]:
+    """Directions that an axis may have: one stated, or those of the drawing and of inertia."""
+    unit = np.eye(3)
+    if axis is not None:
+        return [unit["xyz".index(axis)]]
+    principal = np.linalg.eigh(mesh.moment_inertia)[1].T
+    own = [vector * np.sign(vector[np.abs(vector).argmax()]) for vector in principal]
+    return [unit[2], unit[1], unit[0], *own]
+
+
+def _origins(mesh: Any, direction: Vectors, size: float) -> list[Vectors]:
+    """Points that an axis may go through: the origin if it is near, and the centre of mass."""
+    center = np.asarray(mesh.center_mass)
+    from_axis = center - (center @ direction) * direction
+    near = np.linalg.norm(from_axis) <= NOT_ROUND * size
+    return [np.zeros(3), from_axis] if near else [from_axis]
+
+
+class _Surface:
+    """A closed surface, seen from an axis."""
+
+    def __init__(self, mesh: Any, origin: Vectors, direction: Vectors, size: float) -> None:
+        self.direction, self.size = direction, size
+        helper = np.eye(3)[np.abs(direction).argmin()]
+        across = np.cross(direction, helper)
+        across /= np.linalg.norm(across)
+        other = np.cross(direction, across)
+        arms = np.asarray(mesh.vertices) - origin
+        self.x, self.y, self.z = arms @ across, arms @ other, arms @ direction
+        self.r, self.angle = np.hypot(self.x, self.y), np.arctan2(self.y, self.x)
+        self.is_on_axis = self.r <= SAME * size
+        self.faces = np.asarray(mesh.faces)
+        self.vertices = self.r + 1j * self.z
+        self.vertices[self.is_on_axis] = 1j * self.z[self.is_on_axis]
+        self.out_of_round, self.meridian = self._judged()
+
+    def _judged(self) -> tuple[float, list[Line]]:
+        """How far the vertices are from the meridian in one of a few half-planes, and it."""
+        angles = np.sort(self.angle[~self.is_on_axis])
+        chosen = angles[np.linspace(0, len(angles) - 1, HALF_PLANES).astype(int)] + SLIVER
+        sections = [lines for lines in map(self._section, chosen.tolist()) if lines]
+        judged = [(self._apart(lines), k) for k, lines in enumerate(sections)]
+        apart, best = min(judged, default=(math.inf, 0))
+        return (apart, sections[best]) if judged else (math.inf, [])
+
+    def _apart(self, lines: list[Line]) -> float:
+        return float(np.min([_distances(self.vertices, line)[0] for line in lines], axis=0).max())
+
+    def _section(self, angle: float) -> list[Line]:
+        """The lines in which the half-plane at an angle cuts the surface."""
+        aside = np.mod(self.angle - angle + math.pi, math.tau) - math.pi
+        is_left = aside > 0.0
+        corners = is_left[self.faces]
+        is_crossed = corners.any(axis=1) & ~corners.all(axis=1)
+        is_crossed |= self.is_on_axis[self.faces].any(axis=1)
+        graph: dict[Any, list[Any]] = {}
+        places: dict[Any, complex] = {}
+        for face in self.faces[is_crossed].tolist():
+            nodes: list[Any] = []
+            for one, other in combinations(sorted(face), 2):
+                place = self._crossing(one, other, aside)
+                if place is not None:
+                    nodes.append((one, other))
+                    places[one, other] = place
+            tips = [vertex for vertex in face if self.is_on_axis[vertex]]
+            if len(nodes) == 1 and len(tips) <= 1:
+                end = tips[0] if tips else tuple(face)
+                places[end] = complex(self.vertices[end]) if tips else self._on_axis(face)
+                nodes.append(end)
+            if len(nodes) == 2:
+                graph.setdefault(nodes[0], []).append(nodes[1])
+                graph.setdefault(nodes[1], []).append(nodes[0])
+        return [
+            _without_repeats(np.array([places[n] for n in chain]), SAME * self.size)
+            for chain in _chains(graph)
+        ]
+
+    def _crossing(self, one: int, other: int, aside: Vectors) -> complex | None:
+        """Where an edge crosses the half-plane, None where it does not."""
+        if self.is_on_axis[one] or self.is_on_axis[other]:
+            return None
+        before, after = float(aside[one]), float(aside[other])
+        if (before > 0.0) == (after > 0.0) or abs(before - after) >= math.pi:
+            return None
+        start, end = complex(self.vertices[one]), complex(self.vertices[other])
+        if abs(before - after) <= WIDEST:
+            return start + before / (before - after) * (end - start)
+        # A long edge, as across a flat end, is a chord.
+        y, y_end = start.real * math.sin(before), end.real * math.sin(after)
+        x, x_end = start.real * math.cos(before), end.real * math.cos(after)
+        share = y / (y - y_end)
+        return complex(x + share * (x_end - x), start.imag + share * (end.imag - start.imag))
+
+    def _on_axis(self, face: list[int]) -> complex:
+        """Where the axis goes through a triangle around it."""
+        matrix = np.stack([self.x[face], self.y[face], np.ones(3)])
+        shares = np.linalg.lstsq(matrix, np.array([0.0, 0.0, 1.0]), rcond=None)[0]
+        return complex(0.0, float(shares @ self.z[face]))
+
+    def through_vertices(self, line: Line) -> list[tuple[float, ...]]:
+        """The points of a line of the meridian, moved to the vertices along it."""
+        distances, places = _distances(self.vertices, line)
+        others = [
+            _distances(self.vertices, other)[0] for other in self.meridian if other is not line
+        ]
+        is_own = np.all([distances <= other for other in others], axis=0) if others else True
+        is_own &= distances <= self.out_of_round + SAME * self.size
+        order = np.argsort(places[is_own], kind="stable")
+        along, points = places[is_own][order], self.vertices[is_own][order]
+        is_new = np.append(True, np.diff(along) > SAME * self.size)
+        groups = np.cumsum(is_new) - 1
+        if groups[-1] > DENSE * len(line):
+            # Vertices all over the surface: means of those close to each other.
+            length = float(np.abs(np.diff(line)).sum())
+            bins = np.floor(along / length * 2.0 * len(line)).astype(int)
+            groups = np.unique(bins, return_inverse=True)[1]
+        counts = np.bincount(groups)
+        found = (np.bincount(groups, points.real) + 1j * np.bincount(groups, points.imag)) / counts
+        is_loop = line[0] == line[-1]
+        ends = [] if is_loop else [complex(line[0]), complex(line[-1])]
+        if ends:
+            inner = found[
+                (np.abs(found - ends[0]) > SAME * self.size)
+                & (np.abs(found - ends[1]) > SAME * self.size)
+            ]
+            found = np.array([ends[0], *inner, ends[1]])
+        else:
+            found = np.append(found, found[:1])
+        return [(float(point.real), float(point.imag)) for point in found]
+
+
+def _distances(points: Line, line: Line) -> tuple[Vectors, Vectors]:
+    """Distance of points from a line, and how far along it they are."""
+    chords = np.diff(line)
+    lengths = np.abs(chords)
+    begins = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+    best = np.full(len(points), np.inf)
+    along = np.zeros(len(points))
+    for start, chord, length, begin in zip(line, chords, lengths, begins, strict=False):
+        gone = (points - start) / chord
+        share = np.clip(gone.real, 0.0, 1.0)
+        apart = np.abs(gone - share) * length
+        is_closer = apart < best
+        best[is_closer] = apart[is_closer]
+        along[is_closer] = begin + length * share[is_closer]
+    return best, along
+
+
+def _chains(graph: dict[Any, list[Any]]) -> list[list[Any]]:
+    """The paths of a graph whose nodes have one or two neighbours; a loop ends where it begins."""
+    left = dict(graph)
+    chains = []
+    while left:
+        start = next((node for node, beside in left.items() if len(beside) == 1), next(iter(left)))
+        chain, node = [start], start
+        while True:
+            beside = left.pop(node)
+            following = next((other for other in beside if other in left), None)
+            if following is None:
+                break
+            chain.append(following)
+            node = following
+        if len(chain) > 2 and len(graph[start]) == 2:
+            chain.append(start)
+        chains.append(chain)
+    return [chain for chain in chains if len(chain) > 2]
+
+
+def _without_repeats(line: Line, within: float) -> Line:
+    """The line without points next to the ones before."""
+    kept = [line[0]]
+    for point in line[1:-1]:
+        if abs(point - kept[-1]) > within and abs(point - line[-1]) > within:
+            kept.append(point)
+    return np.array([*kept, line[-1]])
+
+
+def _area(points: list[tuple[float, ...]]) -> float:
+    """Area between a line and the axis."""
+    line = np.array(points)
+    means = 0.5 * (line[1:, 0] + line[:-1, 0])
+    return abs(float(means @ np.diff(line[:, 1])))

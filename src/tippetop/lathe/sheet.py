@@ -1,0 +1,343 @@
+"""Drawings on a sheet: where the axis is, which half of the outline is turned, what is a bore."""
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.lathe.fitting import fit
+from tippetop.lathe.profile import Profile, area_of, profile_of
+from tippetop.lathe.rounding import unrounded
+from tippetop.lathe.strokes import Path, is_closed, joined, points_of, right_parts
+from tippetop.support.errors import InvalidInput
+
+GAP = 1e-3
+"""Distance of two ends that are taken to meet, in sizes of the drawing: lines drawn by hand without
+snapping miss each other by less.
+"""
+
+ALONG = 1e-4
+"""Distance from the axis at which a line runs along it, in sizes of the drawing."""
+
+ASYMMETRY = 0.01
+"""How far the two sides of a drawing may differ, in sizes of the drawing: those of bodies of
+revolution do not.
+"""
+
+AXES = "x=NUMBER or y=NUMBER, a place on the sheet, or x or y alone"
+"""What is accepted as an axis."""
+
+Point = tuple[float, ...]
+Chords = tuple[NDArray[np.complex128], NDArray[np.complex128]]
+
+
+class Sheet(NamedTuple):
+    """What a drawing shows, y up."""
+
+    paths: list[tuple[str, Path]]
+    """Paths of strokes, and what sentences call them."""
+    unit: str
+    """The unit of its numbers."""
+    is_y_down: bool = False
+    """Whether the drawing's own y counts downwards."""
+
+
+class Reading(NamedTuple):
+    """A profile and cavities read from a drawing or a mesh."""
+
+    profile: list[Point]
+    cavities: list[list[Point]]
+    remarks: list[str]
+    """Sentences that say where the axis is, and how well the drawing is a body of revolution."""
+
+
+class _NoAxis(Exception):
+    """No axis is found; the text says what the drawing shows instead."""
+
+
+class _Axis(NamedTuple):
+    """An axis upright on the sheet."""
+
+    place: float
+    """Its x."""
+    remark: str
+    """How it was found."""
+
+
+def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> Reading:
+    """Return the profile that a drawing shows, in its own unit.
+
+    The axis is upright or level: as stated, x = 10 or y = 10; or a centre line that touches
+    nothing; or the straight edge of a half outline; or the middle of a whole one. What is not the
+    outline around everything is a cavity.
+
+    Raises `InvalidInput` if no axis is found, if the two sides differ, or if the outlines are not
+    those of one body with cavities in it.
+    """
+    if not sheet.paths:
+        raise InvalidInput(field, "a drawing without lines", "one with an outline of the body")
+    direction, place = _stated(axis)
+    reasons = []
+    for name in direction:
+        # A level axis is turned upright: what is to the right on the sheet is up.
+        turn = 1.0 if name == "x" else 1j
+        sign = 1.0 if name == "x" else (1.0 if sheet.is_y_down else -1.0)
+        paths = [(called, _times(path, turn)) for called, path in sheet.paths]
+
+        def told(x: float, name: str = name, sign: float = sign) -> str:
+            return f"{name} = {sign * x + 0.0:.6g} {sheet.unit}"
+
+        try:
+            return _read(paths, None if place is None else sign * place, told, tolerance, field)
+        except _NoAxis as reason:
+            reasons.append(str(reason))
+    raise InvalidInput(
+        field,
+        reasons[0],
+        "half an outline that begins and ends on an upright axis, a whole one that agrees on both"
+        f" sides to {100.0 * ASYMMETRY:g} %, or the place of the axis: --axis x=NUMBER",
+    )
+
+
+def _stated(axis: str | None) -> tuple[str, float | None]:
+    """The directions that an axis may have, and its place."""
+    if axis is None:
+        return "xy", None
+    parts = re.fullmatch(r"\s*([xy])\s*(?:=\s*(\S+))?\s*", axis) if isinstance(axis, str) else None
+    try:
+        if parts is None:
+            raise ValueError
+        place = float(parts[2]) if parts[2] else None
+    except ValueError:
+        raise InvalidInput("axis", axis, AXES) from None
+    if place is not None and not math.isfinite(place):
+        raise InvalidInput("axis", axis, AXES)
+    return parts[1], place
+
+
+def _times(path: Path, factor: complex) -> Path:
+    return [stroke.moved(lambda point: factor * point) for stroke in path]
+
+
+def _read(
+    paths: list[tuple[str, Path]],
+    place: float | None,
+    told: Callable[[float], str],
+    tolerance: float,
+    field: str,
+) -> Reading:
+    """The profile around an upright axis."""
+    points, _ = _chords([path for _, path in paths])
+    size = float(max(np.ptp(points.real), np.ptp(points.imag)))
+    if not size > 0.0:
+        raise InvalidInput(field, "a drawing of one point", "one with an outline of the body")
+    outlines, center_lines = _outlines(paths, GAP * size)
+    if not outlines:
+        raise _NoAxis("straight lines that do not meet")
+    axis = _axis(outlines, center_lines, place, size, told)
+    points, _ = _chords([path for _, path in outlines])
+    reach = points.real - axis.place
+    side = -1.0 if reach.max() <= GAP * size else 1.0
+    halves = [
+        (name, part)
+        for name, path in outlines
+        for part in right_parts(_beside(path, axis.place, side), ALONG * size)
+    ]
+    stated = []
+    for name, part in halves:
+        ends = part[0].first, part[-1].last
+        if not is_closed(part, GAP * size) and max(end.real for end in ends) > GAP * size:
+            first, last = (f"({side * end.real + axis.place:.6g}, {end.imag:.6g})" for end in ends)
+            raise InvalidInput(
+                field,
+                f"an open line from {first} to {last}",
+                f"lines that end on the axis, {told(axis.place)}, or where they begin",
+            )
+        stated.append((name, unrounded(_ended(points_of(part), GAP * size), ALONG * size)))
+    outer, cavities = _nested(stated, tolerance, field)
+    return Reading(outer, cavities, [axis.remark])
+
+
+def _beside(path: Path, place: float, side: float) -> Path:
+    """The path from an axis at a place, mirrored if it is on its left."""
+
+    def move(point: complex) -> complex:
+        return complex(side * (point.real - place), point.imag)
+
+    return [stroke.moved(move) for stroke in path]
+
+
+def _ended(points: list[Point], gap: float) -> list[Point]:
+    """The points of a line, exactly from the axis to the axis, or back to the first."""
+    first, last = points[0], points[-1]
+    if max(first[0], last[0]) > gap:
+        points[-1] = (*first[:2], *last[2:])
+    else:
+        points[0], points[-1] = (0.0, *first[1:]), (0.0, *last[1:])
+    return [(max(0.0, point[0]), *point[1:]) for point in points]
+
+
+def _outlines(
+    paths: list[tuple[str, Path]], gap: float
+) -> tuple[list[tuple[str, Path]], list[Path]]:
+    """The paths joined to outlines, and the straight lines that touch nothing: centre lines."""
+    ends = [end for _, path in paths for end in (path[0].first, path[-1].last)]
+
+    def is_apart(path: Path) -> bool:
+        return (
+            len(path) == 1
+            and path[0].radius == math.inf
+            and all(
+                sum(abs(end - other) <= gap for other in ends) == 1
+                for end in (path[0].first, path[-1].last)
+            )
+        )
+
+    center_lines = [path for _, path in paths if is_apart(path)]
+    others = [(name, path) for name, path in paths if not is_apart(path)]
+    if not others and len(center_lines) == len(paths):
+        # A single line is an outline, if anything is.
+        others, center_lines = paths, []
+    outlines = []
+    for path in joined([path for _, path in others], gap):
+        used = {id(stroke.at) for stroke in path}
+        names = [name for name, part in others if id(part[0].at) in used]
+        outlines.append((names[0], path))
+    return outlines, center_lines
+
+
+def _axis(
+    outlines: list[tuple[str, Path]],
+    center_lines: list[Path],
+    place: float | None,
+    size: float,
+    told: Callable[[float], str],
+) -> _Axis:
+    """The upright axis of a drawing."""
+    paths = [path for _, path in outlines]
+    points, _ = _chords(paths)
+    low, high = float(points.real.min()), float(points.real.max())
+    if place is not None:
+        return _placed(paths, place, size, told, "The axis is where it is stated,")
+    upright = {
+        round(path[0].first.real, 12)
+        for path in center_lines
+        if abs(path[0].first.real - path[0].last.real) <= ALONG * size
+    }
+    if len(upright) == 1:
+        return _placed(paths, upright.pop(), size, told, "The axis is the centre line")
+    edges = [
+        edge
+        for edge in (0.0, low, high)
+        if (low >= edge - GAP * size or high <= edge + GAP * size) and _is_half(paths, edge, size)
+    ]
+    is_open = any(not is_closed(path, GAP * size) for path in paths)
+    middle = 0.5 * (low + high)
+    difference = _difference(paths, middle)
+    if edges and (not edges[0] or is_open or difference > ASYMMETRY * size):
+        return _Axis(edges[0], f"The axis is the straight edge at {told(edges[0])}.")
+    if is_open:
+        first, last = next(
+            (path[0].first, path[-1].last) for path in paths if not is_closed(path, GAP * size)
+        )
+        raise _NoAxis(
+            f"an open line from ({first.real:.6g}, {first.imag:.6g}) to ({last.real:.6g},"
+            f" {last.imag:.6g})"
+        )
+    if difference > ASYMMETRY * size:
+        raise _NoAxis(f"two sides that differ by {100.0 * difference / size:.3g} % of the size")
+    return _placed(paths, middle, size, told, "The axis is the middle of the outline,")
+
+
+def _placed(
+    paths: list[Path], place: float, size: float, told: Callable[[float], str], how: str
+) -> _Axis:
+    """An axis at a place, of a drawing on one side of it, or on both if these agree."""
+    points, _ = _chords(paths)
+    reach = points.real - place
+    if reach.min() >= -GAP * size or reach.max() <= GAP * size:
+        return _Axis(place, f"{how} at {told(place)}.")
+    difference = _difference(paths, place) / size
+    if difference > ASYMMETRY:
+        raise InvalidInput(
+            "axis",
+            f"{told(place)}, with sides that differ by {100.0 * difference:.3g} %",
+            f"an axis on whose sides the drawing differs by {100.0 * ASYMMETRY:g} % at most, or one"
+            " side alone",
+        )
+    agreement = f"the two sides differ by {100.0 * difference:.2g} % of the size at most"
+    return _Axis(place, f"{how} at {told(place)}; {agreement}.")
+
+
+def _is_half(paths: list[Path], edge: float, size: float) -> bool:
+    """Whether a drawing begins and ends on a line: with open ends there, or straight edges."""
+    ends = [
+        abs(end.real - edge) <= GAP * size
+        for path in paths
+        if not is_closed(path, GAP * size)
+        for end in (path[0].first, path[-1].last)
+    ]
+    straight = any(
+        stroke.radius == math.inf
+        and max(abs(end.real - edge) for end in (stroke.first, stroke.last)) <= ALONG * size
+        and abs(stroke.last - stroke.first) > GAP * size
+        for path in paths
+        for stroke in path
+    )
+    return all(ends) and (bool(ends) or straight)
+
+
+def _difference(paths: list[Path], place: float) -> float:
+    """How far a drawing and its mirror image are apart at most."""
+    starts, ends = _chords(paths)
+    mirrored = (2.0 * place - starts.conjugate(), 2.0 * place - ends.conjugate())
+    return max(_apart(mirrored[0], (starts, ends)), _apart(starts, mirrored))
+
+
+def _apart(points: NDArray[np.complex128], chords: Chords) -> float:
+    """Largest distance of points from the closest of some chords."""
+    starts, ends = chords
+    along = np.where(starts == ends, 1e-300, ends - starts)
+    gone = (points[:, None] - starts) / along
+    distances = np.abs(gone - np.clip(gone.real, 0.0, 1.0)) * np.abs(along)
+    return float(distances.min(axis=1).max())
+
+
+def _chords(paths: Sequence[Path]) -> Chords:
+    """The begins and ends of chords along all paths."""
+    lines = [np.array(stroke.sample(24)) for path in paths for stroke in path]
+    return (
+        np.concatenate([line[:-1] for line in lines]),
+        np.concatenate([line[1:] for line in lines]),
+    )
+
+
+def _nested(
+    outlines: Sequence[tuple[str, Sequence[Point]]], tolerance: float, field: str
+) -> tuple[list[Point], list[list[Point]]]:
+    """The outer outline, and the cavities in it; refuses other outlines."""
+    found: list[tuple[str, Sequence[Point], Profile]] = [
+        (name, points, profile_of(fit(points, tolerance).points, field=field))
+        for name, points in outlines
+    ]
+    found.sort(key=lambda one: -area_of(one[2].edges))
+    (outer_name, outer, body), *inner = found
+    for name, _, profile in inner:
+        sides = profile.sides(body)
+        if "out" in sides:
+            how = "crosses" if "in" in sides else "is beside"
+            raise InvalidInput(
+                field,
+                f"{name}, which {how} {outer_name}",
+                "one outline around the body, and bores inside it: unite the parts of the body",
+            )
+    for (name, _, one), (other_name, _, other) in combinations(inner, 2):
+        if "out" not in other.sides(one) or "in" in one.sides(other):
+            raise InvalidInput(
+                field, f"{other_name}, which is inside {name}", "bores beside each other"
+            )
+    return list(outer), [list(points) for _, points, _ in inner]

@@ -1,0 +1,160 @@
+"""Drawings in SVG, read with svgelements: every element with an outline, in its place on the
+sheet.
+"""
+
+import math
+import re
+import xml.etree.ElementTree as ElementTree
+from io import StringIO
+from typing import Any
+
+from tippetop.lathe.sheet import Sheet
+from tippetop.lathe.strokes import Path, Stroke, bezier, ellipse, line
+from tippetop.support.errors import InvalidInput
+
+MM_PER_PIXEL = 25.4 / 96.0
+"""Size of a pixel, mm: a 96th of an inch, as CSS has it."""
+
+LENGTHS = {
+    "": MM_PER_PIXEL,
+    "px": MM_PER_PIXEL,
+    "mm": 1.0,
+    "cm": 10.0,
+    "q": 0.25,
+    "in": 25.4,
+    "pt": 25.4 / 72.0,
+    "pc": 25.4 / 6.0,
+}
+"""Units of the size of a drawing, mm."""
+
+
+def read_svg(text: str, unit: str | None, name: str) -> Sheet:
+    """Return what an SVG file shows, in mm of its physical size; or, with a unit stated, in the
+    file's own numbers, which are in that unit.
+
+    Raises `InvalidInput` if it is no SVG.
+    """
+    import svgelements  # noqa: PLC0415 - slow to import
+
+    try:
+        root = ElementTree.fromstring(text)
+    except ElementTree.ParseError as error:
+        raise InvalidInput("SVG", name, f"XML; {error}") from None
+    if root.tag.rpartition("}")[2] != "svg":
+        raise InvalidInput("SVG", name, "a file whose outermost element is <svg>")
+    scale, shift = _in_pixels(root)
+    try:
+        content = StringIO(ElementTree.tostring(root, encoding="unicode"))
+        drawing = svgelements.SVG.parse(content, reify=True, ppi=96.0)
+        shapes = [part for part in drawing.elements() if isinstance(part, svgelements.Shape)]
+        paths = [
+            (_called(shape, number, len(shapes)), path)
+            for number, shape in enumerate(shapes, 1)
+            for path in _paths(
+                abs(svgelements.Path(shape)), 1.0 if unit else scale, shift, svgelements
+            )
+        ]
+    except (ValueError, IndexError, TypeError, AttributeError, ArithmeticError, KeyError):
+        raise InvalidInput("SVG", name, "elements as SVG defines them") from None
+    return Sheet(paths, unit or "mm", is_y_down=True)
+
+
+def _in_pixels(root: ElementTree.Element) -> tuple[float, complex]:
+    """Make the numbers of a drawing pixels; return what one is then, mm, and the origin of the
+    drawing's own numbers.
+
+    svgelements knows millimetres to seven digits only. A drawing without a physical size is in
+    pixels.
+    """
+    try:
+        left, top, *sides = (
+            float(part) for part in root.get("viewBox", "").replace(",", " ").split()
+        )
+    except ValueError:
+        return MM_PER_PIXEL, 0j
+    scales = [
+        length / number
+        for name, number in zip(("width", "height"), sides, strict=False)
+        if number > 0.0 and (length := _length(root.get(name, ""))) is not None
+    ]
+    if len(sides) == 2:
+        root.set("width", f"{sides[0]!r}px")
+        root.set("height", f"{sides[1]!r}px")
+    root.attrib.pop("preserveAspectRatio", None)
+    return min(scales, default=MM_PER_PIXEL), complex(left, top)
+
+
+def _length(text: str) -> float | None:
+    """A length, mm; None of one that is relative, or none."""
+    parts = re.fullmatch(r"\s*([-+.\deE]+?)\s*([a-zA-Z]*)\s*", text)
+    try:
+        return float(parts[1]) * LENGTHS[parts[2].lower()] if parts else None
+    except (ValueError, KeyError):
+        return None
+
+
+def _called(element: Any, number: int, count: int) -> str:
+    """What sentences call an element."""
+    kind = type(element).__name__.lower()
+    own = getattr(element, "id", None)
+    return f"{kind} {own!r}" if own else f"{kind} {number} of {count}"
+
+
+def _paths(path: Any, scale: float, shift: complex, svgelements: Any) -> list[Path]:
+    """The subpaths of a path, y up."""
+    found: list[Path] = [[]]
+
+    def place(point: complex) -> complex:
+        return scale * (point + shift).conjugate()
+
+    for segment in path:
+        match segment:
+            case svgelements.Move():
+                found.append([])
+                continue
+            case svgelements.Arc():
+                stroke = _arc(segment).moved(place, scale)
+            case svgelements.CubicBezier():
+                stroke = bezier(
+                    [
+                        place(_number(point))
+                        for point in (
+                            segment.start,
+                            segment.control1,
+                            segment.control2,
+                            segment.end,
+                        )
+                    ]
+                )
+            case svgelements.QuadraticBezier():
+                stroke = bezier(
+                    [
+                        place(_number(point))
+                        for point in (segment.start, segment.control, segment.end)
+                    ]
+                )
+            case _:
+                if segment.end is None:
+                    continue
+                stroke = line(place(_number(segment.start)), place(_number(segment.end)))
+        if stroke.first != stroke.last or stroke.radius != math.inf:
+            found[-1].append(stroke)
+    return [path for path in found if path]
+
+
+def _number(point: Any) -> complex:
+    return complex(point.x, point.y)
+
+
+def _arc(segment: Any) -> Stroke:
+    """An arc of an ellipse, in the drawing's own numbers."""
+    center = _number(segment.center)
+    one = _number(segment.prx) - center
+    # The other semi-axis may be either way; angles count from x to y, which is down.
+    other = 1j * one / abs(one) * abs(_number(segment.pry) - center)
+    arm = _number(segment.start) - center
+    begin = math.atan2(
+        (arm * other.conjugate()).real / abs(other) ** 2,
+        (arm * one.conjugate()).real / abs(one) ** 2,
+    )
+    return ellipse(center, one, other, begin, begin + float(segment.sweep))
