@@ -129,13 +129,11 @@ def _tangent(points: Array, low: int, high: int, k: int) -> complex:
 
 
 def arcs_around(
-    center: complex, radius: float, start: complex, via: complex, end: complex
+    center: complex, radius: float, start: complex, end: complex, about: float
 ) -> list[Edge]:
-    """Return the arcs around a centre from one point to another by way of a third."""
-    first, second, via_angle = (cmath.phase(point - center) for point in (start, end, via))
-    turn = (second - first) % math.tau
-    if (via_angle - first) % math.tau > turn:
-        turn -= math.tau
+    """Return the arcs around a centre from one point to another that turn by about an angle."""
+    first, second = (cmath.phase(point - center) for point in (start, end))
+    turn = about + (second - first - about + math.pi) % math.tau - math.pi
     parts = math.ceil(abs(turn) / LARGEST_TURN)
     inner = [center + cmath.rect(radius, first + turn * k / parts) for k in range(1, parts)]
     points = [start, *inner, end]

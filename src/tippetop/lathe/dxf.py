@@ -31,7 +31,7 @@ def read_dxf(path: FilePath, unit: str | None, name: str) -> Sheet:
         ) from None
     try:
         document = ezdxf.filemanagement.readfile(path)
-    except (OSError, ValueError, LookupError, ezdxf.lldxf.const.DXFError):
+    except Exception:  # noqa: BLE001 - ezdxf raises what its parsers do
         raise InvalidInput("DXF", name, "a drawing in the format DXF") from None
     scale = 1.0 if unit else MM.get(document.units, 1.0)
     paths = [

@@ -159,7 +159,7 @@ class Piece(NamedTuple):
     """A part of a polyline, and what it stands for."""
 
     kind: str
-    """ "line", "arc" or "curve"."""
+    """ "line", "arc" or "curve"; or "near arc": an arc unless the line goes on smoothly from it."""
     begin: int
     end: int
     """Numbers of its first and its last point."""
@@ -182,6 +182,8 @@ class Polyline:
         is_even = (ratios <= UNEVEN) & (ratios >= 1.0 / UNEVEN)
         self.is_soft = np.zeros(len(points), dtype=bool)
         self.is_soft[1:-1] = (np.abs(turns) <= SMOOTH) & is_even
+        self.curvature = np.zeros(len(points))
+        self.curvature[1:-1] = np.abs(turns) / np.minimum(lengths[1:], lengths[:-1])
         # Short edges turn anyhow, by the scatter of their ends.
         is_long = np.minimum(lengths[1:], lengths[:-1]) > 10.0 * within
         self.is_sharp = np.zeros(len(points), dtype=bool)
@@ -210,7 +212,16 @@ class Polyline:
     def _with_curves(self, pieces: list[Piece]) -> list[Piece]:
         """The parts, with neighbouring edges of one smooth curve put together."""
         found: list[Piece] = []
-        for piece in pieces:
+        for k, stated in enumerate(pieces):
+            piece = stated
+            if piece.kind == "near arc":
+                joints = ((k - 1, piece.begin), (k + 1, piece.end))
+                goes_on = any(
+                    self.is_soft[place] and pieces[neighbour].kind != "line"
+                    for neighbour, place in joints
+                    if 0 <= neighbour < len(pieces)
+                )
+                piece = piece._replace(kind="curve" if goes_on else "arc")
             is_smooth = piece.kind == "curve" and self.is_soft[piece.begin]
             if found and is_smooth and found[-1].kind == "curve":
                 found[-1] = found[-1]._replace(end=piece.end)
@@ -285,24 +296,19 @@ class Polyline:
 
         It is a share of the arc: half of one that goes on beyond the axis.
         """
-
-        def turn(end: int, center: complex) -> float:
-            arms = points[begin : end + 1] - center
-            return abs(float(np.angle(arms[1:] * arms[:-1].conjugate()).sum())) / share
-
-        if limit < fewest or circle(fewest, self.within) is None:
+        if limit < fewest:
             return None
         last = _last_true(lambda end: circle(end, self.within) is not None, fewest, limit)
-        close = self.close
-        if circle(fewest, close) is not None:
-            end = _last_true(lambda end: circle(end, close) is not None, fewest, last)
-            found = circle(end, close) or (0j, 0.0)
-            goes_on = is_soft[begin] or is_soft[end]
-            is_long = not goes_on or turn(end, found[0]) >= NARROW
-            if is_long and end - begin >= ABRUPT * (last - begin):
+        end = _last_true(lambda end: circle(end, self.close) is not None, fewest, last)
+        found = circle(end, self.close)
+        if found is not None and end - begin >= ABRUPT * (last - begin):
+            turn = abs(_turn(points[begin : end + 1], found[0])) / share
+            if turn >= NARROW or not (is_soft[begin] or is_soft[end]):
                 return Piece("arc", begin, end, found)
-        found = circle(last, self.within) or (0j, 0.0)
-        return Piece("arc", begin, last, found) if turn(last, found[0]) >= WIDE else None
+        found = circle(last, self.within)
+        if found is not None and abs(_turn(points[begin : last + 1], found[0])) / share >= WIDE:
+            return Piece("near arc", begin, last, found)
+        return None
 
     def _are_on(self, points: Array, circle: Circle, within: float) -> bool:
         """Whether points follow each other along a circle, to within a distance."""
@@ -319,6 +325,11 @@ class Polyline:
         last = self._straight_to(begin, end, self.close)
         if last - begin < 2:
             return None
+        length = abs(self.points[last] - self.points[begin])
+        for place in (begin, last):
+            # A smooth curve of the curvature around would have left the line.
+            if self.is_soft[place] and self.curvature[place] * length**2 < 8.0 * self.within:
+                return None
         nearly = self._straight_to(begin, end, self.within)
         is_abrupt = last - begin >= ABRUPT * (nearly - begin)
         return Piece("line", begin, last) if is_abrupt else None
@@ -363,8 +374,7 @@ class Polyline:
         for piece, points, along in zip(pieces, lines, tangents, strict=True):
             start, end = complex(points[0]), complex(points[-1])
             if piece.kind == "arc":
-                via = complex(points[len(points) // 2])
-                found.append(arcs_around(*piece.circle, start, via, end))
+                found.append(arcs_around(*piece.circle, start, end, _turn(points, piece.circle[0])))
             elif piece.kind == "line":
                 found.append([Edge(start, end)])
             else:
@@ -409,7 +419,7 @@ def _with_poles(points: Array) -> Array:
         turns = np.abs(np.angle(chords[1:] * chords[:-1].conjugate()))
         width = 2.0 * abs(chords[0])
         is_even = 0.5 * width <= abs(chords[1]) <= 2.0 * width
-        if is_even and turns.max() <= COARSEST and turns.max() <= 2.0 * turns.min():
+        if is_even and 1e-3 < turns.max() <= min(COARSEST, 2.0 * turns.min()):
             circle = circle_on_axis(line[1:3])
             if circle is not None:
                 center, radius = circle
@@ -451,9 +461,15 @@ def _tangents(piece: Piece, points: Array, within: float) -> Array:
     chord = points[-1] - points[0]
     if piece.kind == "line":
         return np.full(2, chord / abs(chord))
-    arms = points - piece.circle[0]
-    turn = 1j if np.angle(arms[1:] * arms[:-1].conjugate()).sum() > 0.0 else -1j
-    return np.asarray(turn * arms[[0, -1]] / np.abs(arms[[0, -1]]))
+    arms = (points - piece.circle[0])[[0, -1]]
+    turn = 1j if _turn(points, piece.circle[0]) > 0.0 else -1j
+    return np.asarray(turn * arms / np.abs(arms))
+
+
+def _turn(points: Array, center: complex) -> float:
+    """Angle by which the direction of points from a centre turns, rad."""
+    arms = points - center
+    return float(np.angle(arms[1:] * arms[:-1].conjugate()).sum())
 
 
 def _across_axis(point: complex) -> complex:
@@ -476,12 +492,16 @@ def _first(holds: np.ndarray, begin: int, otherwise: int) -> int:
 
 
 def _last_true(holds: Callable[[int], bool], low: int, high: int) -> int:
-    """The last number from one for which something holds to another up to which it does."""
-    step, last = 1, low
-    while last + step <= high and holds(last + step):
-        last += step
+    """The last number between two up to which something holds, or the first number.
+
+    It may fail for some numbers in between, as points that are few and scattered do.
+    """
+    tried, step = [low], 1
+    while tried[-1] < high:
+        tried.append(min(low + step, high))
         step *= 2
-    beyond = min(last + step, high + 1)
+    last = max((number for number in tried[1:] if holds(number)), default=low)
+    beyond = next((number for number in tried if number > last), high + 1)
     while beyond - last > 1:
         middle = (last + beyond) // 2
         if holds(middle):

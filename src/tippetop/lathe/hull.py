@@ -83,6 +83,24 @@ class ConvexHull(NamedTuple):
             found += [(zone.support(tilt) - other.support(tilt), tilt) for tilt in tilts]
         return max(found)
 
+    def spheroid(self, within: float) -> tuple[float, float, float] | None:
+        """Semi-axes across and along the axis and height of the centre of the spheroid that it is
+        to within a length, m; None if it is none.
+        """
+        tilts = np.linspace(0.0, math.pi, 181)
+        support = np.array([self.support(tilt) for tilt in tilts.tolist()])
+        sine, cosine = np.sin(tilts), np.cos(tilts)
+        # (h + height cos)^2 = across^2 sin^2 + along^2 cos^2 is linear in what is looked for.
+        matrix = np.stack([sine**2, cosine**2, -2.0 * support * cosine], axis=1)
+        (square, remainder, height), *_ = np.linalg.lstsq(matrix, support**2, rcond=None)
+        along = remainder + height**2
+        if not (square > 0.0 and along > 0.0):
+            return None
+        spheroid = np.sqrt(square * sine**2 + along * cosine**2) - height * cosine
+        if np.abs(spheroid - support).max() > within:
+            return None
+        return math.sqrt(square), math.sqrt(along), float(height)
+
     def whole(self, reach: float) -> list[Zone]:
         """Its surfaces, each once, as they make up the body if they are whole.
 

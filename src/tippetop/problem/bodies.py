@@ -9,7 +9,7 @@ from pydantic import AfterValidator, model_validator
 
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.surface import Surface
-from tippetop.problem.shapes import EccentricSphere, Ring, Shape, Sphere
+from tippetop.problem.shapes import EccentricSphere, Ring, Shape, Sphere, Spheroid
 from tippetop.support.errors import InvalidInput
 from tippetop.support.validation import ONE_OR_SEVERAL, Part, Points, Positive, Quantity
 
@@ -171,11 +171,15 @@ class Body(Part):
 def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
     """The surfaces that a turned body touches the table with, as seen from its centre of mass.
 
-    Raises `InvalidInput` if there are others than spheres and rings; or, unless they may be taken
-    as whole, if one of these, were it whole, would be outside of the body.
+    Raises `InvalidInput` if there are others than spheres and rings, or one spheroid; or, unless
+    they may be taken as whole, if one of these, were it whole, would be outside of the body.
     """
     center, hull = piece.mass_properties.center, piece.hull
     reach = PROTRUDING * piece.outline.size + 2.0 * piece.deviation
+    spheroid = hull.spheroid(reach) if len(hull.zones) > 2 else None
+    if spheroid is not None:
+        across, along, height = spheroid
+        return [Spheroid(across=across, along=along, center=height - center)]
     if len(hull.zones) > MOST:
         many = f"a body that stands on {len(hull.zones)} surfaces"
         raise InvalidInput("profile", many, f"at most {MOST}: arcs rather than many short edges")
