@@ -152,7 +152,10 @@ class _Surface:
         return (apart, sections[best]) if judged else (math.inf, [])
 
     def _apart(self, lines: list[Line]) -> float:
-        return float(np.min([_distances(self.vertices, line)[0] for line in lines], axis=0).max())
+        # Of vertices in a ring one says it all.
+        _, numbers = np.unique(np.round(self.vertices / (SAME * self.size)), return_index=True)
+        places = self.vertices[numbers]
+        return float(np.min([_distances(places, line)[0] for line in lines], axis=0).max())
 
     def _section(self, angle: float) -> list[Line]:
         """The lines in which the half-plane at an angle cuts the surface."""
