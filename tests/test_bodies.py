@@ -170,3 +170,25 @@ def test_an_egg_may_be_heavier_at_one_end() -> None:
     )
     assert egg.surface.height(1.0) == pytest.approx(0.03 - 0.004)
     assert egg.surface.height(-1.0) == pytest.approx(0.03 + 0.004)
+
+
+def test_an_oval_that_is_a_sphere_moves_as_one():
+    center = -0.004
+    sphere = tt.Body(mass=0.02, shape=tt.Sphere(radius=0.02, center=-center), I1=3e-6, I3=3.2e-6)
+    oval = sphere.model_copy(update={"shape": tt.Oval(support=(0.02, center, *(15 * [0.0])))})
+    ends = []
+    for body in (sphere, oval):
+        problem = tt.Problem(
+            body=body,
+            friction=tt.ViscousFriction(mu=0.3),
+            launch=tt.Launch(tilt=0.3, spin=120.0),
+        )
+        ends.append(tt.simulate(problem, 1.0)["theta"].values[-1])
+    assert ends[1] == pytest.approx(ends[0], abs=1e-9)
+
+
+def test_an_oval_is_convex():
+    with pytest.raises(tt.InvalidInput, match=r"support .* a convex surface"):
+        tt.Oval(support=(0.02, 0.0, 0.0, 0.0, -0.03, *(12 * [0.0])))
+    with pytest.raises(tt.InvalidInput, match="support"):
+        tt.Oval(support=(0.02, 0.0))

@@ -281,3 +281,40 @@ def test_a_body_that_cannot_be_simulated_ends_with_exit_code_2(tmp_path):
         done = CliRunner().invoke(app, ["body", str(path), "--density", "700", *options])
         assert done.exit_code == 2
         assert "a sharp tip" in done.stdout
+
+
+def egg_points(count=121):
+    """Points of an egg that is no spheroid, mm."""
+    angles = np.linspace(0.0, math.pi, count)
+    across = 15.0 * np.sin(angles) * (1.0 - 0.2 * np.cos(angles))
+    points = [(float(r), float(z)) for r, z in zip(across, -22.0 * np.cos(angles), strict=True)]
+    points[0], points[-1] = (0.0, -22.0), (0.0, 22.0)
+    return points
+
+
+def test_an_egg_is_an_oval_that_touches_where_its_points_do():
+    piece = tt.Workpiece(profile=egg_points(), density=700.0, unit="mm")
+    body = tt.Body.turned(piece)
+    (oval,) = body.shapes
+    assert isinstance(oval, tt.Oval)
+    line = 1e-3 * np.array(egg_points(4001))
+    heights = line[:, 1] - piece.mass_properties.center
+    for tilt in np.linspace(0.0, math.pi, 91):
+        support = np.max(line[:, 0] * math.sin(tilt) - heights * math.cos(tilt))
+        assert oval.surface.height(math.cos(tilt)) == pytest.approx(support, abs=3e-4 * 0.044)
+
+
+def test_an_egg_with_a_stem_has_an_oval_and_a_sphere():
+    egg = [point for point in egg_points() if point[1] < 12.0]
+    profile = [*egg, (2.0, egg[-1][1]), (2.0, 33.0), (0.0, 35.0, 2.0)]
+    body = tt.Body.turned(profile, 700.0, unit="mm", whole=True)
+    kinds = [shape.kind for shape in body.shapes]
+    assert (kinds[0], kinds[-1]) == ("oval", "sphere")
+
+
+def test_a_curve_that_is_cut_off_may_be_taken_as_whole(tmp_path):
+    bowl = '<path d="M 30 60 C 44 60 48 52 48 44 H 30 Z"/>'
+    with pytest.raises(tt.InvalidInput, match=r"a curve cut off, from tilt 0 to .*--whole"):
+        tt.Body.turned(drawing(tmp_path, bowl), 700.0)
+    body = tt.Body.turned(drawing(tmp_path, bowl), 700.0, whole=True)
+    assert "oval" in [shape.kind for shape in body.shapes]

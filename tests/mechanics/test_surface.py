@@ -8,7 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import numbers, spheres, spheroids, unit_vectors
-from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface, contact_vector
+from tippetop.mechanics.surface import (
+    OvalSurface,
+    RingSurface,
+    SphereSurface,
+    SpheroidSurface,
+    contact_vector,
+)
 
 OFF_CENTRE = st.builds(
     lambda egg, center: egg._replace(center=center * min(egg.across, egg.along)),
@@ -132,3 +138,17 @@ def test_a_shape_is_its_size_and_its_proportions(shape):
     assert unit.proportions == shape.proportions
     for c in (-1.0, -0.3, 0.0, 0.6, 1.0):
         assert shape.size * unit.height(c) == pytest.approx(shape.height(c), rel=1e-14)
+
+
+@given(
+    coefficients=st.lists(numbers(-0.02, 0.02), min_size=17, max_size=17),
+    c=numbers(-1.0, 1.0),
+)
+def test_an_ovals_derivatives_are_those_of_its_support_function(coefficients, c):
+    oval = OvalSurface((0.05, *coefficients[1:]))
+    powers = np.polynomial.Polynomial(oval.coefficients)
+    assert oval.height(c) == pytest.approx(powers(c), abs=1e-12)
+    assert oval.slope(c) == pytest.approx(powers.deriv()(c), abs=1e-11)
+    assert oval.curvature(c) == pytest.approx(powers.deriv(2)(c), abs=1e-9)
+    unit = OvalSurface.from_proportions(oval.proportions)
+    assert 0.05 * unit.height(c) == pytest.approx(oval.height(c), rel=1e-12)

@@ -24,6 +24,9 @@ body.
 NARROWEST = 1e-9
 """Least range of tilts of a surface, rad."""
 
+FEWEST_ON_CURVE = 3
+"""Fewest arcs in a row that stand for another smooth curve."""
+
 _CLOSE = 1e-7
 """How far rounding may move a tilt at which one surface follows another that it touches nearly,
 rad.
@@ -82,6 +85,27 @@ class ConvexHull(NamedTuple):
             ]
             found += [(zone.support(tilt) - other.support(tilt), tilt) for tilt in tilts]
         return max(found)
+
+    def smooth_parts(self, reach: float) -> list[tuple[float, float]]:
+        """Tilts between which it stands on a smooth curve that is no sphere or ring.
+
+        That is a row of arcs that continue each other, of which some, were they whole, would reach
+        out of it by more than a length, m.
+        """
+        rows: list[list[Zone]] = [[]]
+        for zone in self.zones:
+            before = rows[-1][-1] if rows[-1] else None
+            if before is not None and not (
+                zone.tube and before.tube and zone.low not in self.flats
+            ):
+                rows.append([])
+            rows[-1].append(zone)
+        return [
+            (row[0].low, row[-1].high)
+            for row in rows
+            if len(row) >= FEWEST_ON_CURVE
+            and any(zone.radius < 0.0 or self.protrusion(zone)[0] > reach for zone in row)
+        ]
 
     def spheroid(self, within: float) -> tuple[float, float, float] | None:
         """Semi-axes across and along the axis and height of the centre of the spheroid that it is

@@ -136,6 +136,60 @@ class SpheroidSurface(NamedTuple):
         return power(self.across**2 * (1.0 - c * c) + self.along**2 * c * c, 0.5)
 
 
+class OvalSurface(NamedTuple):
+    """A smooth convex surface whose support function is a polynomial, h = sum of a_k c^k: an egg.
+
+    The coefficients are lengths; the first is the height of the centre of mass when the axis is
+    level.
+    """
+
+    coefficients: tuple[Scalar, ...]
+
+    def height(self, c: Scalar) -> Scalar:
+        """Support function h(c), m."""
+        height = 0.0 * c
+        for coefficient in reversed(self.coefficients):
+            height = height * c + coefficient
+        return height
+
+    def slope(self, c: Scalar) -> Scalar:
+        """First derivative h'(c), m."""
+        height, slope = 0.0 * c, 0.0 * c
+        for coefficient in reversed(self.coefficients):
+            slope = slope * c + height
+            height = height * c + coefficient
+        return slope
+
+    def curvature(self, c: Scalar) -> Scalar:
+        """Second derivative h''(c), m."""
+        height, slope, curvature = 0.0 * c, 0.0 * c, 0.0 * c
+        for coefficient in reversed(self.coefficients):
+            curvature = curvature * c + slope
+            slope = slope * c + height
+            height = height * c + coefficient
+        return 2.0 * curvature
+
+    @property
+    def spherical(self) -> bool:
+        """It is none."""
+        return False
+
+    @property
+    def size(self) -> Scalar:
+        """The height of the centre of mass when the axis is level, m."""
+        return self.coefficients[0]
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        """The other coefficients, in units of the first."""
+        return tuple([value / self.coefficients[0] for value in self.coefficients[1:]])
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
+        """Make the surface whose first coefficient is 1 with these others."""
+        return cls((1.0, *proportions))
+
+
 class RingSurface(NamedTuple):
     """A torus about the axis, whose middle is `center` above the centre of mass: the edge of a
     disk.

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, model_validator
 
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.surface import Surface
-from tippetop.problem.shapes import EccentricSphere, Ring, Shape, Sphere, Spheroid
+from tippetop.problem.shapes import DEGREE, EccentricSphere, Oval, Ring, Shape, Sphere, Spheroid
 from tippetop.support.errors import InvalidInput
 from tippetop.support.validation import ONE_OR_SEVERAL, Part, Points, Positive, Quantity
 
@@ -171,8 +171,9 @@ class Body(Part):
 def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
     """The surfaces that a turned body touches the table with, as seen from its centre of mass.
 
-    Raises `InvalidInput` if there are others than spheres and rings, or one spheroid; or, unless
-    they may be taken as whole, if one of these, were it whole, would be outside of the body.
+    Smooth curves that are no circles become ovals. Raises `InvalidInput` if there are others than
+    spheres, rings, ovals and one spheroid; or, unless they may be taken as whole, if one of these,
+    were it whole, would be outside of the body.
     """
     center, hull = piece.mass_properties.center, piece.hull
     reach = PROTRUDING * piece.outline.size + 2.0 * piece.deviation
@@ -180,11 +181,18 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
     if spheroid is not None:
         across, along, height = spheroid
         return [Spheroid(across=across, along=along, center=height - center)]
-    if len(hull.zones) > MOST:
-        many = f"a body that stands on {len(hull.zones)} surfaces"
+    smooth = hull.smooth_parts(reach)
+    ovals = [_oval(piece, *part, whole) for part in smooth]
+
+    def is_left(zone: "Zone") -> bool:
+        return not any(low <= zone.low and zone.high <= high for low, high in smooth)
+
+    zones = [zone for zone in hull.zones if is_left(zone)]
+    if len(zones) > MOST:
+        many = f"a body that stands on {len(zones)} surfaces"
         raise InvalidInput("profile", many, f"at most {MOST}: arcs rather than many short edges")
-    found = {zone: _shape(zone, zone.height - center) for zone in hull.zones}
-    for zone in hull.zones:
+    found = {zone: _shape(zone, zone.height - center) for zone in zones}
+    for zone in zones:
         if hull.protrusion(zone)[0] > reach and not whole:
             part = f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
             wanted = (
@@ -192,11 +200,30 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
                 " them as whole with whole=True, at the command line --whole"
             )
             raise InvalidInput("profile", part, wanted)
+    if ovals:
+        return [*ovals, *dict.fromkeys(found.values())]
     shapes = [found[zone] for zone in hull.whole(reach)]
     match shapes:
         case [Sphere(radius=radius, center=above)] if 0.0 < above < radius:
             return [EccentricSphere(radius=radius, eccentricity=above / radius)]
     return shapes
+
+
+# translate: skip
+def _oval(piece: "Workpiece", low: float, high: float, whole: bool) -> Shape:
+    """The smooth surface that a turned body stands on between two tilts."""
+    from tippetop.lathe.support import polynomial_support  # noqa: PLC0415 - slow to import
+
+    center = piece.mass_properties.center
+    support, apart = polynomial_support(piece.hull, low, high, center, DEGREE, whole)
+    if apart > OFF_OVAL * piece.outline.size:
+        part = f"a curve cut off, from tilt {low:.4g} to {high:.4g}"
+        wanted = (
+            "a smooth curve that goes on inside the body, or to take it as whole with whole=True,"
+            " at the command line --whole"
+        )
+        raise InvalidInput("profile", part, wanted)
+    return Oval(support=tuple(support))
 
 
 # translate: skip
@@ -214,6 +241,9 @@ MOST = 12
 
 PROTRUDING = 1e-6
 """How far a surface taken as whole may reach out of the body, in sizes of this."""
+
+OFF_OVAL = 1e-3
+"""How far an oval may be from the curve that it stands for, in sizes of the body."""
 
 LOOKS, SEARCHES = 64, 5
 """Looks at the tilts where a surface may be outermost, repeated so often around the best of them.

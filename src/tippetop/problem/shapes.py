@@ -1,11 +1,18 @@
 """Outer surfaces of bodies as users state them, validated, with the centre of mass in them."""
 
+import math
 from abc import abstractmethod
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface, Surface
+from tippetop.mechanics.surface import (
+    OvalSurface,
+    RingSurface,
+    SphereSurface,
+    SpheroidSurface,
+    Surface,
+)
 from tippetop.support.errors import InvalidInput
 from tippetop.support.validation import NO_WORD, NotNegative, Number, Positive, Quantity, Variant
 
@@ -129,6 +136,57 @@ class Ring(Shape):
         """The outer surface, from the centre of mass, as the mechanics takes it."""
         return RingSurface(self.radius, self.center, self.tube)
 
+
+DEGREE = 16
+"""Degree of the support functions of ovals: they are within 1e-5 of eggs as slender as 2 to 1."""
+
+Support = Annotated[
+    tuple[Number, ...],
+    Field(min_length=DEGREE + 1, max_length=DEGREE + 1),
+    Quantity("m", "coefficients of the support function"),
+]
+
+
+class Oval(Shape):
+    """A smooth convex surface, by its support function as a polynomial: an egg, or a drawn body.
+
+    Attributes
+    ----------
+    support
+        Coefficients of h(c) = a_0 + a_1 c + a_2 c^2 + ..., the height of the centre of mass above
+        the table with c the cosine of the tilt, m: 17 of them, the first positive.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> oval = tt.Oval(support=[0.02, -0.003, 0.002] + 14 * [0.0])
+    >>> round(oval.surface.height(1.0), 6), oval.surface.height(0.0)
+    (0.019, 0.02)
+    """
+
+    kind: Literal["oval"] = "oval"
+    support: Support
+
+    @model_validator(mode="after")
+    def _is_convex(self) -> Self:
+        surface = self.surface
+        for look in range(TILTS + 1):
+            c = math.cos(math.pi * look / TILTS)
+            slope = surface.slope(c)
+            across = surface.height(c) - c * slope
+            if not (across > 0.0 and across + surface.curvature(c) * (1.0 - c * c) > 0.0):
+                accepted = f"those of a convex surface, also at a tilt of {math.acos(c):.4g} rad"
+                raise InvalidInput("support", self.support, accepted)
+        return self
+
+    @property
+    def surface(self) -> Surface:
+        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        return OvalSurface(self.support)
+
+
+TILTS = 180
+"""Steps of the tilt at which an oval is looked at."""
 
 MOST_ASPECT = 1e6
 """Ratio of a spheroid's semi-axes; the square of it is still far from rounding, as its curvature

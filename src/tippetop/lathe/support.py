@@ -1,0 +1,66 @@
+"""Smooth parts of hulls as ovals: support functions that are polynomials of the cosine of the
+tilt.
+"""
+
+import numpy as np
+from scipy.optimize import linprog
+
+from tippetop.lathe.hull import ConvexHull
+
+STEPS = 360
+"""Steps of the tilt between its ends at which support functions are compared."""
+
+
+SHARPEST = 1e-3
+"""Least radius of curvature, in sizes of the body: a surface without one is no oval."""
+
+
+def polynomial_support(
+    hull: ConvexHull, low: float, high: float, center: float, degree: int, whole: bool
+) -> tuple[list[float], float]:
+    """Return the coefficients of the polynomial that is closest to a hull's support function
+    between two tilts, seen from a height, and how far it is from it at most.
+
+    Elsewhere it is below the hull, unless it may reach out of the body as a whole. Everywhere it is
+    the support function of a convex surface.
+    """
+    tilts = np.pi * np.arange(STEPS + 1) / STEPS
+    c, s = np.cos(tilts), np.sin(tilts)
+    support = np.array([hull.support(tilt) for tilt in tilts.tolist()]) + center * c
+    size = float(support.max())
+    chebyshev = np.polynomial.chebyshev
+    basis = chebyshev.chebvander(c, degree)
+    slopes, curvatures = (
+        np.stack(
+            [chebyshev.chebval(c, chebyshev.chebder(unit, order)) for unit in np.eye(degree + 1)],
+            axis=1,
+        )
+        for order in (1, 2)
+    )
+    # Radii of curvature around the axis and along the meridian.
+    across = basis - c[:, None] * slopes
+    along = across + (s**2)[:, None] * curvatures
+    is_own = (tilts >= low - 1e-9) & (tilts <= high + 1e-9)
+    is_bounded = is_own if whole else np.ones(len(tilts), dtype=bool)
+    ones = np.ones((len(tilts), 1))
+    rows = [
+        np.hstack([basis[is_bounded], -ones[is_bounded]]),
+        np.hstack([-basis[is_own], -ones[is_own]]),
+        np.hstack([-across, 0.0 * ones]),
+        np.hstack([-along, 0.0 * ones]),
+    ]
+    bounds = [
+        support[is_bounded] / size,
+        -support[is_own] / size,
+        np.full(len(tilts), -SHARPEST),
+        np.full(len(tilts), -SHARPEST),
+    ]
+    cost = np.append(np.zeros(degree + 1), 1.0)
+    free = [(None, None)] * (degree + 1) + [(0.0, None)]
+    found = linprog(cost, np.vstack(rows), np.concatenate(bounds), bounds=free).x
+    if found is None:
+        return [], np.inf
+    coefficients = np.zeros(degree + 1)
+    powers = chebyshev.cheb2poly(found[:-1])
+    coefficients[: len(powers)] = size * powers
+    return coefficients.tolist(), size * float(found[-1])
