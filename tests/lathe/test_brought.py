@@ -318,3 +318,67 @@ def test_a_curve_that_is_cut_off_may_be_taken_as_whole(tmp_path):
         tt.Body.turned(drawing(tmp_path, bowl), 700.0)
     body = tt.Body.turned(drawing(tmp_path, bowl), 700.0, whole=True)
     assert "oval" in [shape.kind for shape in body.shapes]
+
+
+def test_points_on_both_sides_are_a_whole_outline(tmp_path):
+    half = along_ball(30)
+    whole = [*half, *((-r, z) for r, z in half[-2:0:-1])]
+    rows = [f"{r + 7.0:.4f} {z}" for r, z in whole]
+    (tmp_path / "a.csv").write_text("\n".join(rows))
+    piece, (remark,) = read_with_remarks(tmp_path / "a.csv", density=700.0, unit="mm", axis="x=7")
+    assert piece.mass_properties.mass == pytest.approx(700e-9 * 4.5e3 * math.pi, rel=1e-3)
+    assert "x = 7 mm" in remark
+    (tmp_path / "b.csv").write_text("\n".join(f"{r},{z}" for r, z in whole))
+    found, _ = read_with_remarks(tmp_path / "b.csv", density=700.0, unit="mm")
+    assert found.mass_properties.mass == pytest.approx(piece.mass_properties.mass, rel=1e-6)
+
+
+def test_an_axis_is_refused_where_the_profile_is_stated_from_it(tmp_path):
+    (tmp_path / "a.toml").write_text("density = 1\nprofile = [[0, -1], [0, 1, 1]]")
+    for body in (tmp_path / "a.toml", [(0, -1), (0, 1, 1)]):
+        with pytest.raises(tt.InvalidInput, match="stated from the axis"):
+            tt.Body.turned(body, 1.0, axis="x=0")
+
+
+def test_two_shells_that_cross_are_named(tmp_path):
+    trimesh = pytest.importorskip("trimesh", reason="it comes with the lathe extra")
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=15.0)
+    stem = trimesh.creation.cylinder(radius=3.0, height=20.0, sections=60)
+    stem.apply_translation((0.0, 0.0, 20.0))
+    trimesh.util.concatenate([ball, stem]).export(tmp_path / "a.stl")
+    with pytest.raises(tt.InvalidInput, match=r"shell 2, which crosses shell 1.*unite"):
+        read_with_remarks(tmp_path / "a.stl", density=700.0)
+
+
+SHEET = """<?xml version="1.0" encoding="UTF-8"?>
+<svg width="210mm" height="297mm" viewBox="0 0 210 297" version="1.1" id="svg1"
+   inkscape:version="1.3" sodipodi:docname="a.svg"
+   xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
+   xmlns:sodipodi="http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd"
+   xmlns:xlink="http://www.w3.org/1999/xlink" xmlns="http://www.w3.org/2000/svg">
+  <sodipodi:namedview id="view1" pagecolor="#ffffff" inkscape:document-units="mm"/>
+  <defs id="defs1"><circle id="hidden" cx="0" cy="0" r="80"/><circle id="ball" r="15"/></defs>
+  <metadata>made</metadata>
+  <g inkscape:label="Layer 1" inkscape:groupmode="layer" id="layer1">{}</g>
+  <text x="3" y="30">R15</text>
+</svg>"""
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<use xlink:href="#ball" x="80" y="90"/>',
+        '<g style="display:none"><path d="M 0 0 H 9"/></g><circle cx="80" cy="90" r="15"/>',
+        '<svg x="10" y="10"><circle cx="80" cy="90" r="15"/></svg>',
+        '<path sodipodi:type="arc" d="M 95,90 A 15,15 0 0 1 80,105 15,15 0 0 1 65,90 15,15 0 0 1'
+        ' 80,75 15,15 0 0 1 95,90 Z"/>',
+        '<path d="m 80,75 a 15,15 0 0 0 -15,15 15,15 0 0 0 15,15 z"/>',
+        '<path d="m 80,75 c 8.284,0 15,6.716 15,15 0,8.284 -6.716,15 -15,15"/>',
+        '<path d="M 80 75 Q 80 75 80 75 T 80 75 A 15 15 0 1 1 80 105 L 80 75"/>',
+    ],
+)  # fmt: skip
+def test_what_inkscape_puts_around_a_drawing_is_left_out(tmp_path, content):
+    (tmp_path / "a.svg").write_text(SHEET.format(content))
+    piece, _ = read_with_remarks(tmp_path / "a.svg", density=700.0)
+    exact = 700e-9 * 4.0 / 3.0 * math.pi * 15.0**3
+    assert piece.mass_properties.mass == pytest.approx(exact, rel=1e-3)

@@ -16,6 +16,9 @@ MASS = 700.0 * 4 / 3 * math.pi * 0.02**3
     [
         ("ball.csv", "r, z, radius\n0,-20\n20,0,20\n\n0,20,20\n"),
         ("ball.csv", "0,20,\n0,-20,-20"),
+        ("ball.csv", "# mm\nr;z;radius\n0;-20\n20;0;20\n0;20;20\n;;\n"),
+        ("ball.csv", '"r"\t"z"\t"radius"\n0\t-20\n20\t0\t20\n0\t20\t20\n'),
+        ("ball.csv", "0 -20\n20   0 20 # the widest place\n0 20 20"),
         ("ball.svg", SVG.format("M 0 20 A 20 20 0 0 0 0 -20 z")),
         ("ball.svg", SVG.format("M0,-20 a20,20 0 1 1 0,40")),
         ("ball.svg", SVG.format("M0-20A20 20 0 0 1 20 0 20 20 0 0 1 0 20")),
@@ -72,6 +75,7 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
         ("a.csv", "r,z\n0,0\n1,,2\n0,1\n", "row 3 = '1,,2' in "),
         ("a.csv", "0,O\n1,2\n0,1\n", "row 1 = '0,O' in "),
         ("a.csv", "O,-2O\n1,2\n0,1\n", "row 1 = 'O,-2O' in "),
+        ("a.csv", "0;0\n1,5;2\n0;3\n", "row 2 = '1,5,2' in "),
         ("a.csv", "", "0 points"),
         ("a.svg", "<svg", "accepted: XML"),
         ("a.svg", "<html/>", "accepted: a file whose outermost element is <svg>"),
@@ -82,7 +86,7 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
             SVG.format("M 0 0 L 1 1 L 5 7"),
             "profile = 'an open line from (0, 0) to (1.32292",
         ),
-        ("a.svg", SVG.format("M 0 0 L 5 1 L 7 9 Z"), "whose two sides differ by"),
+        ("a.svg", SVG.format("M 0 0 L 5 1 L 7 9 Z"), "two sides that differ by"),
         (
             "a.svg",
             SVG.format("M 0 0 h 4 v 4 h -4 z M 9 0 h 4 v 4 h -4 z"),

@@ -125,22 +125,40 @@ def _told(piece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
         "I1": I1,
         "I3": I3,
         "inertia_ratio": I1 / I3,
-        "surfaces": [
-            {
-                "kind": zone.name,
-                "radius": zone.radius or zone.tube,
-                "tube": zone.tube if zone.radius else None,
-                "center": zone.height - center,
-                "from_tilt": zone.low,
-                "to_tilt": zone.high,
-                "protrusion": hull.protrusion(zone)[0],
-            }
-            for zone in hull.zones
-        ],
+        "surfaces": _surfaces(piece),
         "lies_on_lines_at_tilts": hull.flats,
         "trouble": trouble,
         **_expected(piece),
     }
+
+
+def _surfaces(piece: "tt.Workpiece") -> list[dict[str, Any]]:
+    """What a body stands on by its tilt; arcs that stand for one smooth curve together."""
+    from tippetop.problem.bodies import allowance  # noqa: PLC0415 - slow to import
+
+    hull, center = piece.hull, piece.mass_properties.center
+    reach = allowance(piece)
+    spheroid = hull.spheroid(reach) if len(hull.zones) > 2 else None
+    if spheroid is not None:
+        across, along, height = spheroid
+        numbers = {"radius": across, "along": along, "center": height - center}
+        return [{"kind": "spheroid", **numbers, "from_tilt": 0.0, "to_tilt": math.pi}]
+    smooth = hull.smooth_parts(reach)
+    found = [{"kind": "oval", "from_tilt": low, "to_tilt": high} for low, high in smooth]
+    found += [
+        {
+            "kind": zone.name,
+            "radius": zone.radius or zone.tube,
+            "tube": zone.tube if zone.radius else None,
+            "center": zone.height - center,
+            "from_tilt": zone.low,
+            "to_tilt": zone.high,
+            "protrusion": hull.protrusion(zone)[0],
+        }
+        for zone in hull.zones
+        if not any(low <= zone.low and zone.high <= high for low, high in smooth)
+    ]
+    return sorted(found, key=lambda one: one["from_tilt"])
 
 
 def _expected(piece: "tt.Workpiece") -> dict[str, Any]:
@@ -200,7 +218,8 @@ def _sentences(told: dict[str, Any]) -> Iterator[Any]:
     for remark in told["remarks"]:
         yield escape(remark)
     yield facts(_rows(told))
-    headings = ("surface", "radius", "tube", "height of its centre", "from tilt", "to tilt")
+    names = ("surface", "radius", "tube", "along the axis", "height of its centre")
+    headings = (*names, "from tilt", "to tilt")
     rows = (_surface_row(one) for one in told["surfaces"])
     yield listing("Stands on", headings, rows, words=("surface",))
     yield "[dim]mm, from the centre of mass; rad.[/]"
@@ -210,8 +229,8 @@ def _sentences(told: dict[str, Any]) -> Iterator[Any]:
 
 def _surface_row(one: dict[str, Any]) -> tuple[str, ...]:
     lengths = (
-        "" if one[name] is None else f"{1e3 * one[name]:.6g}"
-        for name in ("radius", "tube", "center")
+        "" if one.get(name) is None else f"{1e3 * one[name]:.6g}"
+        for name in ("radius", "tube", "along", "center")
     )
     return (one["kind"], *lengths, f"{one['from_tilt']:.6g}", f"{one['to_tilt']:.6g}")
 

@@ -2,13 +2,14 @@
 meshes.
 """
 
-import csv
 from contextlib import ExitStack
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from tippetop.lathe.fitting import TOLERANCE
-from tippetop.lathe.sheet import Reading, read_sheet
+from tippetop.lathe.sheet import Reading, Sheet, read_sheet
+from tippetop.lathe.strokes import line
 from tippetop.lathe.workpiece import UNITS, Workpiece
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import in_words, made_of, named, path_of, read_text
@@ -87,6 +88,8 @@ def read_with_remarks(
                 if reading.cavities:
                     _add_cavities(content, reading, field)
                 files.enter_context(made_of(beside, part=field))
+        if axis is not None and not remarks:
+            raise InvalidInput("axis", axis, "none: the profile is stated from the axis")
         return Workpiece(**content), remarks
 
 
@@ -107,9 +110,7 @@ def _read(
     they are in this unit.
     """
     suffix = path.suffix.lower()
-    if suffix == ".csv":
-        return Reading(_from_csv(read_text(path, ACCEPTED), path), [], [])
-    if suffix not in DRAWINGS:
+    if suffix not in (".csv", *DRAWINGS):
         raise InvalidInput(
             "file", named(path), "one whose name ends in .toml, .csv, .svg, .dxf or .stl"
         )
@@ -117,11 +118,20 @@ def _read(
     tolerance = content.get("tolerance", TOLERANCE)
     if not isinstance(tolerance, float | int) or not 0.0 <= tolerance <= 1.0:
         tolerance = TOLERANCE  # What is wrong with it, the workpiece says.
+    if suffix == ".csv":
+        points = _from_csv(read_text(path, ACCEPTED), path)
+        if axis is None and not _are_on_both_sides(points):
+            return Reading(points, [], [])
+        # A half outline is so closed along the axis.
+        corners = [complex(*point[:2]) for point in [*points, *points[:1]]]
+        outline = [line(*ends) for ends in pairwise(corners) if ends[0] != ends[1]]
+        sheet = Sheet([("the line of points", outline)], unit or "m")
+        return read_sheet(sheet, axis, tolerance, field)
     with in_words(path, "read"):
         if suffix == ".stl":
             from tippetop.lathe.scan import read_stl  # noqa: PLC0415 - slow to import
 
-            reading = read_stl(path, axis, named(path))
+            reading = read_stl(path, axis, tolerance, named(path))
         elif suffix == ".dxf":
             from tippetop.lathe.dxf import read_dxf  # noqa: PLC0415 - slow to import
 
@@ -147,20 +157,30 @@ def _scaled(points: list[tuple[float, ...]], scale: float) -> list[tuple[float, 
     return [tuple(scale * number for number in point) for point in points]
 
 
+def _are_on_both_sides(points: list[tuple[float, ...]]) -> bool:
+    """Whether points are those of a whole outline, to the left and to the right of the axis."""
+    across = [point[0] for point in points]
+    return all(len(point) == 2 for point in points) and min(across, default=0.0) < 0.0 < max(across)
+
+
 def _from_csv(text: str, path: Path) -> list[tuple[float, ...]]:
-    rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
-    if rows and not any(cell.strip()[:1] in STARTS for cell in rows[0] if cell.strip()):
-        rows = [[], *rows[1:]]
-    return [_numbers(number, row, path) for number, row in enumerate(rows, 1) if row]
+    """The points in rows of numbers with commas, semicolons, tabs or spaces between them."""
+    lines = [line.partition("#")[0].strip() for line in text.splitlines()]
+    between = next((mark for mark in ";\t," if any(mark in line for line in lines)), None)
+    cells = [[cell.strip(' "') for cell in line.split(between)] for line in lines]
+    rows = [(number, row) for number, row in enumerate(cells, 1) if any(row)]
+    if rows and not any(cell[:1] in STARTS for cell in rows[0][1] if cell):
+        rows = rows[1:]
+    return [_numbers(number, row, path) for number, row in rows]
 
 
 def _numbers(number: int, row: list[str], path: Path) -> tuple[float, ...]:
     """The numbers of a row, which may end in empty cells, but has none between others."""
-    cells = [cell.strip() for cell in row]
+    cells = list(row)
     while not cells[-1]:
         cells.pop()
     try:
         return tuple(float(cell) for cell in cells)
     except ValueError:
-        accepted = "two or three numbers, with commas between them"
+        accepted = "two or three numbers, with a decimal point and commas between them"
         raise InvalidInput(f"row {number}", ",".join(row), accepted, file=named(path)) from None

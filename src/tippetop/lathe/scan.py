@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.lathe.sheet import Reading
+from tippetop.lathe.sheet import Reading, nested
 from tippetop.support.errors import InvalidInput, Unavailable
 
 NOT_ROUND = 0.01
@@ -45,7 +45,7 @@ Line = NDArray[np.complex128]
 """Distance from the axis and, times i, height along it."""
 
 
-def read_stl(path: Path, axis: str | None, name: str) -> Reading:
+def read_stl(path: Path, axis: str | None, tolerance: float, name: str) -> Reading:
     """Return the profile of a body of revolution from its surface, in the numbers of the file.
 
     The axis is the one stated, x, y or z through the middle of the body; or else the one about
@@ -79,7 +79,8 @@ def read_stl(path: Path, axis: str | None, name: str) -> Reading:
         f"The axis is along ({along}); the surface differs from a round one by"
         f" {100.0 * share:.2g} % of its size at most."
     )
-    return Reading(lines[-1], lines[:-1], [remark])
+    shells = [(f"shell {number}", line) for number, line in enumerate(reversed(lines), 1)]
+    return Reading(*nested(shells, tolerance, "STL"), [remark])
 
 
 def _mesh(path: Path, name: str) -> Any:

@@ -158,7 +158,7 @@ def _read(
                 f"lines that end on the axis, {told(axis.place)}, or where they begin",
             )
         stated.append((name, unrounded(_ended(points_of(part), GAP * size), ALONG * size)))
-    outer, cavities = _nested(stated, tolerance, field)
+    outer, cavities = nested(stated, tolerance, field)
     return Reading(outer, cavities, [axis.remark])
 
 
@@ -316,7 +316,7 @@ def _chords(paths: Sequence[Path]) -> Chords:
     )
 
 
-def _nested(
+def nested(
     outlines: Sequence[tuple[str, Sequence[Point]]], tolerance: float, field: str
 ) -> tuple[list[Point], list[list[Point]]]:
     """The outer outline, and the cavities in it; refuses other outlines."""

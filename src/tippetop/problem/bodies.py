@@ -152,6 +152,8 @@ class Body(Part):
 
         given = {"density": density, "inserts": inserts, "unit": unit, "tolerance": tolerance}
         fields = {name: value for name, value in given.items() if value is not None}
+        if axis is not None and not isinstance(profile, str | Path):
+            raise InvalidInput("axis", axis, "none: the profile is stated from the axis")
         match profile:
             case Workpiece():
                 piece = profile.model_copy(update=fields)
@@ -176,7 +178,7 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
     were it whole, would be outside of the body.
     """
     center, hull = piece.mass_properties.center, piece.hull
-    reach = PROTRUDING * piece.outline.size + 2.0 * piece.deviation
+    reach = allowance(piece)
     spheroid = hull.spheroid(reach) if len(hull.zones) > 2 else None
     if spheroid is not None:
         across, along, height = spheroid
@@ -210,6 +212,12 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
 
 
 # translate: skip
+def allowance(piece: "Workpiece") -> float:
+    """How far surfaces that a turned body touches the table with may reach out of it, m."""
+    return PROTRUDING * piece.outline.size + 2.0 * piece.deviation
+
+
+# translate: skip
 def _oval(piece: "Workpiece", low: float, high: float, whole: bool) -> Shape:
     """The smooth surface that a turned body stands on between two tilts."""
     from tippetop.lathe.support import polynomial_support  # noqa: PLC0415 - slow to import
@@ -233,7 +241,8 @@ def _shape(zone: "Zone", center: float) -> Shape:
     if zone.radius > 0.0:
         return Ring(radius=zone.radius, center=center, tube=zone.tube)
     part = "a sharp tip" if zone.name == "tip" else "an arc around a point beyond the axis"
-    raise InvalidInput("profile", part, "a body that stands on spheres and rings")
+    wanted = "a body that stands on spheres, rings and smooth curves: a tip is rounded"
+    raise InvalidInput("profile", part, wanted)
 
 
 MOST = 12
