@@ -382,3 +382,15 @@ def test_what_inkscape_puts_around_a_drawing_is_left_out(tmp_path, content):
     piece, _ = read_with_remarks(tmp_path / "a.svg", density=700.0)
     exact = 700e-9 * 4.0 / 3.0 * math.pi * 15.0**3
     assert piece.mass_properties.mass == pytest.approx(exact, rel=1e-3)
+
+
+@pytest.mark.parametrize(("sides", "is_round"), [(4, False), (6, False), (8, False), (48, True)])
+def test_a_prism_is_not_round(tmp_path, sides, is_round):
+    trimesh = pytest.importorskip("trimesh", reason="it comes with the lathe extra")
+    trimesh.creation.cylinder(radius=15.0, height=20.0, sections=sides).export(tmp_path / "a.stl")
+    if is_round:
+        piece, _ = read_with_remarks(tmp_path / "a.stl", density=700.0, axis="z")
+        assert piece.mass_properties.mass == pytest.approx(700e-9 * 4500.0 * math.pi, rel=1e-6)
+    else:
+        with pytest.raises(tt.InvalidInput, match="out of round"):
+            read_with_remarks(tmp_path / "a.stl", density=700.0)

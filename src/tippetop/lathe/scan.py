@@ -37,6 +37,11 @@ HALF_PLANES = 5
 WIDEST = math.radians(30.0)
 """Angle around the axis up to which an edge stands for an arc around it, rad."""
 
+BETWEEN = (math.radians(15.0), math.radians(30.0))
+"""Angles from a vertex to half-planes that are compared with the one through it, rad: facets of a
+prism with 4, 6, 8 or 12 sides are furthest inside near one of them.
+"""
+
 DENSE = 3.0
 """Ratio of distinct vertices to points of the meridian from which on the vertices are scattered."""
 
@@ -148,15 +153,17 @@ class _Surface:
         angles = np.sort(self.angle[~self.is_on_axis])
         chosen = angles[np.linspace(0, len(angles) - 1, HALF_PLANES).astype(int)] + SLIVER
         sections = [lines for lines in map(self._section, chosen.tolist()) if lines]
-        judged = [(self._apart(lines), k) for k, lines in enumerate(sections)]
-        apart, best = min(judged, default=(math.inf, 0))
-        return (apart, sections[best]) if judged else (math.inf, [])
-
-    def _apart(self, lines: list[Line]) -> float:
-        # Of vertices in a ring one says it all.
+        # Of vertices in a ring one says it all. A prism has all in rings, but is not round between.
         _, numbers = np.unique(np.round(self.vertices / (SAME * self.size)), return_index=True)
-        places = self.vertices[numbers]
-        return float(np.min([_distances(places, line)[0] for line in lines], axis=0).max())
+        between = [line for turn in BETWEEN for line in self._section(float(chosen[0]) + turn)]
+        places = np.concatenate([self.vertices[numbers], *between])
+
+        def apart(lines: list[Line]) -> float:
+            return float(np.min([_distances(places, line)[0] for line in lines], axis=0).max())
+
+        judged = [(apart(lines), k) for k, lines in enumerate(sections)]
+        apart_least, best = min(judged, default=(math.inf, 0))
+        return (apart_least, sections[best]) if judged else (math.inf, [])
 
     def _section(self, angle: float) -> list[Line]:
         """The lines in which the half-plane at an angle cuts the surface."""
