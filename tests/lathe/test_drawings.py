@@ -17,6 +17,7 @@ from drawn import (
     SPINDLE,
     TIP,
     TOP,
+    TORUS,
     R,
     polyline,
     weighed,
@@ -178,6 +179,10 @@ SVG = {
             "10cm 10cm",
             "0 0 100 100",
         ),
+    ),
+    "illustrator-ring-cut": (
+        TORUS,
+        svg('<circle cx="32" cy="40" r="5"/><circle cx="68" cy="40" r="5"/>'),
     ),
     "freecad-loose-edges": (
         TOP,

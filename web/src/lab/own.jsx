@@ -57,6 +57,7 @@ export function Own({ lab }) {
       <button type="button" class="strong" disabled={alpha <= 0} onClick={spin}>
         {t("own.spin")}
       </button>
+      <p class="own-brought">{t("own.brought")}</p>
     </div>
   );
 }
