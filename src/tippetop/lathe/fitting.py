@@ -401,9 +401,19 @@ class Polyline:
         while begin < last:
             end = _last_true(partial(are_close, begin), begin + 1, last)
             straight = [Edge(complex(points[begin]), complex(points[end]))]
-            found += arcs(begin, end) or straight
+            edges = arcs(begin, end) or straight
+            found += [_beside_axis(edge) for edge in edges]
             begin = end
         return found
+
+
+def _beside_axis(edge: Edge) -> Edge:
+    """The edge, or its chord if it crosses the axis, as an arc along the axis may."""
+    if not edge.turn:
+        return edge
+    innermost = edge.center - abs(edge.radius)
+    is_across = innermost.real < 0.0 < edge.share(innermost) < 1.0
+    return Edge(edge.start, edge.end) if is_across else edge
 
 
 def _with_poles(points: Array) -> Array:

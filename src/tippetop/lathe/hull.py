@@ -24,7 +24,7 @@ body.
 NARROWEST = 1e-9
 """Least range of tilts of a surface, rad."""
 
-FEWEST_ON_CURVE = 3
+FEWEST_ON_CURVE = 2
 """Fewest arcs in a row that stand for another smooth curve."""
 
 _CLOSE = 1e-7
