@@ -1,7 +1,8 @@
 """A sweep: a base problem, the cells over it, and how they are computed."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Self, TypeAlias
@@ -82,7 +83,8 @@ class Sweep(Part):
             raise InvalidInput(", ".join(GRIDS), given, "one of them")
         if self.settled is not None:
             require_jellett(self.problem.top)
-        cells_of(self.problem, self.grid.values(np.arange(1)))
+        with _only_refusals():
+            cells_of(self.problem, self.grid.values(np.arange(1)))
         return self
 
     @cached_property
@@ -142,6 +144,19 @@ class Sweep(Part):
             fields["problem"] = Problem.read(Path(path).parent / fields["problem"])
         with made_of(path):
             return cls(**fields)
+
+
+@contextmanager
+def _only_refusals() -> Iterator[None]:
+    """Let fields that cannot be swept be refused; whatever else the first cell raises is its
+    outcome.
+    """
+    try:
+        yield
+    except (InvalidInput, MemoryError):
+        raise
+    except Exception:  # noqa: BLE001 - whatever was raised
+        return
 
 
 def is_sweep(fields: Mapping[str, Any]) -> bool:

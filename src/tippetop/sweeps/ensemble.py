@@ -20,12 +20,13 @@ from tippetop.mechanics.vectors import Scalar, length
 from tippetop.results.catalogue import SWEPT, Ending, Fault
 from tippetop.results.metrics import OUTCOMES, Ends, ending, final_band, metrics
 from tippetop.results.monitor import WAYS_TO_END, Monitor, kept
+from tippetop.support.errors import Unavailable
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import Flat
 from tippetop.sweeps.lane_executor import Lanes, arrivals
 from tippetop.sweeps.launch_arrays import Launches
-from tippetop.sweeps.single_launches import follow_each, is_alone
+from tippetop.sweeps.single_launches import follow_each, is_alone, note_failure
 from tippetop.sweeps.taylor_stepper import stepper
 
 LANES_AT_ONCE = 2048
@@ -34,13 +35,39 @@ cache.
 """
 
 
-@np.errstate(all="ignore")  # what is no number is told by outcomes
 def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
-    """Return each variable of `catalogue.SWEPT` for cells counted row by row, of shape (n,)."""
+    """Return each variable of `catalogue.SWEPT` for cells counted row by row, of shape (n,).
+
+    A cell in which something raises has failed. Where cells are followed together, they are halved
+    until those that raise are by themselves: a cell's numbers do not depend on the others.
+    """
+    try:
+        return _followed(sweep, numbers)
+    except (MemoryError, Unavailable):
+        raise
+    except Exception as error:  # noqa: BLE001 - whatever was raised, the others go on
+        if len(numbers) > 1:
+            halves = [follow_cells(sweep, half) for half in np.array_split(numbers, 2)]
+            return {name: np.concatenate([half[name] for half in halves]) for name in SWEPT}
+        note_failure(error)
+        return _unknown(1, Ending.FAILED)
+
+
+def _unknown(count: int, outcome: Ending) -> dict[str, NDArray[np.generic]]:
+    """Return each variable for cells of which nothing but the outcome is known."""
+    found: dict[str, NDArray[np.generic]] = {
+        name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()
+    }
+    found["outcome"][:] = outcome
+    found["fault"][:] = Fault.NONE
+    return found
+
+
+@np.errstate(all="ignore")  # what is no number is told by outcomes
+def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
     count = len(numbers)
-    found = {name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()}
-    found["outcome"][:] = Ending.BAD
+    found = _unknown(count, Ending.BAD)
     found["fault"][:] = cells.fault
     good = np.flatnonzero(cells.fault == Fault.NONE)
     if not len(good):

@@ -75,7 +75,8 @@ def fill(
     """Compute what is missing in a store; for workers, scheduler and callback see `sweep`.
 
     Raises `FileTrouble` if the store cannot be written, or another process fills it; it stays good,
-    and another call goes on where this one ended.
+    and another call goes on where this one ended. A store that was just created and in which
+    nothing could be written is removed.
     """
     with store.held():
         return _carry_out(store.sweep, store.remaining(), store.write, workers, scheduler, callback)
@@ -159,7 +160,8 @@ def sweep(
         A run ends once its energy holds the tilt within this for good, rad; None to follow every
         run for its whole duration.
     out
-        Folder of a Zarr store to keep the sweep in; in memory if left out.
+        Folder of a Zarr store to keep the sweep in, whose name ends in .zarr or has no ending; in
+        memory if left out.
     overwrite
         Replace a sweep that is there.
     resume
@@ -182,7 +184,7 @@ def sweep(
     ------
     InvalidInput
         If there is no such field, or it cannot have such values; if `overwrite` or `resume` is
-        asked for without `out`, or both are.
+        asked for without `out`, or both are; if `out` ends as the name of another kind of file.
     FileTrouble
         If there is something at `out` already, or it cannot be written.
 

@@ -1,5 +1,6 @@
 """Launches of a sweep that are followed one by one, each as a single launch is."""
 
+import logging
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -16,8 +17,11 @@ from tippetop.mechanics.top import Top
 from tippetop.results.metrics import Ends
 from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import Tally
+from tippetop.support.errors import Unavailable
 from tippetop.sweeps.launch_arrays import Launches, single
 from tippetop.theory.prediction import is_held
+
+_LOG = logging.getLogger(__name__)
 
 
 def is_alone(launches: Launches) -> bool:
@@ -29,14 +33,28 @@ def is_alone(launches: Launches) -> bool:
 
 
 def follow_each(launches: Launches, tolerance: float, settled: float | None = None) -> Ends:
-    """Follow every launch to its end, or until its tilt is held within `settled`, rad."""
+    """Follow every launch to its end, or until its tilt is held within `settled`, rad.
+
+    A launch in which something raises has failed, and nothing else is known of it.
+    """
     ends = Ends.unknown(len(launches))
     for i in range(len(launches)):
-        rules, state = launches.rules(i), single(launches.state, i)
-        begin = rules.top, state, 0.0
-        found, _ = follow(begin, rules.launch(state), float(launches.end[i]), tolerance, settled)
-        ends.put(np.array([i]), found)
+        try:
+            rules, state = launches.rules(i), single(launches.state, i)
+            start, end = rules.launch(state), float(launches.end[i])
+            found, _ = follow((rules.top, state, 0.0), start, end, tolerance, settled)
+        except (MemoryError, Unavailable):
+            raise
+        except Exception as error:  # noqa: BLE001 - whatever was raised, the others go on
+            note_failure(error)
+        else:
+            ends.put(np.array([i]), found)
     return ends
+
+
+def note_failure(error: Exception) -> None:
+    """Log what was raised in a cell of a sweep, which therefore has failed."""
+    _LOG.warning("a cell of the sweep failed: %s: %s", type(error).__name__, error)
 
 
 def follow(

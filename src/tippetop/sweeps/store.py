@@ -1,7 +1,8 @@
 """Where a sweep is kept: a Zarr store that is always whole, whatever becomes of the program that
 fills it.
 
-The array `status` alone says what is done: its chunk is written last, once the others are on disk,
+The array `status` alone says what is done. It has every chunk from the beginning: a missing one is
+damage. The chunk of a task that is done is written last, once the others are on disk,
 and every chunk is written beside its place and then moved there. So a program that dies, or a
 machine, even in the middle of a write, loses only the tasks under way. What is lost or damaged
 later is found, and done again.
@@ -11,7 +12,7 @@ import json
 import shutil
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 
 from tippetop.results.catalogue import SWEPT
 from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable
-from tippetop.support.files import in_words, path_of
+from tippetop.support.files import in_words, path_of, require_ending
 from tippetop.support.interrupts import deferred
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.store_layout import (
@@ -53,16 +54,20 @@ class Store:
             with zarr.config.set({"array.write_empty_chunks": True}):
                 self._arrays = dict(zarr.open_group(path, mode="r+").arrays())
             self._identity = identity(path)
+        self._created = False
 
     @classmethod
     def create(cls, path: Path | str, sweep: Sweep, overwrite: bool = False) -> "Store":
         """Make an empty store, whole from the moment it is there.
 
-        Raises `FileTrouble` if something is there already and `overwrite` is false, or it is no
-        sweep or being filled, or it cannot be written; `Unavailable` if zarr is not installed.
+        Raises `InvalidInput` if the name ends as that of another kind of file; `FileTrouble` if
+        something is there already and `overwrite` is false, or it is no sweep or being filled, or
+        it cannot be written; `Unavailable` if zarr is not installed.
         """
         need_zarr()
         path = path_of(path)
+        if path.suffix:
+            require_ending("out", path, (".zarr",))
         # Zarr writes in a thread of its own, which Ctrl-C does not stop.
         with in_words(path, "written"), deferred(), ExitStack() as stack:
             refuse_existing(path, overwrite)
@@ -84,7 +89,9 @@ class Store:
                 path.rename(beside / "replaced")
             fresh.rename(path)
             bring_to_disk([path.parent])
-        return cls(path, sweep)
+        store = cls(path, sweep)
+        store._created = True
+        return store
 
     @classmethod
     def resume(cls, path: Path | str, sweep: Sweep | None = None) -> "Store":
@@ -112,16 +119,28 @@ class Store:
         results.
 
         Raises `FileTrouble` if another process fills it or has replaced it, or it cannot be
-        written.
+        written. A store that was created by this object and in which nothing could be written yet
+        is then removed.
         """
         self._check_identity()
         with locked(self.path):
             self._check_identity()
-            with in_words(self.path, "written"):
-                for partial in self.path.rglob("*.partial"):
-                    partial.unlink(missing_ok=True)
-                self._mend()
-            yield
+            try:
+                with in_words(self.path, "written"):
+                    for partial in self.path.rglob("*.partial"):
+                        partial.unlink(missing_ok=True)
+                    self._mend()
+                yield
+            except FileTrouble:
+                if self._created and not self._done(self.status()):
+                    self._remove()
+                raise
+
+    def _remove(self) -> None:
+        """Remove the store, unless another one has taken its place."""
+        with suppress(OSError):
+            if identity(self.path) == self._identity:
+                shutil.rmtree(self.path, ignore_errors=True)
 
     def _check_identity(self) -> None:
         with in_words(self.path, "written"):
@@ -216,7 +235,8 @@ class Store:
         with _damage_in_words(self.path):
             read_metadata(self.path)
             done = self._done(np.asarray(self._arrays["status"][...]))
-            needed = [(name, task) for name in names if name in SWEPT for task in done]
+            needed = [("status", task) for task in self.sweep.tasks]
+            needed += [(name, task) for name in names if name in SWEPT for task in done]
             needed += [(name, (0,)) for name in self.sweep.grid.coordinates()]
             for name, task in needed:
                 if not self._chunk(name, task).is_file():

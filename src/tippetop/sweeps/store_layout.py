@@ -68,7 +68,7 @@ def lay_out(path: Path, sweep: Sweep) -> None:
         )
         coordinate[...] = values
     for name, kind in CONTENTS.items():
-        group.create_array(
+        array = group.create_array(
             name,
             shape=grid.shape,
             chunks=sweep.chunk,
@@ -76,8 +76,12 @@ def lay_out(path: Path, sweep: Sweep) -> None:
             fill_value=Status.PENDING if name == "status" else kind.missing,
             dimension_names=grid.dimensions,
             attributes=_plain(kind.attributes) | _coordinates(sweep),
+            config={"write_empty_chunks": name == "status"},
             compressors=checked,
         )
+        if name == "status":
+            # Every chunk of it is there from the beginning: one that is missing was lost.
+            array[...] = Status.PENDING
     with _alone, warnings.catch_warnings():
         # Zarr warns that readers other than Python's may pass over this; they then read every
         # array's own.
