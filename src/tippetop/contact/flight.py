@@ -13,6 +13,7 @@ from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import ELEMENTARY, DenseSolution
 from tippetop.mechanics.flight import flight_rates, fly, gap, gap_rate, precession
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.vectors import Row, Scalar
@@ -103,8 +104,7 @@ class Flight(Mode):
     ) -> Transition:
         if lowest is None:
             return Transition((), Outcome.COMPLETED, state)
-        c = min(max(state.axis[2], -1.0), 1.0)
-        here = state._replace(height=lowest.surface.height(c))
+        here = state._replace(height=support_at(state.axis, lowest.surface)[0])
         if lowest == self.top:
             return self.rules.touchdown(time, here, integrator)
         return self.rules.touch(number_of(lowest), time, here, integrator)

@@ -23,13 +23,15 @@ def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
     """
     if not isinstance(surface, Hull):
         return contact_vector(axis, surface)
-    level = outer_height(surface, axis[2]) - LEVEL * surface.size
-    last, *others = reversed(each_surface(surface))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        x, y, z = contact_vector(axis, last)
-        for one in others:
-            lowest, arm = np.less(level, one.height(axis[2])), contact_vector(axis, one)
-            x, y, z = (np.where(lowest, arm[i], other) for i, other in enumerate((x, y, z)))
+    arms = [contact_vector(axis, one) for one in each_surface(surface)]
+    depth = arms[0][2]
+    for _, _, z in arms[1:]:
+        depth = 0.5 * (depth + z - abs(depth - z))
+    level = depth + LEVEL * surface.size
+    x, y, z = arms[-1]
+    for arm in reversed(arms):
+        lowest = np.less(arm[2], level)
+        x, y, z = (np.where(lowest, arm[i], other) for i, other in enumerate((x, y, z)))
     return (x, y, z)
 
 

@@ -17,7 +17,7 @@ from tippetop.contact.passing import Resting
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.contact.stopping import Stopping
-from tippetop.contact.surfaces import number_of
+from tippetop.contact.surfaces import lies_flat, number_of
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
@@ -196,11 +196,13 @@ class Rules:
 
     def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
         """Go on from contact without normal velocity: slide, stick, or leave a table that would
-        have to pull.
+        have to pull; or lie flat.
 
         Where no normal force is consistent with the friction (Painleve's paradox), an impact
         without approach takes as much slip away as it needs to: Darboux's and Keller's way out.
         """
+        if lies_flat(self.top, state.axis):
+            return Transition(events, Outcome.LYING_FLAT, state)
         sliding = along_table(state)
         stuck = is_set_valued(self.top.friction) and not is_slipping(*sliding, self.top)
         held = not self._rolls(state)

@@ -8,7 +8,7 @@ from tippetop.contact.double import SLOWEST_SLIP
 from tippetop.contact.flight import TOUCHING
 from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.mode import Before, Event, EventKind, IntegratedMode, Outcome, Transition
-from tippetop.contact.surfaces import number_of
+from tippetop.contact.surfaces import lies_flat, number_of
 from tippetop.contact.two_closed import rolling_of
 from tippetop.contact.two_resolver import settled, slipping
 from tippetop.integrators.base import Integrator
@@ -21,7 +21,9 @@ from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.rolling import contact_motion, is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import size, slip_of
+from tippetop.mechanics.surface import support_at
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Vector
 from tippetop.mechanics.wrench import Wrench
 
 SLOWEST_ROCKING = 1e-7
@@ -82,6 +84,8 @@ class OnSeveral(FreeToFly):
         outermost.
         """
         closed, told, beside = False, events, self._beside(state)
+        if any(lies_flat(other, state.axis) for other in beside):
+            return Transition(events, Outcome.LYING_FLAT, state)
         for other in beside:
             rate = gap_rate(state, other)
             if rate < -SLOWEST_ROCKING:
@@ -96,7 +100,7 @@ class OnSeveral(FreeToFly):
                 told = (*told, Event(EventKind.OPENING, time, surface=number_of(other)))
         if not closed:
             return self.resting_alone(time, state, told)
-        tops = outermost((self.top, *beside), state.axis[2])
+        tops = outermost((self.top, *beside), state.axis)
         before = Before((), bool(rolling_of(state, self.top)))
         rolls = rolling_of(without_tilting(state, self.top), self.top)
         return settled(self._of(tops[0]), time, state, tops, before, rolls, events, arrived=True)
@@ -189,7 +193,7 @@ class OnSeveral(FreeToFly):
         return slipping(self, time, state, tops, which, rolls)
 
 
-def outermost(touching: Sequence[Top], c: float) -> Tops:
+def outermost(touching: Sequence[Top], axis: Vector) -> Tops:
     """The two of some tops that touch farthest apart, in their order: a surface touches at -h' s
     along e.
 
@@ -197,6 +201,6 @@ def outermost(touching: Sequence[Top], c: float) -> Tops:
     body rests on two. How three would share its weight is not told by what they do to it, but where
     it slides and turns at once.
     """
-    places = [float(top.surface.slope(c)) for top in touching]
+    places = [float(support_at(axis, top.surface)[1]) for top in touching]
     first, second = sorted((places.index(min(places)), places.index(max(places))))
     return touching[first], touching[second]

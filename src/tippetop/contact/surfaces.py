@@ -8,6 +8,7 @@ from typing import Any
 from tippetop.contact.mode import Mode, Outcome, Transition
 from tippetop.mechanics.hull import Hull, acting, each_surface, is_edge
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import gap_guard, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 
@@ -70,11 +71,11 @@ def _face(top: Top, axis: Vector) -> Scalar:
 
 
 def _gap_of(number: int) -> Callable[[Top, Vector], Scalar]:
-    """Gap of a surface while the active one touches."""
+    """What falls through zero as the gap of a surface does while the active one touches."""
 
     def gap(top: Top, axis: Vector) -> Scalar:
-        surface: Any = top.surface
-        return surface.height(axis[2]) - surface.each[number].height(axis[2]) + MARGIN
+        height = support_at(axis, top.surface)[0] + MARGIN
+        return gap_guard(axis, height, each_surface(top.surface)[number])
 
     return gap
 
@@ -88,6 +89,7 @@ def clearance(top: Top, c: float) -> float:
     """The least gap of the other surfaces while the active one touches, at a cosine of the tilt,
     floats.
     """
+    c = min(max(c, -1.0), 1.0)
     height = top.surface.height(c)
     gaps = [
         height - other.height(c)

@@ -2,8 +2,8 @@
 
 from typing import Any, NamedTuple
 
-from tippetop.mechanics.surface import Surface
-from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.surface import Support, Surface, gap_guard, support_at
+from tippetop.mechanics.vectors import Scalar, Vector
 
 
 class Hull(NamedTuple):
@@ -37,6 +37,16 @@ class Hull(NamedTuple):
     def curvature(self, c: Scalar) -> Scalar:
         """Second derivative h''(c), m."""
         return self.sizes[self.active] * self.units[self.active].curvature(c)
+
+    def support_at(self, axis: Vector) -> Support:
+        """Return the support function of the active surface and its derivatives for an axis, m."""
+        size = self.sizes[self.active]
+        height, slope, curvature = support_at(axis, self.units[self.active])
+        return size * height, size * slope, size * curvature
+
+    def gap_guard(self, axis: Vector, height: Scalar) -> Scalar:
+        """Return what falls through zero as the gap of the active surface does."""
+        return gap_guard(axis, height / self.sizes[self.active], self.units[self.active])
 
     @property
     def spherical(self) -> bool:

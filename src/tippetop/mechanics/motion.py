@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.friction import Traction
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surface import contact_vector, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
@@ -137,8 +137,9 @@ def free_acceleration(axis: Vector, momentum: Vector, top: Top) -> Scalar:
 def turning_parts(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
     """The parts h'' c'^2 and h' [L x n']_z / I1 of that, m/s^2."""
     turning = axis_rate(axis, momentum, top)
-    lever = top.surface.slope(axis[2]) / top.transverse_inertia
-    bending = top.surface.curvature(axis[2]) * turning[2] * turning[2]
+    _, slope, curvature = support_at(axis, top.surface)
+    lever = slope / top.transverse_inertia
+    bending = curvature * turning[2] * turning[2]
     return bending, lever * cross(momentum, turning)[2]
 
 
@@ -146,7 +147,7 @@ def driven_acceleration(axis: Vector, upwards: Scalar, moment: Vector, top: Top)
     """What a force upwards, N, and a moment M about the centre of mass, N m, add: F/m - (h'/I1) [M
     x n]_z.
     """
-    lever = top.surface.slope(axis[2]) / top.transverse_inertia
+    lever = support_at(axis, top.surface)[1] / top.transverse_inertia
     return upwards / top.mass - lever * cross(moment, axis)[2]
 
 
@@ -157,7 +158,7 @@ def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     """
     bending, swinging = turning_parts(axis, momentum, top)
     sinking = top.gravity + (bending + swinging)
-    lever = abs(top.surface.slope(axis[2])) / top.transverse_inertia
+    lever = abs(support_at(axis, top.surface)[1]) / top.transverse_inertia
     error = ROUNDING * lever * dot(momentum, momentum) / top.transverse_inertia
     return sinking > PRESSED * (top.gravity + abs(bending) + abs(swinging)) + error
 
@@ -188,9 +189,9 @@ def on_table(state: SlidingState, top: Top) -> State:
     """The whole state of a body that touches the table: height h(c) and vertical velocity h'(c) c'
     added.
     """
-    c = state.axis[2]
-    sinking = top.surface.slope(c) * axis_rate(state.axis, state.momentum, top)[2]
-    return State(state.axis, state.momentum, (*state.velocity, sinking), top.surface.height(c))
+    height, slope, _ = support_at(state.axis, top.surface)
+    sinking = slope * axis_rate(state.axis, state.momentum, top)[2]
+    return State(state.axis, state.momentum, (*state.velocity, sinking), height)
 
 
 def along_table(state: State) -> SlidingState:

@@ -38,7 +38,7 @@ from tippetop.mechanics.motion import (
     driven_acceleration,
     free_acceleration,
 )
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surface import contact_vector, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, cross, dot, scale, solve
 from tippetop.mechanics.wrench import COUPLES, DRILLING, FORCES, Slip, Wrench
@@ -135,7 +135,7 @@ class ContactPoint(NamedTuple):
         In the fewest operations: the motion of what sticks is made of little else.
         """
         top, n, c = self.top, self.axis, self.axis[2]
-        slope, height = top.surface.slope(c), top.surface.height(c)
+        height, slope, _ = support_at(n, top.surface)
         leaning, excess = n[0] * n[0] + n[1] * n[1], top.axial_inertia - top.transverse_inertia
         high, steep = top.mass * (height * height), top.mass * (slope * slope)
         lever = top.mass * (height * slope)
@@ -175,10 +175,9 @@ def arm_rate(axis: Vector, tilting: Vector, top: Top) -> Vector:
     """Rate of the contact vector for this rate of the axis (1/s): -h' n' - h'' c' (n - c z),
     m/s.
     """
-    c = axis[2]
-    bend = -top.surface.curvature(c) * tilting[2]
-    outward = (bend * axis[0], bend * axis[1], bend * (axis[2] - c))
-    return add(scale(-top.surface.slope(c), tilting), outward)
+    _, slope, curvature = support_at(axis, top.surface)
+    bend = -curvature * tilting[2]
+    return add(scale(-slope, tilting), (bend * axis[0], bend * axis[1], 0.0))
 
 
 def contact_motion(

@@ -4,14 +4,23 @@ The support function h(c) is the height of the centre of mass above the table wh
 touches it, as a function of c = cos(tilt). It determines the contact point: see `contact_vector`.
 """
 
-from typing import NamedTuple, Protocol, Self
+from typing import NamedTuple, Protocol, Self, TypeAlias
 
 from tippetop.mechanics.vectors import Scalar, Vector, power
 
 FLAT = 1e-3
-"""Sine of the tilt at which a body on its edge lies flat: below it, too few digits of 1 - c^2
-remain.
+"""Sine of the tilt below which a body on its edge lies flat, all around: the contact point runs
+round the edge the faster the flatter it is, and any unevenness of a real table or edge is as large.
 """
+
+POLE = 1e-200
+"""Added to the squared sine of the tilt where it divides: changes no tilt above 1e-92 rad, and
+keeps the derivatives of a ring finite where the axis is vertical.
+"""
+
+
+Support: TypeAlias = tuple[Scalar, Scalar, Scalar]
+"""Support function h of a surface and its derivatives h' and h'', m."""
 
 
 class Surface(Protocol):
@@ -195,7 +204,8 @@ class RingSurface(NamedTuple):
     disk.
 
     With a circle of this radius in a tube, h = tube + radius sqrt(1 - c^2) - center c. Its
-    derivatives are infinite where c^2 = 1: there the body lies flat and touches all around.
+    derivatives are infinite where c^2 = 1: there the ring is parallel to the table. `support_at`
+    and `gap_guard` take the axis, whose horizontal part has the digits that 1 - c^2 loses there.
     """
 
     radius: Scalar
@@ -214,9 +224,33 @@ class RingSurface(NamedTuple):
         """Second derivative h''(c), m."""
         return -self.radius * power(1.0 - c * c, -1.5)
 
+    def support_at(self, axis: Vector) -> Support:
+        """Return the support function and its derivatives for an axis.
+
+        Where the axis is vertical the contact point is undefined: the middle of the ring stands for
+        it.
+        """
+        c, square = axis[2], _sine_squared(axis)
+        inverse = power(square + POLE, -0.5)
+        return (
+            self.tube + self.radius * (square * inverse) - self.center * c,
+            -self.radius * c * inverse - self.center,
+            -self.radius * (inverse * inverse * inverse),
+        )
+
+    def gap_guard(self, axis: Vector, height: Scalar) -> Scalar:
+        """Return what falls through zero as the gap of this ring does, m^2, smooth at every tilt.
+
+        The gap is d - radius s, where d = height - tube + center c is how high the ring's middle is
+        above a table that its tube touches. This is its product with d + radius s, which is
+        positive wherever the gap is not negative.
+        """
+        middle = height - self.tube + self.center * axis[2]
+        return middle * middle - self.radius * self.radius * _sine_squared(axis)
+
     def face_guard(self, axis: Vector) -> Scalar:
         """Falls through zero where the body comes to lie flat: s^2 less that of `FLAT`."""
-        return axis[0] * axis[0] + axis[1] * axis[1] - FLAT * FLAT
+        return _sine_squared(axis) - FLAT * FLAT
 
     @property
     def spherical(self) -> bool:
@@ -239,10 +273,33 @@ class RingSurface(NamedTuple):
         return cls(1.0, *proportions)
 
 
+def support_at(axis: Vector, surface: Surface) -> Support:
+    """Return the support function of a surface and its derivatives for an axis, m."""
+    if hasattr(surface, "support_at"):
+        found: Support = surface.support_at(axis)
+        return found
+    c = axis[2]
+    return surface.height(c), surface.slope(c), surface.curvature(c)
+
+
+def gap_guard(axis: Vector, height: Scalar, surface: Surface) -> Scalar:
+    """Return what falls through zero as the gap of a surface does, for the height of the centre of
+    mass, m.
+
+    It is the gap, or for a surface whose gap is not smooth at every tilt its own `gap_guard`.
+    """
+    if hasattr(surface, "gap_guard"):
+        return surface.gap_guard(axis, height)
+    return height - surface.height(axis[2])
+
+
 def contact_vector(axis: Vector, surface: Surface) -> Vector:
     """Vector from the centre of mass to the lowest point of the body, m: -h'(c) (n - c z) - h(c)
     z.
     """
-    c = axis[2]
-    slope = surface.slope(c)
-    return (-slope * axis[0], -slope * axis[1], -surface.height(c))
+    height, slope, _ = support_at(axis, surface)
+    return (-slope * axis[0], -slope * axis[1], -height)
+
+
+def _sine_squared(axis: Vector) -> Scalar:
+    return axis[0] * axis[0] + axis[1] * axis[1]

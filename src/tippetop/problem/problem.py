@@ -18,6 +18,7 @@ from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import is_slipping, size
+from tippetop.mechanics.surface import POLE
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
@@ -75,8 +76,12 @@ class Problem(Part):
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
         _refuse_what_does_not_fit(self)
+        if _lies_flat(self):
+            raise InvalidInput(
+                "launch.tilt", self.launch.tilt, "a tilt at which the body does not lie flat"
+            )
         if not (math.isfinite(_resistance(self)) and math.isfinite(_largest_square(self))):
-            raise _lying_flat(self) or _out_of_reach(self)
+            raise _out_of_reach(self)
         if self.contact.liftoff == "fly":
             return self
         if isinstance(self.top.surface, Hull):
@@ -282,17 +287,13 @@ def _largest_square(problem: Problem) -> float:
         return math.nan
 
 
-def _lying_flat(problem: Problem) -> InvalidInput | None:
-    """The refusal of a launch on a face; None where that is not what is wrong."""
+def _lies_flat(problem: Problem) -> bool:
+    """Whether the top is launched on a ring that is parallel to the table, all around."""
     try:
         edge = is_edge(problem.standing().surface)
     except ArithmeticError:
-        return None
-    if not edge or math.cos(problem.launch.tilt) ** 2 < 1.0:
-        return None
-    return InvalidInput(
-        "launch.tilt", problem.launch.tilt, "a tilt at which the body does not lie flat"
-    )
+        return False
+    return edge and PoleExact(math).sin(problem.launch.tilt) ** 2 <= POLE
 
 
 def _out_of_reach(problem: Problem) -> InvalidInput:

@@ -115,5 +115,7 @@ class Monitor:
         self._least = np.minimum(self._least, np.min(jellett, 0))
         self._most = np.maximum(self._most, np.max(jellett, 0))
         if isinstance(self.top.surface, Hull):
+            # The axis is a unit vector to rounding, and its cosine may be beyond 1.
+            cosine = np.minimum(np.maximum(cosine, -1.0), 1.0)
             sunk = outer_height(self.top.surface, cosine) - height
             self._sunk = np.maximum(self._sunk, np.max(sunk, 0))

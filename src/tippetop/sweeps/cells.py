@@ -16,11 +16,13 @@ from numpy.typing import NDArray
 from tippetop.contact.choice import rules_of
 from tippetop.contact.trajectory import LONGEST
 from tippetop.integrators.base import Array
-from tippetop.mechanics.hull import Hull, sizes
+from tippetop.mechanics.hull import Hull, is_edge, sizes
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import POLE, support_at
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
+from tippetop.mechanics.view import axis_sine
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import Fault
@@ -111,7 +113,9 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
         fits = filled.friction.fits(size) & (filled.rolling_resistance <= size)
         fault[~np.broadcast_to(fits, (count,))] = Fault.VALUE_OUT_OF_RANGE
         if not isinstance(top.surface, Hull):
-            fault[~np.isfinite(top.surface.slope(start.axis[2]))] = Fault.VALUE_OUT_OF_RANGE
+            fault[~np.isfinite(support_at(start.axis, top.surface)[1])] = Fault.VALUE_OUT_OF_RANGE
+            if is_edge(top.surface):
+                fault[axis_sine(start.axis) ** 2 <= POLE] = Fault.VALUE_OUT_OF_RANGE
         units = natural_units(top)
         return Cells(fault, top, units, natural_state(start, units), filled)
 

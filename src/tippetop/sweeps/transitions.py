@@ -50,6 +50,7 @@ class Crossings:
             here = single(state, i)
             self._follow_alone(int(lanes[i]), 0.0, here, launches.rules(i).launch(here))
         plain = slips(state, launches.top, far=True) & rolls(state, launches.top)
+        plain &= ~np.asarray(lies_flat(launches.top, state.axis))
         if launches.liftoff != "ignore":
             plain &= slides(state, launches.top)
         if launches.liftoff == "fly":
