@@ -90,7 +90,18 @@ def test_a_sweep_of_samples_is_stored_and_read_back_with_its_seed(tmp_path):
         ({}, "one of them"),
         ({"over": {SPIN: [1.0]}, "samples": {SPIN: [1.0]}}, "one of them"),
     ],
-    ids=str,
+    ids=[
+        "no count",
+        "lengths",
+        "word",
+        "law",
+        "numbers of a law",
+        "distribution",
+        "shape",
+        "field",
+        "nothing",
+        "both",
+    ],
 )
 def test_samples_that_cannot_be_are_refused_in_a_sentence(arguments, words):
     with pytest.raises(tt.InvalidInput, match=words):
