@@ -45,7 +45,7 @@ def main() -> None:
     options = parser.parse_args()
     unknown = [name for name in options.what if name not in MEASUREMENTS]
     if unknown:
-        parser.error(f"WHAT is {unknown[0]}; accepted: {', '.join(MEASUREMENTS)}")
+        parser.error(f"WHAT is {unknown[0]}; write one of {', '.join(MEASUREMENTS)}")
 
     console, progress = Console(), Console(stderr=True, style="dim", highlight=False)
     found, figures = {}, {"machine": machine()}

@@ -89,7 +89,7 @@ def test_a_disk_that_does_not_spin_falls_flat() -> None:
 
 def test_what_lies_flat_is_not_launched() -> None:
     with pytest.raises(
-        tt.InvalidInput, match=r"launch\.tilt = 0.* a tilt at which the body does not lie"
+        tt.InvalidInput, match=r"launch\.tilt: 0.* a tilt at which the body does not lie"
     ):
         tt.Problem(body=DISK, friction=ROUGH, launch=tt.Launch(tilt=0.0, spin=1.0))
 

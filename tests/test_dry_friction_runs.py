@@ -165,7 +165,7 @@ def test_the_command_line_finds_the_same():
 
 def test_theory_that_knows_no_sticking_says_so():
     for ask in (tt.predict, tt.critical_spins, tt.standing_time):
-        with pytest.raises(tt.InvalidInput, match=r"friction = .* sticks"):
+        with pytest.raises(tt.InvalidInput, match=r"friction: .* sticks"):
             ask(dry("coulomb"))
 
 

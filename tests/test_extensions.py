@@ -371,4 +371,4 @@ def test_what_a_script_defines_is_computed_in_its_own_process() -> None:
     )
     first, second = done.stdout.splitlines()
     assert first.startswith("[")
-    assert second.startswith("workers = 2 is not possible; accepted: this process alone")
+    assert second.startswith("workers: 2 asks for other processes")

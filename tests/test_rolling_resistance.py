@@ -191,17 +191,17 @@ def test_jelletts_integral_and_the_theory_know_of_it():
     run = tt.simulate(problem, 0.5, samples=11)
     assert float(run["jellett_drift"]) > 1e-6
     for ask in (tt.predict, tt.critical_spins):
-        with pytest.raises(tt.InvalidInput, match="rolling_resistance = 1e-05"):
+        with pytest.raises(tt.InvalidInput, match="rolling_resistance: 1e-05"):
             ask(problem)
 
 
 def test_wrong_arms_are_refused_and_right_ones_are_written():
-    with pytest.raises(tt.InvalidInput, match=r"rolling_resistance = -0.1 .* at least 0"):
+    with pytest.raises(tt.InvalidInput, match=r"rolling_resistance: -0.1 .* at least 0"):
         REPORT.replace({"rolling_resistance": -0.1})
     problem = REPORT.replace({"rolling_resistance": 1e-5})
     assert tt.Problem.from_toml(problem.to_toml()) == problem
     assert tt.Problem.from_json(problem.to_json()) == problem
-    assert "rolling_resistance = 1e-05" in problem.to_toml()
+    assert "rolling_resistance: 1e-05" in problem.to_toml()
 
 
 SMOOTH = [tt.ViscousFriction(mu=0.3), tt.RegularizedCoulombFriction(mu=0.3, eps=0.05)]

@@ -1,5 +1,6 @@
 """What the public functions are given by mistake is refused in a sentence that names it."""
 
+import re
 from functools import cache
 
 import numpy as np
@@ -50,7 +51,7 @@ def refused(field, call, *arguments):
         call(*arguments)
     assert refusal.value.field == field
     told = str(refusal.value)
-    assert "accepted: " in told
+    assert re.match(rf"{re.escape(field)}(: \S| is missing \()", told)
     assert "\n" not in told
 
 
@@ -187,7 +188,9 @@ def test_a_product_of_no_axes(wrong):
 
 
 @pytest.mark.parametrize("wrong", [(1.0, 2.0, 3.0, 4.0), "ab", 3])
-@pytest.mark.parametrize(("field", "accepted"), [("slip", "2 numbers"), ("velocity", "3 numbers")])
+@pytest.mark.parametrize(
+    ("field", "accepted"), [("slip", "2 numbers"), ("velocity", "2 or 3 numbers")]
+)
 def test_velocities_that_are_no_lists_of_numbers(field, accepted, wrong):
     with pytest.raises(tt.InvalidInput) as refusal:
         tt.Launch(tilt=0.1, spin=1.0, **{field: wrong})
@@ -195,7 +198,7 @@ def test_velocities_that_are_no_lists_of_numbers(field, accepted, wrong):
 
 
 def test_a_slip_of_one_number():
-    refused("slip.1", lambda: tt.Launch(tilt=0.1, spin=1.0, slip=(1.0,)))
+    refused("slip", lambda: tt.Launch(tilt=0.1, spin=1.0, slip=(1.0,)))
 
 
 @pytest.mark.parametrize("wrong", [None, 3, ["a.nc"]])

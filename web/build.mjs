@@ -23,6 +23,7 @@ const COMMON = {
   alias: {
     engine: fileURLToPath(new URL(ENGINE, HERE)),
     "engine-tables": fileURLToPath(new URL("tables.js", new URL(ENGINE, HERE))),
+    "engine-units": fileURLToPath(new URL("units.js", new URL(ENGINE, HERE))),
   },
 };
 

@@ -27,6 +27,7 @@ from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import Tally
 from tippetop.results.samples import continuous, event_in_si, observe
 from tippetop.support.errors import InvalidInput, is_whole
+from tippetop.support.units import number_in
 from tippetop.support.validation import require_callback
 
 BYTES_PER_SAMPLE = 1600
@@ -57,7 +58,7 @@ def simulate(
     problem
         The physics.
     duration
-        Length of the run, s.
+        Length of the run, s; or a text such as "1 min", or a quantity of pint.
     samples
         Number of equally spaced samples from launch to end.
     times
@@ -111,6 +112,7 @@ def simulate(
     require_problem(problem)
     require_callback("callback", callback)
     units = natural_units(problem.top)
+    duration = number_in("duration", duration, "s")
     require_limits(duration, units.time, phase_limit, step_limit)
     duration = float(duration)
     grid = sample_times(duration, samples, times)
@@ -169,7 +171,7 @@ def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Arra
         return np.linspace(0.0, duration, int(samples))
     try:
         grid = np.array(times, dtype=float)
-    except (TypeError, ValueError):
+    except Exception:  # noqa: BLE001 - objects may raise anything on their way to numbers
         raise InvalidInput("times", times, "a list of increasing finite numbers") from None
     if (
         grid.ndim != 1
@@ -192,7 +194,13 @@ def integrator_of(
         return make_integrator(integrator, tolerance, step, units.time)
     for setting, value in {"tolerance": tolerance, "step": step}.items():
         if value is not None:
-            raise InvalidInput(setting, value, "none with an integrator object, which has its own")
+            raise InvalidInput(
+                setting,
+                value,
+                "none",
+                "stands beside an integrator object, which has its own",
+                "leave it out",
+            )
     method, *texts = (getattr(integrator, name, None) for name in ("integrate", "name", "caution"))
     told = all(isinstance(text, str) for text in texts)
     if isinstance(integrator, type) or not (callable(method) and told):
@@ -207,7 +215,9 @@ def _check_memory(samples: int) -> None:
     free = psutil.virtual_memory().available
     if samples * BYTES_PER_SAMPLE > free:
         limit = free // BYTES_PER_SAMPLE
-        raise InvalidInput("samples", samples, f"at most {limit}, for which there is memory")
+        raise InvalidInput(
+            "samples", samples, f"at most {limit}", "is more than there is memory for"
+        )
 
 
 def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, NDArray[Any]]:

@@ -1,6 +1,7 @@
 """Every integrator against motions that are known exactly."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -455,7 +456,7 @@ def test_integrator_that_cannot_be_is_refused_in_one_line_that_names_the_field(f
         make_integrator(**arguments)
     assert refusal.value.field == field
     assert str(refusal.value).startswith(field)
-    assert "accepted:" in str(refusal.value)
+    assert re.search(r" is not | is for | has |\(write ", str(refusal.value))
     assert "\n" not in str(refusal.value)
 
 

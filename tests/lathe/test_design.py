@@ -71,7 +71,7 @@ def test_the_range_that_a_refusal_names_is_the_one_there_is():
             assert refused(tt.design_insert, BALL, 0.1, outside).field == "inertia_ratio"
     refusal = refused(tt.design_insert, BALL, 0.3, 0.95)
     assert refusal.field == "eccentricity"
-    assert str(refusal).endswith("one from -0.160 to 0.160, for bodies of this kind")
+    assert str(refusal).endswith("(write one from -0.160 to 0.160)")
 
 
 def test_a_ball_with_a_cavity_follows_the_formula_of_its_range():

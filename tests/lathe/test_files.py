@@ -71,16 +71,16 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
 @pytest.mark.parametrize(
     ("name", "text", "sentence"),
     [
-        ("a.csv", "0,0\n1,x\n0,1\n", "row 2 = '1,x' in "),
-        ("a.csv", "r,z\n0,0\n1,,2\n0,1\n", "row 3 = '1,,2' in "),
-        ("a.csv", "0,O\n1,2\n0,1\n", "row 1 = '0,O' in "),
-        ("a.csv", "O,-2O\n1,2\n0,1\n", "row 1 = 'O,-2O' in "),
-        ("a.csv", "0;0\n1,5;2\n0;3\n", "row 2 = '1,5,2' in "),
+        ("a.csv", "0,0\n1,x\n0,1\n", ": 1,x is not two or three"),
+        ("a.csv", "r,z\n0,0\n1,,2\n0,1\n", ": 1,,2 is not"),
+        ("a.csv", "0,O\n1,2\n0,1\n", ": 0,O is not"),
+        ("a.csv", "O,-2O\n1,2\n0,1\n", ": 'O,-2O' is not"),
+        ("a.csv", "0;0\n1,5;2\n0;3\n", "1,5,2"),
         ("a.csv", "", "0 points"),
-        ("a.svg", "<svg", "accepted: XML"),
-        ("a.svg", "<html/>", "accepted: a file whose outermost element is <svg>"),
-        ("a.svg", "<svg/>", "profile = 'a drawing without lines'"),
-        ("a.svg", SVG.format("rubbish"), "profile = 'a drawing without lines'"),
+        ("a.svg", "<svg", "is not XML"),
+        ("a.svg", "<html/>", "a file whose outermost element is <svg>"),
+        ("a.svg", "<svg/>", "a drawing without lines"),
+        ("a.svg", SVG.format("rubbish"), "a drawing without lines"),
         (
             "a.svg",
             SVG.format("M 0 0 L 1 1 L 5 7"),
@@ -92,15 +92,15 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
             SVG.format("M 0 0 h 4 v 4 h -4 z M 9 0 h 4 v 4 h -4 z"),
             "which is beside path 1",
         ),
-        ("a.toml", "profile = [", "workpiece = 'a.toml' is not possible; accepted: TOML"),
+        ("a.toml", "profile = [", "workpiece: 'a.toml' is not TOML ("),
         ("a.toml", "profile = 'b.csv'", "b.csv cannot be read"),
-        ("a.toml", "density = 700", "profile is missing"),
+        ("a.toml", "density = 700", "profile in a.toml is missing"),
         (
             "a.toml",
             "density = 700\nprofile = [[0, 0], [1, 1], [0, 1]]\ncolour = 'red'",
-            "colour = 'red' in a.toml",
+            "colour in a.toml: 'red' is given",
         ),
-        ("a.txt", "0,0", "accepted: one whose name ends in .toml, .csv, .svg, .dxf or .stl"),
+        ("a.txt", "0,0", "is not one whose name ends in .toml, .csv, .svg, .dxf or .stl"),
     ],
 )
 def test_what_cannot_be_read_is_refused(tmp_path, name, text, sentence):
@@ -113,17 +113,17 @@ def test_what_cannot_be_read_is_refused(tmp_path, name, text, sentence):
 
 def test_what_is_given_beside_a_file_is_not_said_to_be_in_it(tmp_path):
     (tmp_path / "a.csv").write_text("0,0\n1,1\n0,1\n")
-    with pytest.raises(tt.InvalidInput, match=r"^density = -1 is not possible"):
+    with pytest.raises(tt.InvalidInput, match=r"^density: -1 is not"):
         read_workpiece(tmp_path / "a.csv", density=-1.0)
-    with pytest.raises(tt.InvalidInput, match=r"^density is missing; "):
+    with pytest.raises(tt.InvalidInput, match=r"^density is missing "):
         read_workpiece(tmp_path / "a.csv")
 
 
 @pytest.mark.parametrize(
     ("bad", "sentence"),
     [
-        ("hole.csv", "inserts.0.profile.1.0 = -1 in hole.csv is not"),
-        ("ball.csv", "profile.1.0 = -1 in ball.csv is not"),
+        ("hole.csv", "inserts.0.profile.1.0 in hole.csv: -1 is not"),
+        ("ball.csv", "profile.1.0 in ball.csv: -1 is not"),
     ],
 )
 def test_the_file_of_the_points_is_named_where_they_cannot_be(tmp_path, bad, sentence):
@@ -135,7 +135,7 @@ def test_the_file_of_the_points_is_named_where_they_cannot_be(tmp_path, bad, sen
     with pytest.raises(tt.InvalidInput, match=f"^{sentence}"):
         read_workpiece(tmp_path / "mine.toml")
     (tmp_path / "mine.toml").write_text(beside.format("ball.csv", -1, "hole.csv"))
-    with pytest.raises(tt.InvalidInput, match=r"^density = -1 in mine.toml is not"):
+    with pytest.raises(tt.InvalidInput, match=r"^density in mine.toml: -1 is not"):
         read_workpiece(tmp_path / "mine.toml")
 
 

@@ -77,7 +77,7 @@ def test_what_cannot_be_printed_is_refused_and_nothing_is_left(tmp_path):
         tt.write_solid(flush, tmp_path / "a.stl")
     with pytest.raises(tt.InvalidInput, match=r"ends in \.stl or \.3mf"):
         tt.write_solid(TOP, tmp_path / "a.obj")
-    with pytest.raises(tt.InvalidInput, match="facets = 3"):
+    with pytest.raises(tt.InvalidInput, match="facets: 3"):
         tt.write_solid(TOP, tmp_path / "a.stl", facets=3)
     assert list(tmp_path.iterdir()) == []
     (tmp_path / "a.stl").write_text("mine")

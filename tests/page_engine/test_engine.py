@@ -224,7 +224,7 @@ def test_numbers_that_are_refused_are_told_the_same() -> None:
         question | {"problem": question["problem"] | {"gravity": number}} for number in numbers
     ]
     assert [found["refused"] for found in in_javascript(questions)] == sentences
-    told = [sentence.removeprefix("gravity = ").split(" is ")[0] for sentence in sentences]
+    told = [sentence.removeprefix("gravity: ").split(" is ")[0] for sentence in sentences]
     assert told[:6] == ["0", "0", "-2", "-3", "-0.5", "-0.0001"]
     assert list(map(float, told)) == list(numbers)
 

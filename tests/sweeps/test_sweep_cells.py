@@ -133,7 +133,7 @@ def test_every_number_of_a_problem_can_be_swept():
 def test_points_of_a_picture_are_no_numbers_to_sweep():
     problem = report_problem().model_copy(update={"body": WOODEN})
     assert isinstance(problem.body.profile[0], tuple)
-    with pytest.raises(InvalidInput, match=r"field = 'body.profile.0' is not possible"):
+    with pytest.raises(InvalidInput, match=r"body\.profile\.0: what is swept is given for an"):
         cells_of(problem, {"body.profile.0": np.array([1.0])})
 
 

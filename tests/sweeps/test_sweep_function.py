@@ -41,7 +41,7 @@ def test_a_sweep_is_kept_where_it_is_told_to(tmp_path):
     with pytest.raises(FileTrouble, match="exists"):
         sweep(problem, OVER, duration=0.1, out=tmp_path / "a.zarr")
     sweep(problem, OVER, duration=0.1, out=tmp_path / "a.zarr", overwrite=True, workers=1)
-    with pytest.raises(InvalidInput, match=r"^overwrite = True .* resume=True"):
+    with pytest.raises(InvalidInput, match=r"^overwrite: True .* resume=True"):
         sweep(problem, OVER, duration=0.1, out=tmp_path / "a.zarr", overwrite=True, resume=True)
 
 

@@ -152,7 +152,7 @@ def test_an_axis_that_is_too_long_to_be_drawn_is_refused(plane, values):
     far = far.assign_coords(
         {name: values(1e-3, 1e299 if values is np.geomspace else 1e308, far.sizes[name])}
     )
-    with pytest.raises(InvalidInput, match=f"{name} = .* an axis with cells over at most 1e.300"):
+    with pytest.raises(InvalidInput, match=f"{name}: .* reach too far to be drawn"):
         phase_map(far)
 
 

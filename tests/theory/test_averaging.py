@@ -335,7 +335,7 @@ def test_launches_without_a_slow_flow_are_refused(changes):
     ],
 )
 def test_settings_that_cannot_be_are_refused(field, value):
-    with pytest.raises(InvalidInput, match=f"{field} = .* accepted: a (whole|finite) number"):
+    with pytest.raises(InvalidInput, match=f"{field}: .* is not a (whole|finite) number"):
         averaged_flow(REPORT, **{field: value})
 
 

@@ -106,7 +106,7 @@ def said(problem):
         if fastest <= FASTEST * (1.0 + 1e-12):
             return outlook(problem)
         with pytest.raises(
-            InvalidInput, match=r"launch\.(spin|tilt_rate|precession) = .* accepted: at most"
+            InvalidInput, match=r"launch\.(spin|tilt_rate|precession): .* \(write at most"
         ):
             outlook(problem)
         return None

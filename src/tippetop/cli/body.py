@@ -9,10 +9,10 @@ from typing import Annotated, Any
 import typer
 
 import tippetop as tt
-from tippetop.cli.options import DRAWINGS, Force, Json, write_figure
+from tippetop.cli.options import DRAWINGS, NUMBER, Force, Json, number_of, write_figure
 from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.files import place_for, require_ending
 
 ENDINGS = {"plot": DRAWINGS, "stl": (".stl",), "3mf": (".3mf",)}
@@ -27,7 +27,10 @@ def body(
             " surface (.stl)."
         ),
     ],
-    density: Annotated[float | None, typer.Option(help="Density, kg/m^3.")] = None,
+    density: Annotated[
+        str | None,
+        typer.Option(metavar=NUMBER, help="Density, kg/m^3, or as in '0.7 g/cm^3'."),
+    ] = None,
     unit: Annotated[
         str | None,
         typer.Option(
@@ -76,11 +79,17 @@ def body(
     for kind, path in files.items():
         require_ending(f"--{kind}", path, ENDINGS[kind])
         place_for(path, force)
-    given = {"density": density, "unit": unit, "tolerance": tolerance}
+    given = {
+        "density": number_of("--density", density, "kg m-3"),
+        "unit": unit,
+        "tolerance": tolerance,
+    }
     stated = {name: value for name, value in given.items() if value is not None}
     piece, remarks = read_with_remarks(file, axis=axis, **stated)
     if as_toml and as_json:
-        raise InvalidInput("--toml", "with --json", "one of the two")
+        raise InvalidInput(
+            "--toml", Described("beside --json"), "one of the two", "asks for two formats"
+        )
     if as_toml:
         turned = tt.Body.turned(piece, whole=whole)
         written = commented_toml(tt.presets.report_problem().model_copy(update={"body": turned}))

@@ -18,8 +18,8 @@ from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
-from tippetop.support.accepted_values import accepted_by
-from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, InvalidInput, TippetopError
+from tippetop.support.accepted_values import refusal_of
+from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, TippetopError
 from tippetop.support.interrupts import INTERRUPTED, asked_to_end, let_end, let_raise
 
 MISUSE = 2
@@ -69,7 +69,7 @@ def _in_a_sentence(error: Any) -> Exception:
         detail, option = cause.errors()[0], error.param
         bounds = {"ge": getattr(option, "min", None), "le": getattr(option, "max", None)}
         detail["ctx"] = {limit: value for limit, value in bounds.items() if value is not None}
-        return InvalidInput(option.opts[0], detail["input"], accepted_by(detail, {}))
+        return refusal_of(detail, {}).within(option.opts[0])
     told: str = error.format_message()
     return TippetopError(told[0].lower() + told[1:].removesuffix(".")) if told else error
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Concatenate, NamedTuple
 import typer
 
 import tippetop as tt
-from tippetop.support.errors import InvalidInput, short
+from tippetop.support.errors import InvalidInput, is_number, short
 from tippetop.support.files import written_beside
+from tippetop.support.units import number_in
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,6 +21,9 @@ ProblemFile = Annotated[
     Path | None,
     typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out."),
 ]
+NUMBER = "NUMBER"
+"""What help calls a number that may have a unit."""
+
 ASKED = {
     "preset": Annotated[
         str | None,
@@ -30,12 +34,21 @@ ASKED = {
             )
         ),
     ],
-    "spin": Annotated[float | None, typer.Option(help="Axial spin at launch, rad/s.")],
+    "spin": Annotated[
+        str | None,
+        typer.Option(metavar=NUMBER, help="Axial spin at launch, rad/s, or as in '2200 rpm'."),
+    ],
     "tilt": Annotated[
-        float | None, typer.Option(help="Tilt of the axis at launch, rad, from 0 to pi.")
+        str | None,
+        typer.Option(
+            metavar=NUMBER, help="Tilt of the axis at launch, rad, or as in '5 deg', from 0 to pi."
+        ),
     ],
     "mu": Annotated[
-        float | None, typer.Option(help="Friction coefficient: s/m if viscous, else dimensionless.")
+        str | None,
+        typer.Option(
+            metavar=NUMBER, help="Friction coefficient: s/m if viscous, else dimensionless."
+        ),
     ],
     "liftoff": Annotated[
         str | None, typer.Option(help="When the table would have to pull: stop, ignore or fly.")
@@ -45,7 +58,7 @@ ASKED = {
         typer.Option(
             "--set",
             metavar="FIELD=VALUE",
-            help="Any other field, e.g. body.shape.eccentricity=0.2.",
+            help="Any other field, e.g. body.shape.radius=2cm or body.shape.eccentricity=0.2.",
         ),
     ],
 }
@@ -91,7 +104,10 @@ class Choice(NamedTuple):
         for field, value in map(_parsed, self.changes):
             if field in changes:
                 raise InvalidInput(
-                    field, value, f"one value, and {short(changes[field])} is given, too"
+                    field,
+                    value,
+                    "one of them",
+                    f"stands beside {short(changes[field])}, given for the same field",
                 )
             changes[field] = value
         return problem.replace(changes)
@@ -107,7 +123,9 @@ def of_a_problem(
     @wraps(command)
     def asked(**given: Any) -> None:
         told = {name: given.pop(name, None) for name in ("file", *ASKED)}
-        settings = {field: told[name] for name, field in FIELDS.items() if told[name] is not None}
+        settings = {
+            field: _value(told[name]) for name, field in FIELDS.items() if told[name] is not None
+        }
         command(Choice(told["file"], told["preset"], settings, told["changes"] or ()), **given)
 
     _, *own = signature(command).parameters.values()
@@ -133,8 +151,26 @@ def _parsed(change: str) -> tuple[str, Any]:
     """Field and value of a `--set FIELD=VALUE`: a number or list as in JSON, or else a word."""
     field, equals, value = change.partition("=")
     if not equals:
-        raise InvalidInput("--set", change, "FIELD=VALUE")
+        raise InvalidInput("--set", change, "FIELD=VALUE, such as launch.spin=155")
+    return field, _value(value)
+
+
+def _value(text: str) -> Any:
+    """The value that a text states: a number or list as in JSON, or else a word."""
     try:
-        return field, json.loads(value)
+        return json.loads(text)
     except (ValueError, RecursionError):
-        return field, value
+        return text
+
+
+def number_of(option: str, text: str | None, units: str) -> float | None:
+    """Return the number that an option states, in an SI unit unless it has one; None without it."""
+    if text is None:
+        return None
+    number = _value(text)
+    if is_number(number):
+        return float(number)
+    if not isinstance(number, str):
+        raise InvalidInput(option, text, "a number")
+    found: float = number_in(option, text, units)
+    return found

@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import tippetop as tt
-from tippetop.cli.options import DRAWINGS, Choice, Force, Json, of_a_problem, write_figure
+from tippetop.cli.options import (
+    DRAWINGS,
+    NUMBER,
+    Choice,
+    Force,
+    Json,
+    number_of,
+    of_a_problem,
+    write_figure,
+)
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
 from tippetop.support.files import place_for, refuse_ending_of_others, require_ending
 
@@ -58,7 +67,9 @@ FLIGHT_ROWS = (
 @of_a_problem
 def simulate(
     choice: Choice,
-    duration: Annotated[float, typer.Option(help="Length of the run, s.")] = 20.0,
+    duration: Annotated[
+        str, typer.Option(metavar=NUMBER, help="Length of the run, s, or as in '2 min'.")
+    ] = "20",
     samples: Annotated[
         int | None, typer.Option(help="Number of samples; 2001, or what a moving picture needs.")
     ] = None,
@@ -72,7 +83,9 @@ def simulate(
         ),
     ] = None,
     tolerance: Annotated[float | None, typer.Option(help="Relative error per step.")] = None,
-    step: Annotated[float | None, typer.Option(help="Step of rk4, s.")] = None,
+    step: Annotated[
+        str | None, typer.Option(metavar=NUMBER, help="Step of rk4, s, or as in '1 ms'.")
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="Write the run as NetCDF.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the run as .png, .svg or .pdf.")] = None,
     csv: Annotated[Path | None, typer.Option(help="Write every variable as CSV.")] = None,
@@ -88,21 +101,21 @@ def simulate(
     force: Force = False,
 ) -> None:
     """Simulate one launch and say what becomes of the top."""
-    chosen = choice.problem()
+    chosen, seconds = choice.problem(), number_of("--duration", duration, "s") or 0.0
     files = {"out": out, "plot": plot, "csv": csv, "glb": glb, "html": html, "mp4": mp4, "gif": gif}
     wanted = {kind: path for kind, path in files.items() if path is not None}
-    _check_files(wanted, force, duration)
+    _check_files(wanted, force, seconds)
     if samples is None:
-        samples = _enough_samples(chosen, duration, wanted)
+        samples = _enough_samples(chosen, seconds, wanted)
     began = time.perf_counter()
     with progress_bar("simulating") as progress:
         run = tt.simulate(
             chosen,
-            duration,
+            seconds,
             samples=samples,
             integrator=integrator,
             tolerance=tolerance,
-            step=step,
+            step=number_of("--step", step, "s"),
             callback=lambda part: progress(part, 1.0),
         )
     elapsed = time.perf_counter() - began

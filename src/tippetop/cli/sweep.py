@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import tippetop as tt
-from tippetop.cli.options import Choice, Force, Json, of_a_problem, write_figure
+from tippetop.cli.options import NUMBER, Choice, Force, Json, number_of, of_a_problem, write_figure
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
-from tippetop.support.errors import MISSING, FileTrouble, InvalidInput
+from tippetop.support.errors import MISSING, Described, FileTrouble, InvalidInput
 from tippetop.support.files import in_words, place_for, read_text, require_ending
 from tippetop.support.interrupts import INTERRUPTED
+from tippetop.support.units import NUMBER as NUMBER_WITH_UNIT
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,7 +34,10 @@ Axes = Annotated[
     list[str] | None,
     typer.Option(
         metavar="FIELD=VALUES",
-        help="Values of a field: FIRST:LAST:COUNT, FIRST:LAST:COUNT:geo or A,B,C. Axes cross.",
+        help=(
+            "Values of a field: FIRST:LAST:COUNT, FIRST:LAST:COUNT:geo or A,B,C, in SI or with"
+            " a unit, as in 0:2500rpm:51. Axes cross."
+        ),
     ),
 ]
 Ranges = Annotated[
@@ -44,12 +48,16 @@ Ranges = Annotated[
 ]
 Count = Annotated[int | None, typer.Option(help="Number of draws.")]
 Seed = Annotated[int | None, typer.Option(help="What the draws follow from; 0 if left out.")]
-Duration = Annotated[float | None, typer.Option(help="Length of every run, s; 20 if left out.")]
+Duration = Annotated[
+    str | None,
+    typer.Option(metavar=NUMBER, help="Length of every run, s, or as in '2 min'; 20 if left out."),
+]
 Tolerance = Annotated[float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")]
 Settled = Annotated[
-    float | None,
+    str | None,
     typer.Option(
-        help="End a run once its tilt is held within this for good, rad; else all run on."
+        metavar=NUMBER,
+        help="End a run once its tilt is held within this for good, rad; else all run on.",
     ),
 ]
 Processes = Annotated[
@@ -92,10 +100,19 @@ def sweep(
     from tippetop.sweeps.store_layout import kept_sweep, refuse_existing  # noqa: PLC0415
 
     if resume and force:
-        raise InvalidInput("--force", "with --resume", "one of the two")
+        raise InvalidInput(
+            "--force",
+            Described("beside --resume"),
+            "one of the two",
+            "overwrites what it goes on with",
+        )
     with in_words(out, "read"):
         kept = kept_sweep(out) if resume and choice.file is None else None
-    limits = {"duration": duration, "tolerance": tolerance, "settled": settled}
+    limits = {
+        "duration": number_of("--duration", duration, "s"),
+        "tolerance": tolerance,
+        "settled": number_of("--settled", settled, "rad"),
+    }
     chosen = _chosen_sweep(choice, kept, _chosen_grid(axis, draw, count, seed), limits)
     with need_workers(chosen, workers, scheduler) as cluster:
         if not resume:
@@ -155,7 +172,11 @@ def _chosen_sweep(
         return base.model_copy(update={"problem": choice.changed(base.problem), **cells, **given})
     problem = choice.problem()
     if grid is None:
-        raise InvalidInput("--axis", MISSING, "at least one axis, or --draw, or a sweep's file")
+        raise InvalidInput(
+            "--axis",
+            MISSING,
+            "an axis, such as --axis launch.spin=0:250:51, or --draw, or a sweep's file",
+        )
     return Sweep(problem, grid, **given)
 
 
@@ -166,10 +187,10 @@ def _chosen_grid(
     from tippetop.sweeps import Product  # noqa: PLC0415 - slow to import
 
     if axis and draw:
-        raise InvalidInput("--draw", draw[0], "axes or draws, not both")
+        raise InvalidInput("--draw", draw[0], "axes or draws", "stands beside --axis")
     for name, number in (("--count", count), ("--seed", seed)):
         if number is not None and not draw:
-            raise InvalidInput(name, number, "only with --draw")
+            raise InvalidInput(name, number, "", "is for --draw alone", "leave it out")
     if axis:
         return Product.of([_axis(text) for text in axis])
     if draw:
@@ -187,9 +208,10 @@ def _axis(text: str) -> tuple[str, Any]:
     try:
         match values.split(":"):
             case [listed] if equals:
-                return field.strip(), [float(value) for value in listed.split(",")]
+                return field.strip(), _numbers(listed.split(","))
             case [first, last, count, *rest] if equals and len(rest) < 2:
-                ends = {"from": float(first), "to": float(last), "count": int(count)}
+                low, high = _numbers([first, last])
+                ends = {"from": low, "to": high, "count": int(count)}
                 return field.strip(), ends | ({"spacing": rest[0].strip()} if rest else {})
     except ValueError:
         pass
@@ -205,10 +227,24 @@ def _range(text: str) -> tuple[str, Any]:
     law = "log-uniform" if rest.endswith(":log") else "uniform"
     try:
         if equals:
-            return field.strip(), {"from": float(low), "to": float(high), "law": law}
+            first, last = _numbers([low, high])
+            return field.strip(), {"from": first, "to": last, "law": law}
     except ValueError:
         pass
     raise InvalidInput("--draw", text, "FIELD=LOW:HIGH, or FIELD=LOW:HIGH:log")
+
+
+def _numbers(texts: list[str]) -> list[float | str]:
+    """Numbers, or texts of those with units; the unit of the last is that of those without one.
+
+    Raises `ValueError` for what is neither.
+    """
+    parts = [NUMBER_WITH_UNIT.fullmatch(text) for text in texts]
+    found = [(part[1], part[2]) for part in parts if part]
+    if len(found) < len(texts):
+        raise ValueError(texts)
+    unit = found[-1][1]
+    return [f"{number} {own or unit}" if own or unit else float(number) for number, own in found]
 
 
 def _holds_sweep(file: Path) -> bool:

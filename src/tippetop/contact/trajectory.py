@@ -102,9 +102,8 @@ def require_limits(
     """
     longest = LONGEST * min(1.0, unit)
     if not (is_number(duration) and 0.0 < duration <= longest):
-        raise InvalidInput(
-            "duration", duration, f"a number of seconds greater than 0, at most {longest:.3g}"
-        )
+        most = f", at most {longest:.3g}" if is_number(duration) and duration > longest else ""
+        raise InvalidInput("duration", duration, f"a number of seconds greater than 0{most}")
     for name, limit in {"phase_limit": phase_limit, "step_limit": step_limit}.items():
         if not is_whole(limit) or limit < 0:
             raise InvalidInput(name, limit, "a whole number, at least 0")

@@ -109,7 +109,10 @@ def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
     keys = int(np.ceil(duration * max(LEAST_KEYS, fastest / TURN_PER_KEY))) + 1
     if keys > MOST_KEYS:
         raise InvalidInput(
-            "duration", duration, f"at most {duration * MOST_KEYS / keys:.3g} s for so fast a top"
+            "duration",
+            duration,
+            f"at most {duration * MOST_KEYS / keys:.3g} s",
+            "is too long for so fast a top",
         )
     return np.linspace(start, end, keys)
 

@@ -25,6 +25,9 @@ from tippetop.support.validation import require_callback
 Frame = NDArray[np.uint8]
 
 MOST_FRAMES, RATES = 20_000, {".mp4": 30.0, ".gif": 20.0}
+LEAST_RATE = 0.01
+"""Fewest pictures a second: one in 100 s."""
+
 """Pictures of a film at most; and in a second of it, if nothing else is asked for."""
 
 _EYE = np.array([2.6, -6.0, 3.0])
@@ -83,6 +86,7 @@ def write_movie(
     rate = fps if fps is not None else RATES[ending]
     extent = pixels if pixels is not None else (640, 480) if encoder else (360, 270)
     _check(rate, speed, extent)
+    rate, speed = float(rate), float(speed)
     if not encoder:
         # What a .gif can hold; browsers slow down what is faster than 50.
         rate = 100.0 / min(max(round(100.0 / rate), 2), 0xFFFF)
@@ -115,7 +119,9 @@ def require_film(ending: str, duration: float) -> None:
         ffmpeg()
     longest = (MOST_FRAMES - 1) / RATES[ending]
     if is_number(duration) and duration > longest:
-        raise InvalidInput("duration", duration, f"at most {longest:.6g} s for a film")
+        raise InvalidInput(
+            "duration", duration, f"at most {longest:.6g} s", "is too long for a film"
+        )
 
 
 def frames(
@@ -129,10 +135,12 @@ def frames(
     many.
     """
     start, end = run["time"].values[[0, -1]].tolist()
+    least = (end - start) * fps / MOST_FRAMES
+    if speed <= least:
+        raise InvalidInput(
+            "speed", speed, f"at least {least:.2g}", f"is too slow for a run of {end - start:g} s"
+        )
     count = math.floor((end - start) * fps / speed) + 1
-    if count > MOST_FRAMES:
-        least = speed * count / MOST_FRAMES
-        raise InvalidInput("speed", speed, f"at least {least:.2g} for a run of {end - start:g} s")
     toy = Toy(Problem.from_json(run.attrs["problem"]).body)
     times = start + np.arange(count) * speed / fps
     poses = poses_at(run, times)
@@ -163,8 +171,8 @@ def _captioned(drawn: Frame, headline: str, clock: str, speed: float) -> Frame:
 
 
 def _check(fps: float, speed: float, pixels: tuple[int, int]) -> None:
-    if not (is_number(fps) and 0 < fps <= 240):
-        raise InvalidInput("fps", fps, "a number greater than 0 and at most 240")
+    if not (is_number(fps) and LEAST_RATE <= fps <= 240):
+        raise InvalidInput("fps", fps, f"a number at least {LEAST_RATE:g} and at most 240")
     if not (is_number(speed) and 0 < speed <= 100):
         raise InvalidInput("speed", speed, "a number greater than 0 and at most 100")
     two = (

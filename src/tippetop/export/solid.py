@@ -11,11 +11,14 @@ import numpy as np
 
 from tippetop.lathe.profile import Profile
 from tippetop.lathe.workpiece import Workpiece
-from tippetop.support.errors import InvalidInput, Unavailable, require
+from tippetop.support.errors import Described, InvalidInput, Unavailable, is_whole, require
 from tippetop.support.files import path_of, require_ending, written_beside
 
 FACETS = 180
 """Facets around the axis: of a ball of 20 mm they leave out 3 micrometres."""
+
+MOST_FACETS = 4096
+"""Most facets around the axis: a solid of more is too large for memory."""
 
 MM = 1e3
 
@@ -58,8 +61,8 @@ def write_solid(
     require("piece", piece, Workpiece, "a Workpiece")
     place = path_of(path)
     suffix = require_ending("path", place, (".stl", ".3mf"))
-    if isinstance(facets, bool) or not isinstance(facets, int) or facets < 8:
-        raise InvalidInput("facets", facets, "a whole number at least 8")
+    if not is_whole(facets) or not 8 <= facets <= MOST_FACETS:
+        raise InvalidInput("facets", facets, f"a whole number from 8 to {MOST_FACETS}")
     meshes = solids(piece, facets)
     whole = meshes["body"] if suffix == ".stl" else _trimesh().Scene(meshes)
     content = whole.export(file_type=suffix[1:])
@@ -77,7 +80,10 @@ def solids(piece: Workpiece, facets: int) -> dict[str, Any]:
         if any("on" in inner.sides(other) for other in (piece.outline, *piece.insides[:number])):
             field = f"inserts.{number}.profile"
             raise InvalidInput(
-                field, "an insert that touches a surface", "for a solid, one inside another part"
+                field,
+                Described("an insert that touches a surface"),
+                "one inside another part",
+                "makes no solid",
             )
     trimesh = _trimesh()
     found = {"body": trimesh.creation.revolve(_line(piece.outline, facets), sections=facets)}

@@ -110,7 +110,7 @@ def require_drawable(coordinates: Mapping[str, np.ndarray[Any, Any]]) -> None:
         if not most - least < WIDEST:
             ends = float(values.min()), float(values.max())
             raise InvalidInput(
-                name, ends, f"an axis with cells over at most {WIDEST:g}, to be drawn"
+                name, ends, f"ends at most {WIDEST:g} apart", "reach too far to be drawn"
             )
 
 

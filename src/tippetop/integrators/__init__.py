@@ -10,8 +10,9 @@ from tippetop.integrators.base import Guard as Guard
 from tippetop.integrators.base import Integrator as Integrator
 from tippetop.integrators.base import Motion as Motion
 from tippetop.integrators.base import require_tolerance
-from tippetop.support.errors import MISSING, InvalidInput, Unavailable, is_number, one_of
+from tippetop.support.errors import MISSING, InvalidInput, Unavailable, is_number
 from tippetop.support.interrupts import import_heard
+from tippetop.support.suggestions import not_one_of
 
 NAMES = [*TOLERANCES, "rk4"]
 """The integrators by the names users give."""
@@ -71,11 +72,15 @@ def make_integrator(
 
         return Relieved(make_integrator(default_name(), tolerance, step, time_unit))
     if not isinstance(name, str) or name not in NAMES:
-        raise InvalidInput("integrator", name, one_of(name, NAMES))
+        raise not_one_of("integrator", name, NAMES)
     if name == "rk4":
         if tolerance is not None:
             raise InvalidInput(
-                "tolerance", tolerance, "none with rk4, whose error follows from its step"
+                "tolerance",
+                tolerance,
+                "none",
+                "is for other integrators than rk4, whose error follows from its step",
+                "leave it out",
             )
         if step is None or not (is_number(step) and step > 0):
             raise InvalidInput(
@@ -87,7 +92,9 @@ def make_integrator(
 
         return ClassicalRK4(step / time_unit)
     if step is not None:
-        raise InvalidInput("step", step, f"none with {name}, which chooses its own")
+        raise InvalidInput(
+            "step", step, "none", f"is for rk4 alone: {name} chooses its own steps", "leave it out"
+        )
     if tolerance is not None:
         require_tolerance(tolerance, name)
     return _adaptive(name, TOLERANCES[name] if tolerance is None else float(tolerance))
@@ -102,7 +109,8 @@ def _adaptive(name: str, tolerance: float) -> Integrator:
         if name == needing and not there():
             others = ", ".join(other for other in NAMES if other != name)
             raise Unavailable(
-                f"the integrator {name} needs {package}, which is not installed; accepted: {others}"
+                f"the integrator {name} needs {package}, which is not installed (write one of"
+                f" {others})"
             )
     match name:
         case "taylor":

@@ -9,6 +9,7 @@ from tippetop.export.bundle import built
 from tippetop.export.track import pack_run
 from tippetop.results.dataset import require_run
 from tippetop.support.errors import InvalidInput, Unavailable, is_whole
+from tippetop.support.suggestions import not_one_of
 
 THEMES = ("auto", "light", "dark")
 
@@ -39,8 +40,8 @@ def view(run: xr.Dataset, height: int = 480, theme: str = "auto") -> Any:
     >>> player.show(tt.simulate(tt.presets.report_problem(spin=50.0), duration=1.0, samples=501))
     """
     require_run(run)
-    if theme not in THEMES:
-        raise InvalidInput("theme", theme, ", ".join(THEMES))
+    if not isinstance(theme, str) or theme not in THEMES:
+        raise not_one_of("theme", theme, THEMES)
     if not is_whole(height) or height <= 0:
         raise InvalidInput("height", height, "a whole number of pixels greater than 0")
     return _widget()(track=pack_run(run), height=height, theme=theme)

@@ -62,7 +62,11 @@ def serve(host: str, port: int, browser: bool, announce: Callable[[str], None]) 
         server = ThreadingHTTPServer((host, port), PageHandler)
     except (OSError, OverflowError) as error:
         raise InvalidInput(
-            "host", f"{host}:{port}", f"an address and a free port here ({error})"
+            "host",
+            f"{host}:{port}",
+            "the address of a free port here",
+            f"cannot be served at ({error})",
+            "choose another --port",
         ) from None
     name = _own_address() if host in EVERYWHERE else host
     address = f"http://{name}:{server.server_port}/"

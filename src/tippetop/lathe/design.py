@@ -5,13 +5,15 @@ I3.
 import math
 from collections.abc import Callable
 from itertools import groupby, pairwise
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from tippetop.lathe.profile import ROUNDING
-from tippetop.lathe.workpiece import UNITS, Insert, Workpiece
-from tippetop.support.errors import InvalidInput, require
+from tippetop.lathe.workpiece import DENSEST, UNITS, Insert, Workpiece
+from tippetop.support.errors import Described, InvalidInput, is_number, require
+from tippetop.support.units import number_in
 
 LOOKS = 96
 """Sizes that are tried before the one that is wanted is looked for between two of them."""
@@ -58,15 +60,20 @@ def design_insert(
     (0.1, 0.95)
     """
     require("piece", piece, Workpiece, "a Workpiece")
+    eccentricity = _number("eccentricity", eccentricity)
+    inertia_ratio = _positive("inertia_ratio", inertia_ratio)
+    density = _number("density", density, "kg m-3")
     sphere = piece.hull.zones[0]
     if sphere.name != "sphere":
         raise InvalidInput(
-            "piece", f"a body that stands on a {sphere.name}", "one that stands on a sphere"
+            "piece",
+            Described(f"a body that stands on a {sphere.name}"),
+            "one that stands on a sphere",
         )
-    if not density >= 0.0:
-        raise InvalidInput("density", density, "a number at least 0")
+    if not 0.0 <= density <= DENSEST:
+        raise InvalidInput("density", density, f"a number at least 0 and at most {DENSEST:g}")
     if density == piece.density:
-        raise InvalidInput("density", density, "another density than the body's")
+        raise InvalidInput("density", density, "another density", "is the body's own density")
     radius, base = sphere.tube, piece.mass_properties
     least = _wall(radius, wall)
     points = piece.outline.points(2)
@@ -154,8 +161,12 @@ def design_bowl(
     >>> round(top.mass_properties.I1 / top.mass_properties.I3, 9)
     1.2
     """
+    radius = _positive("radius", radius, "m")
+    density = _positive("density", density, "kg m-3")
+    eccentricity = _number("eccentricity", eccentricity)
+    inertia_ratio = _positive("inertia_ratio", inertia_ratio)
     least = _wall(radius, wall)
-    thick = radius / 10.0 if stem is None else stem
+    thick = radius / 10.0 if stem is None else _number("stem", stem, "m")
     if not 0.0 < thick < radius / 2.0:
         raise InvalidInput("stem", thick, "a radius greater than 0 and less than half the sphere's")
 
@@ -188,14 +199,28 @@ def design_bowl(
 
 
 def _wall(radius: float, wall: float | None) -> float:
-    if not radius > 0.0:
-        raise InvalidInput("radius", radius, "a number greater than 0")
-    least = radius / 20.0 if wall is None else wall
+    least = radius / 20.0 if wall is None else _number("wall", wall, "m")
     if not 0.0 < least < radius / 2.0:
         raise InvalidInput(
             "wall", least, "a thickness greater than 0 and less than half the radius"
         )
     return least
+
+
+def _positive(field: str, value: Any, units: str = "1") -> float:
+    """A number greater than 0, in an SI unit."""
+    number = _number(field, value, units)
+    if number <= 0.0:
+        raise InvalidInput(field, value, "a number greater than 0")
+    return number
+
+
+def _number(field: str, value: Any, units: str = "1") -> float:
+    """A finite number in an SI unit, from one, a text with a unit, or a quantity of pint."""
+    number = number_in(field, value, units)
+    if not is_number(number):
+        raise InvalidInput(field, value, "a finite number")
+    return float(number)
 
 
 def _alpha(piece: Workpiece, radius: float) -> float:
@@ -226,7 +251,9 @@ def _found(
     if not np.isfinite(ratios).any():
         alphas = [alpha for size in sizes for alpha in extremes(size)]
         between = f"one from {min(alphas):.3f} to {max(alphas):.3f}" if alphas else "none"
-        raise InvalidInput("eccentricity", eccentricity, f"{between}, for bodies of this kind")
+        raise InvalidInput(
+            "eccentricity", eccentricity, between, "is out of reach of bodies of this kind"
+        )
     for (low, below), (high, above) in pairwise(zip(sizes, ratios, strict=True)):
         if min(below, above) <= inertia_ratio <= max(below, above):
             size = _root(lambda size: ratio(size) - inertia_ratio, low, high)
@@ -237,7 +264,10 @@ def _found(
     longer = [run for run in runs if len(run) > 1] or runs
     between = " or ".join(f"{min(run):.5g} to {max(run):.5g}" for run in longer)
     raise InvalidInput(
-        "inertia_ratio", inertia_ratio, f"one from {between}, with this eccentricity"
+        "inertia_ratio",
+        inertia_ratio,
+        f"one from {between}",
+        "is out of reach with this eccentricity",
     )
 
 

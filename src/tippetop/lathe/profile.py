@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.lathe.edges import Edge, Points, meetings
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 
 ROUNDING = 1e-9
 """What counts as the same place, in sizes of the profile."""
@@ -128,7 +128,9 @@ def profile_of(
     size = max(max(abs(point[0]), abs(point[1] - points[0][1])) for point in points)
     if not 1.0 / LARGEST <= size <= LARGEST:
         raise InvalidInput(
-            field, f"a body of size {size:g}", f"a size between {1 / LARGEST:g} and {LARGEST:g}"
+            field,
+            Described(f"a body of size {size:g}"),
+            f"one between {1 / LARGEST:g} and {LARGEST:g}",
         )
     edges = [_edge(points, number, size, field) for number in range(1, len(points))]
     edges = _closed(edges, ROUNDING * size, field)
@@ -148,20 +150,25 @@ def require_points(points: Sequence[Sequence[float]], field: str, most: int = MO
     many.
     """
     if not 2 <= len(points) <= most:
-        raise InvalidInput(field, f"{len(points)} points", f"2 to {most} points")
+        raise InvalidInput(field, Described(f"{len(points)} points"), f"2 to {most} points")
     for number, point in enumerate(points):
         if len(point) not in (2, 3):
-            wanted = "distance from the axis, height and, at the end of an arc, its radius"
+            wanted = "a point: distance from the axis, height and, at the end of an arc, its radius"
             raise InvalidInput(f"{field}.{number}", list(point), wanted)
         if max(map(abs, point)) > LARGEST:
-            raise InvalidInput(f"{field}.{number}", list(point), f"numbers of at most {LARGEST:g}")
+            raise InvalidInput(
+                f"{field}.{number}", list(point), f"made of numbers of at most {LARGEST:g}"
+            )
         if point[0] < 0.0:
             raise InvalidInput(
                 f"{field}.{number}.0", point[0], "a distance from the axis, at least 0"
             )
     if len(points[0]) == 3 and points[0][2]:
         raise InvalidInput(
-            f"{field}.0.2", points[0][2], "no radius: at the first point no arc ends"
+            f"{field}.0.2",
+            points[0][2],
+            "0",
+            "is the radius of no arc: none ends at the first point",
         )
 
 
@@ -205,7 +212,9 @@ def _closed(edges: list[Edge], within: float, field: str) -> list[Edge]:
             f"an open line from ({first.real:g}, {first.imag:g}) to ({last.real:g}, {last.imag:g})"
         )
         raise InvalidInput(
-            field, ends, "a line that ends where it began, or one from the axis to the axis"
+            field,
+            Described(ends),
+            "a line that ends where it began, or one from the axis to the axis",
         )
     edges = [
         edge._replace(start=_on_axis(edge.start, within), end=_on_axis(edge.end, within))
@@ -221,7 +230,9 @@ def _closed(edges: list[Edge], within: float, field: str) -> list[Edge]:
     for point in [edge.end for edge in edges[:-1]] + [_innermost(edge) for edge in edges]:
         if point.real <= within:
             place = f"a line through the axis at a height of {point.imag:g}"
-            raise InvalidInput(field, place, "a line that is on the axis at its ends only")
+            raise InvalidInput(
+                field, Described(place), "a line that is on the axis at its ends only"
+            )
     return edges
 
 
@@ -257,7 +268,7 @@ def _refuse_meetings(edges: list[Edge], within: float, field: str) -> None:
                     f"a line whose edges {one + 1} and {other + 1} meet at ({point.real:g},"
                     f" {point.imag:g})"
                 )
-                raise InvalidInput(field, place, "a line that does not meet itself")
+                raise InvalidInput(field, Described(place), "a line that does not meet itself")
 
 
 def _shared_ends(edges: list[Edge], one: int, other: int) -> list[complex]:

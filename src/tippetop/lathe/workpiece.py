@@ -12,14 +12,18 @@ from tippetop.lathe.fitting import TOLERANCE, Fit, fit
 from tippetop.lathe.hull import ConvexHull, hull_of
 from tippetop.lathe.mass import MassProperties, mass_properties
 from tippetop.lathe.profile import Profile, area_of, profile_of, require_points
-from tippetop.support.errors import InvalidInput
-from tippetop.support.validation import NotNegative, Part, Points, Positive, Quantity
+from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.validation import NO_WORD, NotNegative, Part, Points, Quantity
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 """The units of profiles, m."""
 
 DENSEST = 1e6
 """Largest density, kg/m^3: far above that of any metal."""
+
+
+LIGHTEST = 1e-6
+"""Least density, kg/m^3: far below that of any gas."""
 
 
 class Insert(Part):
@@ -76,7 +80,9 @@ class Workpiece(Part):
     """
 
     profile: Points
-    density: Annotated[Positive, Field(le=DENSEST), Quantity("kg m-3", "density of the body")]
+    density: Annotated[
+        float, Field(ge=LIGHTEST, le=DENSEST), NO_WORD, Quantity("kg m-3", "density of the body")
+    ]
     inserts: tuple[Insert, ...] = ()
     unit: Literal["m", "cm", "mm", "in"] = "m"
     tolerance: Annotated[NotNegative, Field(le=0.05), Quantity("1", "tolerance of the fit")] = (
@@ -90,16 +96,22 @@ class Workpiece(Part):
             field, sides = f"inserts.{number}.profile", inner.sides(outline)
             if "out" in sides:
                 raise InvalidInput(
-                    field, "a line that leaves the body", "one inside the body's profile"
+                    field, Described("a line that leaves the body"), "one inside the body's profile"
                 )
             if "on" in sides and not self.inserts[number].density:
                 raise InvalidInput(
-                    field, "an open cavity", "one inside; what is open is the body's own profile"
+                    field,
+                    Described("an open cavity"),
+                    "one inside",
+                    "is part of the body's own profile",
+                    "draw it there",
                 )
             for other in self.insides[:number]:
                 if not (_apart(inner, other) or _within(inner, other) or _within(other, inner)):
                     raise InvalidInput(
-                        field, "a line across another insert's", "one beside or inside it"
+                        field,
+                        Described("a line across another insert's"),
+                        "one beside or inside it",
                     )
         return self
 

@@ -96,13 +96,11 @@ def state_from_angles(angles: Angles, top: Top, functions: Functions) -> Sliding
     axis = (sin_tilt * cos_azimuth, sin_tilt * sin_azimuth, cos_tilt)
     second = (-sin_azimuth, cos_azimuth, 0.0)
     first = cross(second, axis)
-    omega = add(
-        add(scale(-angles.precession * sin_tilt, first), scale(angles.tilt_rate, second)),
-        scale(angles.spin, axis),
-    )
+    across = add(scale(-angles.precession * sin_tilt, first), scale(angles.tilt_rate, second))
+    omega = add(across, scale(angles.spin, axis))
+    # I1 omega + (I3 - I1) omega3 n would lose the axial part where I1 is many times I3.
     momentum = add(
-        scale(top.transverse_inertia, omega),
-        scale((top.axial_inertia - top.transverse_inertia) * angles.spin, axis),
+        scale(top.transverse_inertia, across), scale(top.axial_inertia * angles.spin, axis)
     )
     swing = cross(omega, contact_vector(axis, top.surface))
     velocity = (

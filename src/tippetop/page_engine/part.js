@@ -1,6 +1,11 @@
 // Parts of a problem: complete, checked, and clear about what they refuse, as in tippetop.support.validation.
 import * as m from "./mechanics.js";
-import { SCHEMA } from "./tables.js";
+import { not_one_of, unknown_field } from "./suggestions.js";
+import { PLACES, SCHEMA } from "./tables.js";
+import { degreesHint, inSi, NoNumber, numberHint, written } from "./units.js";
+
+/** The full names of fields by their last names. */
+export const declare_places = () => PLACES;
 
 /** Every number in the fields of a part, with its name with dots. */
 export function numbers_of(value, name = "") {
@@ -14,19 +19,26 @@ export function numbers_of(value, name = "") {
 const TABLE = "a table of its fields";
 
 export class Part {
-  /** A part of the values of its fields; throws the first error, which says how many others there are. */
-  constructor(values = {}) {
+  constructor(given = {}) {
     const { fields, checks } = SCHEMA[this.constructor.title];
-    const errors = unknownFields(values, fields);
+    const unknown = Object.keys(given).filter((name) => !Object.hasOwn(fields, name));
+    const wrong = unknown.map((name) =>
+      unknown_field(
+        name,
+        given[name],
+        Object.keys(fields),
+        kindsWith(name, this.constructor.title),
+      ),
+    );
     for (const [name, field] of Object.entries(fields)) {
-      const value = valueOrDefault(values[name], field);
-      if (value === undefined) {
-        errors.push(new m.InvalidInput(name, m.MISSING, "a value; it has no default"));
-      } else {
-        this[name] = checkedValue(name, value, field, errors);
-      }
+      const value =
+        given[name] === undefined || (given[name] === null && field.default !== undefined)
+          ? field.default
+          : given[name];
+      if (value === undefined) wrong.push(new m.InvalidInput(name, m.MISSING, wanted(field)));
+      else this[name] = taken(name, value, field, wrong);
     }
-    if (errors.length) throw errors[0].within("", errors.length - 1);
+    if (wrong.length) throw wrong[0].within("", wrong.length - 1);
     for (const check of checks) this[check]();
   }
 
@@ -36,8 +48,11 @@ export class Part {
 
   /** A copy with other values, which are not checked. */
   model_copy(changes) {
-    const copy = Object.create(Object.getPrototypeOf(this));
-    return Object.assign(copy, this, Object.fromEntries(changes.entries()));
+    return Object.assign(
+      Object.create(Object.getPrototypeOf(this)),
+      this,
+      Object.fromEntries(changes.entries()),
+    );
   }
 
   model_dump() {
@@ -45,91 +60,124 @@ export class Part {
   }
 }
 
-/** An error for each name that is no field. */
-function unknownFields(values, fields) {
-  const accepted = `one of the keys ${Object.keys(fields).join(", ")}`;
-  const unknown = Object.keys(values).filter((name) => !(name in fields));
-  return unknown.map((name) => new m.InvalidInput(name, values[name], accepted));
+/** The words of the other kinds of a part that have a field. */
+function kindsWith(name, title) {
+  const fields = Object.values(SCHEMA).flatMap((part) => Object.values(part.fields));
+  const kinds = fields.find(({ parts }) => parts?.includes(title) && parts.length > 1)?.parts ?? [];
+  return kinds
+    .filter((kind) => Object.hasOwn(SCHEMA[kind].fields, name))
+    .map((kind) => SCHEMA[kind].fields.kind.default);
 }
 
-/** The value of a field, or its default where there is none; undefined where there is neither. */
-function valueOrDefault(value, field) {
-  if (value === undefined) return field.default;
-  if (value === null && field.default !== undefined) return field.default;
+/** What a field without a default takes, in words. */
+function wanted({ units = "", parts, count, accepted, points }) {
+  if (parts) return TABLE;
+  if (count) return accepted;
+  if (points) return "a list";
+  return units === "" || units === "1" ? "a value" : `a number in ${written(units)}`;
+}
+
+/** A value of a field, or a list of them, with its numbers in SI; refuses texts that are no numbers. */
+export function inUnits(where, value, units) {
+  if (Array.isArray(value))
+    return value.map((inner, place) => inUnits(`${where}.${place}`, inner, units));
+  if (typeof value !== "string") return value;
+  if (units === undefined)
+    throw new m.InvalidInput(where, value, "a number", "", numberHint(value));
+  try {
+    return inSi(value, units);
+  } catch (error) {
+    if (!(error instanceof NoNumber)) throw error;
+    throw new m.InvalidInput(where, value, error.accepted, error.fault, error.hint);
+  }
+}
+
+/** The value of a field, with parts made of their fields; what is wrong with it is added to the rest. */
+function taken(name, asked, field, wrong) {
+  if (asked === null && field.default === null) return null;
+  if (field.parts) return takenParts(name, asked, field, wrong);
+  if (field.choices) {
+    if (!field.choices.includes(asked)) wrong.push(not_one_of(name, asked, field.choices));
+    return asked;
+  }
+  const isList = field.points || field.count;
+  let value = asked;
+  if (typeof asked !== "string" || !isList) {
+    try {
+      value = inUnits(name, asked, field.units);
+    } catch (error) {
+      if (!(error instanceof m.InvalidInput)) throw error;
+      wrong.push(error);
+      return asked;
+    }
+  }
+  if (Array.isArray(value) && value.length === field.least) value = [...value, 0];
+  if (isList && !isListed(value, field)) {
+    wrong.push(refused(name, asked, field.accepted));
+  } else if (field.points) {
+    value.forEach((point, k) => {
+      point.forEach((one, i) => {
+        checkNumber(`${name}.${k}.${i}`, one, one, field, wrong);
+      });
+    });
+  } else if (field.count) {
+    value.forEach((one, k) => {
+      checkNumber(`${name}.${k}`, one, one, field, wrong);
+    });
+  } else {
+    checkNumber(name, value, asked, field, wrong);
+  }
   return value;
 }
 
-/** The value of a field, with parts made of their fields; what is wrong with it is added to the errors. */
-function checkedValue(name, value, field, errors) {
-  if (value === null && field.default === null) return null;
-  if (field.parts) return checkedParts(name, value, field, errors);
-  if (!hasForm(value, field)) errors.push(new m.InvalidInput(name, value, field.accepted));
-  else if (!field.choices) checkNumbers(name, value, depthOf(field), field, errors);
-  return value;
+function isListed(value, { points, count }) {
+  if (!Array.isArray(value)) return false;
+  return points ? value.every(Array.isArray) : value.length === count;
 }
 
-/** Whether a value is one of the choices of a field, or a list where the field is one. */
-function hasForm(value, field) {
-  if (field.choices) return field.choices.includes(value);
-  if (field.points) return Array.isArray(value) && value.every(Array.isArray);
-  if (field.count) return Array.isArray(value) && value.length === field.count;
-  return true;
-}
-
-/** How deep in lists the numbers of a field lie. */
-function depthOf(field) {
-  if (field.points) return 2;
-  return field.count ? 1 : 0;
-}
-
-/** A part, or several of them where the field allows that; one in a list is as one alone. */
-function checkedParts(name, value, field, errors) {
-  if (!(Array.isArray(value) && field.several)) return checkedPart(name, value, field, errors);
-  if (!value.length) errors.push(new m.InvalidInput(name, value, TABLE));
-  const parts = value.map((one, place) => checkedPart(`${name}.${place}`, one, field, errors));
+function takenParts(name, value, field, wrong) {
+  if (!(Array.isArray(value) && field.several)) return part(name, value, field.parts, wrong);
+  const parts = value.map((inner, place) => part(`${name}.${place}`, inner, field.parts, wrong));
+  if (!parts.length) wrong.push(refused(name, value, TABLE));
   return parts.length === 1 ? parts[0] : parts;
 }
 
-/** A part of one of the kinds of a field. */
-function checkedPart(name, value, field, errors) {
+function refused(where, value, accepted) {
+  return new m.InvalidInput(where, value, accepted, "", degreesHint(value, accepted));
+}
+
+/** Check one number, in SI; `asked` is how it was written. */
+function checkNumber(where, value, asked, field, wrong) {
+  const { gt, ge, lt, le } = field.limits ?? {};
+  if (typeof value === "boolean") {
+    wrong.push(refused(where, value, "a number"));
+  } else if (typeof value !== "number" || !Number.isFinite(value)) {
+    wrong.push(refused(where, value, "a finite number"));
+  } else if (value <= gt || value < ge || value >= lt || value > le) {
+    wrong.push(refused(where, typeof asked === "string" ? asked : value, field.accepted));
+  }
+}
+
+/** A part of one of some kinds. */
+function part(name, value, kinds, wrong) {
   if (value instanceof Part) return value;
   try {
-    return new m[kindOf(value, field.parts)](value);
+    return new m[chosen(value, kinds)](value);
   } catch (error) {
     if (!(error instanceof m.InvalidInput)) throw error;
-    // Checks of a part may name fields by their whole path.
-    const isWhole = `${error.field}.`.startsWith(`${name}.`);
-    errors.push(isWhole ? error : error.within(name));
+    wrong.push(`${error.field}.`.startsWith(`${name}.`) ? error : error.within(name));
     return null;
   }
 }
 
 /** The kind that fields are of, told apart by the one that is called `kind`. */
-function kindOf(value, kinds) {
-  if (value === null || typeof value !== "object" || Array.isArray(value)) {
+function chosen(value, kinds) {
+  if (value === null || typeof value !== "object" || Array.isArray(value))
     throw new m.InvalidInput("", value, TABLE);
-  }
   const words = kinds.map((kind) => SCHEMA[kind].fields.kind?.default);
   if (words[0] === undefined) return kinds[0];
-  if (value.kind === undefined) throw new m.InvalidInput("kind", m.MISSING, "a kind of it");
-  if (!words.includes(value.kind)) {
-    throw new m.InvalidInput("kind", value.kind, words.map((word) => `'${word}'`).join(", "));
-  }
+  if (value.kind === undefined)
+    throw new m.InvalidInput("kind", m.MISSING, `one of ${words.join(", ")}`);
+  if (!words.includes(value.kind)) throw not_one_of("kind", value.kind, words);
   return kinds[words.indexOf(value.kind)];
-}
-
-/** Check a number, or the numbers in lists of some depth. */
-function checkNumbers(name, value, depth, field, errors) {
-  if (depth) {
-    value.forEach((inner, place) => {
-      checkNumbers(`${name}.${place}`, inner, depth - 1, field, errors);
-    });
-    return;
-  }
-  const { gt, ge, lt, le } = field.limits ?? {};
-  if (typeof value !== "number" || !Number.isFinite(value)) {
-    errors.push(new m.InvalidInput(name, value, "a finite number"));
-  } else if (value <= gt || value < ge || value >= lt || value > le) {
-    errors.push(new m.InvalidInput(name, value, field.accepted));
-  }
 }

@@ -2,6 +2,7 @@
 import { integrator, reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
 import * as m from "./mechanics.js";
+import { inUnits } from "./part.js";
 import { plain } from "./runtime.js";
 import { CATALOGUE, GAUSS } from "./tables.js";
 
@@ -45,7 +46,8 @@ export function simulate(
   { duration, tolerance = 1e-10, step_limit, phase_limit, onProgress } = {},
 ) {
   m.require_tolerance(tolerance, "compiled");
-  const run = new Run(new m.Problem(problem), duration, tolerance, [phase_limit, step_limit]);
+  const seconds = inUnits("duration", duration, "s");
+  const run = new Run(new m.Problem(problem), seconds, tolerance, [phase_limit, step_limit]);
   for (const segment of run.trajectory.segments()) {
     run.include(segment);
     onProgress?.(run.trajectory.time / run.trajectory.end);

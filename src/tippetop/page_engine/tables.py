@@ -18,8 +18,10 @@ from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem
 from tippetop.problem.shapes import Shape
 from tippetop.results import catalogue
-from tippetop.support.accepted_values import range_of
-from tippetop.support.validation import POINTS, Part
+from tippetop.support import units
+from tippetop.support.accepted_values import count_of, range_of
+from tippetop.support.suggestions import NOT_OF_REVOLUTION, OTHER_NAMES
+from tippetop.support.validation import POINTS, Padded, Part, Quantity
 
 LIMITS = {"exclusiveMinimum": "gt", "minimum": "ge", "exclusiveMaximum": "lt", "maximum": "le"}
 WIDTHS = {"space": 3, "quaternion": 4}
@@ -44,11 +46,17 @@ def tables(command: str) -> str:
         "PRESETS": to_jsonable_python(
             {"bodies": presets.BODIES, "problems": problems}, exclude_none=True
         ),
+        "PLACES": Part.places,
+        "OTHER_NAMES": OTHER_NAMES,
+        "NOT_OF_REVOLUTION": NOT_OF_REVOLUTION,
+        "KINDS": {si: kind._asdict() for si, kind in units.KINDS.items()},
+        "UNIT_NAMES": units.COMMON,
         "CATALOGUE": {"sampled": {name: _variable(one) for name, one in catalogue.SAMPLED.items()}},
         "NEAR_FINAL": catalogue.NEAR_FINAL,
         "DOUBTS": SENTENCES,
     }
     numbers = {
+        "UNITS": unit_table(),
         "SHORTEST": SHORTEST,
         "GAUSS": {count: gauss(count) for count in (4, 8)},
         "CHEBYSHEV": {DEGREE: interpolation(DEGREE)},
@@ -73,6 +81,35 @@ def gauss(count: int) -> dict[str, list[float]]:
     return {"nodes": (0.5 * (1.0 + nodes)).tolist(), "weights": (0.5 * weights).tolist()}
 
 
+PREFIXED = ("m", "meter", "metre", "g", "gram", "s", "second", "rad", "radian", "N", "J", "Hz")
+PREFIXES = (
+    *("n", "u", "µ", "μ", "m", "c", "d", "k", "M"),
+    *("nano", "micro", "milli", "centi", "deci", "kilo", "mega"),
+)
+"""The names that the page reads with prefixes, and these."""
+
+MEASURED = ("1", "m", "kg", "s", "rad", "rad s-1", "m s-1", "m s-2", "kg m-3", "s-1")
+"""What the other units measure whose names the page reads, in SI."""
+
+
+def unit_table() -> dict[str, dict[str, list[float]]]:
+    """The names of units that the page reads: of each SI unit, those that measure the same.
+
+    A number in a unit times the first of two numbers over the second is in SI.
+    """
+    kinds = {units.exponents_of(si): si for si in units.KINDS}
+    prefixed = {prefix + name for prefix in PREFIXES for name in PREFIXED}
+    asked = {"°", *units.COMMON, *PREFIXED, *prefixed}
+    names = {*dir(units.registry()), *asked}
+    found: dict[str, dict[str, list[float]]] = {}
+    for name in sorted({*names, *(f"{name}s" for name in names if name[-1] != "s")}):
+        unit = units.named_unit(name) if units.FACTOR.fullmatch(name) else None
+        si = kinds.get(unit.exponents) if unit else None
+        if unit and si and (si in MEASURED or name in asked):
+            found.setdefault(si, {})[name] = [unit.over, unit.under]
+    return found
+
+
 def _variable(variable: catalogue.Variable) -> dict[str, Any]:
     wide = [WIDTHS[name] for name in variable.dimensions]
     return {"units": variable.units, "width": wide[0] if wide else 1}
@@ -89,13 +126,14 @@ def _described(part: type[Part]) -> dict[str, Any]:
 
 def _field(info: FieldInfo, field: dict[str, Any]) -> dict[str, Any]:
     several = [one for one in field.get("anyOf", [field]) if one.get("type") != "null"]
-    first, found = several[0], {}
+    first, found = several[0], dict[str, Any]()
+    quantities = [item for item in info.metadata if isinstance(item, Quantity)]
+    if quantities:
+        found["units"] = quantities[0].units
     if not info.is_required():
         found["default"] = to_jsonable_python(info.default, exclude_none=True)
     if "const" in first or "enum" in first:
         found["choices"] = first.get("enum", [first.get("const")])
-        *others, last = map(repr, found["choices"])
-        found["accepted"] = f"{', '.join(others)} or {last}" if others else last
     elif "oneOf" in first:
         found |= {"parts": [one["title"] for one in first["oneOf"]], "several": len(several) > 1}
     elif "$ref" in first or first.get("type") == "object":
@@ -103,7 +141,10 @@ def _field(info: FieldInfo, field: dict[str, Any]) -> dict[str, Any]:
     elif first.get("items", {}).get("type") == "array":
         found |= {"points": True, "accepted": POINTS}
     elif first.get("type") == "array":
-        found |= {"count": first["maxItems"], "accepted": f"{first['maxItems']} numbers"}
+        found |= {"count": first["maxItems"], "accepted": f"{count_of(info)} numbers"}
+        for item in info.metadata:
+            if isinstance(item, Padded):
+                found["least"] = item.least
     else:
         found["limits"] = {LIMITS[key]: value for key, value in first.items() if key in LIMITS}
         if found["limits"]:

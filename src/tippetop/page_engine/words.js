@@ -71,16 +71,56 @@ function rounded(size, digits) {
   return isHalfWay ? [exact.slice(0, digits), power] : split(digits);
 }
 
+const table = (value) =>
+  `{${Object.entries(value)
+    .map(([name, inner]) => `${repr(name)}: ${short(inner)}`)
+    .join(", ")}}`;
+
 /** A value in a sentence, as it would be typed. */
 export function short(value) {
   const text = Array.isArray(value)
-    ? `(${value.map(short).join(", ")})`
+    ? `[${value.map(short).join(", ")}]`
     : typeof value === "number"
       ? typed(value)
       : value === null
         ? "None"
         : typeof value === "object"
-          ? JSON.stringify(value)
-          : repr(value);
+          ? (value.description ?? table(value))
+          : typeof value === "boolean"
+            ? value
+              ? "True"
+              : "False"
+            : /^[0-9+\-.,]/.test(value) && isprintable(value)
+              ? value
+              : repr(value);
   return text.length <= 60 ? text : `${text.slice(0, 57)}...`;
+}
+
+/** The choices that are most like a word, the best first, as Python's difflib ranks them. */
+export function closest(word, choices, count = 1, cutoff = 0.6) {
+  return choices
+    .map((choice) => [likeness(choice, word), choice])
+    .filter(([ratio]) => ratio >= cutoff)
+    .sort(([a, one], [b, other]) => b - a || (one < other ? 1 : -1))
+    .slice(0, count)
+    .map(([, choice]) => choice);
+}
+
+const likeness = (a, b) => (a.length + b.length ? (2 * matched(a, b)) / (a.length + b.length) : 1);
+
+// Letters in the longest common block, and in those before and after it.
+function matched(a, b) {
+  let [length, i, j] = [0, 0, 0];
+  for (let p = 0; p < a.length; p++)
+    for (let q = 0; q < b.length; q++) {
+      let k = 0;
+      while (p + k < a.length && q + k < b.length && a[p + k] === b[q + k]) k++;
+      if (k > length) [length, i, j] = [k, p, q];
+    }
+  if (!length) return 0;
+  return (
+    length +
+    matched(a.slice(0, i), b.slice(0, j)) +
+    matched(a.slice(i + length), b.slice(j + length))
+  );
 }

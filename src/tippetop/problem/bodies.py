@@ -10,7 +10,7 @@ from pydantic import AfterValidator, model_validator
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.surface import Surface
 from tippetop.problem.shapes import DEGREE, EccentricSphere, Oval, Ring, Shape, Sphere, Spheroid
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.validation import ONE_OR_SEVERAL, Part, Points, Positive, Quantity
 
 if TYPE_CHECKING:
@@ -58,8 +58,8 @@ class Body(Part):
     >>> tt.Body(mass=0.02, shape=sphere, I1=3.0e-6, I3=7e-6)
     Traceback (most recent call last):
         ...
-    tippetop.support.errors.InvalidInput: I3 = 7e-06 is not possible;
-    accepted: at most 2 I1 = 6e-06, as for any body
+    tippetop.support.errors.InvalidInput: I3: 7e-06 is more than any body with this I1 has
+    (write at most 2 I1 = 6e-06)
     """
 
     mass: Annotated[Positive, Quantity("kg", "mass of the body")]
@@ -75,12 +75,21 @@ class Body(Part):
     @model_validator(mode="after")
     def _can_exist(self) -> Self:
         if self.I3 > 2 * self.I1:
-            raise InvalidInput("I3", self.I3, f"at most 2 I1 = {2 * self.I1:g}, as for any body")
+            raise InvalidInput(
+                "I3",
+                self.I3,
+                f"at most 2 I1 = {2 * self.I1:g}",
+                "is more than any body with this I1 has",
+            )
         for number, shape in enumerate(self.shapes):
             if len(self.shapes) > 1 and not _reaches_out(number, self.shapes):
                 numbers = ", ".join(f"{name} = {value}" for name, value in shape)
                 raise InvalidInput(
-                    f"shape.{number}", numbers, "a surface that the others do not enclose"
+                    f"shape.{number}",
+                    Described(numbers),
+                    "",
+                    "is enclosed by the others",
+                    "leave it out",
                 )
         return self
 
@@ -191,12 +200,19 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
 
     zones = [zone for zone in hull.zones if is_left(zone)]
     if len(zones) > MOST:
-        many = f"a body that stands on {len(zones)} surfaces"
-        raise InvalidInput("profile", many, f"at most {MOST}: arcs rather than many short edges")
+        raise InvalidInput(
+            "profile",
+            Described(f"a body that stands on {len(zones)} surfaces"),
+            f"at most {MOST}",
+            "has too many",
+            "draw arcs rather than many short edges",
+        )
     found = {zone: _shape(zone, zone.height - center) for zone in zones}
     for zone in zones:
         if hull.protrusion(zone)[0] > reach and not whole:
-            part = f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
+            part = Described(
+                f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
+            )
             wanted = (
                 "surfaces that stay inside the body where it does not stand on them, or to take"
                 " them as whole with whole=True, at the command line --whole"
@@ -241,8 +257,8 @@ def _shape(zone: "Zone", center: float) -> Shape:
     if zone.radius > 0.0:
         return Ring(radius=zone.radius, center=center, tube=zone.tube)
     part = "a sharp tip" if zone.name == "tip" else "an arc around a point beyond the axis"
-    wanted = "a body that stands on spheres, rings and smooth curves: a tip is rounded"
-    raise InvalidInput("profile", part, wanted)
+    wanted = "part of a body that stands on spheres, rings and smooth curves: a tip is rounded"
+    raise InvalidInput("profile", Described(part), wanted)
 
 
 MOST = 12

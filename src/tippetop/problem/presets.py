@@ -7,7 +7,7 @@ from tippetop.problem.frictions import RegularizedCoulombFriction, ViscousFricti
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem
 from tippetop.problem.shapes import EccentricSphere, Ring, Sphere, Spheroid
-from tippetop.support.errors import InvalidInput, one_of
+from tippetop.support.suggestions import not_one_of
 
 _MASS, _RADIUS = 0.02, 0.02
 _TWO_FIFTHS = 2 / 5 * _MASS * _RADIUS**2
@@ -189,7 +189,7 @@ def body(name: str) -> Body:
     try:
         return BODIES[name]
     except (KeyError, TypeError):
-        raise InvalidInput("preset", name, one_of(name, list(BODIES))) from None
+        raise not_one_of("preset", name, list(BODIES)) from None
 
 
 def report_problem(spin: float = 155.0, tilt: float = 0.1, mu: float = 0.3) -> Problem:

@@ -26,11 +26,20 @@ from tippetop.problem.bodies import Body
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.frictions import LEAST_PATCH, Friction
 from tippetop.problem.launch import Launch
-from tippetop.support.errors import MISSING, InvalidInput, one_of, require
+from tippetop.support.errors import MISSING, InvalidInput, require
 from tippetop.support.field_paths import dotted_names, numbers_of, part_at, table_at, with_its_list
 from tippetop.support.files import made_of, read_text
 from tippetop.support.parsing import parse_json, parse_toml
-from tippetop.support.validation import OF_ITS_KIND, NotNegative, Part, Positive, Quantity, Variant
+from tippetop.support.suggestions import unknown_field
+from tippetop.support.validation import (
+    OF_ITS_KIND,
+    NotNegative,
+    Part,
+    Positive,
+    Quantity,
+    Variant,
+    declare_places,
+)
 
 
 class Problem(Part):
@@ -78,7 +87,10 @@ class Problem(Part):
         _refuse_what_does_not_fit(self)
         if _lies_flat(self):
             raise InvalidInput(
-                "launch.tilt", self.launch.tilt, "a tilt at which the body does not lie flat"
+                "launch.tilt",
+                self.launch.tilt,
+                "a tilt at which the body does not lie flat",
+                "lays the body flat on its face",
             )
         if not (math.isfinite(_resistance(self)) and math.isfinite(_largest_square(self))):
             raise _out_of_reach(self)
@@ -86,7 +98,7 @@ class Problem(Part):
             return self
         if isinstance(self.top.surface, Hull):
             raise InvalidInput(
-                "contact.liftoff", self.contact.liftoff, "'fly' for a body of several surfaces"
+                "contact.liftoff", self.contact.liftoff, "'fly'", "is for bodies of one surface"
             )
         launch = self.launch
         if launch.gap or launch.velocity is not None:
@@ -94,14 +106,18 @@ class Problem(Part):
             raise InvalidInput(
                 f"launch.{field}",
                 getattr(launch, field),
-                "a launch on the table, unless contact.liftoff is 'fly'",
+                "0",
+                "starts off the table, or leaves it, where contact.liftoff is not 'fly'",
+                "leave it out, or let the body fly",
             )
         if not _resistance(self) > 0:
             raise InvalidInput(
                 "launch.slip",
                 self.launch.slip,
-                "less slip or less friction: here any push of the table would drag the body further"
-                " into it (Painleve's paradox), unless contact.liftoff is 'fly'",
+                "less slip or less friction",
+                "is too much: here any push of the table would drag the body further into it"
+                " (Painleve's paradox)",
+                "write less slip or less friction, or contact.liftoff = 'fly'",
             )
         return self
 
@@ -135,10 +151,12 @@ class Problem(Part):
             launch.slip,
         )
         touching = on_table(state_from_angles(angles, top, PoleExact(functions)), top)
-        return touching._replace(
-            height=touching.height + launch.gap,
-            velocity=touching.velocity if launch.velocity is None else launch.velocity,
-        )
+        velocity = touching.velocity
+        if launch.velocity is not None:
+            x, y, up = launch.velocity
+            # A horizontal velocity on the table has the vertical part that keeps contact.
+            velocity = (x, y, up + (up == 0.0) * (launch.gap == 0.0) * velocity[2])
+        return touching._replace(height=touching.height + launch.gap, velocity=velocity)
 
     # translate: skip
     def replace(self, changes: Mapping[str, Any]) -> Self:
@@ -160,7 +178,11 @@ class Problem(Part):
             whole = next((other for other in changes if name.startswith(f"{other}.")), None)
             if whole is not None:
                 raise InvalidInput(
-                    name, changes[name], f"none beside a value of {whole}, its whole"
+                    name,
+                    changes[name],
+                    "",
+                    f"stands beside a value of {whole}, which holds it",
+                    "leave out one",
                 )
         fields = self.model_dump()
         renewed = set()
@@ -177,9 +199,9 @@ class Problem(Part):
             where, _, last = name.rpartition(".")
             table = table_at(fields, where)
             if last not in table and where not in renewed:
-                raise InvalidInput(
-                    "field", name, "one of " + one_of(name, list(dotted_names(fields)))
-                )
+                part = part_at(self, where)
+                kinds = part.kinds_with(last) if isinstance(part, Variant) else ()
+                raise unknown_field(name, value, list(dotted_names(fields)), self.places, kinds)
             table[last] = value
         return type(self)(**fields)
 
@@ -236,6 +258,11 @@ class Problem(Part):
             return cls(**fields)
 
 
+# translate: skip
+PLACES = declare_places(Problem)
+"""The full names of all fields by their last names, for whoever writes a field elsewhere."""
+
+
 # translate: drop
 def require_problem(problem: object) -> None:
     """Refuse what is no problem, with `InvalidInput`."""
@@ -249,14 +276,16 @@ def _refuse_what_does_not_fit(problem: Problem) -> None:
         raise InvalidInput(
             "friction.patch_radius",
             getattr(problem.friction, "patch_radius", MISSING),
-            f"from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} on this body; a"
-            " smaller patch is a point, for which there is coulomb",
+            f"from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)}",
+            "does not fit this body",
+            f"write one from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} m; for a"
+            " smaller patch, a point, there is coulomb",
         )
     if problem.rolling_resistance > size:
         raise InvalidInput(
             "rolling_resistance",
             problem.rolling_resistance,
-            f"from 0 to {_inside(size, -1.0)} on this body, within which the table presses",
+            f"a length from 0 to {_inside(size, -1.0)} m, the size of this body",
         )
 
 
@@ -302,7 +331,12 @@ def _out_of_reach(problem: Problem) -> InvalidInput:
     distance = {name: abs(math.log(abs(value))) for name, value in numbers.items()}
     worst = max(distance, key=lambda name: distance[name])
     others = sum(2 * other > distance[worst] for other in distance.values()) - 1
-    return InvalidInput(worst, numbers[worst], "a number whose square is a number too", others)
+    fault = (
+        "is too large to be computed with"
+        if abs(numbers[worst]) > 1.0
+        else "is too close to 0 to be computed with"
+    )
+    return InvalidInput(worst, numbers[worst], "a number nearer to 1", fault, others=others)
 
 
 def _inside(bound: float, side: float) -> str:

@@ -11,6 +11,9 @@ from xarray.indexes import Index, PandasIndex
 
 from tippetop.results.catalogue import LISTED, METRICS, MONITORS, SAMPLED, Variable
 from tippetop.support.errors import MISSING, InvalidInput
+from tippetop.support.lazy_pint import leave_pint_alone
+
+leave_pint_alone()
 
 NAMED = {
     name: PandasIndex(np.array(list(components)), name, coord_dtype=np.dtype("<U1"))

@@ -1,53 +1,88 @@
-"""What fields accept, in words."""
+"""What fields accept, in words, and the refusals of other values."""
 
+import inspect
 import math
 from collections.abc import Mapping
 from typing import Any, get_args, get_origin
 
+from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from tippetop.support.errors import one_of
+from tippetop.support.errors import MISSING, InvalidInput, short
+from tippetop.support.suggestions import not_one_of
+from tippetop.support.units import number_hint, written
 
 
-def accepted_by(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> str:
-    """What some fields, by their names, would accept instead, from the kind of validation error.
+def refusal_of(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> InvalidInput:
+    """Return the refusal of a value of one of some fields, by their names, from pydantic's.
 
-    Without the field of a number that is out of its range, these are the limits that the error has.
+    Without the field of a number that is out of its range, the limits are those that the error has.
     """
     place = [*map(str, detail["loc"]), ""]
+    field, value = ".".join(place[:-1]), detail["input"]
+    info = fields.get(place[0])
     match detail["type"]:
         case "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
-            return range_of(fields[place[0]]) if place[0] in fields else _ranged(detail["ctx"])
+            accepted = range_of(info) if info else _ranged(detail["ctx"])
+            return InvalidInput(field, value, accepted, hint=degrees_hint(value, accepted))
         case "finite_number" | "float_type" | "float_parsing":
-            return "a finite number"
-        case "int_parsing":
-            return "a whole number"
+            hint = number_hint(value) if isinstance(value, str) else ""
+            return InvalidInput(field, value, "a finite number", hint=hint)
+        case "int_parsing" | "int_type":
+            return InvalidInput(field, value, "a whole number")
+        case "missing" if len(detail["loc"]) > 1 and (count := count_of(info)):
+            return InvalidInput(place[0], value, f"{count} numbers")
         case "missing":
-            return "a value; it has no default"
-        case "extra_forbidden":
-            return "one of the keys " + one_of(place[-2], list(fields))
+            return InvalidInput(field, MISSING, _wanted(info))
         case "literal_error":
-            return str(detail["ctx"]["expected"])
-        case "tuple_type" | "too_long" if count := _length(fields.get(place[-2])):
-            return f"{count} numbers"
+            words = get_args(info.annotation) if info and len(place) == 2 else ()
+            if words:
+                return not_one_of(field, value, list(words))
+            return InvalidInput(field, value, str(detail["ctx"]["expected"]))
+        case "tuple_type" | "too_long" if count := count_of(fields.get(place[-2])):
+            return InvalidInput(field, value, f"{count} numbers")
         case "tuple_type" | "list_type":
-            return "a list"
+            return InvalidInput(field, value, "a list")
         case "too_short":
-            return f"at least {detail['ctx']['min_length']} of them"
+            return InvalidInput(field, value, f"at least {detail['ctx']['min_length']} of them")
         case "too_long":
-            return f"at most {detail['ctx']['max_length']} of them"
+            return InvalidInput(field, value, f"at most {detail['ctx']['max_length']} of them")
         case "model_type" | "model_attributes_type":
-            return "a table of its fields"
+            return InvalidInput(field, value, "a table of its fields")
         case _:
-            return detail["msg"][0].lower() + detail["msg"][1:]
+            return InvalidInput(field, value, detail["msg"][0].lower() + detail["msg"][1:])
 
 
-def _length(info: FieldInfo | None) -> int:
-    """How many numbers a field lists; 0 where that is not said."""
+def degrees_hint(value: Any, accepted: str) -> str:
+    """Return how an angle in degrees is written, for one that is too large in radians."""
+    angle = accepted.endswith("at most pi") and isinstance(value, float | int)
+    if angle and math.pi < value <= 180.0:
+        degrees = short(value)
+        return f'for {degrees} degrees write {math.radians(value):.4g}, or "{degrees} deg"'
+    return ""
+
+
+def _wanted(info: FieldInfo | None) -> str:
+    """What a field without a default takes, in words."""
+    kinds = (info.annotation, *get_args(info.annotation)) if info else ()
+    if any(inspect.isclass(kind) and issubclass(kind, BaseModel) for kind in kinds):
+        return "a table of its fields"
+    if any(get_origin(kind) is tuple for kind in kinds):
+        return f"{count_of(info)} numbers" if count_of(info) else "a list"
+    declared = [item.units for item in info.metadata if hasattr(item, "units")] if info else []
+    units = declared[0] if declared else ""
+    return f"a number in {written(units)}" if units not in ("", "1") else "a value"
+
+
+def count_of(info: FieldInfo | None) -> str:
+    """Return how many numbers a field lists, in words; "" where that is not said."""
     kinds = (info.annotation, *get_args(info.annotation)) if info else ()
     listed = [get_args(kind) for kind in kinds if get_origin(kind) is tuple]
-    return len(listed[0]) if listed and Ellipsis not in listed[0] else 0
+    if not info or not listed or Ellipsis in listed[0]:
+        return ""
+    least = [f"{item.least} or " for item in info.metadata if hasattr(item, "least")]
+    return f"{''.join(least)}{len(listed[0])}"
 
 
 def range_of(info: FieldInfo) -> str:

@@ -9,10 +9,9 @@ How a run ends is not an error: see `tippetop.contact.mode.Outcome`.
 """
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 from math import isfinite
 from numbers import Integral, Real
-from typing import TypeGuard
+from typing import NamedTuple, TypeGuard
 
 
 class _Missing:
@@ -23,6 +22,12 @@ class _Missing:
 
 MISSING = _Missing()
 """Stands for a value that was not given."""
+
+
+class Described(NamedTuple):
+    """A refused value that sentences describe instead of writing it out."""
+
+    description: str
 
 
 OVERWRITE, RESUME, OTHER_OUT = "overwrite=True", "resume=True", "another out"
@@ -40,7 +45,7 @@ class TippetopError(Exception):
     ...     tt.ViscousFriction(mu=-1.0)
     ... except tt.TippetopError as error:
     ...     print(error)
-    mu = -1 is not possible; accepted: a number at least 0
+    mu: -1 is not a number at least 0
     """
 
     def told(self, words: Mapping[str, str]) -> str:
@@ -52,18 +57,26 @@ class TippetopError(Exception):
 
 
 class InvalidInput(TippetopError, ValueError):
-    """A value that cannot be.
+    """A value that is refused, in a sentence with its field and what to write instead.
+
+    The sentence is "field: value is not what is accepted (hint)" or, with a fault of its own,
+    "field: value has this fault (write what is accepted)".
 
     Parameters
     ----------
     field
         Where the value stands, dotted: ``launch.tilt``.
     value
-        The value given.
+        The value given; a `Described` one is shown in its words.
     accepted
-        What would be accepted, as the end of the sentence "accepted: ...".
+        What is accepted, as the end of "is not ..." or "write ...".
+    fault
+        What is wrong with the value, as the end of "<field>: <value> ...", where "is not
+        <accepted>" does not say it.
+    hint
+        What to write instead, where that is more than what is accepted.
     others
-        How many more values of the same input cannot be.
+        How many more values of the same input are refused.
     file
         The file that the value is in; "" where it is in none.
 
@@ -73,36 +86,77 @@ class InvalidInput(TippetopError, ValueError):
     >>> try:
     ...     tt.Launch(tilt=4.0, spin=100.0)
     ... except tt.InvalidInput as error:
+    ...     print(error)
     ...     error.field, error.value, error.accepted
+    tilt: 4 is not a number at least 0 and at most pi (for 4 degrees write 0.06981, or "4 deg")
     ('tilt', 4.0, 'a number at least 0 and at most pi')
     """
 
     def __init__(
-        self, field: str, value: object, accepted: str, others: int = 0, file: str = ""
+        self,
+        field: str,
+        value: object,
+        accepted: str,
+        fault: str = "",
+        hint: str = "",
+        others: int = 0,
+        file: str = "",
     ) -> None:
+        name = field if field and field.isprintable() else repr(field)
+        head = f"{name} in {file}" if file else name
+        note = hint
+        if value is MISSING:
+            said = f"{head} is missing"
+        elif fault:
+            said = f"{head}: {short(value)} {fault}"
+        else:
+            said = f"{head}: {short(value)} is not {accepted}"
+        if not hint and accepted and (fault or value is MISSING):
+            note = f"write {accepted}"
+        noted = f" ({note})" if note else ""
         more = f" (and {others} more)" if others else ""
-        name = field if field.isprintable() else repr(field)
-        where = f" in {file}" if file else ""
-        fault = (
-            f"is missing{where}" if value is MISSING else f"= {short(value)}{where} is not possible"
-        )
-        super().__init__(f"{name} {fault}; accepted: {accepted}{more}")
+        super().__init__(f"{said}{noted}{more}")
         self.field = field
         self.value = value
         self.accepted = accepted
+        self.fault = fault
+        self.hint = hint
         self.others = others
         self.file = file
 
     def within(self, part: str, more: int = 0) -> "InvalidInput":
-        """The same of a field of a part, or of the part itself if it names none; more cannot be
+        """The same of a field of a part, or of the part itself if it names none; more are refused
         besides.
         """
         field = ".".join([name for name in (part, self.field) if name])
-        return InvalidInput(field, self.value, self.accepted, self.others + more, self.file)
+        return InvalidInput(
+            field,
+            self.value,
+            self.accepted,
+            self.fault,
+            self.hint,
+            self.others + more,
+            self.file,
+        )
+
+    # translate: skip
+    def in_file(self, file: str) -> "InvalidInput":
+        """The same of a value in a file."""
+        return InvalidInput(
+            self.field, self.value, self.accepted, self.fault, self.hint, self.others, file
+        )
 
     # translate: skip
     def __reduce__(self) -> tuple[type["InvalidInput"], tuple[object, ...]]:
-        return type(self), (self.field, self.value, self.accepted, self.others, self.file)
+        return type(self), (
+            self.field,
+            self.value,
+            self.accepted,
+            self.fault,
+            self.hint,
+            self.others,
+            self.file,
+        )
 
 
 # translate: skip
@@ -165,22 +219,24 @@ def short(value: object, limit: int = 60) -> str:
         text = f"({type(value).__name__}, nested too deep to be shown)"
     except ValueError:  # Python refuses to write down whole numbers of thousands of digits.
         text = f"({type(value).__name__}, too long to be shown)"
+    except Exception:  # noqa: BLE001 - an object's own repr may raise anything
+        text = f"({type(value).__name__}, which cannot be shown)"
     text = " ".join(text.split()) if "\n" in text else text
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 
+BEGINS_A_NUMBER = "0123456789+-.,"
+"""What numbers begin with."""
+
+
 # translate: skip
 def _typed(value: object) -> str:
+    if isinstance(value, Described):
+        return value.description
     if isinstance(value, list | tuple) and not hasattr(value, "_fields"):
         inner = ", ".join(map(_typed, value))
         return f"[{inner}]" if isinstance(value, list) else f"({inner})"
+    if isinstance(value, str) and value[:1] in BEGINS_A_NUMBER and value.isprintable() and value:
+        return value
     # What was refused may have been made a fraction on its way: a whole number is told as one.
     return repr(float(value) + 0.0).removesuffix(".0") if isinstance(value, float) else repr(value)
-
-
-# translate: skip
-def one_of(given: object, choices: list[str]) -> str:
-    """The choices as a phrase, with the likeliest meant one first when there is one."""
-    listing = ", ".join(choices)
-    close = get_close_matches(str(given), choices, n=1)
-    return f"{listing} (did you mean {close[0]}?)" if close else listing

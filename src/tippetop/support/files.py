@@ -150,12 +150,12 @@ def read_text(path: Path | str, accepted: str) -> str:
         content = file.read(LONGEST_TEXT + 1)
     if len(content) > LONGEST_TEXT:
         raise FileTrouble(
-            f"{named(path)} has more than {LONGEST_TEXT:,} bytes; accepted: {accepted}"
+            f"{named(path)} has more than {LONGEST_TEXT:,} bytes, and is not {accepted}"
         )
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise FileTrouble(f"{named(path)} is not a text file; accepted: {accepted}") from None
+        raise FileTrouble(f"{named(path)} is not a text file, and not {accepted}") from None
 
 
 @contextmanager
@@ -171,8 +171,7 @@ def made_of(path: Path | str, given: Container[str] = (), part: str = "") -> Ite
         elsewhere = part and not f"{error.field}.".startswith(f"{part}.")
         if error.file or elsewhere or error.field.partition(".")[0] in given:
             raise
-        file = named(Path(path).name)
-        raise InvalidInput(error.field, error.value, error.accepted, error.others, file) from None
+        raise error.in_file(named(Path(path).name)) from None
 
 
 def named(path: Path | str) -> str:

@@ -39,7 +39,9 @@ def _parsed(
         _refuse_depths(fields)
     except (ValueError, RecursionError) as error:
         told = _TOO_DEEP if isinstance(error, RecursionError) else error
-        raise InvalidInput(field, file or text.strip(), f"{language}; {told}") from None
+        raise InvalidInput(
+            field, file or text.strip(), "", f"is not {language}", str(told)
+        ) from None
     if not isinstance(fields, dict):
         raise InvalidInput(field, fields, f"a {language} object", file=file and named(file))
     return fields

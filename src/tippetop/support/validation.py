@@ -3,8 +3,18 @@
 # translate module: by hand in part.js
 
 import inspect
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, TypeAlias, get_args
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    ClassVar,
+    NamedTuple,
+    Self,
+    TypeAlias,
+    get_args,
+    get_origin,
+)
 
 import numpy as np
 from pydantic import (
@@ -19,15 +29,19 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from tippetop.support.accepted_values import accepted_by
+from tippetop.support.accepted_values import refusal_of
 from tippetop.support.errors import MISSING, InvalidInput, is_whole
 from tippetop.support.field_paths import part_at
+from tippetop.support.suggestions import not_one_of, unknown_field
+from tippetop.support.units import has_unit, in_si, number_hint
 
 
 def _no_word(value: Any) -> Any:
     """Refuse what Python would turn into a number although nobody would call it one."""
-    if isinstance(value, (bool, np.bool_, str, bytes)):
-        raise PydanticCustomError("float_type", "a finite number")
+    if isinstance(value, str):
+        raise InvalidInput("", value, "a number", hint=number_hint(value))
+    if isinstance(value, (bool, np.bool_, bytes)):
+        raise InvalidInput("", value, "a number")
     return value
 
 
@@ -84,6 +98,54 @@ class Quantity(NamedTuple):
     places: tuple[str, ...] = ()
     """What each number is, of a field of several."""
 
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Let the field take texts with a unit, and quantities, too."""
+        several = any(get_origin(kind) is tuple for kind in (source, *get_args(source)))
+        convert = self._each_in_si if several else self.in_si
+        return core_schema.no_info_before_validator_function(convert, handler(source))
+
+    def _each_in_si(self, value: Any) -> Any:
+        """A list with its numbers in SI; a text is no list."""
+        return value if isinstance(value, str) else self.in_si(value)
+
+    def in_si(self, value: Any) -> Any:
+        """Return a value of the field, or a list of them, with its numbers in SI."""
+        if isinstance(value, float | int):
+            return value
+        if isinstance(value, list | tuple):
+            numbers = [_placed(place, inner, self.in_si) for place, inner in enumerate(value)]
+            return numbers if isinstance(value, list) else tuple(numbers)
+        return in_si(value, self.units) if has_unit(value) else value
+
+
+class Padded(NamedTuple):
+    """Lets a field of several numbers leave out the last ones, which then are 0."""
+
+    least: int
+    """How many numbers there must be."""
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Add the zeros before the field is validated."""
+        inner = handler(source)
+        return core_schema.no_info_before_validator_function(self.padded, inner)
+
+    def padded(self, value: Any) -> Any:
+        """Return a list with a 0 for one number that is left out."""
+        short = isinstance(value, list | tuple) and len(value) == self.least
+        return (*value, 0.0) if short else value
+
+
+def _placed(place: int, value: Any, of: Callable[[Any], Any]) -> Any:
+    """What a function makes of a value of a list, whose place is named if it is refused."""
+    try:
+        return of(value)
+    except InvalidInput as error:
+        raise error.within(str(place)) from None
+
 
 class Part(BaseModel):
     """A frozen, validated piece of a problem.
@@ -93,6 +155,9 @@ class Part(BaseModel):
     InvalidInput
         If a field is missing, unknown, not finite or outside its range.
     """
+
+    places: ClassVar[dict[str, str]] = {}
+    """The full names of the fields of problems by their last names: ``{"spin": "launch.spin"}``."""
 
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True
@@ -106,15 +171,21 @@ class Part(BaseModel):
             """
             if values and cls.__init__ is Part.__init__:
                 raise InvalidInput(
-                    cls.__name__, values, f"its fields by name: {', '.join(_written(cls))}"
+                    cls.__name__,
+                    values,
+                    "",
+                    "are values without names",
+                    f"write its fields by name: {', '.join(_written(cls))}",
                 )
             return super().__new__(cls)
 
     def __init__(self, /, **fields: Any) -> None:
+        for name, value in fields.items():
+            _refuse_keys(name, value)
         try:
             super().__init__(**fields)
         except ValidationError as error:
-            raise _as_invalid_input(error, type(self)) from None
+            raise _as_invalid_input(error, type(self), fields) from None
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Copy with some fields replaced, and validated like any other."""
@@ -127,8 +198,10 @@ class Part(BaseModel):
             try:
                 super().__setattr__(name, value)
             except ValidationError:
-                accepted = "no change, but a copy: model_copy(update={...})"
-                raise InvalidInput(name, value, accepted) from None
+                hint = "make a copy with model_copy(update={...})"
+                raise InvalidInput(
+                    name, value, "", "cannot be set: parts are frozen", hint
+                ) from None
 
     def quantity(self, field: str) -> Quantity:
         """What a field measures, named with dots; without a unit if it was declared with none."""
@@ -170,13 +243,51 @@ def in_order(
     """
     names = list(names)
     if len(values) > len(names):
-        raise InvalidInput(part.__name__, values, f"at most these, in order: {', '.join(names)}")
+        raise InvalidInput(
+            part.__name__,
+            values,
+            "",
+            "are too many values",
+            f"write at most these, in order: {', '.join(names)}",
+        )
     ordered = dict(zip(names, values, strict=False))
     aliases = {info.alias: name for name, info in part.model_fields.items()}
     for name, value in fields.items():
         if aliases.get(name, name) in ordered:
-            raise InvalidInput(name, value, "a field once: in its place, or by its name")
+            raise InvalidInput(
+                name, value, "", "is given twice", "write it in its place, or by its name"
+            )
     return ordered | dict(fields)
+
+
+def _refuse_keys(field: str, value: object) -> None:
+    """Refuse a table whose keys are no names, which Python cannot take for fields."""
+    if isinstance(value, Mapping) and not all(isinstance(key, str) for key in value):
+        raise InvalidInput(field, value, "a table of fields by their names")
+
+
+def declared_fields(part: type[Part], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
+    """Yield the fields of a part and of all kinds of the parts in it, with their dotted names."""
+    for name, info in part.model_fields.items():
+        inner = [info.annotation, *get_args(info.annotation)]
+        parts = [one for one in inner if inspect.isclass(one) and issubclass(one, Part)]
+        yield f"{prefix}{name}", info
+        for one in parts:
+            kinds = one.kinds.values() if issubclass(one, Variant) else ()
+            for kind in (one, *kinds):
+                yield from declared_fields(kind, f"{prefix}{name}.")
+
+
+def declare_places(whole: type[Part]) -> dict[str, str]:
+    """Return the dotted names of the fields of a part, and of those in it, by their last names.
+
+    Refusals of unknown fields suggest them.
+    """
+    for name, _ in declared_fields(whole):
+        last = name.rpartition(".")[2]
+        if last != "kind":
+            Part.places.setdefault(last, name)
+    return Part.places
 
 
 class Variant(Part):
@@ -211,6 +322,11 @@ class Variant(Part):
         cls.kinds[info.default] = cls
 
     @classmethod
+    def kinds_with(cls, field: str) -> list[str]:
+        """The words of the kinds of the same part that have a field."""
+        return [word for word, kind in cls.kinds.items() if field in kind.model_fields]
+
+    @classmethod
     def fields_of(cls, kind: Any) -> set[str]:
         """The names of the fields of another kind of the same part; those of this one if there is
         none.
@@ -242,13 +358,14 @@ class _OfItsKind:
                 return value
             if not isinstance(value, Mapping):
                 raise PydanticCustomError("model_type", "a table of its fields")
+            _refuse_keys("", value)
             kind = value.get("kind", MISSING)
             if not inspect.isabstract(base) and (kind is MISSING or not base.kinds):
                 return base(**value)
             if kind is MISSING:
-                raise InvalidInput("kind", kind, "a kind of it")
+                raise InvalidInput("kind", kind, f"one of {', '.join(base.kinds)}")
             if not isinstance(kind, str) or kind not in base.kinds:
-                raise InvalidInput("kind", kind, ", ".join(map(repr, base.kinds)))
+                raise not_one_of("kind", kind, list(base.kinds))
             found = base.kinds[kind](**value)
             assert isinstance(found, base)
             return found
@@ -286,7 +403,9 @@ OF_ITS_KIND = _OfItsKind()
 ONE_OR_SEVERAL = _OfItsKind(several=True)
 
 
-def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
+def _as_invalid_input(
+    error: ValidationError, part: type[Part], fields: Mapping[str, Any]
+) -> InvalidInput:
     """Turn a validation error into the one sentence a user reads, about the most telling of its
     details.
     """
@@ -296,8 +415,13 @@ def _as_invalid_input(error: ValidationError, part: type[Part]) -> InvalidInput:
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InvalidInput):
         return cause.within("" if f"{cause.field}.".startswith(f"{field}.") else field, others)
-    value = MISSING if first["type"] == "missing" else first["input"]
-    return InvalidInput(field, value, accepted_by(first, _written(part)), others)
+    if first["type"] == "extra_forbidden":
+        kinds = part.kinds_with(field) if issubclass(part, Variant) else ()
+        refusal = unknown_field(field, first["input"], list(_written(part)), part.places, kinds)
+        return refusal.within("", others)
+    if has_unit(fields.get(field)):  # Its number in SI is refused, and shown as it was written.
+        first["input"] = fields[field]
+    return refusal_of(first, _written(part)).within("", others)
 
 
 def _written(part: type[Part]) -> dict[str, FieldInfo]:

@@ -5,6 +5,7 @@ An axis is written as a list of values or as a table ``{ from, to, count, spacin
 
 import math
 from collections.abc import Mapping
+from functools import cache
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -13,11 +14,16 @@ from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from tippetop.integrators.base import Array
-from tippetop.support.errors import InvalidInput
-from tippetop.support.validation import Number, Part, Whole, in_order
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.units import is_quantity
+from tippetop.support.validation import Number, Part, Quantity, Whole, declared_fields, in_order
 
 MOST_CELLS = 10**8
 """Cells a sweep may have."""
+
+NUMBERS = {"from", "to", "first", "last", "low", "high", "values", "numbers"}
+"""The fields of entries that are numbers of the field that is swept."""
 
 Flat = NDArray[np.int64]
 Count = Annotated[Whole, Field(ge=1, le=MOST_CELLS)]
@@ -33,6 +39,33 @@ def _no_word(value: Any) -> Any:
     return value
 
 
+@cache
+def units_of(field: str) -> tuple[str, ...]:
+    """Return the SI units that a field of problems may have, those of all kinds of its part."""
+    plain = ".".join(name for name in field.split(".") if not name.isdigit())
+    return tuple(
+        dict.fromkeys(
+            item.units
+            for name, info in declared_fields(Problem)
+            if name == plain
+            for item in info.metadata
+            if isinstance(item, Quantity)
+        )
+    )
+
+
+def in_si_of(field: str, value: Any) -> Any:
+    """Return a number, or a list of them, for a field in SI; what has no unit as it is."""
+    units = units_of(field)
+    for place, unit in enumerate(units):
+        try:
+            return Quantity(unit, field).in_si(value)
+        except InvalidInput:
+            if place == len(units) - 1:
+                raise
+    return value
+
+
 class Entry(Part):
     """A part of a grid: its fields may also be given in their order, and by the names they have in
     Python.
@@ -42,7 +75,12 @@ class Entry(Part):
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
         fields = in_order(type(self), type(self).model_fields, values, fields)
-        named = fields.get("field")
+        named: Any = fields.get("field")
+        for name in NUMBERS & fields.keys() if isinstance(named, str) else ():
+            try:
+                fields[name] = in_si_of(named, fields[name])
+            except InvalidInput as error:
+                raise error.within(f"{named}.{name}") from None
         try:
             super().__init__(**fields)
         except InvalidInput as error:
@@ -53,7 +91,11 @@ class Entry(Part):
         """The entry of a field, from the table of its others."""
         if "field" in table:
             raise InvalidInput(
-                f"{field}.field", table["field"], "no field: it is the name of the table"
+                f"{field}.field",
+                table["field"],
+                "",
+                "is the name of the table already",
+                "leave it out",
             )
         return cls(**{"field": field} | dict(table))
 
@@ -66,7 +108,9 @@ class Axis(Entry):
     @classmethod
     def of(cls, field: str, entry: Any) -> "Axis":
         """The axis that is written as a list, or an array, or a table."""
-        if isinstance(entry, list | tuple | range) or (
+        if is_quantity(entry) and np.ndim(entry.magnitude):
+            entry = {"values": in_si_of(field, entry)}
+        elif isinstance(entry, list | tuple | range) or (
             isinstance(entry, np.ndarray) and entry.ndim
         ):
             entry = {"values": tuple(entry)}
@@ -104,16 +148,22 @@ class Spaced(Axis):
     def _has_values(self) -> Self:
         given = f"{self.first:g} to {self.last:g}"
         if self.count > 1 and self.first == self.last:
-            raise InvalidInput("", given, "a first and a last value that differ")
+            raise InvalidInput(
+                "", Described(given), "", "gives one value many times", "write ends that differ"
+            )
         if self.spacing == "geometric" and not (
             self.first > 0 < self.last or self.first < 0 > self.last
         ):
-            raise InvalidInput("", given, "ends of one sign, neither 0, if geometric")
+            raise InvalidInput(
+                "", Described(given), "ends of one sign, neither 0", "cannot be in equal ratios"
+            )
         apart = self.last - self.first
         if self.spacing == "geometric":
             apart = max(self.last / self.first, self.first / self.last)
         if not math.isfinite(apart):
-            raise InvalidInput("", given, "ends that are no farther apart than a number can tell")
+            raise InvalidInput(
+                "", Described(given), "ends that are closer", "reaches too far for numbers"
+            )
         return self
 
     @property
@@ -144,7 +194,7 @@ class Listed(Axis):
     @model_validator(mode="after")
     def _differ(self) -> Self:
         if len(set(self.numbers)) < len(self.numbers):
-            raise InvalidInput("", list(self.numbers), "values that differ from one another")
+            raise InvalidInput("", list(self.numbers), "every value once", "has a value twice")
         return self
 
     @property

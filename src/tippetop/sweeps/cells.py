@@ -26,7 +26,8 @@ from tippetop.mechanics.view import axis_sine
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import Fault
-from tippetop.support.errors import InvalidInput, one_of
+from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.suggestions import unknown_field
 from tippetop.support.validation import Part
 from tippetop.sweeps.flights import slips
 from tippetop.sweeps.launch_arrays import Launches, Own, branched
@@ -84,12 +85,16 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     known = dict(numeric_fields(problem))
     for field in values:
         if field not in known:
-            raise InvalidInput("field", field, "one of " + one_of(field, list(known)))
+            raise unknown_field(field, Described("what is swept"), list(known), Part.places)
     if problem.launch.velocity is not None and any(
         field.startswith("launch.slip.") for field in values
     ):
         raise InvalidInput(
-            "field", "launch.slip", "no slip where launch.velocity is given, which determines it"
+            "launch.slip",
+            Described("what is swept"),
+            "",
+            "is determined by launch.velocity",
+            "leave out one",
         )
     count = len(next(iter(values.values())))
     filled = put(problem, values)

@@ -11,10 +11,10 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from tippetop.problem.problem import Problem
-from tippetop.support.errors import MISSING, InvalidInput
+from tippetop.support.errors import MISSING, Described, InvalidInput
 from tippetop.support.files import made_of, read_text
 from tippetop.support.parsing import parse_toml
-from tippetop.support.validation import Number, Part, Positive, in_order
+from tippetop.support.validation import Number, Part, Positive, Quantity, in_order
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.grid import Draws, Product
 from tippetop.sweeps.launch_samples import LaunchSamples
@@ -54,11 +54,15 @@ class Sweep(Part):
     draws: Draws | None = None
     samples: LaunchSamples | None = None
     """The cells: `Product` of axes, `Draws` or `LaunchSamples`."""
-    duration: Positive = 20.0
+    duration: Annotated[Positive, Quantity("s", "length of every run")] = 20.0
     """Length of every run, s."""
     tolerance: Annotated[Number, Field(ge=LEAST_TOLERANCE, le=1e-3)] = DEFAULT_TOLERANCE
     """Relative error per step."""
-    settled: Annotated[Number | None, Field(ge=SETTLED_RANGE[0], le=SETTLED_RANGE[1])] = None
+    settled: Annotated[
+        Number | None,
+        Field(ge=SETTLED_RANGE[0], le=SETTLED_RANGE[1]),
+        Quantity("rad", "tilt that a settled run keeps within"),
+    ] = None
     """A run ends once its energy holds the tilt within this for good, rad (see
     `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration.
     """
@@ -79,8 +83,9 @@ class Sweep(Part):
     def _can_be_computed(self) -> Self:
         chosen = [name for name in GRIDS if getattr(self, name) is not None]
         if len(chosen) != 1:
-            given = " and ".join(chosen) or MISSING
-            raise InvalidInput(", ".join(GRIDS), given, "one of them")
+            given = Described(" and ".join(chosen)) if chosen else MISSING
+            fault = "are given together" if chosen else ""
+            raise InvalidInput(", ".join(GRIDS), given, "one of them", fault)
         if self.settled is not None:
             require_jellett(self.problem.top)
         with _only_refusals():

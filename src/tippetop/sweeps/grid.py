@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, field_serializer, model_serializer, model_validator
 
 from tippetop.integrators.base import Array
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.parsing import DEEPEST
 from tippetop.support.validation import Number, Whole
 from tippetop.sweeps.axes import MOST_CELLS, Axis, Count, Entry, between
@@ -42,7 +42,10 @@ class Product(Entry):
         check_fields("axes", self.dimensions)
         if math.prod(self.shape) > MOST_CELLS:
             raise InvalidInput(
-                "axes", " x ".join(map(str, self.shape)), f"at most {MOST_CELLS} cells"
+                "axes",
+                Described(" x ".join(map(str, self.shape)) + " cells"),
+                f"at most {MOST_CELLS:,}",
+                "are too many",
             )
         return self
 
@@ -106,7 +109,10 @@ class Range(Entry):
         given, logarithmic = f"{self.low:g} to {self.high:g}", self.law == "log-uniform"
         if self.low > self.high or (logarithmic and self.low <= 0):
             raise InvalidInput(
-                "", given, "a low end and no lower high one" + ", both above 0" * logarithmic
+                "",
+                Described(given),
+                "a low and a higher end" + ", both above 0" * logarithmic,
+                "is no range",
             )
         return self
 
@@ -114,7 +120,7 @@ class Range(Entry):
     def of(cls, field: str, entry: Any) -> "Range":
         """The range of a field that is written as a table."""
         if not isinstance(entry, Mapping):
-            raise InvalidInput(field, entry, "{ from, to, law }")
+            raise InvalidInput(field, entry, "a table { from, to, law }")
         return cls.written(field, entry)
 
 
@@ -196,7 +202,7 @@ def shares_of(seed: int, place: int, first: int, last: int) -> Array:
 def check_fields(name: str, fields: Sequence[str]) -> None:
     """Raise `InvalidInput` unless there are fields, and none of them twice."""
     if not fields or len(set(fields)) < len(fields):
-        raise InvalidInput(name, ", ".join(fields), "at least one field, and none of them twice")
+        raise InvalidInput(name, list(fields), "at least one field, and none of them twice")
 
 
 def _table(entries: Iterable[Axis | Range]) -> dict[str, Any]:
@@ -226,12 +232,12 @@ def _flattened(name: str, table: Mapping[str, Any], prefix: str = "") -> Iterato
     for key, value in table.items():
         field = f"{prefix}{key}"
         if "" in field.split("."):
-            raise InvalidInput(
-                name, field, "names with single dots between them, such as launch.spin"
-            )
+            raise InvalidInput(name, field, "a name with single dots, such as launch.spin")
         if isinstance(value, Mapping) and not ENTRIES & set(value):
             if field.count(".") >= DEEPEST:
-                raise InvalidInput(name, value, f"tables nested at most {DEEPEST} deep")
+                raise InvalidInput(
+                    name, value, f"at most {DEEPEST} tables deep", "is nested too deep"
+                )
             yield from _flattened(name, value, f"{field}.")
         else:
             yield field, value

@@ -208,10 +208,12 @@ def sweep(
     for field, asked in {"overwrite": overwrite, "resume": resume}.items():
         require(field, asked, bool, "True or False")
         if asked and out is None:
-            raise InvalidInput(field, asked, "False, unless out says where the sweep is kept")
+            raise InvalidInput(
+                field, asked, "False", "needs out, which says where the sweep is kept"
+            )
     if overwrite and resume:
         raise InvalidInput(
-            "overwrite", overwrite, "False with resume=True, which keeps what is there"
+            "overwrite", overwrite, "False", "stands beside resume=True, which keeps what is there"
         )
     if doubt := implausible_cells(chosen):
         warn(doubt)

@@ -134,8 +134,9 @@ def _modules(sweep: Sweep, workers: int | None, scheduler: str | Cluster | None)
         raise InvalidInput(
             "workers" if scheduler is None else "scheduler",
             workers if scheduler is None else scheduler,
-            "this process alone, with workers = 1: the problem has parts that the script itself"
-            " defines, and that other processes can import only from a module",
+            "1",
+            "asks for other processes, which cannot import the parts that the script defines",
+            "write workers=1, or define them in a module",
         )
     return tuple(sorted(modules))
 
@@ -236,9 +237,12 @@ def _cluster(address: str) -> Iterator[Cluster]:
             client: Any = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
         except (OSError, TypeError, ValueError) as error:
             raise InvalidInput(
-                "scheduler", address, f"the address of a running scheduler ({error})"
+                "scheduler",
+                address,
+                "the address of a running scheduler",
+                f"does not answer ({error})",
             ) from None
         with client:
             if not _workers(client):
-                raise InvalidInput("scheduler", address, "a scheduler that has workers")
+                raise InvalidInput("scheduler", address, "", "has no workers", "start some")
             yield Cluster(address, client)

@@ -23,7 +23,7 @@ from tippetop.mechanics.roots import crossing, dip
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
 from tippetop.problem.problem import Problem
-from tippetop.support.errors import InvalidInput, is_number, is_whole
+from tippetop.support.errors import Described, InvalidInput, is_number, is_whole
 from tippetop.theory.nutation import numbers_of
 from tippetop.theory.nutation_decay import Goals, Nutation, Stage, follow_nutation, launched
 from tippetop.theory.prediction import stable_by_energy
@@ -75,7 +75,7 @@ def averaged_flow(
     the error of the logarithms of the amplitudes in a step.
 
     Raises `InvalidInput` if the body is no eccentric sphere, its friction is not viscous, the
-    launch is exactly vertical, or a setting is not possible.
+    launch is exactly vertical, or a setting is refused.
     """
     if not is_whole(samples) or samples < 2:
         raise InvalidInput("samples", samples, "a whole number, at least 2")
@@ -100,15 +100,17 @@ def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
     numbers = numbers_of(top)
     if numbers.alpha == 0.0:
         raise InvalidInput(
-            "body.shape", "a centred sphere", "an eccentric one: no other nutates by its weight"
+            "body.shape",
+            Described("a centred sphere"),
+            "an eccentric one: no other nutates by its weight",
         )
     if not isinstance(top.friction, ViscousLaw):
         raise InvalidInput(
-            "friction", "one that is not viscous", "viscous friction; no other slip averages out"
+            "friction", Described("this law"), "viscous friction; no other slip averages out"
         )
     if problem.launch.tilt in (0.0, math.pi) and problem.launch.tilt_rate == 0.0:
         raise InvalidInput(
-            "launch.tilt", problem.launch.tilt, "a tilted launch: a vertical spin is steady"
+            "launch.tilt", problem.launch.tilt, "another", "makes a vertical spin, which is steady"
         )
     jellett = jellett_of_launch(problem)
     stable = [state.tilt for state in stable_by_energy(steady_states(top, jellett))]
@@ -157,7 +159,7 @@ def _no_end(problem: Problem, stages: list[Stage]) -> InvalidInput:
     """The refusal of a launch whose slow flow is not followed to its end."""
     if stages[0].begin.grazes:
         other = (
-            "one further from the unstable vertical: here rounding decides how the nutation begins"
+            "far enough from the unstable vertical: here rounding decides how the nutation begins"
         )
         return InvalidInput("launch.tilt", problem.launch.tilt, other)
     pulled = stages[-1].pulled
@@ -166,7 +168,7 @@ def _no_end(problem: Problem, stages: list[Stage]) -> InvalidInput:
         if pulled
         else "one whose nutation is not seen to die away"
     )
-    return InvalidInput("launch", launch, "one whose nutation dies away without a pull")
+    return InvalidInput("launch", Described(launch), "one whose nutation dies away without a pull")
 
 
 def _first_near(stage: Stage, final: float, distance: float) -> float | None:

@@ -19,7 +19,7 @@ from tippetop.mechanics.motion import angular_velocity, contact
 from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.top import Top
 from tippetop.problem.problem import Problem, require_problem
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 from tippetop.theory.requirements import require_creep, require_sphere
 from tippetop.theory.stability import drilling, spectrum
 from tippetop.theory.steady import (
@@ -94,7 +94,7 @@ def time_to_stand(steady: SteadyState[float], top: Top) -> float:
         raise InvalidInput("kind", steady.kind.value, "a vertical spin")
     if not (top.friction.torque_free or is_set_valued(top.friction)):
         raise InvalidInput(
-            "friction", "one whose torque changes", "Contensou friction, or one without torque"
+            "friction", Described("this law"), "Contensou friction, or one without torque"
         )
     if not spectrum(steady, top).stable:
         return 0.0

@@ -23,7 +23,7 @@ from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 from tippetop.theory.requirements import require_creep, require_jellett
 from tippetop.theory.series_roots import roots_between
 from tippetop.theory.steady import (
@@ -124,7 +124,7 @@ def _on_one_of_several(problem: Problem, hull: Hull) -> Prediction:
     for tilt, number in ends.items():
         needed = float(least_energy(tilt, found.jellett, alone.top, math))
         if needed <= available:
-            shown = f"one whose surface {number} can touch, at a tilt of {tilt:.4g} rad"
+            shown = Described(f"one whose surface {number} can touch, at a tilt of {tilt:.4g} rad")
             accepted = (
                 f"one surface, or a launch of less than the {needed:.4g} J that this takes; it has"
                 f" {available:.4g} J, with which the whole motion decides whether that surface"

@@ -3,14 +3,17 @@
 from tippetop.mechanics.hull import Hull, is_edge
 from tippetop.mechanics.rolling import is_set_valued, slip_length
 from tippetop.mechanics.top import Top
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 
 
 def require_one_surface(top: Top) -> None:
     """Refuse a body of several surfaces, with `InvalidInput`."""
     if isinstance(top.surface, Hull):
         raise InvalidInput(
-            "body.shape", "several surfaces", "one of them at a time, for the theory to tell"
+            "body.shape",
+            Described("of several surfaces"),
+            "one of them at a time",
+            "is beyond the theory",
         )
 
 
@@ -19,7 +22,9 @@ def require_sphere(top: Top) -> None:
     require_one_surface(top)
     if not top.surface.spherical:
         raise InvalidInput(
-            "body.shape", "no sphere", "an eccentric sphere; Jellett's integral holds for no other"
+            "body.shape",
+            Described("this one"),
+            "an eccentric sphere; Jellett's integral holds for no other",
         )
 
 
@@ -34,8 +39,8 @@ def require_jellett(top: Top) -> None:
     if not top.conserves_jellett:
         raise InvalidInput(
             "friction",
-            "one with a torque",
-            "friction without torque, which conserves Jellett's integral",
+            Described("this law"),
+            "one without torque, which conserves Jellett's integral",
         )
 
 
@@ -52,7 +57,7 @@ def require_creep(top: Top) -> None:
     if is_edge(top.surface):
         raise InvalidInput(
             "body.shape",
-            "one that lies flat",
+            Described("this one"),
             "a shape that touches in one point when its axis is vertical",
         )
     if top.rolling_resistance is not None:
@@ -63,7 +68,7 @@ def require_creep(top: Top) -> None:
     if sticks(top):
         raise InvalidInput(
             "friction",
-            "dry friction of a point",
+            Described("dry friction of a point"),
             "viscous, regularized or Contensou friction, by which slip never ends while the top"
             " spins; on this one it sticks, and may roll for ever in a state that is not stable",
         )

@@ -34,7 +34,7 @@ from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 from tippetop.theory.derivatives import derivative, jacobian
 from tippetop.theory.requirements import creeps, require_creep
 from tippetop.theory.steady import (
@@ -204,8 +204,8 @@ def _linear(
     if kind not in VERTICAL_SPINS and not top.friction.torque_free:
         raise InvalidInput(
             "friction",
-            "one with a torque",
-            "friction without torque; no precession is steady under it",
+            Described("this law"),
+            "one without torque; no precession is steady under it",
         )
     scaled = natural(drilling(top, spin))
     angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))

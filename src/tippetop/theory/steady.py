@@ -205,7 +205,7 @@ def jellett_of_launch(problem: Problem) -> float:
         rate = getattr(problem.launch, name)
         if abs(rate) > fastest:
             raise InvalidInput(
-                f"launch.{name}", rate, f"at most {fastest:.3g} rad/s, for the theory to tell"
+                f"launch.{name}", rate, f"at most {fastest:.3g} rad/s", "is too fast for the theory"
             )
     return float(jellett(problem.start(), problem.top))
 

@@ -6,7 +6,7 @@ from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector, dot
 from tippetop.problem.bodies import Body
-from tippetop.support.errors import InvalidInput, is_number, is_whole, require
+from tippetop.support.errors import Described, InvalidInput, is_number, is_whole, require
 from tippetop.theory.steady import SteadyKind
 from tippetop.theory.thresholds import critical_jellett
 
@@ -57,7 +57,9 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
     if not (is_number(gravity) and gravity > 0.0):
         raise InvalidInput("gravity", gravity, "a number greater than 0")
     if len(body.shapes) == 1 and surface:
-        raise InvalidInput("body.shape", "one surface", "several, of which one is the stem's tip")
+        raise InvalidInput(
+            "body.shape", Described("one surface"), "several, of which one is the stem's tip"
+        )
     if not is_whole(surface) or surface not in range(len(body.shapes)):
         raise InvalidInput("surface", surface, f"a whole number from 0 to {len(body.shapes) - 1}")
     tip = body.shapes[surface].surface

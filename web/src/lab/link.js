@@ -1,6 +1,6 @@
 // The link is the document: launch, time, view, units, curves and pins, after the # of the page's address.
 
-import { changed, differences, FIRST, fields } from "./setup.js";
+import { changed, differences, FIRST, fields, inSi } from "./setup.js";
 import { CHOICES, FIRST as FIRST_UNITS } from "./units.js";
 
 // Longer than any profile that a body may have; addresses may be as long.
@@ -38,7 +38,7 @@ export function readLaunch(query) {
   let setup = FIRST;
   if (typeof kind === "string") setup = changed(setup, { "friction.kind": kind });
   if (shape && typeof shape === "object") setup = changed(setup, { "body.shape": shape });
-  return changed(setup, rest);
+  return inSi(changed(setup, rest));
 }
 
 function parsed(text) {

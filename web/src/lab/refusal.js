@@ -14,12 +14,17 @@ export function refusal(error, { units, setup }) {
   const { name } = part(`quantities.${field}`);
   if (error.missing) return { field: null, sentence: t("controls.missing", { name }) };
   const scale = scaleOf(dial, setup);
+  const accepted = acceptedText(error.accepted, dial, scale, units);
+  const { fault, hint } = error;
   const gaps = {
     name,
     value: valueText(error.value, kindOf(dial, setup), scale, units),
-    accepted: acceptedText(error.accepted, dial, scale, units),
+    accepted,
+    fault: translated(fault ?? ""),
   };
-  return { field, sentence: t("controls.refused", gaps) };
+  const sentence = t(fault ? "controls.refusedFor" : "controls.refused", gaps);
+  const note = translated(hint || (fault && accepted ? `write ${accepted}` : ""));
+  return { field, sentence: `${sentence}${note && ` (${note})`}.` };
 }
 
 // The dial of a field, which the engine names with or without its table.

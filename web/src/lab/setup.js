@@ -1,6 +1,7 @@
 // A launch as the page knows it: a problem, as plain data, and how long to follow it, s.
 
-import { PRESETS } from "engine-tables";
+import { PRESETS, SCHEMA } from "engine-tables";
+import { NoNumber, inSi as numberInSi } from "engine-units";
 
 export const FIRST = { problem: PRESETS.problems.report, duration: 20 };
 
@@ -48,6 +49,34 @@ function setField(problem, field, value) {
     table = table[name];
   }
   table[last] = value;
+}
+
+// A copy with texts such as "2200 rpm" as numbers in SI. What is none stays, and is refused when it is to be followed.
+export function inSi({ problem, duration }) {
+  return { problem: partInSi(problem, "Problem"), duration: numberOf(duration, "s") };
+}
+
+function partInSi(value, ...titles) {
+  if (Array.isArray(value)) return value.map((one) => partInSi(one, ...titles));
+  if (value === null || typeof value !== "object") return value;
+  const title = titles.find((one) => SCHEMA[one].fields.kind?.default === value.kind) ?? titles[0];
+  const inside = ([name, inner]) => {
+    const field = Object.hasOwn(SCHEMA[title].fields, name) ? SCHEMA[title].fields[name] : {};
+    if (field.parts) return [name, partInSi(inner, ...field.parts)];
+    return [name, numberOf(inner, field.units)];
+  };
+  return Object.fromEntries(Object.entries(value).map(inside));
+}
+
+function numberOf(value, units) {
+  if (Array.isArray(value)) return value.map((one) => numberOf(one, units));
+  if (typeof value !== "string" || units === undefined) return value;
+  try {
+    return numberInSi(value, units);
+  } catch (error) {
+    if (error instanceof NoNumber) return value;
+    throw error;
+  }
 }
 
 export function same(one, other) {

@@ -47,7 +47,7 @@ self.onmessage = ({ data }) => {
     const answer = JOBS[job](data);
     postMessage({ id, answer }, answer?.track ? buffersOf(answer.track) : []);
   } catch (error) {
-    const { field, value, accepted, message } = error;
+    const { field, value, accepted, fault, hint, message } = error;
     postMessage({
       id,
       error: {
@@ -55,6 +55,8 @@ self.onmessage = ({ data }) => {
         missing: value === MISSING,
         value,
         accepted,
+        fault,
+        hint,
         message: message ?? String(error),
       },
     });

@@ -1,0 +1,345 @@
+"""Numbers with units, such as "2200 rpm", and quantities of pint, in SI.
+
+A unit is a product of names with whole powers: "kg m^2", "kg*m**2", "rev/min", "rad s-1". Pint says
+what the names are; it is imported when the first unit is read. The page reads the same units from a
+table that pint made (`tippetop.page_engine.tables`).
+"""
+
+# translate module: skip
+
+import math
+import re
+from difflib import get_close_matches
+from functools import cache
+from typing import Any, NamedTuple
+
+from tippetop.support.errors import Described, InvalidInput, is_number, short
+
+DIGITS = r"(?:\d+\.?\d*|\.\d+)"
+NUMBER = re.compile(rf"\s*([+-]?{DIGITS}(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+FACTOR = re.compile(
+    r"\s*(?:(/|per(?![^\W\d]))|[*·⋅×]?)\s*([^\W\d_][^\W\d]*|°|%)\s*(?:(?:\^|\*\*)\s*)?([+-]?\d+|⁻?[¹²³])?"
+)
+SUPERSCRIPTS = {"¹": "1", "²": "2", "³": "3", "⁻": "-"}
+
+BASES = {"meter": 0, "kilogram": 1, "second": 2, "radian": 3}
+"""The base units, by the names that pint gives them, and their places in exponents."""
+
+MORE_NAMES = (
+    *("turn = rev = revs = rotation = rotations", "revolutions_per_minute = RPM"),
+    *("kilogram = Kg = KG", "degree = degs"),
+)
+"""Names that people write and pint does not have: "name = other names"."""
+
+
+class Unit(NamedTuple):
+    """A unit in SI: numbers in it times `over` over `under` are in SI.
+
+    An exact decimal unit, such as the millimetre, divides by a whole number: 14.1 mm is 0.0141 m.
+    """
+
+    over: float
+    under: float
+    exponents: tuple[int, ...]
+    """Powers of metre, kilogram, second and radian."""
+
+
+PLAIN = Unit(1.0, 1.0, (0, 0, 0, 0))
+"""The unit of plain numbers."""
+
+
+class Kind(NamedTuple):
+    """A kind of quantity, in words."""
+
+    name: str
+    examples: str
+    """Units that it is written in."""
+
+
+KINDS = {
+    "1": Kind("a pure number", "without a unit"),
+    "m": Kind("a length", "in m, cm, mm or in"),
+    "kg": Kind("a mass", "in kg or g"),
+    "s": Kind("a time", "in s, ms or min"),
+    "rad": Kind("an angle", "in rad or deg"),
+    "rad s-1": Kind("an angular velocity", "in rad/s, rpm or rev/s"),
+    "m s-1": Kind("a velocity", "in m/s, cm/s or mm/s"),
+    "m s-2": Kind("an acceleration", "in m/s^2"),
+    "kg m2": Kind("a moment of inertia", "in kg m^2 or g cm^2"),
+    "kg m-3": Kind("a density", "in kg/m^3 or g/cm^3"),
+    "s m-1": Kind("a viscous friction coefficient", "in s/m"),
+    "s-1": Kind("a frequency", "in 1/s"),
+    "N": Kind("a force", "in N"),
+    "J": Kind("an energy", "in J"),
+    "m2": Kind("an area", "in m^2"),
+    "m3": Kind("a volume", "in m^3"),
+}
+"""Kinds of quantities by their SI units."""
+
+COMMON = (
+    *(
+        "m",
+        "cm",
+        "mm",
+        "um",
+        "in",
+        "inch",
+        "ft",
+        "kg",
+        "g",
+        "mg",
+        "lb",
+        "oz",
+        "s",
+        "ms",
+        "min",
+        "h",
+    ),
+    *("rad", "mrad", "deg", "turn", "rev", "rpm", "rps", "N", "J", "Hz"),
+)
+"""Names of units that a misspelt one is compared with."""
+
+
+def has_unit(value: object) -> bool:
+    """Whether a value is a text, which may have a unit, or a quantity, such as pint's."""
+    if isinstance(value, float | int):
+        return False
+    return isinstance(value, str) or is_quantity(value)
+
+
+def is_quantity(value: object) -> bool:
+    """Whether a value has a magnitude and units, and can be converted to others, as pint's can."""
+    try:
+        return all(hasattr(value, name) for name in ("magnitude", "units")) and callable(
+            getattr(value, "to", None)
+        )
+    except Exception:  # noqa: BLE001 - attributes of foreign objects may raise anything
+        return False
+
+
+def in_si(value: Any, units: str) -> Any:
+    """Return a number in an SI unit from a text with a number and a unit, or from a quantity.
+
+    The magnitude of a quantity may be an array; then a list is returned. Raises `InvalidInput`,
+    which names no field, for what is no number, has no unit, or one of another dimension.
+    """
+    if isinstance(value, str):
+        number, text = _number_and_unit(value, units)
+        return converted(number, unit_of(text, value, units))
+    text = "" if str(value.units) == "dimensionless" else str(value.units)
+    magnitude = value.magnitude
+    try:
+        shown = Described(f"{magnitude} {text}")
+        unit = unit_of(text, shown, units) if text else PLAIN
+    except InvalidInput as error:
+        if error.fault != UNKNOWN_UNIT:
+            raise
+        magnitude, unit = _converted_by_itself(value, error, units), PLAIN
+    numbers = getattr(magnitude, "tolist", lambda: magnitude)()
+    if isinstance(numbers, list | tuple):
+        return [converted(number, unit) for number in numbers]
+    return converted(numbers, unit)
+
+
+def number_in(field: str, value: Any, units: str) -> Any:
+    """Return a field's number in an SI unit from a text or a quantity; others as they are."""
+    if not has_unit(value):
+        return value
+    try:
+        return in_si(value, units)
+    except InvalidInput as error:
+        raise error.within(field) from None
+
+
+def converted(number: Any, unit: Unit) -> Any:
+    """Return a number of a unit in SI; what is no number as it is."""
+    return number * unit.over / unit.under if is_number(number) else number
+
+
+UNKNOWN_UNIT = "has an unknown unit"
+
+
+def unit_of(text: str, value: object, units: str) -> Unit:
+    """Return a unit by its text, which must measure the same as an SI unit.
+
+    Raises `InvalidInput` about the value otherwise.
+    """
+    wanted = KINDS.get(units, Kind(f"a quantity in {units}", f"in {written(units)}"))
+    factors = factors_of(text)
+    known = [(name, named_unit(name), power) for name, power in factors or ()]
+    strange = next((name for name, unit, _ in known if unit is None), None)
+    if not factors or strange is not None:
+        near = [
+            name
+            for name in get_close_matches(strange or "", COMMON, 3, 0.5)
+            if len(factors or ()) > 1 or exponents_of(units) == _exponents_of_name(name)
+        ]
+        hint = f"write it {wanted.examples}"
+        if near and strange:
+            hint = f"did you mean {near[0]}? {hint[0].upper()}{hint[1:]}"
+        raise InvalidInput("", value, wanted.name, UNKNOWN_UNIT, hint)
+    unit = product([(unit, power) for _, unit, power in known if unit is not None])
+    asked = exponents_of(units)
+    if unit.exponents == asked:
+        return unit
+    if asked == exponents_of("rad s-1") and unit.exponents == exponents_of("s-1"):
+        number = NUMBER.match(value if isinstance(value, str) else short(value))
+        hint = "write it in rev/s for turns, or in rad/s"
+        if number and unit.over == unit.under:
+            hint = f"write {number[1]} rev/s for turns, or {number[1]} rad/s"
+        raise InvalidInput("", value, wanted.name, "is a frequency, not an angular velocity", hint)
+    kind = next(
+        (kind.name for si, kind in KINDS.items() if exponents_of(si) == unit.exponents),
+        "another quantity",
+    )
+    fault = f"is {kind}, not {wanted.name}"
+    raise InvalidInput("", value, wanted.name, fault, f"write it {wanted.examples}")
+
+
+def factors_of(text: str) -> list[tuple[str, int]] | None:
+    """Return the names of units in a product, with their powers; None where there are none such."""
+    text = re.sub(r"^1\s*(?=/)", "", text)
+    found, place = [], 0
+    while place < len(text):
+        match = FACTOR.match(text, place)
+        if match is None:
+            return None
+        over, name, power = match.groups()
+        for mark, digit in SUPERSCRIPTS.items():
+            power = power and power.replace(mark, digit)
+        found.append((name, (-1 if over else 1) * int(power or "1")))
+        if abs(found[-1][1]) > MOST_POWER:
+            return None
+        place = match.end()
+    return found
+
+
+def product(factors: list[tuple[Unit, int]]) -> Unit:
+    """Return the product of powers of units."""
+    over, under, exponents = 1.0, 1.0, [0, 0, 0, 0]
+    for unit, power in factors:
+        for _ in range(abs(power)):
+            over *= unit.over if power > 0 else unit.under
+            under *= unit.under if power > 0 else unit.over
+        for place, own in enumerate(unit.exponents):
+            exponents[place] += power * own
+    return Unit(over, under, tuple(exponents))
+
+
+MOST_POWER = 9
+"""Largest power of a unit in a product: no quantity has a larger one."""
+
+
+@cache
+def exponents_of(units: str) -> tuple[int, ...]:
+    """Return the powers of metre, kilogram, second and radian in an SI unit such as "kg m2"."""
+    found = [0, 0, 0, 0]
+    for name, power in factors_of(units) or ():
+        for place, own in enumerate(_SI_EXPONENTS[name]):
+            found[place] += power * own
+    return tuple(found)
+
+
+_SI_EXPONENTS = {
+    "m": (1, 0, 0, 0),
+    "kg": (0, 1, 0, 0),
+    "s": (0, 0, 1, 0),
+    "rad": (0, 0, 0, 1),
+    "N": (1, 1, -2, 0),
+    "J": (2, 1, -2, 0),
+}
+
+
+@cache
+def named_unit(name: str) -> Unit | None:
+    """Return the unit of a name as pint has it; None where it has none that mechanics uses."""
+    try:
+        quantity = registry().Quantity(1.0, registry().parse_units(name)).to_base_units()
+        powers = dict(quantity.unit_items())
+    except Exception:  # noqa: BLE001 - pint raises what its parser does, of any text
+        return None
+    exponents = [0, 0, 0, 0]
+    for unit, power in powers.items():
+        if unit not in BASES or not float(power).is_integer():
+            return None
+        exponents[BASES[unit]] = int(power)
+    over, under = float(quantity.magnitude), 1.0
+    inverse = round(1.0 / over) if 0.0 < over < 1.0 else 1
+    if inverse > 1 and math.isclose(over * inverse, 1.0, rel_tol=1e-14):
+        over, under = 1.0, float(inverse)
+    return Unit(over, under, tuple(exponents))
+
+
+@cache
+def registry() -> Any:
+    """Return pint's units, with the names that people write besides."""
+    import pint  # noqa: PLC0415 - slow to import
+
+    units: Any = pint.UnitRegistry()
+    for names in MORE_NAMES:
+        units.define(f"@alias {names}")
+    return units
+
+
+def _exponents_of_name(name: str) -> tuple[int, ...] | None:
+    unit = named_unit(name)
+    return unit.exponents if unit else None
+
+
+def written(units: str) -> str:
+    """Return an SI unit as people write it: "rad/s" for "rad s-1"."""
+    over, under = list[str](), list[str]()
+    for name, power in factors_of(units) or ():
+        (over if power > 0 else under).append(name + (f"^{abs(power)}" if abs(power) > 1 else ""))
+    return "/".join([" ".join(over) or "1", *under])
+
+
+def _converted_by_itself(value: Any, refusal: InvalidInput, units: str) -> Any:
+    """The magnitude of a quantity whose units only it knows, such as one of another registry."""
+    try:
+        return value.to("" if units == "1" else written(units)).magnitude
+    except Exception:  # noqa: BLE001 - foreign quantities raise errors of their own
+        raise refusal from None
+
+
+def _number_and_unit(text: str, units: str) -> tuple[float, str]:
+    """A text's number and unit; raises `InvalidInput` where it does not have both."""
+    match = NUMBER.fullmatch(text)
+    if match is None or not match[2] or not _begins_a_unit(match[2]):
+        raise InvalidInput("", text, "a number", hint=number_hint(text, units))
+    return float(match[1]), match[2]
+
+
+def _begins_a_unit(text: str) -> bool:
+    """Whether what follows a number may be a unit: nothing that begins with a digit but "1/s"."""
+    if re.match(r"1\s*/", text):
+        return True
+    return not re.match(r"[0-9,.'_:]|/\s*\d|[*·]?\s*(pi|π)(?![^\W\d])", text)
+
+
+def number_hint(text: str, units: str = "") -> str:
+    """Return what to write instead of a text that is no number; "" where nobody knows."""
+    text = text.strip()
+    shown = "" if units in ("", "1") else f' or with its unit, "{text} {written(units)}"'
+    if re.fullmatch(rf"[+-]?{DIGITS}(?:[eE][+-]?\d+)?", text):
+        return f"write {text} without quotes{',' * bool(shown)}{shown}"
+    if match := re.fullmatch(r"([+-]?)(\d[\d.,' _]*)(?<![ ])(.*)", text):
+        sign, number, rest = match.groups()
+        plain = re.sub(r"[' _]", "", number)
+        if plain.endswith((",", ".")):
+            plain = plain[:-1]
+        if re.fullmatch(r"[1-9]\d{0,2},\d{3}", plain):
+            whole, point = plain.replace(",", ""), plain.replace(",", ".")
+            return f"write {sign}{point}{rest}, or {sign}{whole}{rest} if thousands are meant"
+        if plain.count(",") == 1 and plain.rfind(",") > plain.rfind("."):
+            plain = plain.replace(".", "").replace(",", ".")
+        plain = plain.replace(",", "")
+        if number != plain and re.fullmatch(DIGITS, plain):
+            return f"write {sign}{plain}{rest}"
+    match = re.fullmatch(rf"([+-]?)({DIGITS})\s*/\s*({DIGITS})(.*)", text)
+    if match and float(match[3]):
+        return f"write {match[1]}{float(match[2]) / float(match[3]):.7g}{match[4]}"
+    if match := re.fullmatch(rf"([+-]?)({DIGITS})?\s*\*?\s*(?:pi|π)\s*(?:/\s*({DIGITS}))?", text):
+        number = float(match[2] or 1.0) * math.pi / (float(match[3] or 1.0) or 1.0)
+        return f"write {match[1]}{number:.7g}"
+    return "" if units in ("", "1") else f"write a number in {written(units)}, or with its unit"

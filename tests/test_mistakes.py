@@ -1,0 +1,246 @@
+"""Mistakes that people make: each gets a sentence with the field, the value and what to write.
+
+The sentence is the same in Python, in TOML, in JSON, at the command line and in the page; at the
+command line the exit code is 2, and there is no traceback.
+"""
+
+import json
+import re
+import sys
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+
+import tippetop as tt
+from mistakes import LOST, MISTAKES, fields_with
+from node import printed
+from tippetop.cli.commands import run
+from tippetop.page_engine import HERE
+from tippetop.support.errors import short
+
+PROBLEM = tt.presets.report_problem()
+PIECE = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
+
+
+def sentence(attempt: Callable[[], Any]) -> str:
+    """What is said of an attempt, in one line."""
+    with pytest.raises(tt.TippetopError) as refusal:
+        attempt()
+    said = str(refusal.value)
+    assert "\n" not in said
+    return said
+
+
+def at_the_command_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *words: str
+) -> str:
+    """What the command line says, which is all it says, with exit code 2."""
+    monkeypatch.setattr(sys, "argv", ["tippetop", *words])
+    with pytest.raises(SystemExit) as ending:
+        run()
+    out, said = capsys.readouterr()
+    assert (ending.value.code, out) == (2, "")
+    assert said.startswith("tippetop: ")
+    assert said.count("\n") == 1
+    return said.removeprefix("tippetop: ").rstrip("\n")
+
+
+def test_there_are_many() -> None:
+    assert len(MISTAKES) + len(OPTIONS) + len(CALLS) >= 200
+    assert len({(field, repr(value)) for field, value, *_ in MISTAKES}) == len(MISTAKES)
+
+
+@pytest.mark.parametrize(("field", "value", "named", "words"), MISTAKES, ids=str)
+def test_a_mistake_in_a_problem(field: str, value: Any, named: str, words: str) -> None:
+    fields = fields_with(field, value)
+    said = sentence(lambda: tt.Problem(**fields))
+    assert re.match(rf"{re.escape(named)}(: | is missing)", said)
+    assert words in said
+    refused = value
+    for place in named.removeprefix(field).split(".")[1:]:
+        refused = value[int(place)]
+    assert value is LOST or short(refused) in said
+    assert sentence(lambda: tt.Problem.from_toml(tomli_w.dumps(fields))) == said
+    assert sentence(lambda: tt.Problem.from_json(json.dumps(fields))) == said
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "named", "words"),
+    [mistake for mistake in MISTAKES if mistake[1] is not LOST],
+    ids=str,
+)
+def test_a_mistake_at_the_command_line(
+    field: str,
+    value: Any,
+    named: str,
+    words: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = value if isinstance(value, str) else json.dumps(value)
+    said = at_the_command_line(monkeypatch, capsys, "problem", "--set", f"{field}={text}")
+    assert said.startswith(f"{named}: ")
+    assert words in said
+
+
+def test_the_page_says_the_same() -> None:
+    asked = [fields_with(field, value) for field, value, *_ in MISTAKES]
+    script = f"""
+        import * as m from "{(HERE / "mechanics.js").as_uri()}";
+        const said = (fields) => {{
+          try {{
+            return JSON.stringify(new m.Problem(fields));
+          }} catch (error) {{
+            return error instanceof m.InvalidInput ? error.message : error.stack;
+          }}
+        }};
+        console.log(JSON.stringify({json.dumps(asked)}.map(said)));
+    """
+    theirs = json.loads(printed(script))
+    ours = [sentence(lambda fields=fields: tt.Problem(**fields)) for fields in asked]
+    # There, 10**400 is infinite.
+    pairs = [
+        (mine, their)
+        for mine, their, (_, value, *_) in zip(ours, theirs, MISTAKES, strict=True)
+        if value != 10**400
+    ]
+    assert [their for _, their in pairs] == [mine for mine, _ in pairs]
+
+
+OPTIONS = [
+    ("simulate --spin fast", "launch.spin: 'fast' is not a number"),
+    ("simulate --spin 1,55", "launch.spin: 1,55 is not a number (write 1.55)"),
+    ("simulate --spin 25Hz", "launch.spin: 25Hz is a frequency, not an angular velocity"),
+    ("simulate --tilt 90", "launch.tilt: 90 is not a number at least 0 and at most pi (for 90"),
+    ("simulate --tilt 90rpm", "launch.tilt: 90rpm is an angular velocity, not an angle"),
+    ("simulate --mu 0,3", "friction.mu: 0,3 is not a number (write 0.3)"),
+    ("simulate --mu -1", "friction.mu: -1 is not a number at least 0"),
+    ("simulate --duration long", "--duration: 'long' is not a number (write a number in s"),
+    ("simulate --duration 20kg", "--duration: 20kg is a mass, not a time (write it in s"),
+    ("simulate --duration 1,5", "--duration: 1,5 is not a number (write 1.5)"),
+    ("simulate --duration 0", "duration: 0 is not a number of seconds greater than 0"),
+    ("simulate --duration -1s", "duration: -1 is not a number of seconds greater than 0"),
+    ("simulate --step 1m --integrator rk4", "--step: 1m is a length, not a time"),
+    ("simulate --samples 2.5", "--samples: 2.5 is not a whole number"),
+    ("simulate --integrator rk5", "integrator: 'rk5' is not one of"),
+    ("simulate --preset reprot", "preset: 'reprot' is not one of"),
+    ("simulate --liftoff jump", "contact.liftoff: 'jump' is not one of fly, stop, ignore"),
+    ("simulate --set spin", "--set: 'spin' is not FIELD=VALUE, such as launch.spin=155"),
+    ("simulate --spin 1 --set launch.spin=2", "launch.spin: 2 stands beside 1"),
+    ("simulate --out run.csv", "--out: 'run.csv' is not a file name that ends in .nc"),
+    ("simulate --nope", "no such option"),
+    ("simulat", "no such command"),
+    ("critical --spin 25Hz", "launch.spin: 25Hz is a frequency"),
+    ("sweep --axis launch.spin", "--axis: 'launch.spin' is not FIELD=FIRST:LAST:COUNT"),
+    ("sweep --axis launch.spin=a:b:3", "--axis: 'launch.spin=a:b:3' is not FIELD="),
+    ("sweep --axis launch.spin=1:2:x", "--axis: 'launch.spin=1:2:x' is not FIELD="),
+    ("sweep --axis spin=1:2:3", "spin: what is swept is given for an unknown field (did you mean"),
+    ("sweep --axis launch.spin=1:25Hz:3", "launch.spin.from: 1 Hz is a frequency"),
+    ("sweep --axis launch.tilt=0:90kg:3", "launch.tilt.from: 0 kg is a mass, not an angle"),
+    ("sweep --axis launch.spin=5rpm,5rpm", "launch.spin: [0.5235987755982988, 0.52359877559829"),
+    ("sweep --draw launch.spin=1:2 --count 3 --axis friction.mu=1,2", "--draw: 'launch.spin=1:2'"),
+    ("sweep --count 3", "--count: 3 is for --draw alone (leave it out)"),
+    ("sweep --axis launch.spin=1:2:3 --duration 3m", "--duration: 3m is a length, not a time"),
+    ("sweep --axis launch.spin=1:2:3 --settled 1s", "--settled: 1s is a time, not an angle"),
+]
+"""Mistakes in options of the command line, and how the sentence begins."""
+
+
+@pytest.mark.parametrize(("command", "begin"), OPTIONS)
+def test_a_mistake_in_an_option(
+    command: str,
+    begin: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Any,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = at_the_command_line(monkeypatch, capsys, *command.split())
+    assert said.startswith(begin)
+    assert list(tmp_path.iterdir()) == []
+
+
+class Unspeakable:
+    """An object whose repr raises."""
+
+    def __repr__(self) -> str:
+        raise RuntimeError("no words")
+
+
+def swept(over: Any) -> Any:
+    return tt.sweep(PROBLEM, over, duration=0.1, workers=1)
+
+
+def bowl(**changes: Any) -> Any:
+    fields = {"radius": 0.02, "density": 700.0, "eccentricity": 0.15, "inertia_ratio": 1.2}
+    return tt.design_bowl(**(fields | changes))
+
+
+def insert(**changes: Any) -> Any:
+    return tt.design_insert(PIECE, **({"eccentricity": 0.1, "inertia_ratio": 0.95} | changes))
+
+
+CALLS: list[tuple[Callable[[], Any], str]] = [
+    (lambda: tt.simulate(PROBLEM, "long"), "duration: 'long' is not a number"),
+    (lambda: tt.simulate(PROBLEM, "3 m"), "duration: 3 m is a length, not a time"),
+    (lambda: tt.simulate(PROBLEM, "20"), "duration: 20 is not a number (write 20 without quotes"),
+    (lambda: tt.simulate(PROBLEM, None), "duration: None is not a number of seconds"),
+    (lambda: tt.simulate(PROBLEM, Unspeakable()), "duration: (Unspeakable, which cannot be shown)"),
+    (lambda: tt.simulate(Unspeakable(), 1.0), "problem: (Unspeakable, which cannot be shown)"),
+    (lambda: tt.simulate(PROBLEM, 1.0, times=[10**400]), "times: [1000"),
+    (lambda: tt.simulate(PROBLEM, 1.0, samples=2.5), "samples: 2.5 is not a whole number"),
+    (lambda: tt.Launch(0.1, 155.0), "Launch: (0.1, 155) are values without names"),
+    (lambda: tt.Launch(tilt=Unspeakable(), spin=1.0), "tilt: (Unspeakable, which cannot be shown)"),
+    (lambda: tt.Launch(tilt=0.1, spin=1.0, mu=0.3), "mu: 0.3 is given for an unknown field (did"),
+    (lambda: tt.Problem(body={1: 2}), "body: {1: 2} is not a table of fields by their names"),
+    (lambda: PROBLEM.replace({"body.shape": {1: 2}}), "body.shape: {1: 2} is not a table of"),
+    (lambda: PROBLEM.replace({"spin": 1.0}), "spin: 1 is given for an unknown field (did you mean"),
+    (lambda: swept({"launch.spin": ["1,5"]}), "launch.spin.values.0: 1,5 is not a number (write"),
+    (lambda: swept({"launch.spin": ["25 Hz"]}), "launch.spin.values.0: 25 Hz is a frequency"),
+    (lambda: swept({"friction.mu": ["3 kg"]}), "friction.mu.values.0: 3 kg is a mass"),
+    (lambda: swept({"launch.omega": [1.0]}), "launch.omega: what is swept is given for an unknown"),
+    (lambda: swept({"launch.spin": Unspeakable()}), "launch.spin: (Unspeakable, which cannot"),
+    (lambda: bowl(radius="x"), "radius: 'x' is not a number"),
+    (lambda: bowl(radius=None), "radius: None is not a finite number"),
+    (lambda: bowl(radius="2 kg"), "radius: 2 kg is a mass, not a length"),
+    (lambda: bowl(density=5e-324), "density: 5e-324 is not a number at least"),
+    (lambda: bowl(density=-1), "density: -1 is not a number greater than 0"),
+    (lambda: bowl(eccentricity=[]), "eccentricity: [] is not a finite number"),
+    (lambda: bowl(inertia_ratio=1j), "inertia_ratio: 1j is not a finite number"),
+    (lambda: bowl(stem=Unspeakable()), "stem: (Unspeakable, which cannot be shown)"),
+    (lambda: bowl(wall=float("nan")), "wall: nan is not a finite number"),
+    (lambda: insert(eccentricity="x"), "eccentricity: 'x' is not a number"),
+    (lambda: insert(inertia_ratio=None), "inertia_ratio: None is not a finite number"),
+    (lambda: insert(density=True), "density: True is not a finite number"),
+    (lambda: insert(wall=10**400), "wall: 1000"),
+    (lambda: tt.write_solid(PIECE, "a.stl", facets=10**400), "facets: 1000"),
+    (lambda: tt.view(short_run(), theme=np.array([1, 2])), "theme: array([1, 2]) is not one of"),
+    (lambda: tt.write_movie(short_run(), "a.gif", speed=5e-324), "speed: 5e-324 is too slow"),
+    (lambda: tt.write_movie(short_run(), "a.gif", fps=5e-324), "fps: 5e-324 is not a number at"),
+    (lambda: tt.Launch.from_euler(theta=90), "tilt: 90 is not a number at least 0 and at most pi"),
+    (lambda: tt.Launch.from_euler(theta=0.1, psi_dot="5 Hz"), "psi_dot: 5 Hz is a frequency"),
+    (lambda: tt.Launch.from_angular_velocity((1, 2), tilt=0.1), "omega: (1, 2) is not 3 finite"),
+    (
+        lambda: tt.Launch.from_angular_velocity((0, 0, 1), tilt=0.1, frame="space"),
+        "frame: 'space' is not one of table, body",
+    ),
+]
+"""Mistakes in calls of Python, and how the sentence begins."""
+
+
+def short_run() -> Any:
+    return tt.simulate(PROBLEM, 0.1, samples=5)
+
+
+@pytest.mark.parametrize("number", range(len(CALLS)))
+def test_a_mistake_in_a_call(number: int, tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    call, begin = CALLS[number]
+    monkeypatch.chdir(tmp_path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert sentence(call).startswith(begin)
+    assert list(tmp_path.iterdir()) == []
