@@ -190,11 +190,11 @@ UNREADABLE = {
     ("arguments", "field"),
     [
         ([], "--axis"),
-        (["--axis", "launch.spn=1,2"], "field"),
+        (["--axis", "launch.spn=1,2"], "launch.spn"),
         *(([word, text], word) for word, texts in UNREADABLE.items() for text in texts),
         (["--axis", "launch.spin=1:2:3:log"], "launch.spin.spacing"),
         (["--axis", "launch.spin=1:2:0"], "launch.spin.count"),
-        (["--axis", "launch.spin=nan,1"], "launch.spin.values.0"),
+        (["--axis", "launch.spin=nan,1"], "--axis"),
         (["--axis", "launch.spin=1:1:3"], "launch.spin"),
         (["--axis", "launch.spin=1,2", "--axis", "launch.spin=3,4"], "axes"),
         (["--draw", "launch.spin=0:1:log", "--count", "3"], "fields.launch.spin"),

@@ -15,6 +15,7 @@ from tippetop.support.errors import MISSING, Described, FileTrouble, InvalidInpu
 from tippetop.support.files import in_words, place_for, read_text, require_ending
 from tippetop.support.interrupts import INTERRUPTED
 from tippetop.support.units import NUMBER as NUMBER_WITH_UNIT
+from tippetop.support.units import begins_a_unit
 
 if TYPE_CHECKING:
     import numpy as np
@@ -240,7 +241,9 @@ def _numbers(texts: list[str]) -> list[float | str]:
     Raises `ValueError` for what is neither.
     """
     parts = [NUMBER_WITH_UNIT.fullmatch(text) for text in texts]
-    found = [(part[1], part[2]) for part in parts if part]
+    found = [
+        (part[1], part[2]) for part in parts if part and (not part[2] or begins_a_unit(part[2]))
+    ]
     if len(found) < len(texts):
         raise ValueError(texts)
     unit = found[-1][1]

@@ -78,9 +78,9 @@ function wanted({ units = "", parts, count, accepted, points }) {
 }
 
 /** A value of a field, or a list of them, with its numbers in SI; refuses texts that are no numbers. */
-export function inUnits(where, value, units) {
-  if (Array.isArray(value))
-    return value.map((inner, place) => inUnits(`${where}.${place}`, inner, units));
+export function inUnits(where, value, units, depth = 0) {
+  if (Array.isArray(value) && depth)
+    return value.map((inner, place) => inUnits(`${where}.${place}`, inner, units, depth - 1));
   if (typeof value !== "string") return value;
   if (units === undefined)
     throw new m.InvalidInput(where, value, "a number", "", numberHint(value));
@@ -100,11 +100,12 @@ function taken(name, asked, field, wrong) {
     if (!field.choices.includes(asked)) wrong.push(not_one_of(name, asked, field.choices));
     return asked;
   }
-  const isList = field.points || field.count;
+  const depth = depthOf(field);
+  const isList = depth > 0;
   let value = asked;
   if (typeof asked !== "string" || !isList) {
     try {
-      value = inUnits(name, asked, field.units);
+      value = inUnits(name, asked, field.units, depth);
     } catch (error) {
       if (!(error instanceof m.InvalidInput)) throw error;
       wrong.push(error);
@@ -128,6 +129,12 @@ function taken(name, asked, field, wrong) {
     checkNumber(name, value, asked, field, wrong);
   }
   return value;
+}
+
+/** How deep the lists of a field's numbers are: none, one, or lists of points. */
+function depthOf({ points, count }) {
+  if (points) return 2;
+  return count ? 1 : 0;
 }
 
 function isListed(value, { points, count }) {

@@ -3,6 +3,8 @@ import * as m from "./mechanics.js";
 import { NOT_OF_REVOLUTION, OTHER_NAMES, PLACES } from "./tables.js";
 import { closest } from "./words.js";
 
+const LONGEST = 60;
+
 const last = (name) => name.slice(name.lastIndexOf(".") + 1);
 const own = (table, name) => (Object.hasOwn(table, name) ? table[name] : undefined);
 
@@ -25,6 +27,7 @@ export function not_one_of(field, value, choices) {
 }
 
 function likely(name, fields, places) {
+  if (name.length > LONGEST) return "";
   const word =
     own(OTHER_NAMES, last(name)) ?? own(OTHER_NAMES, last(name).toLowerCase()) ?? last(name);
   const exact = fields.find((field) => last(field) === word);

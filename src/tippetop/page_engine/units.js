@@ -9,6 +9,7 @@ const FACTOR =
   /\s*(?:(\/|per(?![\p{L}_]))|[*·⋅×]?)\s*(\p{L}[\p{L}_]*|°|%)\s*(?:(?:\^|\*\*)\s*)?([+-]?\d+|⁻?[¹²³])?/uy;
 const SUPERSCRIPTS = { "¹": "1", "²": "2", "³": "3", "⁻": "-" };
 const MOST_POWER = 9;
+const LONGEST = 60;
 const UNKNOWN_UNIT = "has an unknown unit";
 const BASES = {
   m: [1, 0, 0, 0],
@@ -128,6 +129,7 @@ function beginsUnit(text) {
 /** What to write instead of a text that is no number; "" where nobody knows. */
 export function numberHint(value, units = "") {
   const text = value.trim();
+  if (text.length > LONGEST) return "";
   const pure = units === "" || units === "1";
   if (PLAIN_NUMBER.test(text))
     return `write ${text} without quotes${pure ? "" : `, or with its unit, "${text} ${written(units)}"`}`;

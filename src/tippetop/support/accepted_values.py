@@ -45,9 +45,9 @@ def refusal_of(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Invalid
         case "tuple_type" | "list_type":
             return InvalidInput(field, value, "a list")
         case "too_short":
-            return InvalidInput(field, value, f"at least {detail['ctx']['min_length']} of them")
+            return InvalidInput(field, value, f"a list of at least {detail['ctx']['min_length']}")
         case "too_long":
-            return InvalidInput(field, value, f"at most {detail['ctx']['max_length']} of them")
+            return InvalidInput(field, value, f"a list of at most {detail['ctx']['max_length']}")
         case "model_type" | "model_attributes_type":
             return InvalidInput(field, value, "a table of its fields")
         case _:

@@ -56,6 +56,10 @@ class TippetopError(Exception):
         return sentence
 
 
+LONGEST_FIELD = 100
+"""How much of a field's name a sentence shows, letters."""
+
+
 class InvalidInput(TippetopError, ValueError):
     """A value that is refused, in a sentence with its field and what to write instead.
 
@@ -103,6 +107,8 @@ class InvalidInput(TippetopError, ValueError):
         file: str = "",
     ) -> None:
         name = field if field and field.isprintable() else repr(field)
+        if len(name) > LONGEST_FIELD:
+            name = f"{name[:LONGEST_FIELD]}..."
         head = f"{name} in {file}" if file else name
         note = hint
         if value is MISSING:

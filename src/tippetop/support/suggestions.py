@@ -86,11 +86,17 @@ def not_one_of(field: str, value: object, choices: Collection[str]) -> InvalidIn
     return InvalidInput(field, value, f"one of {', '.join(choices)}", hint=hint)
 
 
+LONGEST = 60
+"""Longest name that another is sought for, letters."""
+
+
 def likely(name: str, own: Iterable[str], places: Mapping[str, str]) -> str:
     """Return the name that was likely meant, among some and those of all places; "" without one.
 
     A name that stands in another place, and another word for a field, go before likeness.
     """
+    if len(name) > LONGEST:
+        return ""
     own, last = list(own), name.rpartition(".")[2]
     word = OTHER_NAMES.get(last, OTHER_NAMES.get(last.lower(), last))
     whole = [choice for choice in own if choice.rpartition(".")[2] == word]

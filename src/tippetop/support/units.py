@@ -48,7 +48,7 @@ PLAIN = Unit(1.0, 1.0, (0, 0, 0, 0))
 """The unit of plain numbers."""
 
 
-class Kind(NamedTuple):
+class QuantityKind(NamedTuple):
     """A kind of quantity, in words."""
 
     name: str
@@ -57,22 +57,22 @@ class Kind(NamedTuple):
 
 
 KINDS = {
-    "1": Kind("a pure number", "without a unit"),
-    "m": Kind("a length", "in m, cm, mm or in"),
-    "kg": Kind("a mass", "in kg or g"),
-    "s": Kind("a time", "in s, ms or min"),
-    "rad": Kind("an angle", "in rad or deg"),
-    "rad s-1": Kind("an angular velocity", "in rad/s, rpm or rev/s"),
-    "m s-1": Kind("a velocity", "in m/s, cm/s or mm/s"),
-    "m s-2": Kind("an acceleration", "in m/s^2"),
-    "kg m2": Kind("a moment of inertia", "in kg m^2 or g cm^2"),
-    "kg m-3": Kind("a density", "in kg/m^3 or g/cm^3"),
-    "s m-1": Kind("a viscous friction coefficient", "in s/m"),
-    "s-1": Kind("a frequency", "in 1/s"),
-    "N": Kind("a force", "in N"),
-    "J": Kind("an energy", "in J"),
-    "m2": Kind("an area", "in m^2"),
-    "m3": Kind("a volume", "in m^3"),
+    "1": QuantityKind("a pure number", "without a unit"),
+    "m": QuantityKind("a length", "in m, cm, mm or in"),
+    "kg": QuantityKind("a mass", "in kg or g"),
+    "s": QuantityKind("a time", "in s, ms or min"),
+    "rad": QuantityKind("an angle", "in rad or deg"),
+    "rad s-1": QuantityKind("an angular velocity", "in rad/s, rpm or rev/s"),
+    "m s-1": QuantityKind("a velocity", "in m/s, cm/s or mm/s"),
+    "m s-2": QuantityKind("an acceleration", "in m/s^2"),
+    "kg m2": QuantityKind("a moment of inertia", "in kg m^2 or g cm^2"),
+    "kg m-3": QuantityKind("a density", "in kg/m^3 or g/cm^3"),
+    "s m-1": QuantityKind("a viscous friction coefficient", "in s/m"),
+    "s-1": QuantityKind("a frequency", "in 1/s"),
+    "N": QuantityKind("a force", "in N"),
+    "J": QuantityKind("an energy", "in J"),
+    "m2": QuantityKind("an area", "in m^2"),
+    "m3": QuantityKind("a volume", "in m^3"),
 }
 """Kinds of quantities by their SI units."""
 
@@ -164,7 +164,7 @@ def unit_of(text: str, value: object, units: str) -> Unit:
 
     Raises `InvalidInput` about the value otherwise.
     """
-    wanted = KINDS.get(units, Kind(f"a quantity in {units}", f"in {written(units)}"))
+    wanted = KINDS.get(units, QuantityKind(f"a quantity in {units}", f"in {written(units)}"))
     factors = factors_of(text)
     known = [(name, named_unit(name), power) for name, power in factors or ()]
     strange = next((name for name, unit, _ in known if unit is None), None)
@@ -305,21 +305,27 @@ def _converted_by_itself(value: Any, refusal: InvalidInput, units: str) -> Any:
 def _number_and_unit(text: str, units: str) -> tuple[float, str]:
     """A text's number and unit; raises `InvalidInput` where it does not have both."""
     match = NUMBER.fullmatch(text)
-    if match is None or not match[2] or not _begins_a_unit(match[2]):
+    if match is None or not match[2] or not begins_a_unit(match[2]):
         raise InvalidInput("", text, "a number", hint=number_hint(text, units))
     return float(match[1]), match[2]
 
 
-def _begins_a_unit(text: str) -> bool:
-    """Whether what follows a number may be a unit: nothing that begins with a digit but "1/s"."""
+def begins_a_unit(text: str) -> bool:
+    """Return whether what follows a number may be a unit; "1/s" may, other digits may not."""
     if re.match(r"1\s*/", text):
         return True
     return not re.match(r"[0-9,.'_:]|/\s*\d|[*·]?\s*(pi|π)(?![^\W\d])", text)
 
 
+LONGEST = 60
+"""Longest text that is repeated in a hint, letters."""
+
+
 def number_hint(text: str, units: str = "") -> str:
     """Return what to write instead of a text that is no number; "" where nobody knows."""
     text = text.strip()
+    if len(text) > LONGEST:
+        return ""
     shown = "" if units in ("", "1") else f' or with its unit, "{text} {written(units)}"'
     if re.fullmatch(rf"[+-]?{DIGITS}(?:[eE][+-]?\d+)?", text):
         return f"write {text} without quotes{',' * bool(shown)}{shown}"

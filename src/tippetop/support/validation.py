@@ -4,6 +4,7 @@
 
 import inspect
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import (
     TYPE_CHECKING,
     Annotated,
@@ -102,26 +103,37 @@ class Quantity(NamedTuple):
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         """Let the field take texts with a unit, and quantities, too."""
-        several = any(get_origin(kind) is tuple for kind in (source, *get_args(source)))
-        convert = self._each_in_si if several else self.in_si
+        depth = max(_depth(kind) for kind in (source, *get_args(source)))
+
+        def convert(value: Any) -> Any:
+            # A text is no list.
+            return value if depth and isinstance(value, str) else self.in_si(value, depth)
+
         return core_schema.no_info_before_validator_function(convert, handler(source))
 
-    def _each_in_si(self, value: Any) -> Any:
-        """A list with its numbers in SI; a text is no list."""
-        return value if isinstance(value, str) else self.in_si(value)
-
-    def in_si(self, value: Any) -> Any:
-        """Return a value of the field, or a list of them, with its numbers in SI."""
+    def in_si(self, value: Any, depth: int = 1) -> Any:
+        """Return a value of the field, or lists of values so deep, with its numbers in SI."""
         if isinstance(value, float | int):
             return value
-        if isinstance(value, list | tuple):
-            numbers = [_placed(place, inner, self.in_si) for place, inner in enumerate(value)]
+        if isinstance(value, list | tuple) and depth:
+            numbers = [
+                _placed(place, inner, partial(self.in_si, depth=depth - 1))
+                for place, inner in enumerate(value)
+            ]
             return numbers if isinstance(value, list) else tuple(numbers)
         return in_si(value, self.units) if has_unit(value) else value
 
 
+def _depth(kind: Any) -> int:
+    """How deep the tuples of a type are nested."""
+    inner = get_args(kind)
+    if get_origin(kind) is Annotated:
+        return _depth(inner[0])
+    return 1 + max(map(_depth, inner), default=0) if get_origin(kind) is tuple else 0
+
+
 class Padded(NamedTuple):
-    """Lets a field of several numbers leave out the last ones, which then are 0."""
+    """Lets a field of several numbers leave out the last one, which then is 0."""
 
     least: int
     """How many numbers there must be."""
@@ -129,14 +141,13 @@ class Padded(NamedTuple):
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """Add the zeros before the field is validated."""
-        inner = handler(source)
-        return core_schema.no_info_before_validator_function(self.padded, inner)
+        """Add the zero before the field is validated."""
+        return core_schema.no_info_before_validator_function(self.padded, handler(source))
 
     def padded(self, value: Any) -> Any:
-        """Return a list with a 0 for one number that is left out."""
-        short = isinstance(value, list | tuple) and len(value) == self.least
-        return (*value, 0.0) if short else value
+        """Return a list with a 0 for the number that is left out."""
+        lacks_one = isinstance(value, list | tuple) and len(value) == self.least
+        return (*value, 0.0) if lacks_one else value
 
 
 def _placed(place: int, value: Any, of: Callable[[Any], Any]) -> Any:
@@ -411,6 +422,8 @@ def _as_invalid_input(
     """
     details = sorted(error.errors(), key=lambda detail: detail["type"] != "extra_forbidden")
     first, others = details[0], len(details) - 1
+    if first["type"] == "missing" and len(first["loc"]) > 1:  # A list of too few is one mistake.
+        others = sum(detail["loc"][:1] != first["loc"][:1] for detail in details)
     field = ".".join(str(step) for step in first["loc"])
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InvalidInput):

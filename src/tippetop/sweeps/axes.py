@@ -76,7 +76,9 @@ class Entry(Part):
     def __init__(self, /, *values: Any, **fields: Any) -> None:
         fields = in_order(type(self), type(self).model_fields, values, fields)
         named: Any = fields.get("field")
-        for name in NUMBERS & fields.keys() if isinstance(named, str) else ():
+        for name in [*fields] if isinstance(named, str) else ():
+            if name not in NUMBERS:
+                continue
             try:
                 fields[name] = in_si_of(named, fields[name])
             except InvalidInput as error:
