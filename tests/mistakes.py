@@ -9,7 +9,15 @@ from typing import Any
 
 import tippetop as tt
 
-LOST = object()
+
+class _Lost:
+    """Stands for a field that is left out."""
+
+    def __repr__(self) -> str:
+        return "left out"
+
+
+LOST = _Lost()
 """Stands for a field that is left out."""
 
 SPIN, RATE = "launch.spin", "is not an angular velocity"
