@@ -141,7 +141,7 @@ def test_sweeps_find_what_runs_find(law):
     found = tt.sweep(problem, {"launch.spin": spins}, duration=0.4, workers=1)
     for spin in spins:
         run = tt.simulate(problem.replace({"launch.spin": spin}), 0.4)
-        here = found.sel({"launch.spin": spin})
+        here = found.sel(spin=spin)
         for name in ("energy_lost", "least_normal_force"):
             assert float(here[name]) == pytest.approx(float(run[name]), rel=1e-9), (spin, name)
 
@@ -212,7 +212,7 @@ def test_a_sweep_changes_between_the_branches_of_hertz_as_a_run_does(liftoff):
     found = tt.sweep(problem, {"launch.spin": spins}, duration=1.0, workers=1, tolerance=1e-13)
     for spin in spins:
         run = tt.simulate(problem.replace({"launch.spin": spin}), 1.0)
-        here = found.sel({"launch.spin": spin})
+        here = found.sel(spin=spin)
         turning = run.phi_dot * np.sin(run.theta) ** 2 + run.omega3 * np.cos(run.theta)
         drilling = np.abs(turning) * problem.friction.patch_radius > np.hypot(
             run.slip_x, run.slip_y

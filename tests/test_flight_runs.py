@@ -256,7 +256,7 @@ def test_a_coin_tossed_without_spin_does_the_same_in_a_sweep():
         for tilt in (0.8, 1.2, 1.9):
             run, cell = (
                 tt.simulate(one.replace({"launch.tilt": tilt}), 0.3),
-                swept.sel({"launch.tilt": tilt}),
+                swept.sel(tilt=tilt),
             )
             assert run.attrs["outcome"] == "lying_flat"
             for name in ("end_time", "flights", "highest_gap", "airborne_time", "final_theta"):

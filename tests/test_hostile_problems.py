@@ -189,7 +189,7 @@ def swept_ending(problem: tt.Problem, tolerance: float) -> tt.Ending:
     """What a sweep of one launch says of it."""
     over = {"launch.spin": [problem.launch.spin]}
     swept = tt.sweep(problem, over, duration=2.0, tolerance=tolerance, workers=1)
-    return tt.Ending(int(swept["outcome"][0]))
+    return tt.Ending[str(swept["outcome"].values[0]).upper()]
 
 
 @pytest.mark.parametrize(

@@ -64,7 +64,7 @@ def test_a_sweep_says_what_a_run_says(problem, run):
     found = tt.sweep(
         problem, {"launch.tilt": [problem.launch.tilt]}, duration=20.0, tolerance=EXACT
     )
-    cell = found.isel({"launch.tilt": 0})
+    cell = found.isel(tilt=0)
     for name in SAME:
         assert float(cell[name]) == pytest.approx(
             float(run[name]), abs=1e-9, rel=1e-9, nan_ok=True

@@ -31,10 +31,10 @@ from tippetop.problem.frictions import (
     ViscousFriction,
 )
 from tippetop.problem.launch import Launch
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, get
 from tippetop.problem.shapes import EccentricSphere, Oval, Ring, Sphere, Spheroid
 from tippetop.support.errors import FileTrouble, InvalidInput, TippetopError
-from tippetop.support.field_paths import part_at
+from tippetop.support.field_paths import dotted_names, part_at
 from tippetop.support.validation import Quantity
 
 EGG = {
@@ -788,6 +788,42 @@ class TestValues:
         message = the_one_line_of(caught.value)
         assert message.startswith(name or repr(name))
         assert "launch.tilt" in message or "gravity" in message or "spheroid" in message
+
+    @given(problems())
+    def test_what_is_got_at_a_path_is_what_replace_puts_there(self, original):
+        for name in dotted_names(original.model_dump()):
+            value = get(original, name)
+            assert original.replace({name: value}) == original, name
+            where, _, last = name.rpartition(".")
+            if where and not last.isdecimal() and not isinstance(get(original, where), tuple):
+                assert getattr(get(original, where), last) == value
+
+    def test_items_of_lists_are_got_by_their_places(self):
+        problem = top_problem(launch__slip=(0.1, 0.2))
+        assert get(problem, "launch.slip.1") == 0.2
+        assert get(problem, "launch.slip") == (0.1, 0.2)
+
+    @pytest.mark.parametrize(
+        ("path", "meant"),
+        [
+            ("spin", "launch.spin"),
+            ("launch.spn", "launch.spin"),
+            ("mu", "friction.mu"),
+            ("body.radius", "body.shape.radius"),
+            ("launch.slip.2", "launch.slip"),
+            ("body.surface", None),
+            ("launch.__class__", None),
+            ("", None),
+        ],
+    )
+    def test_a_path_without_a_field_is_refused_with_what_may_be_meant(self, path, meant):
+        problem = top_problem()
+        for call in (lambda: get(problem, path), lambda: problem.replace({path: 1.0})):
+            with pytest.raises(InvalidInput) as caught:
+                call()
+            message = the_one_line_of(caught.value)
+            assert f"field = {path!r}" in message
+            assert meant is None or message.endswith(f"(did you mean {meant}?)")
 
     def test_a_problem_is_the_numbers_of_its_parts(self):
         sphere = top_problem(launch__tilt=0.5)

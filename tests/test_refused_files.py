@@ -16,6 +16,10 @@ from misused import misused
         ("--html run.glb", "--html"),
         ("--out run.csv", "--out"),
         ("--csv run.csv --out run.csv", "--out"),
+        ("--parquet run.csv", "--parquet"),
+        ("--events-table run.txt", "--events-table"),
+        ("--events-table run.csv --flights-table ./run.csv", "--flights-table"),
+        ("--out run.parquet", "--out"),
         ("--plot run.PNG --html ./run.png --force", "--html"),
     ],
 )

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
@@ -51,13 +52,20 @@ def test_the_drift_of_jellett_is_told_where_it_is_conserved_alone() -> None:
 
 
 def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
-    kinds = {"out": "nc", "plot": "png", "csv": "csv", "glb": "glb", "html": "html", "gif": "gif"}
-    options = [
-        word for kind, end in kinds.items() for word in (f"--{kind}", str(tmp_path / f"run.{end}"))
-    ]
+    kinds = {
+        **{"out": "nc", "plot": "png", "csv": "csv", "parquet": "parquet"},
+        **{"glb": "glb", "html": "html", "gif": "gif"},
+    }
+    files = {kind: f"run.{end}" for kind, end in kinds.items()}
+    files |= {"events-table": "events.csv", "flights-table": "flights.parquet"}
+    options = [word for kind, name in files.items() for word in (f"--{kind}", str(tmp_path / name))]
     told = said("--duration", "0.1", *options)
-    assert {path.suffix[1:] for path in tmp_path.iterdir()} == set(kinds.values())
-    assert told.count("wrote ") == len(kinds)
+    assert {path.name for path in tmp_path.iterdir()} == set(files.values())
+    assert told.count("wrote ") == len(files)
+    events = (tmp_path / "events.csv").read_text().splitlines()
+    assert events[0] == "time (s),kind,impulse (N s),energy_lost (J),surface"
+    flights = pd.read_parquet(tmp_path / "flights.parquet")
+    assert list(flights.columns) == ["start", "end", "highest_gap"]
 
 
 @pytest.mark.parametrize(
@@ -66,6 +74,10 @@ def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
         (
             ["--csv", "run.txt"],
             "--csv: 'run.txt' is not a file name that ends in .csv",
+        ),
+        (
+            ["--csv", "a.csv", "--events-table", "a.csv"],
+            "--events-table = 'a.csv' is not possible; accepted: another file than that of --csv",
         ),
         (
             ["--html", "a.html", "--out", "a.html"],

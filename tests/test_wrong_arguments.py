@@ -34,7 +34,9 @@ OF_A_RUN = {
     "plot": tt.plot,
     "summarize": tt.summarize,
     "view": tt.view,
+    "to_dataframe": tt.to_dataframe,
     "write_csv": lambda wrong: tt.write_csv(wrong, "run.csv"),
+    "write_parquet": lambda wrong: tt.write_parquet(wrong, "run.parquet"),
     "write_glb": lambda wrong: tt.write_glb(wrong, "run.glb"),
     "write_html": lambda wrong: tt.write_html(wrong, "run.html"),
     "write_movie": lambda wrong: tt.write_movie(wrong, "run.gif"),
@@ -203,7 +205,10 @@ def test_a_slip_of_one_number():
 
 @pytest.mark.parametrize("wrong", [None, 3, ["a.nc"]])
 def test_what_is_no_name_of_a_file(wrong):
-    writers = (tt.write_csv, tt.write_glb, tt.write_html, tt.write_movie, tt.write_run)
+    writers = (
+        *(tt.write_csv, tt.write_parquet, tt.write_run),
+        *(tt.write_glb, tt.write_html, tt.write_movie),
+    )
     calls = [lambda write=write: write(run(), wrong) for write in writers]
     for call in (*calls, lambda: tt.write_solid(PIECE, wrong)):
         refused("path", call)

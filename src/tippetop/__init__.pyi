@@ -1,11 +1,12 @@
 """The public names, and where they live: the package loads them from here."""
 
 from .contact.mode import Outcome as Outcome
-from .export.csv import write_csv as write_csv
 from .export.glb import write_glb as write_glb
 from .export.html import write_html as write_html
 from .export.movie import write_movie as write_movie
 from .export.solid import write_solid as write_solid
+from .export.tables import write_csv as write_csv
+from .export.tables import write_parquet as write_parquet
 from .figures.overview import plot as plot
 from .lab.notebook import view as view
 from .lathe.design import design_bowl as design_bowl
@@ -27,6 +28,7 @@ from .problem.hertz_patch import hertz_patch_radius as hertz_patch_radius
 from .problem.implausible import Implausible as Implausible
 from .problem.launch import Launch as Launch
 from .problem.problem import Problem as Problem
+from .problem.problem import get as get
 from .problem.shapes import EccentricSphere as EccentricSphere
 from .problem.shapes import Oval as Oval
 from .problem.shapes import Ring as Ring
@@ -34,6 +36,7 @@ from .problem.shapes import Shape as Shape
 from .problem.shapes import Sphere as Sphere
 from .problem.shapes import Spheroid as Spheroid
 from .results.catalogue import Ending as Ending
+from .results.dataframes import to_dataframe as to_dataframe
 from .results.netcdf import read_run as read_run
 from .results.netcdf import write_run as write_run
 from .results.summary import summarize as summarize

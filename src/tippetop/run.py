@@ -22,6 +22,7 @@ from tippetop.mechanics.units import Units
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.results.dataset import assemble
+from tippetop.results.derived import derive
 from tippetop.results.metrics import metrics
 from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import Tally
@@ -84,13 +85,12 @@ def simulate(
     -------
     xarray.Dataset
         The variables of `tippetop.results.catalogue` with their SI units. Over `time`: those of
-        `SAMPLED`, and the contact mode. Over `event` and `flight`: those of `LISTED`. Single
-        numbers: those of `METRICS`, which are events and extremes of the motion and do not depend
-        on the samples, and of `MONITORS`. Attributes: problem (JSON), outcome, outcome_advice,
-        integrator (every one that took steps), tolerance (the largest) or step, tippetop_version,
-        Conventions. When the
-        run ends before `duration`, the last sample is its end, unless its numbers grew beyond all
-        bounds.
+        `SAMPLED` and `DERIVED`, and the contact mode. Over `event` and `flight`: those of `LISTED`.
+        Single numbers: those of `METRICS`, which are events and extremes of the motion and do not
+        depend on the samples, and of `MONITORS`. Attributes: problem (JSON), outcome,
+        outcome_advice, integrator (every one that took steps), tolerance (the largest) or step,
+        tippetop_version, Conventions. When the run ends before `duration`, the last sample is its
+        end, unless its numbers grew beyond all bounds.
 
     Raises
     ------
@@ -159,6 +159,7 @@ def simulate(
         times[-1] = end_time
     variables = observe(found, top, units)
     variables["orientation"] = continuous(variables["orientation"])
+    variables |= derive(found, variables["orientation"], top, units)
     return assemble(times, variables, (found.mode, recorder.modes), scalars, lists, attributes)
 
 

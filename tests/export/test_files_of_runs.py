@@ -13,12 +13,12 @@ from scipy.spatial.transform import Rotation
 
 import tippetop as tt
 from tippetop.export import movie
-from tippetop.export.csv import write_csv
 from tippetop.export.glb import key_times, write_glb
 from tippetop.export.html import write_html
 from tippetop.export.movie import write_movie
 from tippetop.export.poses import Poses, poses_at
 from tippetop.export.raycast import fine_path
+from tippetop.export.tables import write_csv
 
 pygltflib = pytest.importorskip(
     "pygltflib", reason="pygltflib opens .glb files; it comes with the test extra"

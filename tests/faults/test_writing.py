@@ -22,9 +22,9 @@ import tippetop as tt
 from campaigns import seeds
 from children import ended, started
 from misused import misused
-from tippetop.export.csv import write_csv
 from tippetop.export.glb import write_glb
 from tippetop.export.movie import write_movie
+from tippetop.export.tables import write_csv, write_parquet
 from tippetop.support import files
 from tippetop.support.files import MARK, put_in_place, written_beside
 
@@ -55,6 +55,7 @@ def small_movie(run, path, overwrite=False):
 WRITERS = [
     (tt.write_run, "run.nc"),
     (write_csv, "run.csv"),
+    (write_parquet, "run.parquet"),
     (write_glb, "run.glb"),
     (small_movie, "run.gif"),
 ]
@@ -310,7 +311,7 @@ def limited(size):
 FULL = """
 import resource, signal, sys
 import tippetop as tt
-from tippetop.export.csv import write_csv
+from tippetop.export.tables import write_csv
 from tippetop.export.glb import write_glb
 from tippetop.export.html import write_html
 from tippetop.export.movie import write_movie

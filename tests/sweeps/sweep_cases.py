@@ -38,9 +38,9 @@ def thrown(tolerance=1e-9):
 
 
 def stored(sweep, out, **options):
-    """A sweep carried out into a store, as anybody does that."""
+    """A sweep carried out into a store, as anybody does that; flags as numbers."""
     limits = {"duration": sweep.duration, "tolerance": sweep.tolerance, "settled": sweep.settled}
-    return tt.sweep(sweep.problem, sweep.grid, **limits, out=out, **options)
+    return tt.sweep(sweep.problem, sweep.grid, **limits, out=out, decode=False, **options)
 
 
 def problem_of(sweep, cell):

@@ -50,7 +50,7 @@ def test_fields_are_independent_and_follow_the_seed():
 def test_listed_values_are_launched_as_they_are(make):
     found = tt.sweep(REPORT, samples={SPIN: make([50.0, 50.0, 155.0])}, duration=0.1, workers=1)
     assert found["final_theta"].dims == ("sample",)
-    assert found[SPIN].values.tolist() == [50.0, 50.0, 155.0]
+    assert found["spin"].values.tolist() == [50.0, 50.0, 155.0]
     assert float(found["final_theta"][0]) == float(found["final_theta"][1])
 
 
@@ -71,9 +71,9 @@ def test_a_sweep_of_samples_is_stored_and_read_back_with_its_seed(tmp_path):
     stored = tt.sweep(REPORT, out=tmp_path / "s.zarr", **asked)
     in_memory = tt.sweep(REPORT, **asked)
     assert stored.attrs["seed"] == in_memory.attrs["seed"] == 7
-    assert np.array_equal(stored[SPIN], in_memory[SPIN])
+    assert np.array_equal(stored["spin"], in_memory["spin"])
     sweep = Sweep(**json.loads(in_memory.attrs["sweep"]))
-    assert np.array_equal(sweep.grid.values(np.arange(2))[SPIN], in_memory[SPIN])
+    assert np.array_equal(sweep.grid.values(np.arange(2))[SPIN], in_memory["spin"])
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,21 @@ from tippetop.problem.launch import Launch
 from tippetop.problem.presets import report_problem
 from tippetop.problem.problem import Problem
 from tippetop.problem.shapes import EccentricSphere, Spheroid
+from tippetop.results.dataframes import to_dataframe
+from tippetop.results.flags import decoded, encoded
 from tippetop.support.errors import FileTrouble, InvalidInput
-from tippetop.sweeps import Axis, Draws, Product, Range, Sweep, compute, sweep
+from tippetop.sweeps import (
+    Axis,
+    Draws,
+    Ending,
+    Product,
+    Range,
+    Store,
+    Sweep,
+    compute,
+    read_sweep,
+    sweep,
+)
 from tippetop.sweeps.cells import numeric_fields
 
 OVER = {"launch.spin": np.linspace(50, 200, 3), "friction.mu": [0.1, 0.3]}
@@ -21,7 +34,8 @@ def test_fields_and_their_values_are_a_sweep():
     problem = report_problem(tilt=1.0)
     axes = Axis.of("launch.spin", [50, 125, 200]), Axis.of("friction.mu", [0.1, 0.3])
     found = sweep(problem, OVER, duration=0.1, tolerance=1e-8, workers=1)
-    xr.testing.assert_identical(found, compute(Sweep(problem, Product(axes), 0.1, 1e-8)))
+    computed = compute(Sweep(problem, Product(axes), 0.1, 1e-8))
+    xr.testing.assert_identical(found, decoded(computed))
     xr.testing.assert_identical(found, sweep(problem, Product(axes), duration=0.1, tolerance=1e-8))
 
 
@@ -29,7 +43,7 @@ def test_tables_and_draws_are_sweeps_too():
     problem = report_problem(tilt=1.0)
     geometric = {"launch.spin": {"from": 10, "to": 160, "count": 3, "spacing": "geometric"}}
     found = sweep(problem, geometric, duration=0.05)
-    assert found["launch.spin"].values == pytest.approx([10, 40, 160])
+    assert found["spin"].values == pytest.approx([10, 40, 160])
     draws = sweep(problem, Draws((Range("launch.spin", 10, 20),), 4), duration=0.05)
     assert draws["final_theta"].dims == ("sample",)
 
@@ -87,9 +101,10 @@ def test_coordinates_carry_their_units(tmp_path, where):
     found = sweep(
         problem, at_base, duration=0.01, out=tmp_path / "a.zarr" if where == "store" else None
     )
-    assert {name: found[name].attrs["units"] for name in found.coords} == UNITS
-    assert found["launch.spin"].attrs["long_name"] == "axial spin at launch"
-    assert len({found[name].attrs["long_name"] for name in UNITS}) == len(UNITS)
+    told = [found[name].attrs for name in found.coords]
+    assert {one["path"]: one["units"] for one in told} == UNITS
+    assert found["spin"].attrs["long_name"] == "axial spin at launch"
+    assert len({one["long_name"] for one in told}) == len(UNITS)
 
 
 def number_of(problem, field):
@@ -103,7 +118,7 @@ def test_draws_carry_units_too():
     ranges = Range("friction.mu", 0.1, 0.2), Range("friction.eps", 1e-3, 1e-2)
     dry = report_problem().model_copy(update={"friction": RegularizedCoulombFriction(mu=0.1)})
     found = sweep(dry, Draws(ranges, 2), duration=0.01)
-    assert [found[name].attrs["units"] for name in ("sample", "friction.mu", "friction.eps")] == [
+    assert [found[name].attrs["units"] for name in ("sample", "mu", "eps")] == [
         "1",
         "1",
         "m s-1",
@@ -127,3 +142,46 @@ def test_every_number_of_a_problem_has_a_unit_and_a_name_of_its_own(problem):
     kinds = [problem.quantity(field) for field, _ in numeric_fields(problem)]
     assert all(kind.units for kind in kinds)
     assert len({kind.long_name for kind in kinds}) == len(kinds)
+
+
+@pytest.mark.parametrize("where", ["memory", "store"])
+def test_flags_are_words_or_numbers_as_asked(tmp_path, where):
+    out = tmp_path / "a.zarr" if where == "store" else None
+    over = {"launch.spin": [10.0, 155.0], "launch.tilt": [0.1, 4.0]}
+    options = {"duration": 20.0, "workers": 1, "out": out}
+    words = sweep(report_problem(), over, **options)
+    numbers = sweep(report_problem(), over, decode=False, overwrite=out is not None, **options)
+    assert (words["outcome"] == "inverted").values.tolist() == [[False, False], [True, False]]
+    assert (words["fault"] == "value_out_of_range").values.tolist() == [[False, True]] * 2
+    assert numbers["outcome"].dtype == np.int8
+    assert list(numbers["outcome"].attrs["flag_values"]) == list(map(int, Ending))
+    expected = [[Ending(n).name.lower() for n in row] for row in numbers["outcome"].values]
+    assert words["outcome"].values.tolist() == expected
+    numbers = numbers.load()
+    xr.testing.assert_identical(decoded(numbers), words.load())
+    xr.testing.assert_identical(encoded(words), numbers)
+    if out is not None:
+        xr.testing.assert_identical(read_sweep(out), words)
+        xr.testing.assert_identical(read_sweep(out, decode=False), numbers)
+
+
+def test_what_is_not_computed_yet_has_no_outcome(tmp_path):
+    chosen = Sweep(report_problem(), Product.of({"launch.spin": [10.0, 20.0]}), 0.1)
+    Store.create(tmp_path / "a.zarr", chosen)
+    empty = read_sweep(tmp_path / "a.zarr")
+    assert empty["outcome"].values.tolist() == ["", ""]
+    assert empty["status"].values.tolist() == ["pending", "pending"]
+    assert encoded(empty)["outcome"].values.tolist() == [-1, -1]
+
+
+def test_cells_are_picked_by_short_names_and_by_queries():
+    found = sweep(report_problem(), {"launch.spin": [50.0, 155.0], "friction.mu": [0.1, 0.3]})
+    assert found["spin"].attrs["path"] == "launch.spin"
+    assert found.sel(spin=50).sizes == {"mu": 2}
+    assert found.query(spin="spin > 100").sizes == {"spin": 1, "mu": 2}
+    table = to_dataframe(found)
+    turned = table.query("spin > 100 and outcome == 'inverted'")
+    assert set(turned["mu"]) == set(
+        found["mu"].values[found["outcome"].sel(spin=155.0) == "inverted"]
+    )
+    assert len(turned) > 0

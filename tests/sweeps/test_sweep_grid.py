@@ -12,6 +12,7 @@ from tippetop.support.errors import FileTrouble, InvalidInput
 from tippetop.sweeps import Axis, Draws, Product, Range, Sweep
 from tippetop.sweeps.axes import Spaced
 from tippetop.sweeps.definition import is_sweep
+from tippetop.sweeps.grid import short_names
 
 
 @pytest.mark.parametrize(
@@ -254,8 +255,11 @@ def test_values_of_some_cells_are_made_without_the_others():
         (Range("launch.spin", 10, 20), Range("launch.tilt", 1, 2, "log-uniform")), 10**6, 4
     )
     everything = draws.coordinates()
-    for name, values in draws.values(np.array([999_999, 999_990])).items():
-        assert values.tolist() == everything[name][1][[999_999, 999_990]].tolist()
+    for field, values in draws.values(np.array([999_999, 999_990])).items():
+        assert (
+            values.tolist()
+            == everything[short_names(draws.fields)[field]][1][[999_999, 999_990]].tolist()
+        )
 
 
 def test_a_slip_is_no_axis_where_the_velocity_is_given():
@@ -301,3 +305,21 @@ def test_axes_nested_without_end_or_without_a_name_are_refused_in_a_sentence():
     ):
         with pytest.raises(InvalidInput, match="is not a name with single dots"):
             Product.of(nameless)
+
+
+@pytest.mark.parametrize(
+    ("fields", "names"),
+    [
+        (["launch.spin", "friction.mu", "gravity"], ["spin", "mu", "gravity"]),
+        (
+            ["body.shape.0.radius", "body.shape.1.radius", "body.shape.1.center"],
+            ["body.shape.0.radius", "body.shape.1.radius", "center"],
+        ),
+        (
+            ["launch.slip.0", "law.flights", "law.draw"],
+            ["launch.slip.0", "law.flights", "law.draw"],
+        ),
+    ],
+)
+def test_a_coordinate_has_the_last_word_of_its_field_where_nothing_else_has(fields, names):
+    assert short_names(fields) == dict(zip(fields, names, strict=True))

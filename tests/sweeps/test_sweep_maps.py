@@ -54,7 +54,7 @@ def test_cells_are_drawn_where_their_values_are(plane):
         child for child in phase_map(plane).axes[0].get_children() if isinstance(child, QuadMesh)
     )
     corners = mesh.get_coordinates()
-    spins, mus = plane["launch.spin"].values, plane["friction.mu"].values
+    spins, mus = plane["spin"].values, plane["mu"].values
     assert np.all((corners[:, :-1, 0] < spins) & (spins < corners[:, 1:, 0]))
     assert np.all((mus > corners[:-1, :, 1].T) & (mus < corners[1:, :, 1].T))
 
@@ -69,22 +69,18 @@ def test_one_axis_is_a_curve_and_draws_are_points():
     ranges = Range("launch.spin", 1, 9), Range("launch.tilt", 0.1, 0.2)
     draws = compute(Sweep(report_problem(), Draws(ranges, 6), 0.1))
     points = phase_map(draws, "final_theta").axes[0].collections[-1]
-    assert np.asarray(points.get_offsets())[:, 0] == pytest.approx(draws["launch.spin"].values)
+    assert np.asarray(points.get_offsets())[:, 0] == pytest.approx(draws["spin"].values)
     assert np.asarray(points.get_array()) == pytest.approx(draws["final_theta"].values)
     single = compute(Sweep(report_problem(), Draws(ranges[:1], 6), 0.1))
-    assert phase_map(single).axes[0].lines[0].get_xdata() == pytest.approx(
-        single["launch.spin"].values
-    )
+    assert phase_map(single).axes[0].lines[0].get_xdata() == pytest.approx(single["spin"].values)
 
 
 @pytest.mark.parametrize(("count", "drawn"), [(2, [0, 1]), (17, [0, 2, 4, 6, 8, 10, 12, 14, 16])])
 def test_more_axes_go_from_panel_to_panel(plane, count, drawn, tmp_path):
     tilts = np.linspace(0.1, 0.9, count)
     parts = [plane.assign(final_theta=plane["final_theta"] + k) for k in range(count)]
-    cube = xr.concat(parts, xr.DataArray(tilts, dims="launch.tilt", name="launch.tilt"))
-    cube = cube.expand_dims({"gravity": [1.0, 2.0, 3.0]}).transpose(
-        "launch.spin", "friction.mu", "launch.tilt", "gravity"
-    )
+    cube = xr.concat(parts, xr.DataArray(tilts, dims="tilt", name="tilt"))
+    cube = cube.expand_dims({"gravity": [1.0, 2.0, 3.0]}).transpose("spin", "mu", "tilt", "gravity")
     cube["gravity"].attrs["units"] = "m s-2"
     figure = phase_map(cube)
     meshes = [

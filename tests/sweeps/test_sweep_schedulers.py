@@ -42,7 +42,7 @@ from tippetop.sweeps import Sweep
 from tippetop.sweeps import compute
 print("once")
 axis = Axis.of("launch.spin", {"from": 10, "to": 100, "count": 600})
-print(compute(Sweep(report_problem(), Product((axis,)), 0.01), workers=2).sizes["launch.spin"])
+print(compute(Sweep(report_problem(), Product((axis,)), 0.01), workers=2).sizes["spin"])
 print(__file__.endswith("script.py"), __spec__)
 """
 
@@ -235,4 +235,6 @@ def test_a_cluster_that_is_gone_is_told_of_in_a_sentence_and_what_is_done_is_kep
     assert set(said.splitlines()) == ({warning} if lost == "worker" else set())
     progress = fill(Store.resume(out), workers=1)
     assert 8 <= progress.before < progress.done == 24
-    assert same(arrays(read_sweep(out)), arrays(compute(lively("fly", 6, 4, 0.3, 1e-9))))
+    assert same(
+        arrays(read_sweep(out, decode=False)), arrays(compute(lively("fly", 6, 4, 0.3, 1e-9)))
+    )

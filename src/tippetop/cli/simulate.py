@@ -20,6 +20,7 @@ from tippetop.cli.options import (
     write_figure,
 )
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
+from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, refuse_ending_of_others, require_ending
 
 if TYPE_CHECKING:
@@ -28,7 +29,13 @@ if TYPE_CHECKING:
 DEFAULT_SAMPLES = 2001
 FILMS = {"mp4", "gif"}
 MOVING = {"glb", "html", *FILMS}
-ENDINGS = {"plot": DRAWINGS, "html": (".html", ".htm")}
+TABLES = {"events_table": "events", "flights_table": "flights"}
+"""The tables of a run beside its samples, by the options that ask for them."""
+ENDINGS = {
+    "plot": DRAWINGS,
+    "html": (".html", ".htm"),
+    **dict.fromkeys(TABLES, (".csv", ".parquet")),
+}
 """How the names of files may end; of the other kinds but `out`, as the kind is called."""
 
 ROWS = (
@@ -89,6 +96,15 @@ def simulate(
     out: Annotated[Path | None, typer.Option(help="Write the run as NetCDF.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the run as .png, .svg or .pdf.")] = None,
     csv: Annotated[Path | None, typer.Option(help="Write every variable as CSV.")] = None,
+    parquet: Annotated[
+        Path | None, typer.Option(help="Write every variable as Parquet; needs pyarrow.")
+    ] = None,
+    events_table: Annotated[
+        Path | None, typer.Option(help="Write the events as .csv or .parquet.")
+    ] = None,
+    flights_table: Annotated[
+        Path | None, typer.Option(help="Write the flights as .csv or .parquet.")
+    ] = None,
     glb: Annotated[
         Path | None, typer.Option(help="Write the moving top as an animated .glb.")
     ] = None,
@@ -102,7 +118,18 @@ def simulate(
 ) -> None:
     """Simulate one launch and say what becomes of the top."""
     chosen, seconds = choice.problem(), number_of("--duration", duration, "s") or 0.0
-    files = {"out": out, "plot": plot, "csv": csv, "glb": glb, "html": html, "mp4": mp4, "gif": gif}
+    files = {
+        "out": out,
+        "plot": plot,
+        "csv": csv,
+        "parquet": parquet,
+        "events_table": events_table,
+        "flights_table": flights_table,
+        "glb": glb,
+        "html": html,
+        "mp4": mp4,
+        "gif": gif,
+    }
     wanted = {kind: path for kind, path in files.items() if path is not None}
     _check_files(wanted, force, seconds)
     if samples is None:
@@ -150,8 +177,9 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
             tt.write_run(run, path, force)
         case "plot":
             write_figure(tt.plot(run), path, force)
-        case "csv":
-            tt.write_csv(run, path, force)
+        case "csv" | "parquet" | "events_table" | "flights_table":
+            write = tt.write_csv if path.suffix.lower() == ".csv" else tt.write_parquet
+            write(run, path, force, table=TABLES.get(kind))
         case "glb":
             tt.write_glb(run, path, force)
         case "html":
@@ -165,12 +193,21 @@ def _check_files(wanted: dict[str, Path], force: bool, duration: float) -> None:
     """Refuse names that promise another kind of file or are taken, and films that cannot be
     made.
     """
+    places = dict[Path, str]()
     for kind, path in wanted.items():
+        option = f"--{kind.replace('_', '-')}"
         if kind != "out":
-            require_ending(f"--{kind}", path, ENDINGS.get(kind, (f".{kind}",)))
+            require_ending(option, path, ENDINGS.get(kind, (f".{kind}",)))
         else:
             refuse_ending_of_others("--out", path)
-        place_for(path, force)
+        place = place_for(path, force)
+        if place in places:
+            raise InvalidInput(option, str(path), f"another file than that of {places[place]}")
+        places[place] = option
+        if path.suffix.lower() == ".parquet":
+            from tippetop.export.tables import need_parquet  # noqa: PLC0415 - slow to import
+
+            need_parquet()
     for kind in wanted:
         if kind in FILMS:
             from tippetop.export.movie import require_film  # noqa: PLC0415 - slow to import

@@ -266,8 +266,11 @@ def _holds_sweep(file: Path) -> bool:
 def _map_files(out: Path, chosen: "Sweep") -> dict[str, Path]:
     """The maps that are drawn beside a store, if they can be: variables and files."""
     from tippetop.figures.maps import MAPPED, require_drawable  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps.grid import field_paths  # noqa: PLC0415
 
-    require_drawable({name: values for name, (_, values) in chosen.grid.coordinates().items()})
+    paths = field_paths(chosen.grid.fields)
+    coordinates = chosen.grid.coordinates().items()
+    require_drawable({paths.get(name, name): values for name, (_, values) in coordinates})
     return {name: out.with_name(f"{out.name.removesuffix('.zarr')}.{name}.png") for name in MAPPED}
 
 

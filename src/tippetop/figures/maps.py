@@ -21,6 +21,7 @@ from tippetop.figures.style import (
     pi_ticks,
 )
 from tippetop.results.catalogue import SWEPT, Ending, written_unit
+from tippetop.results.flags import encoded
 from tippetop.support.errors import InvalidInput
 
 MAPPED = ("final_theta", "turns_over", "flights")
@@ -77,8 +78,9 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
     InvalidInput
         If values of an axis are too far apart to be drawn.
     """
+    sweep = encoded(sweep)
     values = sweep[variable]
-    require_drawable({str(name): along.values for name, along in sweep.coords.items()})
+    require_drawable({_path(sweep, str(name)): at.values for name, at in sweep.coords.items()})
     if values.ndim > 2:
         return _panels(sweep, variable)
     figure, axes = mark.panels(4.6)
@@ -144,7 +146,8 @@ def _panels(sweep: xr.Dataset, variable: str) -> Figure:
 
 def _value(sweep: xr.Dataset, name: str) -> str:
     """Where a sweep was cut."""
-    return f"{_name(sweep, name) if name in SHORT else name} = {sweep[name].values:.4g}"
+    path = _path(sweep, name)
+    return f"{_name(sweep, name) if path in SHORT else path} = {sweep[name].values:.4g}"
 
 
 def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: dict[str, Any]) -> Any:
@@ -197,10 +200,15 @@ def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> No
     axes.set_xlabel(_name(sweep, fields[0]))
 
 
-def _name(sweep: xr.Dataset, field: str) -> str:
-    """What the axis of a field is called."""
-    told = sweep[field].attrs
-    return _heading(SHORT.get(field, told.get("long_name", field)), told.get("units", ""))
+def _path(sweep: xr.Dataset, name: str) -> str:
+    """The field, with dots, that a coordinate holds."""
+    return str(sweep[name].attrs.get("path", name))
+
+
+def _name(sweep: xr.Dataset, name: str) -> str:
+    """What the axis of a coordinate is called."""
+    told, path = sweep[name].attrs, _path(sweep, name)
+    return _heading(SHORT.get(path, told.get("long_name", path)), told.get("units", ""))
 
 
 def _heading(words: str, units: str) -> str:

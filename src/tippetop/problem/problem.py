@@ -27,10 +27,17 @@ from tippetop.problem.contact_rules import Contact
 from tippetop.problem.frictions import LEAST_PATCH, Friction
 from tippetop.problem.launch import Launch
 from tippetop.support.errors import MISSING, InvalidInput, require
-from tippetop.support.field_paths import dotted_names, numbers_of, part_at, table_at, with_its_list
+from tippetop.support.field_paths import (
+    dotted_names,
+    is_place,
+    numbers_of,
+    part_at,
+    table_at,
+    with_its_list,
+)
 from tippetop.support.files import made_of, read_text
 from tippetop.support.parsing import parse_json, parse_toml
-from tippetop.support.suggestions import unknown_field
+from tippetop.support.suggestions import likely, unknown_field
 from tippetop.support.validation import (
     OF_ITS_KIND,
     NotNegative,
@@ -261,6 +268,39 @@ class Problem(Part):
 # translate: skip
 PLACES = declare_places(Problem)
 """The full names of all fields by their last names, for whoever writes a field elsewhere."""
+
+
+# translate: skip
+def get(problem: Problem, path: str) -> Any:
+    """Return the value of a field of a problem, or a part of it, named with dots.
+
+    The paths are those of `Problem.replace` and of the axes of a sweep.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such field.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> problem = tt.presets.report_problem(spin=155.0)
+    >>> tt.get(problem, "launch.spin")
+    155.0
+    >>> problem.replace({"launch.spin": 1.1 * tt.get(problem, "launch.spin")}).launch.spin
+    170.5
+    """
+    require_problem(problem)
+    require("path", path, str, "the name of a field with dots, such as launch.spin")
+    where, _, last = path.rpartition(".")
+    whole = part_at(problem, where)
+    if isinstance(whole, Part) and last in type(whole).model_fields:
+        return getattr(whole, last)
+    if isinstance(whole, tuple) and is_place(last, whole):
+        return whole[int(last)]
+    meant = likely(path, list(dotted_names(problem.model_dump())), problem.places)
+    hint = f"did you mean {meant}?" if meant else ""
+    raise InvalidInput("path", path, "the name of a field, such as launch.spin", hint=hint)
 
 
 # translate: drop

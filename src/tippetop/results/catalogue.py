@@ -18,13 +18,16 @@ NEAR_FINAL = 0.01
 
 
 class Ending(IntEnum):
-    """What became of a launch.
+    """What became of a launch: the numbers for which a sweep's outcomes stand.
 
     Examples
     --------
     >>> import tippetop as tt
-    >>> swept = tt.sweep(tt.presets.report_problem(), {"launch.spin": [10.0, 155.0]}, duration=20.0)
-    >>> [tt.Ending(number).name for number in swept["outcome"].values]
+    >>> problem, spins = tt.presets.report_problem(), {"launch.spin": [10.0, 155.0]}
+    >>> tt.sweep(problem, spins, duration=20.0)["outcome"].values.tolist()
+    ['upright', 'inverted']
+    >>> numbers = tt.sweep(problem, spins, duration=20.0, decode=False)["outcome"]
+    >>> [tt.Ending(number).name for number in numbers.values]
     ['UPRIGHT', 'INVERTED']
     """
 
@@ -36,6 +39,20 @@ class Ending(IntEnum):
     BAD = 5
     AT_REST = 6
     INACCURATE = 7
+
+
+FRAMES: Mapping[str, str] = {
+    "table": "x and y along the table, z up; at rest",
+    "body": (
+        "z along the axis of symmetry n, x towards the marker; it moves with the body and has"
+        " the table's directions where the axis is up and the marker along x"
+    ),
+    "contact": (
+        "x along the table into the direction into which the axis leans, y 90 degrees to its left"
+        " seen from above, z up; the table's directions where the axis is vertical"
+    ),
+}
+"""The frames in which variables have their components: right-handed, with the attribute `frame`."""
 
 
 class Fault(IntEnum):
@@ -62,6 +79,10 @@ class Variable(NamedTuple):
     """How it is stored."""
     flags: tuple[str, ...] = ()
     """The meanings of the numbers 0, 1, ..., of a variable of flags."""
+    frame: str = ""
+    """The frame of its components, among `FRAMES`; none for scalars."""
+    convention: str = ""
+    """Its sign, its origin or the order of its components."""
 
     @property
     def missing(self) -> Any:
@@ -74,6 +95,10 @@ class Variable(NamedTuple):
         found: dict[str, Any] = {"long_name": self.long_name}
         if self.units:
             found["units"] = self.units
+        if self.frame:
+            found["frame"] = self.frame
+        if self.convention:
+            found["convention"] = self.convention
         if self.flags:
             found["flag_values"] = np.arange(len(self.flags), dtype=self.dtype)
             found["flag_meanings"] = " ".join(self.flags)
@@ -97,68 +122,209 @@ def meanings(flags: type[IntEnum]) -> tuple[str, ...]:
     return tuple(flag.name.lower() for flag in flags)
 
 
+_ON_THE_BODY = "of the table on the body"
+_SLIP = "velocity of the body's lowest point over the table; friction acts against it"
+
 SAMPLED: Mapping[str, Variable] = {
-    "theta": Variable("tilt of the axis from the vertical", "rad", r"tilt $\theta$"),
-    "theta_dot": Variable("rate of the tilt", "rad s-1", r"rate of the tilt $\dot\theta$"),
-    "phi": Variable("azimuth of the axis, in (-pi, pi]", "rad", r"azimuth $\varphi$"),
+    "theta": Variable(
+        "tilt of the axis from the vertical",
+        "rad",
+        r"tilt $\theta$",
+        frame="table",
+        convention="0 with the axis up, pi with the axis down",
+    ),
+    "theta_dot": Variable(
+        "rate of the tilt",
+        "rad s-1",
+        r"rate of the tilt $\dot\theta$",
+        frame="table",
+        convention="positive while the axis falls away from up",
+    ),
+    "phi": Variable(
+        "azimuth of the axis, in (-pi, pi]",
+        "rad",
+        r"azimuth $\varphi$",
+        frame="table",
+        convention="from x towards y",
+    ),
     "phi_dot": Variable(
         "precession; not a number where the axis is vertical",
         "rad s-1",
         r"precession $\dot\varphi$",
+        frame="table",
+        convention="positive counterclockwise seen from above",
     ),
-    "omega3": Variable("axial spin", "rad s-1", r"axial spin $\omega_3$"),
+    "omega3": Variable(
+        "axial spin",
+        "rad s-1",
+        r"axial spin $\omega_3$",
+        frame="body",
+        convention="component of the angular velocity along the axis, right-handed about it",
+    ),
     "slip_x": Variable(
-        "slip velocity along the direction into which the axis leans", "m s-1", r"slip $v_x$"
+        "slip velocity along the direction into which the axis leans",
+        "m s-1",
+        r"slip $v_x$",
+        frame="contact",
+        convention=_SLIP,
     ),
     "slip_y": Variable(
         "slip velocity 90 degrees to the left of the direction into which the axis leans",
         "m s-1",
         r"slip $v_y$",
+        frame="contact",
+        convention=_SLIP,
     ),
-    "normal_force": Variable("normal force of the table", "N", r"normal force $N$"),
-    "contact_force": Variable("force of the table", "N", r"contact force $F$", ("space",)),
+    "normal_force": Variable(
+        "normal force of the table",
+        "N",
+        r"normal force $N$",
+        frame="table",
+        convention="on the body, positive up",
+    ),
+    "contact_force": Variable(
+        "force of the table",
+        "N",
+        r"contact force $F$",
+        ("space",),
+        frame="table",
+        convention=_ON_THE_BODY,
+    ),
     "contact_torque": Variable(
-        "torque of the table about the contact point", "N m", r"contact torque $T$", ("space",)
+        "torque of the table about the contact point",
+        "N m",
+        r"contact torque $T$",
+        ("space",),
+        frame="table",
+        convention=_ON_THE_BODY,
     ),
     "energy": Variable(
         "kinetic and potential energy; zero at rest with the centre of mass on the table",
         "J",
         r"energy $E$",
     ),
-    "work": Variable("work of the contact force since launch", "J", r"work $W$"),
+    "work": Variable(
+        "work of the contact force since launch",
+        "J",
+        r"work $W$",
+        convention="positive where the body gains energy",
+    ),
     "sliding_loss": Variable("energy lost to sliding since launch", "J", "lost to sliding"),
     "drilling_loss": Variable("energy lost to drilling since launch", "J", "lost to drilling"),
     "rolling_loss": Variable(
         "energy lost to rolling resistance since launch", "J", "lost to rolling"
     ),
-    "jellett": Variable("Jellett's integral", "kg m3 s-1", r"Jellett's integral $\lambda$"),
-    "height": Variable("height of the centre of mass above the table", "m", r"height $z$"),
-    "gap": Variable("height of the lowest point above the table", "m", "gap"),
-    "x": Variable("position of the centre of mass along x", "m", r"$x$"),
-    "y": Variable("position of the centre of mass along y", "m", r"$y$"),
-    "axis": Variable("unit vector along the axis of symmetry", "1", r"axis $n$", ("space",)),
-    "velocity": Variable("velocity of the centre of mass", "m s-1", r"velocity $u$", ("space",)),
+    "jellett": Variable(
+        "Jellett's integral",
+        "kg m3 s-1",
+        r"Jellett's integral $\lambda$",
+        convention="-L.a, with a from the centre of mass to the lowest point",
+    ),
+    "height": Variable(
+        "height of the centre of mass above the table", "m", r"height $z$", frame="table"
+    ),
+    "gap": Variable("height of the lowest point above the table", "m", "gap", frame="table"),
+    "x": Variable(
+        "position of the centre of mass along x",
+        "m",
+        r"$x$",
+        frame="table",
+        convention="0 at launch",
+    ),
+    "y": Variable(
+        "position of the centre of mass along y",
+        "m",
+        r"$y$",
+        frame="table",
+        convention="0 at launch",
+    ),
+    "axis": Variable(
+        "unit vector along the axis of symmetry", "1", r"axis $n$", ("space",), frame="table"
+    ),
+    "velocity": Variable(
+        "velocity of the centre of mass", "m s-1", r"velocity $u$", ("space",), frame="table"
+    ),
     "angular_momentum": Variable(
         "angular momentum about the centre of mass",
         "kg m2 s-1",
         r"angular momentum $L$",
         ("space",),
+        frame="table",
     ),
     "orientation": Variable(
-        "orientation of the body as a unit quaternion", "1", "orientation", ("quaternion",)
+        "orientation of the body as a unit quaternion",
+        "1",
+        "orientation",
+        ("quaternion",),
+        frame="table",
+        convention="scalar first: w, x, y, z; it turns vectors from the body frame to the table's",
     ),
 }
-"""Every variable over time but the contact mode."""
+"""The variables over time that Python and the page's engine compute, but the contact mode."""
+
+DERIVED: Mapping[str, Variable] = {
+    "angular_velocity": Variable(
+        "angular velocity", "rad s-1", r"angular velocity $\omega$", ("space",), frame="table"
+    ),
+    "contact_force_body": Variable(
+        "force of the table in the body frame",
+        "N",
+        r"contact force $F$, body frame",
+        ("space",),
+        frame="body",
+        convention=_ON_THE_BODY,
+    ),
+    "velocity_body": Variable(
+        "velocity of the centre of mass in the body frame",
+        "m s-1",
+        r"velocity $u$, body frame",
+        ("space",),
+        frame="body",
+        convention="relative to the table",
+    ),
+    "angular_momentum_body": Variable(
+        "angular momentum about the centre of mass in the body frame",
+        "kg m2 s-1",
+        r"angular momentum $L$, body frame",
+        ("space",),
+        frame="body",
+    ),
+    "angular_velocity_body": Variable(
+        "angular velocity in the body frame",
+        "rad s-1",
+        r"angular velocity $\omega$, body frame",
+        ("space",),
+        frame="body",
+        convention="relative to the table, as a gyroscope on the body reads it",
+    ),
+    "energy_height": Variable(
+        "potential energy of the height; zero with the centre of mass on the table",
+        "J",
+        "energy of height",
+    ),
+    "energy_translation": Variable(
+        "kinetic energy of the centre of mass", "J", "energy of translation"
+    ),
+    "energy_spin": Variable("kinetic energy of the spin about the axis", "J", "energy of spin"),
+    "energy_turning": Variable(
+        "kinetic energy of the turning of the axis", "J", "energy of turning"
+    ),
+}
+"""The variables over time that follow from those of `SAMPLED`; the page's engine leaves them out.
+
+The four parts of the energy add up to `energy`.
+"""
 
 METRICS: Mapping[str, Variable] = {
-    "final_theta": Variable(
-        "tilt of the axis from the vertical at the end", "rad", r"final tilt $\theta$"
+    "final_theta": SAMPLED["theta"]._replace(
+        long_name="tilt of the axis from the vertical at the end", label=r"final tilt $\theta$"
     ),
-    "final_omega3": Variable("axial spin at the end", "rad s-1", r"final axial spin $\omega_3$"),
-    "final_phi_dot": Variable(
-        "precession at the end; not a number where the axis is vertical",
-        "rad s-1",
-        r"final precession $\dot\varphi$",
+    "final_omega3": SAMPLED["omega3"]._replace(
+        long_name="axial spin at the end", label=r"final axial spin $\omega_3$"
+    ),
+    "final_phi_dot": SAMPLED["phi_dot"]._replace(
+        long_name="precession at the end; not a number where the axis is vertical",
+        label=r"final precession $\dot\varphi$",
     ),
     "turns_over": Variable(
         "time at which the tilt first rises past a right angle", "s", "turns over at"
@@ -168,8 +334,8 @@ METRICS: Mapping[str, Variable] = {
         "s",
         "arrives at",
     ),
-    "least_normal_force": Variable(
-        "least normal force; 0 where the top left the table", "N", "least normal force"
+    "least_normal_force": SAMPLED["normal_force"]._replace(
+        long_name="least normal force; 0 where the top left the table", label="least normal force"
     ),
     "first_lift_off": Variable(
         "time at which the table would first have to pull", "s", "first lift-off"
@@ -190,9 +356,10 @@ METRICS: Mapping[str, Variable] = {
         "largest height of the centre of mass above the table",
         "m",
         "largest height of the centre of mass",
+        frame="table",
     ),
     "highest_gap": Variable(
-        "largest height of the lowest point above the table", "m", "highest jump"
+        "largest height of the lowest point above the table", "m", "highest jump", frame="table"
     ),
     "jellett_error": Variable(
         "change of Jellett's integral from launch to end, relative to |L| h at launch; "
@@ -235,13 +402,18 @@ SWEPT: Mapping[str, Variable] = {
 LISTED: Mapping[str, Variable] = {
     "event_time": Variable("when it happened", "s"),
     "event_kind": Variable("what happened"),
-    "event_impulse": Variable("normal impulse of the table", "N s"),
+    "event_impulse": Variable(
+        "normal impulse of the table",
+        "N s",
+        frame="table",
+        convention=SAMPLED["normal_force"].convention,
+    ),
     "event_energy_lost": Variable("energy lost in it", "J"),
     "event_surface": Variable(
         "number of the body's surface to which it happened", "1", dtype="int8"
     ),
     "flight_start": Variable("when the flight began", "s"),
     "flight_end": Variable("when it ended", "s"),
-    "flight_highest_gap": Variable("highest gap in it", "m"),
+    "flight_highest_gap": Variable("highest gap in it", "m", frame="table"),
 }
 """The variables over the events and the flights of a run, by the word before their underscore."""

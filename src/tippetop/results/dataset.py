@@ -9,7 +9,14 @@ import xarray as xr
 from numpy.typing import NDArray
 from xarray.indexes import Index, PandasIndex
 
-from tippetop.results.catalogue import LISTED, METRICS, MONITORS, SAMPLED, Variable
+from tippetop.results.catalogue import (
+    DERIVED,
+    LISTED,
+    METRICS,
+    MONITORS,
+    SAMPLED,
+    Variable,
+)
 from tippetop.support.errors import MISSING, InvalidInput
 from tippetop.support.lazy_pint import leave_pint_alone
 
@@ -32,7 +39,7 @@ def require_run(run: object) -> None:
     """Raise `InvalidInput` unless something is a run, as `simulate` returns it, or some of its
     samples.
     """
-    named = {"time", *SAMPLED, *METRICS, *MONITORS, *LISTED}
+    named = {"time", *SAMPLED, *DERIVED, *METRICS, *MONITORS, *LISTED}
     if not (isinstance(run, xr.Dataset) and named <= set(run.variables) and run.sizes.get("time")):
         raise InvalidInput("run", run, "a run that simulate returned, whole or some of its samples")
     for name in ("problem", "outcome", "outcome_advice", "integrator"):
@@ -52,13 +59,14 @@ def assemble(
 ) -> xr.Dataset:
     """Label the arrays of a run as `tippetop.results.catalogue` says.
 
-    Over the sample times, s, shape (k,): the variables of `SAMPLED`, shape (k, ...), and the
-    numbers of the contact modes, shape (k,), with the names that they stand for. Single numbers are
-    those of `METRICS` and `MONITORS`, lists those of `LISTED`; the attributes are the provenance.
+    Over the sample times, s, shape (k,): the variables of `SAMPLED` and `DERIVED`,
+    shape (k, ...), and the numbers of the contact modes, shape (k,), with the names that they stand
+    for. Single numbers are those of `METRICS` and `MONITORS`, lists those of `LISTED`; the
+    attributes are the provenance.
     """
     found: dict[Any, xr.Variable] = {}
     for name, values in samples.items():
-        variable = SAMPLED[name]
+        variable = SAMPLED.get(name) or DERIVED[name]
         dimensions = "time", *variable.dimensions
         found[name] = xr.Variable(dimensions, values, variable.attributes, fastpath=True)
     described = Variable("contact mode", dtype="int8", flags=tuple(modes[1]))

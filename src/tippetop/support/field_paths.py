@@ -24,7 +24,7 @@ def part_at(whole: Any, where: str) -> Any:
     for name in where.split(".") if where else ():
         if isinstance(whole, dict):
             whole = whole.get(name)
-        elif isinstance(whole, tuple) and _is_place(name, whole):
+        elif isinstance(whole, tuple) and is_place(name, whole):
             whole = whole[int(name)]
         else:
             whole = getattr(whole, name, None)
@@ -43,12 +43,12 @@ def with_its_list(fields: dict[str, Any], name: str, value: Any) -> tuple[str, A
     """
     where, _, place = name.rpartition(".")
     whole = part_at(fields, where)
-    if not (isinstance(whole, tuple) and _is_place(place, whole)):
+    if not (isinstance(whole, tuple) and is_place(place, whole)):
         return name, value
     return with_its_list(fields, where, (*whole[: int(place)], value, *whole[int(place) + 1 :]))
 
 
-def _is_place(name: str, whole: tuple[Any, ...]) -> bool:
+def is_place(name: str, whole: tuple[Any, ...]) -> bool:
     """Whether a name counts a place that a list has: 0, 1, ..., written in one way."""
     return name in map(str, range(len(whole)))
 

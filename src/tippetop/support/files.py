@@ -36,6 +36,7 @@ _OF_OTHERS = {
         ".html",
         ".htm",
         ".csv",
+        ".parquet",
         ".glb",
         ".mp4",
         ".gif",

@@ -5,6 +5,7 @@ table ``{ count, seed, fields }`` with ranges ``{ from, to, law }``.
 """
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Annotated, Any, Literal, Self, TypeVar
 
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, field_serializer, model_serializer, model_validator
 
 from tippetop.integrators.base import Array
+from tippetop.results.catalogue import SWEPT
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.parsing import DEEPEST
 from tippetop.support.validation import Number, Whole
@@ -39,7 +41,7 @@ class Product(Entry):
 
     @model_validator(mode="after")
     def _crosses(self) -> Self:
-        check_fields("axes", self.dimensions)
+        check_fields("axes", self.fields)
         if math.prod(self.shape) > MOST_CELLS:
             raise InvalidInput(
                 "axes",
@@ -64,9 +66,14 @@ class Product(Entry):
         return tuple(axis.size for axis in self.axes)
 
     @property
-    def dimensions(self) -> tuple[str, ...]:
-        """The names of the dimensions: the fields."""
+    def fields(self) -> tuple[str, ...]:
+        """The fields, named with dots."""
         return tuple(axis.field for axis in self.axes)
+
+    @property
+    def dimensions(self) -> tuple[str, ...]:
+        """The names of the dimensions: short ones of the fields."""
+        return tuple(short_names(self.fields).values())
 
     def values(self, cells: Flat) -> dict[str, Array]:
         """The values of the fields in these cells."""
@@ -75,7 +82,9 @@ class Product(Entry):
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
         """The coordinates."""
-        return {axis.field: (axis.field, axis.values) for axis in self.axes}
+        return {
+            name: (name, axis.values) for name, axis in zip(self.dimensions, self.axes, strict=True)
+        }
 
 
 class Range(Entry):
@@ -152,7 +161,7 @@ class Draws(Entry):
 
     @model_validator(mode="after")
     def _differ(self) -> Self:
-        check_fields("fields", [entry.field for entry in self.ranges])
+        check_fields("fields", self.fields)
         return self
 
     @field_serializer("ranges")
@@ -163,6 +172,11 @@ class Draws(Entry):
     def shape(self) -> tuple[int, ...]:
         """How many draws."""
         return (self.count,)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The fields, named with dots."""
+        return tuple(entry.field for entry in self.ranges)
 
     @property
     def dimensions(self) -> tuple[str, ...]:
@@ -177,9 +191,7 @@ class Draws(Entry):
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
         """The number of every draw, and the values drawn."""
-        found: dict[str, tuple[str, NDArray[Any]]] = {SAMPLE: (SAMPLE, np.arange(self.count))}
-        found |= {field: (SAMPLE, values) for field, values in self._drawn(0, self.count).items()}
-        return found
+        return sampled_coordinates(self._drawn(0, self.count), self.count)
 
     def _drawn(self, first: int, last: int) -> dict[str, Array]:
         """The draws from first to before last, without making those before."""
@@ -188,6 +200,40 @@ class Draws(Entry):
             shares = shares_of(self.seed, place, first, last)
             found[entry.field] = between(entry.low, entry.high, shares, entry.law == "log-uniform")
         return found
+
+
+RESERVED_NAMES = {SAMPLE, "status", *SWEPT}
+"""Names in a sweep's dataset that no coordinate of a field may have."""
+
+
+def short_names(fields: Sequence[str]) -> dict[str, str]:
+    """Return the names of coordinates by the fields that they hold.
+
+    A name is the last word of the field, spin of launch.spin, where no other field has the same
+    and it can be written in a query; elsewhere it is the whole field.
+    """
+    words = {field: field.rpartition(".")[2] for field in fields}
+    counts = Counter(words.values())
+    return {
+        field: word
+        if counts[word] == 1 and word.isidentifier() and word not in RESERVED_NAMES
+        else field
+        for field, word in words.items()
+    }
+
+
+def field_paths(fields: Sequence[str]) -> dict[str, str]:
+    """Return fields, named with dots, by the names of their coordinates."""
+    return {name: field for field, name in short_names(fields).items()}
+
+
+def sampled_coordinates(
+    values: Mapping[str, Array], count: int
+) -> dict[str, tuple[str, NDArray[Any]]]:
+    """Return the number of every sample, and the values of its fields, as coordinates."""
+    found: dict[str, tuple[str, NDArray[Any]]] = {SAMPLE: (SAMPLE, np.arange(count))}
+    names = short_names(list(values))
+    return found | {names[field]: (SAMPLE, sampled) for field, sampled in values.items()}
 
 
 def shares_of(seed: int, place: int, first: int, last: int) -> Array:

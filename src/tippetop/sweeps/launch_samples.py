@@ -17,7 +17,7 @@ from tippetop.integrators.base import Array
 from tippetop.support.errors import InvalidInput
 from tippetop.support.validation import Number, Whole
 from tippetop.sweeps.axes import Count, Entry, Flat
-from tippetop.sweeps.grid import SAMPLE, check_fields, read_fields, shares_of
+from tippetop.sweeps.grid import SAMPLE, check_fields, read_fields, sampled_coordinates, shares_of
 
 MOST_NUMBERS = 10**6
 """Numbers that listed samples may have in all: they are kept in the description of a sweep."""
@@ -123,7 +123,7 @@ class LaunchSamples(Entry):
 
     @model_validator(mode="after")
     def _agree(self) -> Self:
-        check_fields("fields", [column.field for column in self.columns])
+        check_fields("fields", self.fields)
         listed = [one for one in self.columns if isinstance(one, ListedColumn)]
         for column in listed:
             if len(column.numbers) != self.count:
@@ -157,6 +157,11 @@ class LaunchSamples(Entry):
         return {one.field: one.model_dump(by_alias=True, exclude={"field"}) for one in columns}
 
     @property
+    def fields(self) -> tuple[str, ...]:
+        """The fields that are sampled."""
+        return tuple(column.field for column in self.columns)
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """How many samples."""
         return (self.count,)
@@ -176,9 +181,7 @@ class LaunchSamples(Entry):
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
         """Return the number of every sample, and the values sampled."""
-        numbers = np.arange(self.count)
-        found: dict[str, tuple[str, NDArray[Any]]] = {SAMPLE: (SAMPLE, numbers)}
-        return found | {field: (SAMPLE, values) for field, values in self.values(numbers).items()}
+        return sampled_coordinates(self.values(np.arange(self.count)), self.count)
 
 
 def _frozen(field: str, distribution: Any) -> DrawnColumn:

@@ -11,6 +11,7 @@ import xarray as xr
 
 from tippetop.problem.implausible import warn
 from tippetop.problem.problem import Problem
+from tippetop.results.flags import decoded
 from tippetop.support.errors import MISSING, InvalidInput, require
 from tippetop.support.validation import require_callback
 from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
@@ -131,6 +132,7 @@ def sweep(
     workers: int | None = None,
     scheduler: str | None = None,
     callback: Callback | None = None,
+    decode: bool = True,
 ) -> xr.Dataset:
     """See what becomes of many launches: ``sweep(problem, {"launch.spin": np.linspace(0, 250,
     200)})``.
@@ -172,13 +174,18 @@ def sweep(
         Address of a running dask.distributed scheduler, instead of processes.
     callback
         Told of the progress, at the beginning and after every task.
+    decode
+        Give outcomes, and all else that is flags, as words; False for their numbers, which take a
+        byte a launch (see `Ending`).
 
     Returns
     -------
     xarray.Dataset
         What became of every launch, over the grid: its outcome, final tilt, spin and precession,
         when it turned over, its flights, forces and losses, each with its SI unit. That of a store
-        is read when used.
+        is read when used. A coordinate is named by the last word of its field, spin for
+        launch.spin, where that names one field alone, else by the whole; its attribute `path` is
+        the whole.
 
     Raises
     ------
@@ -195,6 +202,8 @@ def sweep(
     >>> found = tt.sweep(tt.presets.report_problem(), spins, duration=20.0)
     >>> [round(float(tilt), 2) for tilt in found["final_theta"]]
     [0.0, 1.5, 3.14]
+    >>> bool(found["outcome"].sel(spin=155.0) == "inverted")
+    True
     """
     if (over is None) == (samples is None):
         given = MISSING if over is None else "both"
@@ -205,6 +214,7 @@ def sweep(
         grid = over if isinstance(over, Draws) else Product.of(over)
     chosen = Sweep(problem, grid, duration, tolerance, settled)
     require_callback("callback", callback)
+    require("decode", decode, bool, "True or False")
     for field, asked in {"overwrite": overwrite, "resume": resume}.items():
         require(field, asked, bool, "True or False")
         if asked and out is None:
@@ -218,8 +228,9 @@ def sweep(
     if doubt := implausible_cells(chosen):
         warn(doubt)
     if out is None:
-        return compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
+        swept = compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
+        return decoded(swept) if decode else swept
     with need_workers(chosen, workers, scheduler) as cluster:
         store = Store.resume(out, chosen) if resume else Store.create(out, chosen, overwrite)
         fill(store, workers=workers, scheduler=cluster, callback=callback)
-    return store.dataset()
+    return decoded(store.dataset()) if decode else store.dataset()

@@ -22,7 +22,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop.results.catalogue import SWEPT
-from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable
+from tippetop.results.flags import decoded
+from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable, require
 from tippetop.support.files import in_words, path_of, require_ending
 from tippetop.support.interrupts import deferred
 from tippetop.sweeps.definition import Sweep, Task
@@ -249,8 +250,10 @@ class Store:
         return self.path.joinpath(name, "c", *map(str, task))
 
 
-def read_sweep(path: Path | str, names: Collection[str] | None = None) -> xr.Dataset:
-    """Read a sweep, or some of its variables.
+def read_sweep(
+    path: Path | str, names: Collection[str] | None = None, *, decode: bool = True
+) -> xr.Dataset:
+    """Read a sweep, or some of its variables; flags as words, or as numbers unless `decode`.
 
     Raises
     ------
@@ -266,11 +269,13 @@ def read_sweep(path: Path | str, names: Collection[str] | None = None) -> xr.Dat
     >>> tt.read_sweep("spins.zarr").equals(found)
     True
     """
+    require("decode", decode, bool, "True or False")
     need_zarr()
     path = path_of(path)
     with in_words(path, "read"):
         sweep = Sweep(**json.loads(read_metadata(path)["attributes"]["sweep"]))
-    return Store(path, sweep).load(list(CONTENTS) if names is None else names)
+    dataset = Store(path, sweep).load(list(CONTENTS) if names is None else names)
+    return decoded(dataset) if decode else dataset
 
 
 def need_zarr() -> None:

@@ -19,9 +19,8 @@ from tippetop.results.catalogue import SWEPT, Variable, meanings
 from tippetop.results.dataset import CONVENTIONS
 from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, short
 from tippetop.support.files import refuse_overwriting
-from tippetop.support.validation import Quantity
 from tippetop.sweeps.definition import Sweep
-from tippetop.sweeps.grid import SAMPLE, Product
+from tippetop.sweeps.grid import Product, field_paths
 
 FORMAT = "tippetop sweep 3"
 """Name and version of the layout; a store of another is refused."""
@@ -116,9 +115,12 @@ def layout_attributes(sweep: Sweep) -> dict[str, Any]:
 
 
 def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
-    """The attributes of a coordinate by the CF conventions."""
-    kind = Quantity("1", "number of the sample") if name == SAMPLE else sweep.problem.quantity(name)
-    return Variable(kind.long_name, kind.units).attributes
+    """The attributes of a coordinate by the CF conventions, and the `path` of its field."""
+    path = field_paths(sweep.grid.fields).get(name)
+    if path is None:
+        return Variable("number of the sample", "1").attributes
+    kind = sweep.problem.quantity(path)
+    return Variable(kind.long_name, kind.units).attributes | {"path": path}
 
 
 def _coordinates(sweep: Sweep) -> dict[str, str]:

@@ -1,0 +1,90 @@
+"""Results as tables in files: CSV, which any spreadsheet reads, and Parquet."""
+
+from importlib.util import find_spec
+from pathlib import Path
+
+import pandas as pd
+import xarray as xr
+
+from tippetop.results.dataframes import to_dataframe
+from tippetop.support.errors import Unavailable
+from tippetop.support.files import written_beside
+
+
+def write_csv(
+    result: xr.Dataset, path: Path | str, overwrite: bool = False, *, table: str | None = None
+) -> Path:
+    """Write a table of a run, or that of a sweep, as CSV: a header of names with their units, then
+    one row a sample, event, flight or launch.
+
+    The tables and their columns are those of `to_dataframe`; what is not a number is left empty.
+
+    Raises
+    ------
+    FileTrouble
+        If the file exists and `overwrite` is false, or cannot be written.
+    InvalidInput
+        If the result is neither a run nor a sweep or has no such table, or the path is no name of
+        a file.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=11)
+    >>> path = tt.write_csv(run, "run.csv")
+    >>> path.read_text().splitlines()[0][:40]
+    'time (s),theta (rad),theta_dot (rad s-1)'
+    """
+    frame = _with_columns_alone(to_dataframe(result, table))
+    units = frame.attrs["units"]
+    heads = [f"{name} ({units[name]})" if units[name] not in ("", "1") else name for name in frame]
+    with written_beside(path, overwrite) as beside:
+        frame.to_csv(beside, index=False, header=heads)
+    return Path(path)
+
+
+def write_parquet(
+    result: xr.Dataset, path: Path | str, overwrite: bool = False, *, table: str | None = None
+) -> Path:
+    """Write a table of a run, or that of a sweep, as Parquet, with its units and attributes.
+
+    The tables and their columns are those of `to_dataframe`, and ``pandas.read_parquet`` returns
+    them with their attributes.
+
+    Raises
+    ------
+    FileTrouble
+        If the file exists and `overwrite` is false, or cannot be written.
+    InvalidInput
+        If the result is neither a run nor a sweep or has no such table, or the path is no name of
+        a file.
+    Unavailable
+        If pyarrow is not installed.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=11)
+    >>> table = pd.read_parquet(tt.write_parquet(run, "run.parquet"))
+    >>> table.attrs["units"]["theta_dot"]
+    'rad s-1'
+    """
+    need_parquet()
+    frame = _with_columns_alone(to_dataframe(result, table))
+    with written_beside(path, overwrite) as beside:
+        frame.to_parquet(beside, engine="pyarrow", index=False)
+    return Path(path)
+
+
+def need_parquet() -> None:
+    """Raise `Unavailable` if pyarrow is not installed."""
+    if find_spec("pyarrow") is None:
+        raise Unavailable(
+            "Parquet is written by pyarrow; install it with: pip install 'tippetop[parquet]'"
+        )
+
+
+def _with_columns_alone(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return the table with a named index, such as the time, as its first column."""
+    return frame.reset_index() if frame.index.name else frame

@@ -1,0 +1,110 @@
+"""Results as tables of pandas: samples, events and flights of a run, cells of a sweep."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from tippetop.results.catalogue import LISTED
+from tippetop.results.dataset import require_run
+from tippetop.results.flags import decoded
+from tippetop.support.errors import InvalidInput
+from tippetop.support.suggestions import not_one_of
+
+TABLES = ("samples", "events", "flights")
+"""The tables of a run."""
+
+
+def to_dataframe(result: xr.Dataset, table: str | None = None) -> pd.DataFrame:
+    """Return a table of a run, or the table of a sweep, for pandas.
+
+    Parameters
+    ----------
+    result
+        A run as `simulate` returns it, or a sweep as `sweep` does.
+    table
+        Of a run: "samples", which is meant if left out, "events" or "flights". A sweep has one
+        table.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Samples: one row a sample, with the time (s) as index; vectors and quaternions take a column
+        for each component, axis_x or orientation_w. Events and flights: one row each. A sweep: one
+        row a launch, the values of its axes first. Flags are words. The attributes `attrs` are
+        those of the result, and "units", the SI units by columns.
+
+    Raises
+    ------
+    InvalidInput
+        If the result is neither a run nor a sweep, or has no such table.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run = tt.simulate(tt.presets.report_problem(spin=175.0), duration=8.0)
+    >>> samples, flights = tt.to_dataframe(run), tt.to_dataframe(run, "flights")
+    >>> samples.attrs["units"]["velocity_z"]
+    'm s-1'
+    >>> bool((samples.loc[samples["mode"] == "flight", "normal_force"] == 0.0).all())
+    True
+    >>> len(flights) == int(run["flights"])
+    True
+    """
+    if _is_of_a_sweep(result):
+        if table is not None:
+            raise InvalidInput("table", table, "None for a sweep, which has one table")
+        columns, units = _cells(result)
+    else:
+        require_run(result)
+        if table is not None and table not in TABLES:
+            raise not_one_of("table", table, list(TABLES))
+        kind = table or "samples"
+        columns, units = _samples(result) if kind == "samples" else _list(result, kind)
+    columns.attrs = {name: _plain(value) for name, value in result.attrs.items()}
+    columns.attrs["units"] = units
+    return columns
+
+
+def _is_of_a_sweep(result: object) -> bool:
+    return isinstance(result, xr.Dataset) and "sweep" in result.attrs
+
+
+def _samples(run: xr.Dataset) -> tuple[pd.DataFrame, dict[str, str]]:
+    columns, units = dict[str, Any](), {"time": run["time"].attrs["units"]}
+    over_time = [str(name) for name in run.data_vars if "time" in run[name].dims]
+    for name, variable in decoded(run[over_time]).data_vars.items():
+        unit = variable.attrs.get("units", "")
+        if variable.ndim == 1:
+            parts: Sequence[tuple[str, Any]] = [(str(name), variable.values)]
+        else:
+            values = variable.transpose("time", ...).values
+            labels = run[variable.transpose("time", ...).dims[1]].values
+            parts = [(f"{name}_{label}", values[:, k]) for k, label in enumerate(labels)]
+        for column, values in parts:
+            columns[column], units[column] = values, unit
+    return pd.DataFrame(columns, index=pd.Index(run["time"].values, name="time")), units
+
+
+def _list(run: xr.Dataset, table: str) -> tuple[pd.DataFrame, dict[str, str]]:
+    prefix = table.removesuffix("s") + "_"
+    names = [name for name in LISTED if name.startswith(prefix)]
+    columns = {name.removeprefix(prefix): run[name].values for name in names}
+    units = {name.removeprefix(prefix): LISTED[name].units for name in names}
+    return pd.DataFrame(columns), units
+
+
+def _cells(sweep: xr.Dataset) -> tuple[pd.DataFrame, dict[str, str]]:
+    # One cell alone has no dimension left, and pandas no table for it.
+    cells = decoded(sweep if sweep.sizes else sweep.expand_dims("cell"))
+    table = cells.to_dataframe().reset_index()
+    order = [name for name in table if name in sweep.coords]
+    order += [name for name in table if name in sweep.data_vars]
+    units = {name: sweep[name].attrs.get("units", "") for name in order}
+    return table[order], units
+
+
+def _plain(value: Any) -> Any:
+    """Return the value as Python's own, which JSON can hold."""
+    return value.tolist() if hasattr(value, "tolist") else value
