@@ -187,7 +187,7 @@ def test_an_oval_that_is_a_sphere_moves_as_one():
 
 
 def test_an_oval_is_convex():
-    with pytest.raises(tt.InvalidInput, match=r"support .* a convex surface"):
+    with pytest.raises(tt.InvalidInput, match=r"support: .* a convex surface"):
         tt.Oval(support=(0.02, 0.0, 0.0, 0.0, -0.03, *(12 * [0.0])))
     with pytest.raises(tt.InvalidInput, match="support"):
         tt.Oval(support=(0.02, 0.0))

@@ -77,7 +77,7 @@ def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
         ),
         (
             ["--csv", "a.csv", "--events-table", "a.csv"],
-            "--events-table = 'a.csv' is not possible; accepted: another file than that of --csv",
+            "--events-table: 'a.csv' is not another file than that of --csv",
         ),
         (
             ["--html", "a.html", "--out", "a.html"],

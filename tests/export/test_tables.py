@@ -109,7 +109,7 @@ def test_what_is_no_table_is_refused(
     flying: xr.Dataset, swept: xr.Dataset, tmp_path: Path, call: Callable[..., object]
 ) -> None:
     place = () if call is tt.to_dataframe else (tmp_path / "table",)
-    with pytest.raises(tt.InvalidInput, match=r"table = 'flight' .*did you mean flights"):
+    with pytest.raises(tt.InvalidInput, match=r"table: 'flight' .*did you mean flights"):
         call(flying, *place, table="flight")
     with pytest.raises(tt.InvalidInput, match="None for a sweep"):
         call(swept, *place, table="events")

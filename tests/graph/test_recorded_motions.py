@@ -28,6 +28,10 @@ from tippetop.mechanics.top import Top
 from tippetop.problem.presets import report_problem
 
 POINTS = 6
+ROUNDING = 5e-13
+"""Error that rounding makes, beside the largest number: floats in one order of operations are off
+by up to 8.6e-14 of what 40 digits give (a ring whose rolling is held), in another by as much again.
+"""
 REPORT = report_problem().standing()
 
 
@@ -54,7 +58,7 @@ def assert_same(found, expected):
         for number, exact in zip(row, right, strict=True):
             if exact.imag == 0.0:
                 compared += 1
-                assert abs(number - exact.real) <= 1e-13 * size
+                assert abs(number - exact.real) <= ROUNDING * size
     assert compared > len(expected)
 
 

@@ -69,7 +69,7 @@ def test_people_are_told_too(files):
     ):
         assert text in lines
     cut_off = said("bowl.csv", "--density", "700", "--unit", "mm", code=2)
-    assert "Cannot be simulated: profile = 'a sphere cut off" in cut_off
+    assert "Cannot be simulated: profile: a sphere cut off" in cut_off
     assert "--whole" in cut_off
     assert "lies flat" in cut_off
     assert "up to a tilt of 1.5708" in cut_off
@@ -100,13 +100,13 @@ def test_files_are_written_once(files):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        ("top.toml --plot a.txt", "--plot = 'a.txt'"),
-        ("top.toml --stl a.3mf", "--stl = 'a.3mf'"),
-        ("top.toml --stl ball.toml.stl --json --toml", "--toml = 'with --json'"),
+        ("top.toml --plot a.txt", "--plot: 'a.txt' is not"),
+        ("top.toml --stl a.3mf", "--stl: 'a.3mf' is not"),
+        ("top.toml --stl ball.toml.stl --json --toml", "--toml: beside --json asks for two"),
         ("bowl.csv", "density is missing"),
-        ("bowl.csv --density 700 --unit ft", "unit = 'ft'"),
-        ("bowl.csv --density -1", "density = -1"),
-        ("bowl.csv --density 700 --toml", "profile = 'a sphere cut off"),
+        ("bowl.csv --density 700 --unit ft", "unit: 'ft' is not"),
+        ("bowl.csv --density -1", "density: -1 is not"),
+        ("bowl.csv --density 700 --toml", "profile: a sphere cut off"),
         ("none.toml", "none.toml cannot be read"),
         ("top.toml --plot taken.png", "taken.png exists"),
     ],

@@ -240,7 +240,7 @@ def test_what_is_no_body_is_refused_by_name(tmp_path, content, sentence):
 
 @pytest.mark.parametrize("axis", ["z", "x=", "x=one", "10", "x=nan", 3])
 def test_an_axis_that_is_none_is_refused(tmp_path, axis):
-    with pytest.raises(tt.InvalidInput, match=r"^axis = "):
+    with pytest.raises(tt.InvalidInput, match=r"^axis: "):
         read_with_remarks(drawing(tmp_path, RECT), density=700.0, axis=axis)
 
 

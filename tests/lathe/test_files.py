@@ -84,7 +84,7 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
         (
             "a.svg",
             SVG.format("M 0 0 L 1 1 L 5 7"),
-            "profile = 'an open line from (0, 0) to (1.32292",
+            "profile: an open line from (0, 0) to (1.32292",
         ),
         ("a.svg", SVG.format("M 0 0 L 5 1 L 7 9 Z"), "two sides that differ by"),
         (

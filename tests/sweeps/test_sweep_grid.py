@@ -316,8 +316,8 @@ def test_axes_nested_without_end_or_without_a_name_are_refused_in_a_sentence():
             ["body.shape.0.radius", "body.shape.1.radius", "center"],
         ),
         (
-            ["launch.slip.0", "law.flights", "law.draw"],
-            ["launch.slip.0", "law.flights", "law.draw"],
+            ["launch.slip.0", "law.flights", "law.sample"],
+            ["launch.slip.0", "law.flights", "law.sample"],
         ),
     ],
 )

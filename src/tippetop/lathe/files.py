@@ -11,7 +11,7 @@ from tippetop.lathe.fitting import TOLERANCE
 from tippetop.lathe.sheet import Reading, Sheet, read_sheet
 from tippetop.lathe.strokes import line
 from tippetop.lathe.workpiece import UNITS, Workpiece
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.files import in_words, made_of, named, path_of, read_text
 from tippetop.support.parsing import parse_toml
 
@@ -96,7 +96,9 @@ def read_with_remarks(
 def _add_cavities(content: dict[str, Any], reading: Reading, field: str) -> None:
     """Add the cavities of a drawing to the inserts of a workpiece."""
     if field != "profile":
-        raise InvalidInput(field, "a drawing with bores", "one outline: an insert has no bores")
+        raise InvalidInput(
+            field, Described("a drawing with bores"), "one outline: an insert has no bores"
+        )
     cavities = [{"profile": points, "density": 0.0} for points in reading.cavities]
     content["inserts"] = [*(content.get("inserts") or ()), *cavities]
 

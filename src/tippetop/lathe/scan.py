@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.lathe.sheet import Reading, nested
-from tippetop.support.errors import InvalidInput, Unavailable
+from tippetop.support.errors import Described, InvalidInput, Unavailable
 
 NOT_ROUND = 0.01
 """How far a surface may be from one of revolution, in sizes of the body."""
@@ -73,7 +73,7 @@ def read_stl(path: Path, axis: str | None, tolerance: float, name: str) -> Readi
     if not share <= NOT_ROUND:
         raise InvalidInput(
             "STL",
-            f"a surface out of round by {100.0 * share:.3g} % of its size",
+            Described(f"a surface out of round by {100.0 * share:.3g} % of its size"),
             f"one of revolution, to {100.0 * NOT_ROUND:g} %: without parts that are not round;"
             " --axis x, y or z says which axis is meant",
             file=name,
@@ -108,7 +108,7 @@ def _mesh(path: Path, name: str) -> Any:
         raise InvalidInput("STL", name, "a mesh of finite size")
     mesh.merge_vertices()
     if not mesh.is_watertight:
-        raise InvalidInput("STL", "a surface with holes", "a closed surface", file=name)
+        raise InvalidInput("STL", Described("a surface with holes"), "a closed surface", file=name)
     return mesh
 
 

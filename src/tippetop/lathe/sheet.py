@@ -13,7 +13,7 @@ from tippetop.lathe.fitting import fit
 from tippetop.lathe.profile import Profile, area_of, profile_of
 from tippetop.lathe.rounding import unrounded
 from tippetop.lathe.strokes import Path, is_closed, joined, points_of, right_parts
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 
 GAP = 1e-3
 """Distance of two ends that are taken to meet, in sizes of the drawing: lines drawn by hand without
@@ -79,7 +79,9 @@ def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> 
     those of one body with cavities in it.
     """
     if not sheet.paths:
-        raise InvalidInput(field, "a drawing without lines", "one with an outline of the body")
+        raise InvalidInput(
+            field, Described("a drawing without lines"), "one with an outline of the body"
+        )
     direction, place = _stated(axis)
     reasons = []
     for name in direction:
@@ -97,7 +99,7 @@ def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> 
             reasons.append(str(reason))
     raise InvalidInput(
         field,
-        reasons[0],
+        Described(reasons[0]),
         "half an outline that begins and ends on an upright axis, a whole one that agrees on both"
         f" sides to {100.0 * ASYMMETRY:g} %, or the place of the axis: --axis x=NUMBER",
     )
@@ -134,7 +136,9 @@ def _read(
     points, _ = _chords([path for _, path in paths])
     size = float(max(np.ptp(points.real), np.ptp(points.imag)))
     if not size > 0.0:
-        raise InvalidInput(field, "a drawing of one point", "one with an outline of the body")
+        raise InvalidInput(
+            field, Described("a drawing of one point"), "one with an outline of the body"
+        )
     outlines, center_lines = _outlines(paths, GAP * size)
     if not outlines:
         raise _NoAxis("straight lines that do not meet")
@@ -154,7 +158,7 @@ def _read(
             first, last = (f"({side * end.real + axis.place:.6g}, {end.imag:.6g})" for end in ends)
             raise InvalidInput(
                 field,
-                f"an open line from {first} to {last}",
+                Described(f"an open line from {first} to {last}"),
                 f"lines that end on the axis, {told(axis.place)}, or where they begin",
             )
         stated.append((name, unrounded(_ended(points_of(part), GAP * size), ALONG * size)))
@@ -265,7 +269,7 @@ def _placed(
     if difference > ASYMMETRY:
         raise InvalidInput(
             "axis",
-            f"{told(place)}, with sides that differ by {100.0 * difference:.3g} %",
+            Described(f"{told(place)}, with sides that differ by {100.0 * difference:.3g} %"),
             f"an axis on whose sides the drawing differs by {100.0 * ASYMMETRY:g} % at most, or one"
             " side alone",
         )
@@ -332,12 +336,12 @@ def nested(
             how = "crosses" if "in" in sides else "is beside"
             raise InvalidInput(
                 field,
-                f"{name}, which {how} {outer_name}",
+                Described(f"{name}, which {how} {outer_name}"),
                 "one outline around the body, and bores inside it: unite the parts of the body",
             )
     for (name, _, one), (other_name, _, other) in combinations(inner, 2):
         if "out" not in other.sides(one) or "in" in one.sides(other):
             raise InvalidInput(
-                field, f"{other_name}, which is inside {name}", "bores beside each other"
+                field, Described(f"{other_name}, which is inside {name}"), "bores beside each other"
             )
     return list(outer), [list(points) for _, points, _ in inner]

@@ -213,11 +213,7 @@ def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
             part = Described(
                 f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
             )
-            wanted = (
-                "surfaces that stay inside the body where it does not stand on them, or to take"
-                " them as whole with whole=True, at the command line --whole"
-            )
-            raise InvalidInput("profile", part, wanted)
+            raise InvalidInput("profile", part, "", CUT_OFF, AS_WHOLE)
     if ovals:
         return [*ovals, *dict.fromkeys(found.values())]
     shapes = [found[zone] for zone in hull.whole(reach)]
@@ -241,12 +237,8 @@ def _oval(piece: "Workpiece", low: float, high: float, whole: bool) -> Shape:
     center = piece.mass_properties.center
     support, apart = polynomial_support(piece.hull, low, high, center, DEGREE, whole)
     if apart > OFF_OVAL * piece.outline.size:
-        part = f"a curve cut off, from tilt {low:.4g} to {high:.4g}"
-        wanted = (
-            "a smooth curve that goes on inside the body, or to take it as whole with whole=True,"
-            " at the command line --whole"
-        )
-        raise InvalidInput("profile", part, wanted)
+        part = Described(f"a curve cut off, from tilt {low:.4g} to {high:.4g}")
+        raise InvalidInput("profile", part, "", CUT_OFF, AS_WHOLE)
     return Oval(support=tuple(support))
 
 
@@ -257,9 +249,12 @@ def _shape(zone: "Zone", center: float) -> Shape:
     if zone.radius > 0.0:
         return Ring(radius=zone.radius, center=center, tube=zone.tube)
     part = "a sharp tip" if zone.name == "tip" else "an arc around a point beyond the axis"
-    wanted = "part of a body that stands on spheres, rings and smooth curves: a tip is rounded"
-    raise InvalidInput("profile", Described(part), wanted)
+    wanted = "part of a body that stands on spheres, rings and smooth curves"
+    raise InvalidInput("profile", Described(part), wanted, hint="round it, by 1 mm or so")
 
+
+CUT_OFF = "would reach out of the body where it goes on"
+AS_WHOLE = "take surfaces as whole with whole=True, at the command line --whole"
 
 MOST = 12
 """Most surfaces of a turned body."""
