@@ -19,15 +19,30 @@ from tippetop.report.claim import (
     Judgement,
     Source,
     Verdict,
+    count_verdicts,
     examines,
+    in_words,
     number,
 )
 from tippetop.report.claims.registry import CLAIMS, EXAMINERS
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import DRAWN, PLATES
-from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of
+from tippetop.report.outline import OWN, SECTIONS, STORY, UNCHECKED, section_of
 from tippetop.report.tolerance import Tolerance, half_last_digit
+
+COARSER = {
+    "fig04-flip-time": "around",
+    "fig05-flip-time": "around",
+    "fig06-a": "around",
+    "fig06-c1": "scan in such steps",
+    "fig06-c2": "scan in such steps",
+    "real-leine-stem": "read off a plot",
+    "real-leine-back": "read off a plot",
+    "real-leine-both": "read off a plot",
+    "real-leine-apart": "read off a plot",
+}
+"""Claims that need not be true to half of their last digit, and the words that say why."""
 
 IN_WORDS = {
     "eq-2.7-mu-unit",
@@ -164,6 +179,29 @@ def test_claims_are_complete(claim: Claim) -> None:
     assert section_of(claim.source.section)
 
 
+NUMBERS = {name: claim for name, claim in CLAIMS.items() if claim.is_number}
+
+
+@pytest.mark.parametrize("claim", NUMBERS.values(), ids=NUMBERS)
+def test_a_tolerance_is_half_of_the_last_digit_or_has_a_reason(claim: Claim) -> None:
+    own = claim.examiner.tolerance
+    if claim.number in ("", "0", "pi"):
+        assert own, "no digit says how accurate the number is"
+    elif own and own.value > half_last_digit(claim.number).value:
+        assert COARSER[claim.id] in own.reason
+        assert COARSER[claim.id] != "around" or "around" in claim.quote
+    else:
+        assert claim.id not in COARSER
+
+
+def test_verdicts_are_counted_and_put_in_words() -> None:
+    judgements = [judged(Finding(None, value, ""), "7.4") for value in (7.4, 8.0, 7.41)]
+    counts = count_verdicts(judgements)
+    assert counts == {"reproduced": 2, "upheld": 0, "explained": 0, "corrected": 1}
+    assert in_words(counts) == "3 (2 reproduced, 1 corrected)"
+    assert in_words(count_verdicts([])) == "0"
+
+
 @pytest.mark.parametrize("claim", CLAIMS.values(), ids=CLAIMS)
 def test_a_printed_number_stands_in_the_sentence(claim: Claim) -> None:
     """But for what the sentence says in words: that it is nothing, or that the axis is turned
@@ -258,7 +296,8 @@ def test_figures_stand_in_sections_of_the_page() -> None:
         assert plate.title
         assert plate.caption
         assert plate.finding or plate.id.startswith("fig") or plate.section not in ("Why",)
-    assert all(PLATES[name].finding for name in PICTURES)
+    assert len(STORY) == 5
+    assert {part["figure"] for part in STORY} <= set(PLATES)
     assert section_of("Appendix A.1, line 22") == "Appendix A"
     assert section_of("3.1") == "3.1"
     with pytest.raises(LookupError):

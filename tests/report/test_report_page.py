@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from judging import made_up_page
 from tippetop.report.page import render
 from tippetop.report.playable import playable
 from tippetop.report.reproduce import reproduce
@@ -16,6 +17,7 @@ SHOWN = (
     "() => [...document.querySelectorAll('.claim')].filter((one) => one.offsetParent).map((one) =>"
     " one.id)"
 )
+UNFOLD = "document.querySelectorAll('details').forEach((one) => { one.open = true; })"
 READY = "document.querySelector('#filter') !== null"
 
 
@@ -41,6 +43,7 @@ def test_statements_are_filtered_by_verdict_from_the_keyboard(
     address: str, visit: Callable
 ) -> None:
     visitor = visit().open(address, READY)
+    visitor.ask(UNFOLD)
     everything = visitor.ask(SHOWN)
     assert everything == ["claim-eq-2.17-exception", "claim-fig13-upright"]
     visitor.page.locator("#only-all").focus()
@@ -55,8 +58,42 @@ def test_statements_are_filtered_by_verdict_from_the_keyboard(
     assert visitor.ask(SHOWN) == everything
 
 
+@pytest.fixture(scope="module")
+def story(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A page with all of its claims, in made-up values, and the story."""
+    folder = tmp_path_factory.mktemp("story")
+    (folder / "index.html").write_text(made_up_page(folder), encoding="utf-8")
+    return (folder / "index.html").as_uri()
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (390, 844)])
+def test_the_story_fits_into_two_screens_and_the_cards_are_folded(
+    story: str, visit: Callable, width: int, height: int
+) -> None:
+    visitor = visit(viewport={"width": width, "height": height}).open(story, READY)
+    end = visitor.ask("document.querySelector('.story').getBoundingClientRect().bottom")
+    assert end <= 2 * height
+    assert visitor.page.locator(".claim").count() > 80
+    assert not any(card.is_visible() for card in visitor.page.locator(".claim").all()[::20])
+
+
+def test_a_section_opens_and_a_link_leads_into_it_without_javascript(
+    story: str, visit: Callable
+) -> None:
+    page = visit(java_script_enabled=False).page
+    page.goto(story)
+    section = page.locator("details", has=page.locator("#section-3\\.1"))
+    card = page.locator("#claim-fig04-flip-time")
+    assert not card.is_visible()
+    section.locator("summary").click()
+    assert card.is_visible()
+    page.goto(story + "#claim-eq-2.1")
+    page.locator("#claim-eq-2\\.1").wait_for(state="visible")
+
+
 def test_the_run_plays_where_it_stands_once_it_is_asked_to(address: str, visit: Callable) -> None:
     visitor = visit().open(address, READY)
+    visitor.page.get_by_text("A run to play").last.click()
     visitor.page.locator("#stage").scroll_into_view_if_needed()
     visitor.wait("() => globalThis.tippetopPlayer?.frames > 0")
     assert visitor.ask("tippetopPlayer.time") == 0.0, "nothing moves that was not asked to"
@@ -75,6 +112,7 @@ def test_everyone_can_read_it(address: str, visit: Callable, width: int, scheme:
     visitor = visit(viewport={"width": width, "height": 800}, color_scheme=scheme).open(
         address, READY
     )
+    visitor.ask(UNFOLD)
     assert visitor.ask("document.documentElement.scrollWidth") <= width
     visitor.page.locator("#stage").scroll_into_view_if_needed()
     visitor.wait("() => globalThis.tippetopPlayer?.frames > 0")

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -9,12 +10,16 @@ import pytest
 from typer import Typer
 from typer.testing import CliRunner
 
+from judging import made_up_judgement, made_up_page
+from tippetop.cli.reproduce import _show as show
 from tippetop.cli.reproduce import reproduce as command
-from tippetop.report.claim import Verdict
+from tippetop.report.claim import Verdict, in_words
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
-from tippetop.report.reproduce import reproduce
+from tippetop.report.outline import REPORT_TITLE
+from tippetop.report.page import render
+from tippetop.report.reproduce import Reproduction, reproduce
 from tippetop.results.netcdf import read_run
 from tippetop.support.errors import FileTrouble, InvalidInput
 
@@ -50,9 +55,7 @@ class Links(HTMLParser):
         self.loaded += [values["src"]] if values.get("src") else []
         self.links += [values["href"]] if values.get("href") else []
         self.names += [values["id"]] if values.get("id") else []
-        if (tag == "img" and values.get("alt") is None) or (
-            tag == "svg" and not values.get("aria-label")
-        ):
+        if not values.get({"img": "alt", "svg": "aria-label"}.get(tag, ""), "no picture"):
             self.silent.append(str(values))
 
 
@@ -128,7 +131,7 @@ def test_page_stands_alone(fig13: Path) -> None:
 def test_page_opens_with_what_is_wrong_and_what_is_right(fig13: Path) -> None:
     text = (fig13 / "index.html").read_text(encoding="utf-8")
     wrong, right, rest = (
-        text.index(f'<h2 id="{name}"') for name in ("errors", "sound", "section-2.3")
+        text.index(f'<div id="{name}"') for name in ("errors", "sound", "section-2.3")
     )
     assert wrong < right < rest
     assert "0\\neq\\theta\\neq\\pi" in text[wrong:right]
@@ -210,10 +213,42 @@ def test_command_prints_json_for_programs(tmp_path: Path, monkeypatch: pytest.Mo
     result = CliRunner().invoke(app, ["--only", "fig08-block", "--out", str(out), "--json"])
     assert result.exit_code == 0
     told = json.loads(result.stdout)
-    assert told["counts"] == {told["claims"][0]["verdict"]: 1}
+    assert {name for name, count in told["counts"].items() if count} == {
+        told["claims"][0]["verdict"]
+    }
     assert Path(told["page"]).is_file()
     again = CliRunner().invoke(app, ["--only", "fig08-block", "--out", str(out)])
     assert isinstance(again.exception, FileTrouble)
+
+
+def test_the_command_line_and_the_page_count_alike(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    judgements = tuple(
+        made_up_judgement(claim, is_true=k % 3 > 0) for k, claim in enumerate(CLAIMS.values())
+    )
+    page = render([], judgements, tmp_path, quick=False)
+    show(Reproduction(tmp_path, judgements, (), quick=False, seconds=1.0))
+    tally = re.findall(r'<div class="(\w+)"><strong>(\d+)</strong>', page)
+    counts = {name: int(number) for name, number in tally}
+    assert sum(counts.values()) == sum(bool(claim.is_of_report) for claim in CLAIMS.values())
+    printed = " ".join(capsys.readouterr().out.split())
+    assert f"statements of the report: {in_words(counts)}" in printed
+    others = re.search(r"statements of others, on friction and real tops:\s(.*)\.</p>", page)
+    assert others
+    assert f"statements of others: {others[1]}" in printed
+    shown = dict(re.findall(r'id="only-(\w+)"[^>]*> \w+ \((\d+)\)', page))
+    assert sum(int(number) for name, number in shown.items() if name != "all") == len(CLAIMS)
+
+
+def test_the_story_is_told_with_the_numbers_of_this_run(tmp_path: Path) -> None:
+    page = made_up_page(tmp_path)
+    story = page[page.index('<ol class="story">') : page.index("</ol>")]
+    assert story.count("<img ") == 5
+    assert "26.3 and 78.6 rad/s" in story
+    assert not re.search(r"[{}]", story)
+    assert Links(page).silent == []
+    assert REPORT_TITLE in page[: page.index('<ol class="story">')]
 
 
 @pytest.mark.slow

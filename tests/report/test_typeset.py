@@ -19,6 +19,11 @@ from tippetop.report.typeset import formula, typeset
         ("as mu^-0.985, nearly", "as μ<sup>−0.985</sup>, nearly"),
         ("M = a x (g_n z + f)", "M = a × (g<sub>n</sub> z + f)"),
         ("the report's method, run-mu-100", "the report's method, run-mu-100"),
+        (
+            "1e-06 of 2.7e-15 or 3e+04",
+            "10<sup>−6</sup> of 2.7 × 10<sup>−15</sup> or 3 × 10<sup>4</sup>",
+        ),
+        ("run-1e5 and 0.15 rad", "run-1e5 and 0.15 rad"),
         ("if gn<0 & so", "if gn&lt;0 &amp; so"),
     ],
 )

@@ -26,7 +26,10 @@ def reproduce(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Redo the report: its figures, the data behind them, and a verdict on every claim."""
+    """Redo the report "The Dynamics of Tippe Top and Numerical Simulation", a student's project.
+
+    Writes its figures, the data behind them, and a verdict on every claim.
+    """
     from tippetop.report import reproduce as report  # noqa: PLC0415 - slow to import
 
     with progress_bar("starting") as progress:
@@ -46,12 +49,14 @@ def _plain(result: "Reproduction") -> dict[str, object]:
         "seconds": round(result.seconds, 2),
         "figures": list(result.figures),
         "counts": result.counts,
+        "counts_of_others": result.counts_of_others,
         "claims": [judgement.record() for judgement in result.judgements],
     }
 
 
 def _show(result: "Reproduction") -> None:
     """The result for people."""
+    from tippetop.report.claim import in_words  # noqa: PLC0415 - slow to import
     from tippetop.report.page import worded  # noqa: PLC0415 - slow to import
 
     headings = ("claim", "reported", "report's method", "converged", "verdict")
@@ -59,10 +64,11 @@ def _show(result: "Reproduction") -> None:
     for claim in map(worded, result.judgements):
         verdict = f"[{_STYLES[claim['verdict']]}]{claim['verdict']}[/]"
         rows.append((claim["id"], claim["reported"], claim["listing"], claim["converged"], verdict))
-    counts = ", ".join(f"{number} {name}" for name, number in result.counts.items())
     quick = " (quick run: coarse, not for quoting)" if result.quick else ""
     show(
         *([listing(None, headings, rows, words=headings)] if rows else []),
-        f"{len(result.figures)} figures; claims: {counts or 'none'}{quick}",
+        f"{len(result.figures)} figures{quick}",
+        f"statements of the report: {in_words(result.counts)}",
+        f"statements of others: {in_words(result.counts_of_others)}",
         files=[result.folder / "index.html"],
     )

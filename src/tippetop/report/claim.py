@@ -3,6 +3,7 @@ decides.
 """
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from enum import Enum
@@ -129,6 +130,11 @@ class Claim:
     """
 
     @property
+    def is_of_report(self) -> bool:
+        """Whether the report makes the claim; otherwise someone else does."""
+        return bool(self.quote) or ": the report" in self.source.section
+
+    @property
     def needs(self) -> tuple[str, ...]:
         """Names of the experiments that decide it."""
         return self.examiner.needs or tuple(filter(None, [self.figure]))
@@ -216,6 +222,18 @@ class Judgement:
             "experiments": list(claim.needs),
             "quick": self.quick,
         }
+
+
+def count_verdicts(judgements: Iterable[Judgement]) -> dict[str, int]:
+    """The number of judgements of each verdict, by its name in lower case; 0 included."""
+    counts = Counter(judgement.verdict for judgement in judgements)
+    return {verdict.name.lower(): counts[verdict] for verdict in Verdict}
+
+
+def in_words(counts: Mapping[str, int]) -> str:
+    """The sum of the counts of verdicts, with those that are not 0 in brackets."""
+    verdicts = ", ".join(f"{number} {name}" for name, number in counts.items() if number)
+    return f"{sum(counts.values())}" + (f" ({verdicts})" if verdicts else "")
 
 
 EXAMINERS: dict[str, Examiner] = {}

@@ -37,9 +37,7 @@ class Plate:
     section: str
     """The section of the page that it belongs to; see `tippetop.report.outline`."""
     finding: str = ""
-    """What it finds out, in a few words, where that is news or one of the pictures that the page
-    opens with.
-    """
+    """What it shows that the report could not know, in a sentence; "" for nothing."""
 
     def dataset(self, data: Data) -> xr.Dataset:
         """The data behind the figure."""

@@ -1,12 +1,10 @@
-"""The order of the page: the report's own sections, then ours, and the pictures that it opens
-with.
-"""
+"""The order of the page: the story it opens with, the report's own sections, then ours."""
 
 import tomllib
 from pathlib import Path
 
-PICTURES = ("fig04", "fig06", "flights", "fig12", "why-bifurcation")
-"""Names of the five figures that tell what was found."""
+REPORT_TITLE = "The Dynamics of Tippe Top and Numerical Simulation"
+"""The title of the report, a student's project report."""
 
 _TOLD = tomllib.loads(Path(__file__).with_name("outline.toml").read_text(encoding="utf-8"))
 
@@ -15,6 +13,11 @@ SECTIONS: dict[str, tuple[str, str]] = {
 }
 """Titles and opening words of the page's sections, by what the report calls them; those without a
 claim or a figure are left out.
+"""
+
+STORY: list[dict[str, str]] = _TOLD["story"]
+"""What was found, in five parts: each has the name of a figure, a title, and a text in which
+{claims[NAME][FIELD]} stands for a field of a claim in words and {quoted.NAME} for a constant.
 """
 
 OWN = ("Why", "Friction", "Real tops")

@@ -1,5 +1,7 @@
 """The page: what was found, every figure and every claim, in one file that opens without a
 network.
+
+It opens with the story, in five figures; all else is folded, a part each.
 """
 
 import base64
@@ -14,14 +16,22 @@ import jinja2
 from PIL import Image
 
 from tippetop.integrators import default_name
-from tippetop.report.claim import RULE, Judgement, Value, Verdict
+from tippetop.report import quoted
+from tippetop.report.claim import RULE, Judgement, Value, Verdict, count_verdicts, in_words
 from tippetop.report.gallery import PLATES, Plate
-from tippetop.report.outline import OWN, PICTURES, SECTIONS, UNCHECKED, section_of
+from tippetop.report.outline import OWN, REPORT_TITLE, SECTIONS, STORY, UNCHECKED, section_of
 from tippetop.report.selection import Selection
 from tippetop.report.typeset import formula, typeset
 
 _THUMBNAIL = (640, 420)
 """Largest size of the pictures that the page opens with, pixels."""
+
+_ROUNDED = 1e-12
+"""Values below this are shown as 0: they are what rounding leaves of zero. The least value that
+means anything, a difference of two computations, is about 1e-9.
+"""
+
+_VERDICTS = [verdict.name.lower() for verdict in Verdict]
 
 Worded = dict[str, Any]
 """A claim in words."""
@@ -54,10 +64,10 @@ def render(
     shown = {plate.id for plate in plates}
     claims = [worded(judgement, shown) for judgement in judgements]
     wrong = [verdict.name.lower() for verdict in (Verdict.CORRECTED, Verdict.EXPLAINED)]
-    theirs = [claim for claim in claims if claim["section"] not in OWN]
-    counts, shown_counts = (
-        Counter(claim["verdict"] for claim in some) for some in (theirs, claims)
-    )
+    theirs = [claim for claim in claims if claim["is_of_report"]]
+    counts = count_verdicts(one for one in judgements if one.claim.is_of_report)
+    others = count_verdicts(one for one in judgements if not one.claim.is_of_report)
+    shown_counts = count_verdicts(judgements)
     parts: dict[str, Any] = {
         "errors": [claim for name in wrong for claim in theirs if claim["verdict"] == name],
         "sound": [claim for claim in theirs if claim["verdict"] not in wrong],
@@ -74,11 +84,10 @@ def render(
         **parts,
         contents=_contents(parts),
         claims=claims,
+        report_title=REPORT_TITLE,
         statements=len(theirs),
-        others=len(claims) - len(theirs),
-        pictures=[]
-        if partial
-        else [_picture(PLATES[name], figures) for name in PICTURES if name in shown],
+        of_others=in_words(others) if sum(others.values()) else "",
+        story=[] if partial else _story(claims, shown, figures),
         verdicts=[
             {
                 "name": name,
@@ -109,7 +118,7 @@ _CLOSING = {"experiments_done": "The experiments behind it", "unchecked": "What 
 def _contents(parts: Mapping[str, Any]) -> list[tuple[str, str]]:
     """What there is on the page, in its order: the names to link at, and the titles."""
     return [
-        ("found", "What was found"),
+        ("summary", "What was found"),
         *((name, title) for name, title in _OPENING.items() if parts[name]),
         *((section["id"], section["title"]) for section in parts["sections"]),
         *((name, title) for name, title in _CLOSING.items() if parts[name]),
@@ -136,10 +145,12 @@ def _sections(
         rest = [claim for claim in inside if claim["figure"] not in names]
         if drawn or rest:
             shown = [_shown(plate, figures, claims, key) for plate in drawn]
+            counts = Counter(claim["verdict"] for claim in inside)
             named = {
                 "id": "section-" + key.replace(" ", "-").lower(),
                 "title": title,
                 "words": words,
+                "verdicts": [(name, counts[name]) for name in _VERDICTS if counts[name]],
             }
             found.append({**named, "figures": shown, "claims": rest})
     return found
@@ -160,14 +171,30 @@ def _shown(plate: Plate, figures: Path, claims: Sequence[Worded], section: str) 
     }
 
 
-def _picture(plate: Plate, figures: Path) -> dict[str, str]:
-    """One of the pictures that the page opens with, small."""
-    with Image.open(figures / f"{plate.id}.png") as whole:
+def _story(claims: Sequence[Worded], shown: Set[str], figures: Path) -> list[dict[str, str]]:
+    """The parts of the story whose figures are shown, each with its picture."""
+    fields = {"claims": {claim["id"]: claim for claim in claims}, "quoted": quoted}
+    return [
+        {
+            "id": part["figure"],
+            "title": part["title"],
+            "text": part["text"].format(**fields),
+            "image": _thumbnail(part["figure"], figures),
+            "alternative": PLATES[part["figure"]].title,
+        }
+        for part in STORY
+        if part["figure"] in shown
+    ]
+
+
+def _thumbnail(name: str, figures: Path) -> str:
+    """The picture of a figure, small, as the address of an image."""
+    with Image.open(figures / f"{name}.png") as whole:
         small = whole.convert("RGB")
     small.thumbnail(_THUMBNAIL, Image.Resampling.LANCZOS)
     file = io.BytesIO()
     small.save(file, "webp", quality=82)
-    return {"id": plate.id, "finding": plate.finding, "image": _embedded(file.getvalue(), "webp")}
+    return _embedded(file.getvalue(), "webp")
 
 
 def _experiments(chosen: Selection) -> list[dict[str, Any]]:
@@ -202,9 +229,7 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
         else None,
         "place": claim.source.place,
         "section": section_of(claim.source.section),
-        # Sections of ours mark so the statements that are the report's nevertheless.
-        "of_others": section_of(claim.source.section) in OWN
-        and ": the report" not in claim.source.section,
+        "is_of_report": claim.is_of_report,
         "needs": claim.needs,
         "right": finding.right or claim.right or (_number(finding.converged) + unit),
         "text": claim.text + (" (implied)" if claim.implied else ""),
@@ -213,8 +238,9 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
         "chosen": None if finding.chosen is None else _number(finding.chosen) + unit,
         "choice": finding.choice,
         "converged": _number(finding.converged) + unit,
-        "tolerance": f"± {tolerance.value:g}{unit}" if tolerance else None,
-        "tolerance_from": tolerance.reason if claim.examiner.tolerance and tolerance else "",
+        "value": finding.converged,
+        "tolerance": tolerance
+        and f"a difference of at most {tolerance.value:g}{unit}: {tolerance.reason}",
         "verdict": judgement.verdict.name.lower(),
         "note": finding.note,
         "news": finding.news,
@@ -242,7 +268,7 @@ def _number(value: Value) -> str:
     """A value for people."""
     if isinstance(value, bool):
         return "true" if value else "false"
-    if value == 0:
+    if abs(value) < _ROUNDED:
         return "0"
     return f"{value:.2e}" if abs(value) < 1e-3 else f"{value:.5g}"
 

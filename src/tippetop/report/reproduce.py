@@ -5,7 +5,7 @@ page.
 import json
 import os
 import time
-from collections import Counter
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -15,7 +15,8 @@ from tempfile import TemporaryDirectory
 import xarray as xr
 
 from tippetop.figures.style import save
-from tippetop.report.claim import Judgement
+from tippetop.problem.implausible import Implausible
+from tippetop.report.claim import Judgement, count_verdicts
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import PLATES
 from tippetop.report.page import render
@@ -51,8 +52,13 @@ class Reproduction:
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many claims got each verdict."""
-        return dict(Counter(judgement.verdict.name.lower() for judgement in self.judgements))
+        """The number of the report's claims of each verdict."""
+        return count_verdicts(one for one in self.judgements if one.claim.is_of_report)
+
+    @property
+    def counts_of_others(self) -> dict[str, int]:
+        """The number of claims of each verdict that others make."""
+        return count_verdicts(one for one in self.judgements if not one.claim.is_of_report)
 
 
 def reproduce(
@@ -134,8 +140,10 @@ def _tasks(chosen: Selection, quick: bool, stage: Path) -> list[Task]:
 
 
 def _compute(name: str, quick: bool) -> xr.Dataset:
-    """Run an experiment (in a process of its own)."""
-    return EXPERIMENTS[name].run(quick)
+    """Run an experiment (in a process of its own), without warnings of launches that it means."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Implausible)
+        return EXPERIMENTS[name].run(quick)
 
 
 def _draw(name: str, stage: Path, quick: bool, *data: xr.Dataset) -> None:

@@ -6,25 +6,32 @@ from tippetop.report.readings import SETTLED, SHOWN
 
 
 class Tolerance(NamedTuple):
-    """What counts as agreement, and why that."""
+    """The largest difference that counts as agreement."""
 
     value: float
     reason: str
+    """Why it is not larger or smaller: a clause that follows "a difference of at most ...:"."""
 
 
-READ = Tolerance(
+AROUND = Tolerance(
     0.25,
-    "1 % of the 20 s of the plot that the time is read off, and half a unit of the last printed"
-    " digit",
+    "the report says around; 1 % of the 20 s of its plot, the least that one can read off it, and"
+    " half a unit of the last printed digit",
 )
-ARRIVED = Tolerance(SETTLED, f"the report's own measure of having arrived, {SETTLED:g} rad")
-PLOTTED = Tolerance(SHOWN, "1 %: what a plot can show")
+ARRIVED = Tolerance(SETTLED, f"the report counts a top as arrived within {SETTLED:g} rad")
+PLOTTED = Tolerance(SHOWN, "1 % of the range of a plot, the least that it can show")
 TRANSCRIBED = "The report is read in a transcription here, which may have lost or moved a mark."
 """What to say of misprints that may not be the report's own."""
 
-STEADY = Tolerance(1e-5, "far below the 1e-3 of the report's method, far above rounding")
-ROUNDING = Tolerance(1e-6, "far above rounding")
-WHOLE = Tolerance(1e-6, "the power is a whole number")
+STEADY = Tolerance(
+    1e-5,
+    "the report's method is a hundred times less accurate (1e-3), and the computation here a"
+    " hundred times more accurate or better",
+)
+ROUNDING = Tolerance(
+    1e-6,
+    "a wrong formula is off by far more, and the computation itself by a tenth of that or less",
+)
 
 
 def half_last_digit(printed: str) -> Tolerance:

@@ -30,12 +30,21 @@ _SYMBOL = re.compile(
     rf"(?<![\w.-])(?P<name>{_NAMES})(?P<index>\d|_\w+)?(?P<primes>'{{0,2}})(?:\^(?P<power>-?[\d.]*\d))?(?![\w'-])"
 )
 
+_EXPONENT = re.compile(r"(?<![\w.])(?P<digits>\d[\d.]*)e(?P<power>[+-]\d+)(?!\w)")
+"""A number as Python writes it, with a power of ten."""
+
 
 def typeset(text: str) -> Markup:
     """The text as HTML, with its formulas in letters, indices and powers."""
     # An apostrophe is a prime here, and harmless in the text of a page.
     escaped = str(escape(text)).replace("&#39;", "'").replace(" x ", " × ")
-    return Markup(_SYMBOL.sub(_symbol, escaped))
+    return Markup(_EXPONENT.sub(_power_of_ten, _SYMBOL.sub(_symbol, escaped)))
+
+
+def _power_of_ten(found: re.Match[str]) -> str:
+    factor = "" if found["digits"] == "1" else f"{found['digits']} × "
+    power = str(int(found["power"])).replace("-", "−")
+    return f"{factor}10<sup>{power}</sup>"
 
 
 def _symbol(found: re.Match[str]) -> str:

@@ -33,7 +33,7 @@ def _largest_miss(check: xr.Dataset, words: str) -> Finding:
 @examines(
     "eq-2.7",
     "printed-equations",
-    tolerance=Tolerance(1e-9, "far below the torque, far above rounding"),
+    tolerance=Tolerance(1e-9, "the torque is a hundred thousand times larger"),
 )
 def _(check: xr.Dataset) -> Finding:
     return Finding(

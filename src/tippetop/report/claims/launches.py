@@ -12,11 +12,11 @@ from tippetop.report.claim import Finding, both, examines
 from tippetop.report.experiments.runs import likely_end
 from tippetop.report.quoted import END_OF_FIG_5, TILT, TURNED_AT
 from tippetop.report.readings import SETTLED
-from tippetop.report.tolerance import ARRIVED, PLOTTED, READ, Tolerance, rounded
+from tippetop.report.tolerance import AROUND, ARRIVED, PLOTTED, Tolerance, rounded
 
 
-@examines("fig04-flip-time", "run-155", "run-50", tolerance=READ)
-@examines("fig05-flip-time", "run-50", "run-155", tolerance=READ)
+@examines("fig04-flip-time", "run-155", "run-50", tolerance=AROUND)
+@examines("fig05-flip-time", "run-50", "run-155", tolerance=AROUND)
 def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
     theirs, ours = run["arrival_time_listing"].values, run["arrival_time"].values
     k = _common_threshold(run, other)
@@ -48,18 +48,16 @@ def _common_threshold(*runs: xr.Dataset) -> int:
 @examines(
     "fig04-first-reversal",
     "run-155",
-    tolerance=READ,
     name="quiet_start",
     meant="the last before the long calm",
 )
 @examines(
     "fig04-second-reversal",
     "run-155",
-    tolerance=READ,
     name="quiet_end",
     meant="the first after the long calm",
 )
-@examines("fig05-reversal", "run-50", tolerance=READ, name="last_reversal", meant="the last")
+@examines("fig05-reversal", "run-50", name="last_reversal", meant="the last")
 def _(run: xr.Dataset, *, name: str, meant: str) -> Finding:
     return Finding(
         *both(run, name),

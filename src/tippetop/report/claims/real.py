@@ -8,7 +8,7 @@ from tippetop.report.tolerance import ROUNDING, Tolerance
 
 _READ = Tolerance(
     0.13,
-    "1 % of the 8 s of the plot that the time is read off, and half a unit of the last printed"
+    "the time is read off a plot of 8 s here, to 1 % of it, and given to half a unit of its last"
     " digit",
 )
 

@@ -119,7 +119,7 @@ def _(steady: xr.Dataset) -> Finding:
     return Finding.unlisted(float(left.max()), f"Differences over phi': {each}.")
 
 
-@examines("eq-2.16-third", "steady-bodies")
+@examines("eq-2.16-third", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
     precession, spin = steady["phi_dot"], steady["omega3"]
     rotation = spin - precession * np.cos(steady["theta"])

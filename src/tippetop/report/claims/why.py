@@ -17,7 +17,8 @@ _NEAR_LIMIT = 1e-3
 
 
 @examines(
-    "why-final-tilt", tolerance=Tolerance(1e-6, "far below what the report's figures can show")
+    "why-final-tilt",
+    tolerance=Tolerance(1e-6, "ten thousand times less than what the report's figures can show"),
 )
 def _(states: xr.Dataset) -> Finding:
     quoted = states.isel(
