@@ -1,4 +1,7 @@
-"""Bodies and problems known by name."""
+"""Bodies and problems known by name.
+
+"The report" is "The Dynamics of Tippe Top and Numerical Simulation", a student's project report.
+"""
 
 import math
 
@@ -16,7 +19,9 @@ _OTHER = 131 / 350 * _MASS * _RADIUS**2
 REPORT = Body(
     mass=_MASS, shape=EccentricSphere(radius=_RADIUS, eccentricity=0.3), I1=_OTHER, I3=_TWO_FIFTHS
 )
-"""The report's top with the inertias of its listing, which are the ones that give its results."""
+"""The top of the report "The Dynamics of Tippe Top and Numerical Simulation", a student's project
+report: a sphere of 2 cm and 20 g, with the inertias of its listing, which give its results.
+"""
 
 REPORT_TABLE_1 = Body(
     mass=_MASS, shape=EccentricSphere(radius=_RADIUS, eccentricity=0.3), I1=_TWO_FIFTHS, I3=_OTHER
@@ -195,6 +200,8 @@ def body(name: str) -> Body:
 def report_problem(spin: float = 155.0, tilt: float = 0.1, mu: float = 0.3) -> Problem:
     """The report's top and table, launched at rest in tilt: spin in rad/s, tilt in rad, mu in
     s/m.
+
+    The report is "The Dynamics of Tippe Top and Numerical Simulation", a student's project report.
     """
     return Problem(
         body=REPORT, friction=ViscousFriction(mu=mu), launch=Launch(tilt=tilt, spin=spin)
