@@ -33,8 +33,8 @@ RULE = (
     " the report's own method gives, where it gives anything: directly, or for one stated choice of"
     " what the report leaves open; what is true is taken for the same choice, but a law has to be"
     " true for the report's main launch. They agree within half a unit of the last printed digit"
-    " unless the record says otherwise. What the report does not say in words, but draws or codes,"
-    " is marked as implied."
+    " unless another tolerance is given, with its reason. What the report does not say in words,"
+    " but draws or codes, is marked as implied."
 )
 
 

@@ -270,7 +270,7 @@ def _number(value: Value) -> str:
         return "true" if value else "false"
     if abs(value) < _ROUNDED:
         return "0"
-    return f"{value:.2e}" if abs(value) < 1e-3 else f"{value:.5g}"
+    return f"{value:.2e}" if abs(value) < 1e-3 else f"{value:.4g}"
 
 
 def _embedded(content: bytes, kind: str) -> str:

@@ -48,7 +48,7 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
         " converged). A law it is not: the time jumps as the last swings about pi miss or meet the"
         " 0.01 rad (why-exponent).",
         nearest.exponent,
-        _fitted_at(nearest),
+        f"fitted at {nearest.spin:g} rad/s in steps of {nearest.step:g} s/m",
     )
 
 
@@ -68,7 +68,7 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
         f" does not jump, departs by up to {100 * smooth:.0f} %. For weak friction the law holds"
         f" (why-flip-law).",
         nearest.scatter < _LOST,
-        _fitted_at(nearest),
+        f"launched at {nearest.spin:g} rad/s, in steps of {nearest.step:g} s/m",
         right=f"mu t departs from its mean by up to {100 * ours:.0f} %",
     )
 
@@ -121,10 +121,6 @@ def _fits(times: xr.Dataset, others: xr.Dataset) -> list[_Fit]:
 def _nearest_fit(times: xr.Dataset, others: xr.Dataset) -> _Fit:
     """The fit by the report's method that comes nearest to the exponent that it prints."""
     return min(_fits(times, others), key=lambda fit: abs(fit.exponent - float(EXPONENT)))
-
-
-def _fitted_at(fit: _Fit) -> str:
-    return f"fitted at {fit.spin:g} rad/s in steps of {fit.step:g} s/m"
 
 
 def _step(mu: xr.DataArray) -> float:
