@@ -23,6 +23,7 @@ ROOMS = {
     "translate": "Python modules to JavaScript",
     "sweeps": "many launches: grid, lanes, store, schedulers",
     "theory": "steady states, stability, critical spins",
+    "extend": "what users' laws, surfaces and events need",
     "run": "simulate: one launch from mode to mode",
     "results": "variables, metrics, monitors, files of a run",
     "contact": "contact modes: motion, guards, what follows",
@@ -34,6 +35,9 @@ ROOMS = {
     "mechanics": "equations in plain operators; no library",
 }
 """Every room of the package and what it holds."""
+
+MODULES = ("extend", "run")
+"""Rooms that are one module."""
 
 WIDTH, HEIGHT, GAP_X, GAP_Y, MARGIN = 176, 60, 26, 48, 16
 PASSAGE = 14
@@ -212,7 +216,7 @@ def _curve(
 
 def _box(room: str, x: float, y: float, imported: Iterable[str]) -> list[str]:
     """Return a room as a box with its name and what it holds."""
-    name = "run.py" if room == "run" else f"{room}/"
+    name = f"{room}.py" if room in MODULES else f"{room}/"
     names = ", ".join(sorted(imported)) or "no other room"
     lines = [
         f"<g><title>{name} imports {names}</title>",

@@ -138,6 +138,7 @@ def test_what_a_motion_seemed_to_come_to_is_not_told_of_one_that_cannot_be_trust
             tt.Outcome.LIFTED_OFF,
             tt.Outcome.AT_REST,
             tt.Outcome.LYING_FLAT,
+            tt.Outcome.STOPPED,
         )
         assert kept.judged(outcome, 1e-12) is outcome
         assert off.judged(outcome, 1e-12) is (tt.Outcome.INACCURATE if ends else outcome)

@@ -1,5 +1,6 @@
 """The public names, and where they live: the package loads them from here."""
 
+from . import extend as extend
 from .contact.mode import Outcome as Outcome
 from .export.glb import write_glb as write_glb
 from .export.html import write_html as write_html
@@ -39,6 +40,7 @@ from .results.catalogue import Ending as Ending
 from .results.dataframes import to_dataframe as to_dataframe
 from .results.netcdf import read_run as read_run
 from .results.netcdf import write_run as write_run
+from .results.run_solution import RunSolution as RunSolution
 from .results.summary import summarize as summarize
 from .run import simulate as simulate
 from .support.errors import FileTrouble as FileTrouble

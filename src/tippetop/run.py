@@ -1,20 +1,19 @@
 """Run a problem: follow its launch from mode to mode, and label what came of it."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal, overload
 
 import numpy as np
-import psutil
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from tippetop import __version__
-from tippetop.contact.block import in_blocks
 from tippetop.contact.choice import rules_of
-from tippetop.contact.mode import Event, Outcome
+from tippetop.contact.mode import Event, Outcome, Segment
 from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
+from tippetop.graph.own_parts import has_choices
 from tippetop.integrators import Integrator, make_integrator
-from tippetop.integrators.base import NOT_FINITE, Array
+from tippetop.integrators.base import NOT_FINITE
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
@@ -22,20 +21,53 @@ from tippetop.mechanics.units import Units
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.results.dataset import assemble
-from tippetop.results.derived import derive
+from tippetop.results.event_functions import EventSearch, OwnEvent, Value
 from tippetop.results.metrics import metrics
-from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import Tally
-from tippetop.results.samples import continuous, event_in_si, observe
-from tippetop.support.errors import InvalidInput, is_whole
+from tippetop.results.run_solution import Begin, RunSolution
+from tippetop.results.sample_times import sample_times
+from tippetop.results.samples import event_in_si
+from tippetop.support.errors import InvalidInput, require
 from tippetop.support.units import number_in
 from tippetop.support.validation import require_callback
 
-BYTES_PER_SAMPLE = 1600
-"""Memory that a sample takes at most while a result is being made."""
 
-SURELY_FIT = 10_000
-"""Samples for which nobody needs to ask how much memory there is."""
+@overload
+def simulate(
+    problem: Problem,
+    duration: float,
+    *,
+    samples: int = 2001,
+    times: ArrayLike | None = None,
+    events: Mapping[str, Value] | None = None,
+    until: str | Value | None = None,
+    dense: Literal[False] = False,
+    integrator: str | Integrator | None = None,
+    tolerance: float | None = None,
+    step: float | None = None,
+    phase_limit: int = PHASE_LIMIT,
+    step_limit: int = STEP_LIMIT,
+    callback: Callable[[float], None] | None = None,
+) -> xr.Dataset: ...
+
+
+@overload
+def simulate(
+    problem: Problem,
+    duration: float,
+    *,
+    samples: int = 2001,
+    times: ArrayLike | None = None,
+    events: Mapping[str, Value] | None = None,
+    until: str | Value | None = None,
+    dense: Literal[True],
+    integrator: str | Integrator | None = None,
+    tolerance: float | None = None,
+    step: float | None = None,
+    phase_limit: int = PHASE_LIMIT,
+    step_limit: int = STEP_LIMIT,
+    callback: Callable[[float], None] | None = None,
+) -> tuple[xr.Dataset, RunSolution]: ...
 
 
 @np.errstate(all="ignore")  # What grows beyond all numbers is the outcome's matter.
@@ -45,13 +77,16 @@ def simulate(
     *,
     samples: int = 2001,
     times: ArrayLike | None = None,
+    events: Mapping[str, Value] | None = None,
+    until: str | Value | None = None,
+    dense: bool = False,
     integrator: str | Integrator | None = None,
     tolerance: float | None = None,
     step: float | None = None,
     phase_limit: int = PHASE_LIMIT,
     step_limit: int = STEP_LIMIT,
     callback: Callable[[float], None] | None = None,
-) -> xr.Dataset:
+) -> xr.Dataset | tuple[xr.Dataset, RunSolution]:
     """Simulate a problem; warn with `Implausible` of numbers that no top has.
 
     Parameters
@@ -64,6 +99,18 @@ def simulate(
         Number of equally spaced samples from launch to end.
     times
         Sample times instead, s: increasing, from 0 to `duration`.
+    events
+        Functions of the state (see `tippetop.extend.MotionState`) by the names of their events: a
+        function that changes sign is an event, located to rounding on the dense solution and told
+        among the others. A function may have a `direction`, and be `terminal`: see
+        `tippetop.extend.EventFunction`.
+    until
+        What ends the run early, with the outcome "stopped": the name of an event, of `events` or of
+        the run's own kinds such as "lift-off" or "stick", or a function whose first change of sign
+        does. Where an impact ends it, the last sample is just before that, and the numbers of the
+        end are just after.
+    dense
+        Whether to return the solution, which has the state at any time, beside the run.
     integrator
         "taylor", "collocation", "compiled", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4";
         None for the best installed, which collocation relieves where friction is stiff; or an
@@ -91,12 +138,14 @@ def simulate(
         outcome_advice, integrator (every one that took steps), tolerance (the largest) or step,
         tippetop_version, Conventions. When the run ends before `duration`, the last sample is its
         end, unless its numbers grew beyond all bounds.
+    RunSolution
+        With ``dense=True``, beside the dataset: the state, and all variables, at any time.
 
     Raises
     ------
     InvalidInput
-        If the problem is none, or the duration, samples, integrator, tolerance, step, a limit or
-        the callback cannot be.
+        If the problem is none, or the duration, samples, events, integrator, tolerance, step, a
+        limit or the callback cannot be, or a function of `events` gives no number.
     Unavailable
         If the integrator is not installed.
 
@@ -108,25 +157,33 @@ def simulate(
     (5.88, 3.14)
     >>> bool(run["energy_error"] < 1e-12)
     True
+    >>> events = {"crosses 60 deg": lambda s: s.axis[2] - 0.5}
+    >>> run = tt.simulate(tt.presets.report_problem(spin=155.0), 20.0, events=events)
+    >>> [str(kind) for kind in run["event_kind"].values]
+    ['crosses 60 deg']
     """
     require_problem(problem)
     require_callback("callback", callback)
+    require("dense", dense, bool, "True or False")
     units = natural_units(problem.top)
     duration = number_in("duration", duration, "s")
     require_limits(duration, units.time, phase_limit, step_limit)
     duration = float(duration)
     grid = sample_times(duration, samples, times)
     top = natural(problem.top)
-    method = integrator_of(integrator, tolerance, step, units)
+    search = EventSearch(events, until, units)
+    method = integrator_of(integrator, tolerance, step, units, not has_choices(problem.top))
     warn_if_implausible(problem)
     state = natural_state(problem.start(), units)
     launch = rules_of(problem.contact, top, units).launch(state)
     trajectory = Trajectory(launch, duration / units.time, method, phase_limit, step_limit)
-    recorder = Recorder(top, state, problem.launch.azimuth, grid / units.time, launch.energy_lost)
-    tally = Tally()
-    for block in in_blocks(trajectory.segments()):
+    start = Begin(top, units, state, problem.launch.azimuth, launch.energy_lost)
+    recorder, tally, segments = start.recorder(grid / units.time), Tally(), list[Segment]()
+    for block in search.blocks_of(trajectory):
         recorder.take(block)
         tally.take(block)
+        if dense:
+            segments += block.segments
         if callback is not None:
             callback(trajectory.time / trajectory.end)
     outcome = recorder.outcome_of(trajectory)
@@ -153,46 +210,27 @@ def simulate(
         **_method_attributes([method, *tally.methods.values()], units),
         "tippetop_version": __version__,
     }
-    lists = _event_arrays(trajectory.events, units) | _flight_arrays(tally.flights.rows, units)
+    lists = _event_arrays(trajectory.events, search.events, units) | _flight_arrays(
+        tally.flights.rows, units
+    )
     times = np.append(grid, end_time)[: len(found.times)]
     if early:
         times[-1] = end_time
-    variables = observe(found, top, units)
-    variables["orientation"] = continuous(variables["orientation"])
-    variables |= derive(found, variables["orientation"], top, units)
-    return assemble(times, variables, (found.mode, recorder.modes), scalars, lists, attributes)
-
-
-def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Array:
-    """Sample times, s, checked; see `simulate`."""
-    if times is None:
-        if not is_whole(samples) or samples < 2:
-            raise InvalidInput("samples", samples, "a whole number, at least 2")
-        _check_memory(samples)
-        return np.linspace(0.0, duration, int(samples))
-    try:
-        grid = np.array(times, dtype=float)
-    except Exception:  # noqa: BLE001 - objects may raise anything on their way to numbers
-        raise InvalidInput("times", times, "a list of increasing finite numbers") from None
-    if (
-        grid.ndim != 1
-        or not len(grid)
-        or not np.all(np.isfinite(grid))
-        or np.any(np.diff(grid) <= 0)
-    ):
-        raise InvalidInput("times", times, "a list of increasing finite numbers")
-    if grid[0] < 0 or grid[-1] > duration:
-        raise InvalidInput("times", times, f"times from 0 to the duration, {duration:g} s")
-    _check_memory(len(grid))
-    return grid
+    variables, modes = start.variables(found), (found.mode, recorder.modes)
+    run = assemble(times, variables, modes, scalars, lists, attributes)
+    return (run, RunSolution(start, segments, run)) if dense else run
 
 
 def integrator_of(
-    integrator: str | Integrator | None, tolerance: float | None, step: float | None, units: Units
+    integrator: str | Integrator | None,
+    tolerance: float | None,
+    step: float | None,
+    units: Units,
+    analytic: bool,
 ) -> Integrator:
-    """The integrator asked for, with its step in natural units."""
+    """The integrator asked for, with its step in natural units, for motions `analytic` or not."""
     if integrator is None or isinstance(integrator, str):
-        return make_integrator(integrator, tolerance, step, units.time)
+        return make_integrator(integrator, tolerance, step, units.time, analytic)
     for setting, value in {"tolerance": tolerance, "step": step}.items():
         if value is not None:
             raise InvalidInput(
@@ -210,26 +248,20 @@ def integrator_of(
     return integrator
 
 
-def _check_memory(samples: int) -> None:
-    if samples <= SURELY_FIT:
-        return
-    free = psutil.virtual_memory().available
-    if samples * BYTES_PER_SAMPLE > free:
-        limit = free // BYTES_PER_SAMPLE
-        raise InvalidInput(
-            "samples", samples, f"at most {limit}", "is more than there is memory for"
-        )
-
-
-def _event_arrays(events: Sequence[Event], units: Units) -> dict[str, NDArray[Any]]:
-    """Values over the events, in SI."""
+def _event_arrays(
+    events: Sequence[Event], own: Sequence[OwnEvent], units: Units
+) -> dict[str, NDArray[Any]]:
+    """Return the values over the events in SI: those of the run and the user's own, in order."""
     told = [event_in_si(event, units) for event in events]
+    rows = [(one.time, one.kind.value, one.impulse, one.energy_lost, one.surface) for one in told]
+    rows += [(time * units.time, name, 0.0, 0.0, 0) for time, name in own]
+    rows.sort(key=lambda row: row[0])
+    columns = list(zip(*rows, strict=True)) or [()] * 5
+    names = ("time", "kind", "impulse", "energy_lost", "surface")
+    kinds = (float, str, float, float, np.int8)
     return {
-        "event_time": np.array([event.time for event in told], dtype=float),
-        "event_kind": np.array([event.kind.value for event in told], dtype=str),
-        "event_impulse": np.array([event.impulse for event in told], dtype=float),
-        "event_energy_lost": np.array([event.energy_lost for event in told], dtype=float),
-        "event_surface": np.array([event.surface for event in told], dtype=np.int8),
+        f"event_{name}": np.array(column, dtype=kind)
+        for name, column, kind in zip(names, columns, kinds, strict=True)
     }
 
 

@@ -12,6 +12,7 @@ from tippetop.contact.mode import Mode, Segment
 from tippetop.contact.readings import Rates, instants, read
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, evaluated
+from tippetop.mechanics.state import State
 
 STEPS = 4096
 """Steps in a block, about."""
@@ -67,7 +68,7 @@ def nearer_pole(axis: Array) -> Array:
 
 @dataclass(frozen=True)
 class Block:
-    """Segments that follow one another."""
+    """Segments that follow one another; there may be none."""
 
     segments: Sequence[Segment]
 
@@ -79,12 +80,12 @@ class Block:
     @cached_property
     def starts(self) -> Array:
         """Where the steps begin, shape (k,)."""
-        return np.concatenate([segment.solution.knots[:-1] for segment in self.segments])
+        return np.concatenate([[], *(segment.solution.knots[:-1] for segment in self.segments)])
 
     @cached_property
     def ends(self) -> Array:
         """Where the steps end, shape (k,)."""
-        return np.concatenate([segment.solution.knots[1:] for segment in self.segments])
+        return np.concatenate([[], *(segment.solution.knots[1:] for segment in self.segments)])
 
     @property
     def spans(self) -> Array:
@@ -129,6 +130,21 @@ class Block:
             if len(own):
                 y = evaluated(group.terms, own, parts[here])
                 yield group.mode, here, read(instants, group.mode, y.T, total=len(own))
+
+    def until(self, step: int, part: float) -> tuple["Block", float, State]:
+        """Return the block up to an instant, told by its step and the part of it that has passed.
+
+        The time and the state of the instant are returned beside the block.
+        """
+        number = int(np.searchsorted(np.cumsum(self.lengths), step, side="right"))
+        segment, inner = self.segments[number], step - int(self.lengths[:number].sum())
+        solution = segment.solution.until(inner, part)
+        numbers = segment.solution.terms[inner] @ part ** np.arange(segment.solution.terms.shape[2])
+        state = segment.mode.state(numbers.tolist())
+        some = list(self.segments[:number])
+        if len(solution.terms):
+            some.append(segment.until(solution, state))
+        return Block(some), float(solution.end), state
 
     def _within(
         self, group: ModeSteps, step: NDArray[np.intp]

@@ -16,6 +16,7 @@ from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.touchdown import highest_gap
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 
@@ -50,6 +51,7 @@ class Outcome(Enum):
         "The body came to lie flat: there it touches the table all around, which is not followed"
         " further; this is the end of its motion, but for what the impact of its face would add."
     )
+    STOPPED = "The run ended at the event that it was asked to end at."
     TOO_MANY_PHASES = (
         "The top bounced and slid more often than the run allows; "
         "shorten the duration, lower the restitution, or raise the limit on phases."
@@ -175,6 +177,23 @@ class Segment:
     def end_time(self) -> float:
         """When it ended."""
         return self.solution.end
+
+    # translate: skip
+    def until(self, solution: DenseSolution, end_state: State) -> "Segment":
+        """Return the segment that ends earlier, with the solution and the state up to there."""
+        mode, begin = self.mode, solution.knots[0]
+        gap = 0.0
+        if not mode.touching:
+            start = mode.state(solution.terms[0, :, 0].tolist())
+            gap = highest_gap(start, mode.top, float(solution.end - begin))
+        return replace(
+            self,
+            solution=solution,
+            end_state=end_state,
+            transition=None,
+            steps=min(self.steps, len(solution.terms)),
+            highest_gap=gap,
+        )
 
 
 class Before(NamedTuple):

@@ -81,9 +81,11 @@ class Trajectory:
                     self.outcome = Outcome.TOO_MANY_STEPS
                     return
 
-    def end_at(self, time: float, state: State) -> None:
-        """Leave the rest of the run out, from a time and state in the last segment on."""
-        self.time, self.state, self.outcome = time, state, Outcome.COMPLETED
+    def end_at(
+        self, time: float, state: State, outcome: Outcome = Outcome.COMPLETED, detail: str = ""
+    ) -> None:
+        """Leave out what follows a time and state that the run has passed."""
+        self.time, self.state, self.outcome, self.detail = time, state, outcome, detail
         self.events = [event for event in self.events if event.time <= time]
 
     def _enter(self, transition: Transition) -> Transition:

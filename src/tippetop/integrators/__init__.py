@@ -33,9 +33,9 @@ def has_llvm() -> bool:
     return find_spec("llvmlite") is not None
 
 
-def default_name() -> str:
-    """The best integrator that is installed."""
-    if has_taylor():
+def default_name(analytic: bool = True) -> str:
+    """The best integrator that is installed, for motions that are `analytic` or are not."""
+    if analytic and has_taylor():
         return "taylor"
     return "compiled" if has_numba() else "dop853"
 
@@ -45,6 +45,7 @@ def make_integrator(
     tolerance: float | None = None,
     step: float | None = None,
     time_unit: float = 1.0,
+    analytic: bool = True,
 ) -> Integrator:
     """Make an integrator.
 
@@ -59,6 +60,8 @@ def make_integrator(
         Step size of "rk4", s; for no other.
     time_unit
         The motion's unit of time, s.
+    analytic
+        Whether power series stand for the motions: not where a law chooses by the numbers.
 
     Raises
     ------
@@ -70,9 +73,13 @@ def make_integrator(
     if name is None:
         from tippetop.integrators.relief import Relieved  # noqa: PLC0415 - slow to import
 
-        return Relieved(make_integrator(default_name(), tolerance, step, time_unit))
+        return Relieved(make_integrator(default_name(analytic), tolerance, step, time_unit))
     if not isinstance(name, str) or name not in NAMES:
         raise not_one_of("integrator", name, NAMES)
+    if name == "taylor" and not analytic:
+        others = ", ".join(other for other in NAMES if other != name)
+        fault = "does not see past the choices of the law or the surface"
+        raise InvalidInput("integrator", name, f"one of {others}", fault)
     if name == "rk4":
         if tolerance is not None:
             raise InvalidInput(

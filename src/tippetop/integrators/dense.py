@@ -88,6 +88,17 @@ class DenseSolution:
         """The numbers of the solution at times, each of shape (m,)."""
         return tuple(self(times).T)
 
+    def until(self, step: int, part: float) -> "DenseSolution":
+        """Return the solution up to an instant, told by its step and the part of it that has
+        passed; a step of which nothing has passed is left out.
+        """
+        if part == 0.0:
+            return DenseSolution(self.knots[: step + 1], self.terms[:step])
+        knots, terms = self.knots[: step + 2].copy(), self.terms[: step + 1].copy()
+        knots[-1] = knots[-2] + part * (knots[-1] - knots[-2])
+        terms[-1] *= part ** np.arange(terms.shape[2])
+        return DenseSolution(knots, terms)
+
     def moved(self, start: float, end: float) -> "DenseSolution":
         """The solution, whose time begins at zero, from `start` on; it ends exactly at `end`."""
         knots = start + self.knots

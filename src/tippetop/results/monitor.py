@@ -19,7 +19,13 @@ WORST, ACCUMULATED = 1e-6, 1e4
 tolerance.
 """
 
-WAYS_TO_END = (Outcome.COMPLETED, Outcome.LIFTED_OFF, Outcome.AT_REST, Outcome.LYING_FLAT)
+WAYS_TO_END = (
+    Outcome.COMPLETED,
+    Outcome.LIFTED_OFF,
+    Outcome.AT_REST,
+    Outcome.LYING_FLAT,
+    Outcome.STOPPED,
+)
 """Outcomes that tell what the motion came to, which is not known of a run that cannot be trusted;
 the others say why it is not told.
 """

@@ -126,6 +126,8 @@ def sweep(
     duration: float = 20.0,
     tolerance: float = DEFAULT_TOLERANCE,
     settled: float | None = None,
+    events: object = None,
+    until: object = None,
     out: Path | str | None = None,
     overwrite: bool = False,
     resume: bool = False,
@@ -161,6 +163,8 @@ def sweep(
     settled
         A run ends once its energy holds the tilt within this for good, rad; None to follow every
         run for its whole duration.
+    events, until
+        Not in a sweep: they are refused with a sentence. `simulate` finds the events of one launch.
     out
         Folder of a Zarr store to keep the sweep in, whose name ends in .zarr or has no ending; in
         memory if left out.
@@ -215,6 +219,11 @@ def sweep(
     chosen = Sweep(problem, grid, duration, tolerance, settled)
     require_callback("callback", callback)
     require("decode", decode, bool, "True or False")
+    for field, functions in {"events": events, "until": until}.items():
+        if functions is not None:
+            fault = "is not followed in sweeps"
+            hint = "follow the launches one by one with simulate"
+            raise InvalidInput(field, functions, "", fault, hint)
     for field, asked in {"overwrite": overwrite, "resume": resume}.items():
         require(field, asked, bool, "True or False")
         if asked and out is None:

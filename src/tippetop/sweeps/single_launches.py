@@ -9,6 +9,7 @@ import numpy as np
 from tippetop.contact.block import in_blocks
 from tippetop.contact.mode import Segment, Transition
 from tippetop.contact.trajectory import Trajectory
+from tippetop.graph.own_parts import has_choices
 from tippetop.integrators import TOLERANCES, default_name, has_llvm, make_integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.hull import Hull
@@ -26,10 +27,11 @@ _LOG = logging.getLogger(__name__)
 
 def is_alone(launches: Launches) -> bool:
     """Whether there are no batches, which LLVM compiles, or they know nothing of their bodies or
-    rules.
+    rules, or their laws choose by the numbers, which Taylor's method does not see.
     """
     example = launches.kind.example
-    return not has_llvm() or launches.own is not None or isinstance(example.surface, Hull)
+    known = launches.own is None and not isinstance(example.surface, Hull)
+    return not (has_llvm() and known) or has_choices(example)
 
 
 def follow_each(launches: Launches, tolerance: float, settled: float | None = None) -> Ends:
@@ -68,7 +70,9 @@ def follow(
     settles.
     """
     top, state, time = begin
-    method = make_integrator(None, max(tolerance, TOLERANCES[default_name()]))
+    analytic = not has_choices(top)
+    least = TOLERANCES[default_name(analytic)]
+    method = make_integrator(None, max(tolerance, least), analytic=analytic)
     trajectory, tally = Trajectory(start, end, method, time=time), Tally()
     segments, recorder = (
         trajectory.segments(),

@@ -1,0 +1,65 @@
+"""Checks of friction laws and surfaces that users define: whether they are in plain operators."""
+
+from functools import lru_cache
+from typing import Any
+
+from tippetop.graph.graph import LESS, SELECT, SIZE, NotRecordable
+from tippetop.graph.recording import record
+from tippetop.mechanics.hull import each_surface
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.vectors import Scalar
+from tippetop.support.errors import InvalidInput
+
+PLAIN = (
+    "the operators + - * / and **, and tippetop.extend.where, abs, min, max and sqrt in place of"
+    " Python's if, and, or, min and max and of functions of math and numpy"
+)
+"""What a law or a surface may use."""
+
+PACKAGE = __name__.partition(".")[0]
+
+CHOICES = (LESS, SELECT, SIZE)
+"""Operations that are not analytic: power series do not see past them."""
+
+
+def has_choices(top: Top) -> bool:
+    """Whether a user's law or surface chooses by the numbers, as `tippetop.extend.where` does.
+
+    Raises `InvalidInput` if it asks of its arguments what only numbers have.
+    """
+    own = [top.friction, *each_surface(top.surface)]
+    if all(
+        type(part).__module__.partition(".")[0] == __package__.partition(".")[0] for part in own
+    ):
+        return False
+    return _of_kind(top.kind)
+
+
+@lru_cache
+def _of_kind(kind: Kind) -> bool:
+    """Record the law and the surface of tops of a kind, and look for choices."""
+    law = kind.law.__name__
+
+    def traction(y: Any, numbers: Any) -> list[Scalar]:
+        found = kind.top(tuple(numbers)).friction.traction((y[0], y[1]), (y[2], y[3], y[4]))
+        return [*found.force, *found.torque]
+
+    def heights(y: Any, numbers: Any) -> list[Scalar]:
+        surface = kind.top(tuple(numbers)).surface
+        return [surface.height(y[0]), surface.slope(y[0]), surface.curvature(y[0])]
+
+    return any(
+        node.name in CHOICES
+        for name, function in ((f"{law}.traction", traction), ("surface", heights))
+        for node in _recorded(name, function, kind.numbers)
+    )
+
+
+def _recorded(name: str, function: Any, numbers: int) -> tuple[Any, ...]:
+    """Return the operations of a function of at most 5 numbers, named for errors."""
+    try:
+        return record(function, 5, numbers).nodes
+    except NotRecordable as error:
+        raise InvalidInput(name, "a choice by if, and, or, min or max", PLAIN) from error
+    except (TypeError, ValueError, ArithmeticError, AttributeError) as error:
+        raise InvalidInput(name, error, PLAIN) from error

@@ -1,0 +1,328 @@
+"""Events of the user's own: changes of sign of functions of the state, found during a run.
+
+Every function is located on the dense solution of each step, whatever it is made of: Python code
+that looks at numbers cannot be recorded and compiled as the guards of contact modes are, and the
+dense solution is exact to rounding, so that one mechanism serves all functions. The integrator
+takes the same steps with and without them.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tippetop.contact.block import Block, in_blocks
+from tippetop.contact.mode import EventKind, Outcome, Transition
+from tippetop.contact.trajectory import Trajectory
+from tippetop.integrators.base import Array
+from tippetop.mechanics.state import State
+from tippetop.mechanics.units import Units
+from tippetop.results.motion_state import MotionState, states_in
+from tippetop.support.errors import InvalidInput, is_number, one_of
+
+LOOKS = 16
+"""Intervals of a step at whose ends a function is evaluated. A step is short beside the radius of
+convergence of the motion; with fewer, functions that vary faster than the motion lose crossings,
+with more, every step costs more.
+"""
+
+KINDS = tuple(kind.value for kind in EventKind)
+"""Names of the events that every run reports."""
+
+UNTIL = "until"
+"""Name of the event of a function that a run is asked to end at."""
+
+Value = Callable[[MotionState], Any]
+
+
+@dataclass(frozen=True)
+class EventFunction:
+    """A function of the state whose changes of sign are events, with their direction.
+
+    A function without this class may have the same attributes `direction` and `terminal`, as with
+    `scipy.integrate.solve_ivp`.
+
+    Attributes
+    ----------
+    function
+        From a `MotionState` to a number.
+    direction
+        1 for crossings from below alone, -1 for those from above alone, 0 for both.
+    terminal
+        Whether the first crossing ends the run.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> falls = tt.extend.EventFunction(lambda s: s.axis[2], direction=-1, terminal=True)
+    >>> run = tt.simulate(tt.presets.report_problem(), 20.0, events={"level": falls})
+    >>> run.attrs["outcome"], bool(run["end_time"] == run["turns_over"])
+    ('stopped', True)
+    """
+
+    function: Value
+    direction: int = 0
+    terminal: bool = False
+
+    def __call__(self, state: MotionState) -> Any:
+        """Return the value of the function."""
+        return self.function(state)
+
+
+class OwnEvent(NamedTuple):
+    """A change of sign of a function."""
+
+    time: float
+    """When, in the units of the run."""
+    name: str
+    """Name of the function."""
+
+
+class Stop(NamedTuple):
+    """The end of a run at an event that it was asked to end at."""
+
+    block: Block
+    """The steps of the block up to there."""
+    time: float
+    state: State
+    """When, and the state, in the units of the run."""
+    name: str
+    """Name of the event."""
+
+
+class EventSearch:
+    """Search for the events of functions, block by block, and for the event that ends the run.
+
+    Parameters
+    ----------
+    events
+        Functions of the state by the names of their events.
+    until
+        What ends the run: the name of one of them or of one of the run's own kinds, or a function.
+    units
+        Units of the run.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such event, or a function or its attributes cannot be.
+    """
+
+    def __init__(
+        self, events: Mapping[str, Value] | None, until: str | Value | None, units: Units
+    ) -> None:
+        self.units = units
+        self.functions = _checked(events)
+        self.kind: str | None = None
+        if callable(until):
+            self.functions[UNTIL] = _event_function(UNTIL, until, terminal=True)
+        elif isinstance(until, str) and until in self.functions:
+            self.functions[until] = _event_function(until, self.functions[until], terminal=True)
+        elif until in KINDS:
+            self.kind = str(until)
+        elif until is not None:
+            choices = one_of(until, [*self.functions, *KINDS])
+            raise InvalidInput("until", until, f"a function, or the name of an event: {choices}")
+        self.events = list[OwnEvent]()
+        self._signs = dict[str, float]()
+
+    def blocks_of(self, trajectory: Trajectory) -> Iterator[Block]:
+        """Follow a trajectory to its end, or to the event that ends it, block by block."""
+        if self._is_end(trajectory.start):
+            trajectory.events += trajectory.start.events
+            self._end(trajectory, 0.0, trajectory.start.state, str(self.kind))
+            return
+        for block in in_blocks(trajectory.segments()):
+            stop = self._take(block)
+            if stop is None:
+                yield block
+            else:
+                self._end(trajectory, stop.time, stop.state, stop.name)
+                yield stop.block
+                return
+
+    def _end(self, trajectory: Trajectory, time: float, state: State, name: str) -> None:
+        """End a trajectory at an event."""
+        when = f"That event is {name!r}, at {time * self.units.time:.6g} s."
+        trajectory.end_at(time, state, Outcome.STOPPED, when)
+
+    def _is_end(self, transition: Transition) -> bool:
+        """Whether an event in a transition is of the kind that ends the run."""
+        return self.kind in [event.kind.value for event in transition.events]
+
+    def _take(self, block: Block) -> Stop | None:
+        """Search a block; return where the run ends in it, if it does."""
+        stop = self._stop_at_kind(block)
+        if not self.functions or not len(block.starts):
+            return stop
+        step = np.repeat(np.arange(len(block.starts)), LOOKS + 1)
+        part = np.tile(np.linspace(0.0, 1.0, LOOKS + 1), len(block.starts))
+        states = states_in(block, step, part, self.units)
+        events = list[OwnEvent]()
+        for name, function in self.functions.items():
+            values = _values(name, function, states)
+            crossing = self._crossings(name, function, block, (step, part, values))
+            for in_step, at in zip(*crossing, strict=True):
+                time = float(block.starts[in_step] + at * block.spans[in_step])
+                events.append(OwnEvent(time, name))
+                if function.terminal and (stop is None or time < stop.time):
+                    stop = Stop(*block.until(int(in_step), float(at)), name)
+                    break
+        self.events += [one for one in sorted(events) if stop is None or one.time <= stop.time]
+        return stop
+
+    def _stop_at_kind(self, block: Block) -> Stop | None:
+        """Return the end of the first segment after which an event of the kind asked for is."""
+        if self.kind is None:
+            return None
+        for number, segment in enumerate(block.segments):
+            follows = segment.transition
+            if follows is not None and self._is_end(follows):
+                some = Block(block.segments[: number + 1])
+                return Stop(some, segment.end_time, follows.state, self.kind)
+        return None
+
+    def _crossings(
+        self,
+        name: str,
+        function: EventFunction,
+        block: Block,
+        looks: tuple[NDArray[np.intp], Array, Array],
+    ) -> tuple[NDArray[np.intp], Array]:
+        """Return the steps in which a function changes sign, and the parts of them passed then.
+
+        `looks` has the steps, the parts and the values where the function was evaluated.
+        """
+        # SciPy is slow to import, and needed only by who has functions.
+        from scipy.optimize.elementwise import find_root  # noqa: PLC0415
+
+        def evaluate(part: Array, step: Array) -> Array:
+            part, step = np.broadcast_arrays(part, step)
+            which = step.astype(np.intp).ravel()
+            states = states_in(block, which, part.ravel(), self.units)
+            return _values(name, function, states).reshape(part.shape)
+
+        step, part, values = _with_dips(evaluate, *looks)
+        # The sign with which the block before ended stands before the first look.
+        signs = np.concatenate([[self._signs.get(name, 0.0)], np.sign(values)])
+        nonzero = np.flatnonzero(signs)
+        if len(nonzero):
+            self._signs[name] = float(signs[nonzero[-1]])
+        before, after = nonzero[:-1], nonzero[1:]
+        changes = signs[before] * signs[after] < 0.0
+        if function.direction:
+            changes &= signs[after] == np.sign(function.direction)
+        low, high = before[changes] - 1, after[changes] - 1
+        # Where looks at zero lie between, the first of them is where it crosses; where a step
+        # ends between, the start of the next: zero lies in rounding there, or an impact jumps it.
+        place = low + 1
+        found_step, found_part = step[place], part[place]
+        inside = np.flatnonzero((high == place) & (low >= 0) & (step[low] == step[place]))
+        if len(inside):
+            bracket = part[low[inside]], part[place[inside]]
+            found_part[inside] = find_root(
+                evaluate, bracket, args=(found_step[inside].astype(float),)
+            ).x
+        return found_step, found_part
+
+
+def _with_dips(
+    evaluate: Callable[[Array, Array], Array], step: NDArray[np.intp], part: Array, values: Array
+) -> tuple[NDArray[np.intp], Array, Array]:
+    """Add to looks those between them where a function dips through zero and comes back."""
+    from scipy.optimize.elementwise import find_minimum  # noqa: PLC0415 - see `_crossings`
+
+    table = values.reshape(-1, LOOKS + 1)
+    which, look = np.indices(table.shape)
+    middle = np.clip(look, 1, LOOKS - 1)
+    left, here, right = (table[which, middle + k] for k in (-1, 0, 1))
+    sign = np.sign(table)
+    bend = sign * (left - 2.0 * here + right)
+    with np.errstate(all="ignore"):
+        vertex = (middle + 0.5 * sign * (left - right) / bend) / LOOKS
+    low, high = np.maximum(look - 1, 0) / LOOKS, np.minimum(look + 1, LOOKS) / LOOKS
+    near = (bend > 0.0) & (np.abs(table) <= bend) & (vertex > low) & (vertex < high)
+    near &= (np.sign(left) == sign) & (np.sign(right) == sign)
+    if not near.any():
+        return step, part, values
+    in_step, signs = which[near].astype(float), sign[near]
+
+    def distance(part: Array, step: Array, side: Array) -> Array:
+        return np.asarray(side * evaluate(part, step))
+
+    bracket = low[near], vertex[near], high[near]
+    least = find_minimum(distance, bracket, args=(in_step, signs))
+    through = np.flatnonzero(least.success & (least.f_x < 0.0))
+    step = np.concatenate([step, which[near][through]])
+    part = np.concatenate([part, least.x[through]])
+    values = np.concatenate([values, signs[through] * least.f_x[through]])
+    order = np.lexsort((part, step))
+    return step[order], part[order], values[order]
+
+
+def _checked(events: Mapping[str, Value] | None) -> dict[str, EventFunction]:
+    """Return the functions by name, with their attributes."""
+    if events is None:
+        return {}
+    if not isinstance(events, Mapping):
+        raise InvalidInput("events", events, "a table of functions by the names of their events")
+    for name in events:
+        if not isinstance(name, str) or not name or name in (*KINDS, UNTIL):
+            own = f"a name, and none that runs have themselves: {', '.join((*KINDS, UNTIL))}"
+            raise InvalidInput("events", name, own)
+    return {name: _event_function(name, function) for name, function in events.items()}
+
+
+def _event_function(name: str, function: Value, terminal: bool | None = None) -> EventFunction:
+    """Return a function with its attributes, or with one that is given."""
+    field = _field(name)
+    if not callable(function):
+        raise InvalidInput(field, function, "a function of the state that returns a number")
+    direction = getattr(function, "direction", 0)
+    if not is_number(direction) or direction not in (-1, 0, 1):
+        raise InvalidInput(f"{field}.direction", direction, "-1, 0 or 1")
+    ends = getattr(function, "terminal", False) if terminal is None else terminal
+    if not isinstance(ends, bool):
+        raise InvalidInput(f"{field}.terminal", ends, "True or False")
+    return EventFunction(function, int(direction), ends)
+
+
+def _values(name: str, function: EventFunction, states: MotionState) -> Array:
+    """Return the values of a function at n instants, shape (n,).
+
+    It is called once for all of them; where it cannot take arrays, once for each.
+    """
+    try:
+        values = np.asarray(function(states))
+    except Exception:  # noqa: BLE001 - whatever it is, the calls with numbers say
+        values = np.empty(0)
+    if values.shape != states.time.shape or values.dtype.kind not in "iuf":
+        values = np.array([_value(name, function, state) for state in states.each()])
+    bad = np.flatnonzero(~np.isfinite(values))
+    if len(bad):
+        raise _no_number(name, states.time[bad[0]], float(values[bad[0]]))
+    return values.astype(float)
+
+
+def _value(name: str, function: EventFunction, state: MotionState) -> float:
+    """Return the value of a function at one instant."""
+    try:
+        value = function(state)
+    except Exception as error:
+        raise _no_number(name, state.time, error) from error
+    if not is_number(value):
+        raise _no_number(name, state.time, value)
+    return float(value)
+
+
+def _no_number(name: str, time: float, value: object) -> InvalidInput:
+    """Return the error of a function that gives such a value, or such an error, at a time, s."""
+    accepted = f"a function of the state that returns a finite number, also at {time:.4g} s"
+    return InvalidInput(_field(name), value, accepted)
+
+
+def _field(name: str) -> str:
+    """Return how users write the function of an event."""
+    return UNTIL if name == UNTIL else f"events[{name!r}]"

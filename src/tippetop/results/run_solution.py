@@ -1,0 +1,141 @@
+"""The dense solution of a run: its state, and all its variables, at any time."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from tippetop.contact.block import Block
+from tippetop.contact.choice import as_begun
+from tippetop.contact.mode import Segment
+from tippetop.contact.readings import Instants, instants, read
+from tippetop.integrators.base import Array
+from tippetop.integrators.dense import parts_of
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.units import Units
+from tippetop.results.catalogue import LISTED, METRICS, MONITORS
+from tippetop.results.dataset import assemble
+from tippetop.results.derived import derive
+from tippetop.results.motion_state import MotionState, states_in
+from tippetop.results.observables import Recorder
+from tippetop.results.sample_times import sample_times
+from tippetop.results.samples import Samples, continuous, observe
+from tippetop.support.errors import InvalidInput
+
+
+class Begin(NamedTuple):
+    """The launch of a run, in natural units."""
+
+    top: Top
+    units: Units
+    state: State
+    azimuth: float
+    """Direction into which the axis leans, rad."""
+    lost: float
+    """Energy lost in an impact at launch."""
+
+    def recorder(self, times: Array) -> Recorder:
+        """Return a recorder of samples at increasing times, shape (k,)."""
+        return Recorder(self.top, self.state, self.azimuth, times, self.lost)
+
+    def variables(self, samples: Samples) -> dict[str, Array]:
+        """Return every variable over time in SI, by name."""
+        variables = observe(samples, self.top, self.units)
+        orientation = continuous(variables["orientation"])
+        variables["orientation"] = orientation
+        return variables | derive(samples, orientation, self.top, self.units)
+
+
+class RunSolution:
+    """The solution of a run between its samples, as exact as they are.
+
+    ``solution(t)`` is the state at a time, or at several: a `tippetop.extend.MotionState` in SI.
+    It is what `simulate` returns beside the run with ``dense=True``.
+
+    Attributes
+    ----------
+    run
+        The run.
+    end_time
+        Time at which the solution ends, s.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> run, solution = tt.simulate(tt.presets.report_problem(), duration=20.0, dense=True)
+    >>> level = solution(float(run["turns_over"]))
+    >>> abs(level.axis[2]) < 1e-13
+    True
+    >>> solution([1.0, 2.0]).axis.shape
+    (3, 2)
+    >>> solution.sample([1.0, 2.0])["theta"].sizes["time"]
+    2
+    """
+
+    def __init__(self, begin: Begin, segments: Sequence[Segment], run: xr.Dataset) -> None:
+        self.run, self.end_time = run, float(run["end_time"])
+        self._begin, self._block = begin, Block(segments)
+
+    def __call__(self, times: ArrayLike) -> MotionState:
+        """Return the state at a time, s, or the states at several, shape (n,).
+
+        Raises
+        ------
+        InvalidInput
+            If a time is no number, or not between the launch and the end of the run.
+        """
+        accepted = f"a time from 0 to the end of the run, {self.end_time:g} s, or a list of them"
+        try:
+            seconds = np.array(times, dtype=float)
+        except (TypeError, ValueError):
+            raise InvalidInput("times", times, accepted) from None
+        if seconds.ndim > 1 or not np.all((seconds >= 0.0) & (seconds <= self.end_time)):
+            raise InvalidInput("times", times, accepted)
+        with np.errstate(all="ignore"):
+            states = self._states(np.atleast_1d(seconds))
+        return next(states.each()) if seconds.ndim == 0 else states
+
+    def _states(self, seconds: Array) -> MotionState:
+        """Return the states at times, s, shape (n,)."""
+        block, begin = self._block, self._begin
+        if not len(block.starts):
+            mode, numbers = as_begun(begin.state, begin.top)
+            rows = read(instants, mode, np.repeat(np.array([numbers]).T, len(seconds), axis=1))
+            return MotionState.of(seconds, Instants.unpack(rows), begin.units)
+        times = np.minimum(seconds / begin.units.time, block.ends[-1])
+        step = block.step_at(times)
+        part = np.clip(parts_of(times, block.starts[step], block.ends[step]), 0.0, 1.0)
+        return states_in(block, step, part, begin.units, seconds)
+
+    @np.errstate(all="ignore")
+    def sample(self, times: ArrayLike) -> xr.Dataset:
+        """Return the run with samples at other times: every variable, as `simulate` returns them.
+
+        Parameters
+        ----------
+        times
+            Increasing times, s, from 0 to the end of the run.
+
+        Raises
+        ------
+        InvalidInput
+            If the times are not such.
+        """
+        seconds = sample_times(self.end_time, 2, np.atleast_1d(times))
+        begin, block = self._begin, self._block
+        end = block.ends[-1] if len(block.starts) else 0.0
+        recorder = begin.recorder(np.minimum(seconds / begin.units.time, end))
+        recorder.take(block)
+        samples = recorder.finish(end, begin.state, early=False)
+        run = self.run
+        return assemble(
+            seconds,
+            begin.variables(samples),
+            (samples.mode, recorder.modes),
+            {name: run[name].values for name in (*METRICS, *MONITORS)},
+            {name: run[name].values for name in LISTED},
+            run.attrs,
+        )
