@@ -24,8 +24,13 @@ PAGES = [
     for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     if "_build" not in path.parts and "jupyter_execute" not in path.parts
 ]
+PUBLIC = [*(getattr(tt, name) for name in tt.__all__), *vars(tt.extend).values()]
 HOMES = sorted(
-    {home for name in tt.__all__ if (home := getattr(getattr(tt, name), "__module__", ""))}
+    {
+        home
+        for value in PUBLIC
+        if (home := str(getattr(value, "__module__", ""))).startswith("tippe")
+    }
 )
 BLOCK = re.compile(
     r"^(?P<fence>`{3,})(?:(?P<python>python|\{code-cell\}"

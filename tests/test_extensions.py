@@ -2,9 +2,10 @@
 sweeps.
 """
 
+import math
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
@@ -16,19 +17,29 @@ from pydantic import Field, model_validator
 import tippetop as tt
 from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.mode import IntegratedMode, Reaction, Transition
+from tippetop.extend import (
+    NO_TORQUE,
+    FrictionLaw,
+    Horizontal,
+    Positive,
+    Quantity,
+    Scalar,
+    Surface,
+    Traction,
+    Units,
+    Vector,
+)
+from tippetop.graph.hoisting import played
+from tippetop.graph.recording import record
 from tippetop.integrators.base import Guard, Motion
-from tippetop.mechanics.friction import NO_TORQUE, FrictionLaw, Traction
 from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.rolling import ContactPoint, velocity_without_slip
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector
+from tippetop.mechanics.vectors import Row
 from tippetop.mechanics.wrench import FORCES, Wrench
 from tippetop.results.catalogue import SWEPT
 from tippetop.support.errors import InvalidInput
-from tippetop.support.validation import Positive, Quantity
 
 DURATION = 1.0
 
@@ -64,6 +75,35 @@ class StribeckFriction(tt.Friction):
     @property
     def law(self) -> FrictionLaw:
         return StribeckLaw(self.mu, self.more, self.slow)
+
+
+class RampLaw(NamedTuple):
+    """Coulomb friction whose force rises with slip up to a speed: mu min(v / full, 1)."""
+
+    mu: Scalar
+    full: Scalar
+
+    @property
+    def torque_free(self) -> bool:
+        return True
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        speed = tt.extend.sqrt(slip[0] ** 2 + slip[1] ** 2)
+        factor = -self.mu / tt.extend.max(speed, self.full)
+        return Traction((factor * slip[0], factor * slip[1]), NO_TORQUE)
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        return (self.mu, self.full / units.speed)
+
+
+class RampFriction(tt.Friction):
+    kind: Literal["ramp"] = "ramp"
+    mu: Annotated[Positive, Quantity("1", "friction coefficient of fast slip")]
+    full: Annotated[Positive, Quantity("m s-1", "speed from which on friction is that")]
+
+    @property
+    def law(self) -> FrictionLaw:
+        return RampLaw(self.mu, self.full)
 
 
 class SquashedSurface(NamedTuple):
@@ -196,6 +236,7 @@ PROBLEMS = {
     "law with rolling resistance": REPORT.model_copy(
         update={"friction": STRIBECK, "rolling_resistance": 1e-4}
     ),
+    "law with a choice": REPORT.model_copy(update={"friction": RampFriction(mu=0.2, full=0.05)}),
     "surface": REPORT.model_copy(update={"body": SQUASHED}),
     "mode": REPORT.model_copy(update={"contact": PinnedAtFirst(until=DRAWN)}),
 }
@@ -205,6 +246,7 @@ OVER = {
         "friction.more": [0.1, 0.6],
         "rolling_resistance": [1e-5, 3e-4],
     },
+    "law with a choice": {"friction.full": [0.02, 0.05], "launch.spin": [90.0, 155.0]},
     "surface": {"body.shape.squash": [1e-3, 2e-3], "launch.spin": [90.0, 155.0]},
     "mode": {"contact.until": [0.1, 0.3], "launch.spin": [90.0, 155.0]},
 }
@@ -215,7 +257,7 @@ EACH = pytest.mark.parametrize("what", PROBLEMS)
 def test_integrators_agree_and_energy_balances(what: str) -> None:
     runs = [
         tt.simulate(PROBLEMS[what], DURATION, integrator=name, tolerance=tolerance, samples=101)
-        for name, tolerance in (("taylor", None), ("dop853", 1e-12))
+        for name, tolerance in ((None, None), ("dop853", 1e-13))
     ]
     for name in ("theta", "omega3", "x", "normal_force", "work"):
         one, other = (run[name].values for run in runs)
@@ -234,6 +276,89 @@ def test_the_law_is_the_one_defined() -> None:
     # At launch slip is zero: what is left of it is rounding of 3 m/s, which the law multiplies by
     # 0.3 / 0.05.
     np.testing.assert_allclose(force, expected, rtol=1e-9, atol=6.0 * np.spacing(3.0))
+
+
+def test_the_law_with_a_choice_is_the_one_defined() -> None:
+    run = tt.simulate(PROBLEMS["law with a choice"], DURATION, samples=201)
+    slip, normal = np.hypot(run["slip_x"], run["slip_y"]).values, run["normal_force"].values
+    force = np.hypot(*run["contact_force"].values[:, :2].T)
+    expected = 0.2 * np.minimum(slip / 0.05, 1.0) * normal
+    np.testing.assert_allclose(force, expected, rtol=1e-9, atol=1e-14)
+    assert slip.min() < 0.05 < slip.max()
+    assert run.attrs["integrator"] != "taylor"
+
+
+def test_power_series_do_not_follow_a_law_with_a_choice() -> None:
+    with pytest.raises(InvalidInput, match="do not see past the choices") as caught:
+        tt.simulate(PROBLEMS["law with a choice"], DURATION, integrator="taylor")
+    assert caught.value.field == "integrator"
+
+
+class Choosing(RampLaw):
+    """The same with Python's `max`, which looks at numbers."""
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        factor = -self.mu / max((slip[0] ** 2 + slip[1] ** 2) ** 0.5, self.full)
+        return Traction((factor * slip[0], factor * slip[1]), NO_TORQUE)
+
+
+class Rooted(RampLaw):
+    """The same with a function of `math`, which takes numbers alone."""
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        factor = -self.mu / tt.extend.max(math.hypot(slip[0], slip[1]), self.full)
+        return Traction((factor * slip[0], factor * slip[1]), NO_TORQUE)
+
+
+class NotPlainFriction(tt.Friction):
+    kind: Literal["not_plain"] = "not_plain"
+    rooted: bool
+
+    @property
+    def law(self) -> FrictionLaw:
+        return (Rooted if self.rooted else Choosing)(0.2, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("rooted", "sentence"),
+    [
+        (False, r"Choosing\.traction = 'a choice by if, and, or, min or max' is not possible"),
+        (True, r"Rooted\.traction = TypeError\('must be real number, not Node'\) is not possible"),
+    ],
+)
+@pytest.mark.parametrize(
+    "run",
+    [
+        lambda problem: tt.simulate(problem, 0.01),
+        lambda problem: tt.simulate(problem, 0.01, integrator="dop853"),
+        lambda problem: tt.sweep(problem, {"launch.spin": [100.0]}, duration=0.01),
+    ],
+)
+def test_what_no_law_can_use_is_told_in_a_sentence(
+    rooted: bool, sentence: str, run: Callable[[tt.Problem], Any]
+) -> None:
+    problem = REPORT.model_copy(update={"friction": NotPlainFriction(rooted=rooted)})
+    with pytest.raises(InvalidInput, match=sentence + ".*tippetop.extend.where, abs, min, max"):
+        run(problem)
+
+
+@pytest.mark.parametrize("number", [-0.5, 0.0, 2.0])
+def test_functions_take_numbers_arrays_and_recorded_numbers(number: float) -> None:
+    def values(y: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
+        low, high = (getattr(tt.extend, name)(y[0], 1.0) for name in ("min", "max"))
+        size = tt.extend.abs(y[0])
+        return [low, high, size, tt.extend.sqrt(size), tt.extend.where(y[0] < 1.0, y[0], 3.0)]
+
+    expected = [
+        min(number, 1.0),
+        max(number, 1.0),
+        abs(number),
+        math.sqrt(abs(number)),
+        number if number < 1.0 else 3.0,
+    ]
+    assert values([number], []) == expected
+    assert np.array(values([np.array([number, number])], [])).T.tolist() == [expected, expected]
+    assert played(record(values, 1, 0), [number], []) == expected
 
 
 def test_rolling_resistance_is_a_torque_beside_the_law_defined() -> None:
@@ -349,29 +474,55 @@ def test_a_kind_needs_a_word_of_its_own() -> None:
 
 
 SCRIPT = """
+import sys
 import tippetop as tt
-from typing import Literal
-from tippetop.mechanics.friction import ViscousLaw
+from typing import Literal, NamedTuple
+from tippetop.extend import NO_TORQUE, Traction
+import tippetop.sweeps.definition
+tippetop.sweeps.definition.LEAST_CELLS_A_TASK = 1
+sys.modules.update(dict.fromkeys(sys.argv[1:]))
+class Law(NamedTuple):
+    mu: float
+    torque_free = True
+    def traction(self, slip, angular_velocity):
+        return Traction((-self.mu * slip[0], -self.mu * slip[1]), NO_TORQUE)
+    def coefficients(self, units):
+        return (self.mu * units.speed,)
 class Mine(tt.Friction):
     kind: Literal["mine"] = "mine"
     mu: float
     @property
     def law(self):
-        return ViscousLaw(self.mu)
+        return Law(self.mu)
 problem = tt.presets.report_problem().model_copy(update={"friction": Mine(mu=0.3)})
-found = tt.sweep(problem, {"launch.spin": [100.0]}, duration=0.01, workers=None)
-print(found["outcome"].values)
-try:
-    tt.sweep(problem, {"launch.spin": [100.0]}, duration=0.01, workers=2)
-except tt.InvalidInput as error:
-    print(error)
+spins = {"launch.spin": [100.0, 155.0]}
+for workers in (None, 2):
+    try:
+        found = tt.sweep(problem, spins, duration=0.1, workers=workers)
+        print(*found["final_omega3"].values)
+    except tt.InvalidInput as error:
+        print(error)
 """
 
 
-def test_what_a_script_defines_is_computed_in_its_own_process() -> None:
+def outputs(*missing: str) -> list[str]:
+    """What the script prints where modules are missing."""
     done = subprocess.run(
-        [sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True
+        [sys.executable, "-c", SCRIPT, *missing], capture_output=True, text=True, check=True
     )
-    first, second = done.stdout.splitlines()
-    assert first.startswith("[")
+    return done.stdout.splitlines()
+
+
+def test_what_a_script_defines_is_computed_by_workers() -> None:
+    problem = tt.presets.report_problem()
+    found = tt.sweep(problem, {"launch.spin": [100.0, 155.0]}, duration=0.1, workers=1)
+    for line in outputs():
+        numbers = list(map(float, line.split()))
+        np.testing.assert_allclose(numbers, found["final_omega3"].values, rtol=1e-12)
+
+
+def test_without_cloudpickle_it_is_computed_in_its_own_process() -> None:
+    first, second = outputs("cloudpickle")
+    assert len(first.split()) == 2
     assert second.startswith("workers: 2 asks for other processes")
+    assert "cloudpickle" in second

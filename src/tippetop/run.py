@@ -157,10 +157,9 @@ def simulate(
     (5.88, 3.14)
     >>> bool(run["energy_error"] < 1e-12)
     True
-    >>> events = {"crosses 60 deg": lambda s: s.axis[2] - 0.5}
-    >>> run = tt.simulate(tt.presets.report_problem(spin=155.0), 20.0, events=events)
-    >>> [str(kind) for kind in run["event_kind"].values]
-    ['crosses 60 deg']
+    >>> run = tt.simulate(tt.presets.report_problem(), 20.0, until=lambda s: s.axis[2] - 0.5)
+    >>> run.attrs["outcome"], round(float(run["theta"][-1]), 6)  # at 60 degrees
+    ('stopped', 1.047198)
     """
     require_problem(problem)
     require_callback("callback", callback)

@@ -15,6 +15,7 @@ OPERATIONS: Mapping[str, Callable[..., Any]] = {
     graph.NEGATIVE: operator.neg,
     graph.SIZE: abs,
     graph.LESS: lambda a, b: 1.0 * (a < b),
+    graph.SELECT: lambda condition, a, b: a if condition else b,
     graph.ROOT: lambda number: number**0.5,
     graph.POWER: operator.pow,
 }

@@ -27,7 +27,7 @@ class MotionState(NamedTuple):
     >>> _, solution = tt.simulate(tt.presets.report_problem(tilt=0.1), duration=1.0, dense=True)
     >>> start = solution(0.0)
     >>> round(start.theta, 12), round(start.height, 6), start.time
-    (0.1, 0.009525, 0.0)
+    (0.1, 0.01403, 0.0)
     """
 
     time: Scalar

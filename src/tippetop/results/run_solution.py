@@ -67,7 +67,7 @@ class RunSolution:
     >>> import tippetop as tt
     >>> run, solution = tt.simulate(tt.presets.report_problem(), duration=20.0, dense=True)
     >>> level = solution(float(run["turns_over"]))
-    >>> abs(level.axis[2]) < 1e-13
+    >>> bool(abs(level.axis[2]) < 1e-13)
     True
     >>> solution([1.0, 2.0]).axis.shape
     (3, 2)

@@ -3,6 +3,7 @@
 # translate module: by hand in part.js
 
 import inspect
+import pickle
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import (
@@ -226,20 +227,15 @@ class Part(BaseModel):
             (item for item in info.metadata if isinstance(item, Quantity)), Quantity("", last)
         )
 
-    def modules(self) -> set[str]:
-        """The modules outside this package in which the kinds of this part, and of the parts in it,
-        are.
-        """
-        here = (
-            {type(self).__module__}
-            if type(self).__module__.partition(".")[0] != _PACKAGE
-            else set()
-        )
+    def own_kinds(self) -> set[type["Part"]]:
+        """The kinds of this part, and of the parts in it, that are defined outside this package."""
+        own = type(self).__module__.partition(".")[0] != _PACKAGE
+        here: set[type[Part]] = {type(self)} if own else set()
         values = [getattr(self, name) for name in type(self).model_fields]
         several = [
             inner for value in values for inner in (value if isinstance(value, tuple) else (value,))
         ]
-        return here.union(*(value.modules() for value in several if isinstance(value, Part)))
+        return here.union(*(value.own_kinds() for value in several if isinstance(value, Part)))
 
 
 _PACKAGE = __name__.partition(".")[0]
@@ -301,6 +297,10 @@ def declare_places(whole: type[Part]) -> dict[str, str]:
     return Part.places
 
 
+_receiving = list[bool]()
+"""Not empty while kinds of another process are made."""
+
+
 class Variant(Part):
     """A part of which there are several kinds: its subclasses, told apart by their field `kind`.
 
@@ -319,6 +319,8 @@ class Variant(Part):
     @classmethod
     def __pydantic_init_subclass__(cls, **keywords: Any) -> None:
         super().__pydantic_init_subclass__(**keywords)
+        if _receiving:  # cloudpickle makes a class before it fills it
+            return
         if Variant in cls.__bases__:
             cls.kinds = {}
             return
@@ -331,6 +333,17 @@ class Variant(Part):
                 f"{cls.__name__} needs another word: {info.default!r} is {known.__name__}"
             )
         cls.kinds[info.default] = cls
+
+    @staticmethod
+    def receive(content: bytes) -> None:
+        """Make kinds known that another process has and has sent, pickled by cloudpickle."""
+        _receiving.append(True)
+        try:
+            kinds = pickle.loads(content)
+        finally:
+            _receiving.pop()
+        for kind in kinds:
+            kind.kinds[kind.model_fields["kind"].default] = kind
 
     @classmethod
     def kinds_with(cls, field: str) -> list[str]:

@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 from tippetop import __version__
 from tippetop.support.errors import RESUME, InvalidInput, Unavailable, is_whole
 from tippetop.support.processes import RESTARTS, Job, shared
+from tippetop.support.validation import Variant
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.ensemble import follow_cells
 
 Found: TypeAlias = dict[str, NDArray[Any]]
-Call: TypeAlias = tuple[str, str, tuple[str, ...], tuple[slice, ...]]
+Call: TypeAlias = tuple[str, str, tuple[str, ...], bytes, tuple[slice, ...]]
 """What `compute_region` is called with."""
 
 AHEAD = 2
@@ -53,12 +54,16 @@ class Cluster(NamedTuple):
 
 
 def compute_region(
-    description: str, version: str, modules: tuple[str, ...], region: tuple[slice, ...]
+    description: str,
+    version: str,
+    modules: tuple[str, ...],
+    kinds: bytes,
+    region: tuple[slice, ...],
 ) -> Found:
     """Compute a region of the cells from parameters: this is all that a worker is sent.
 
-    The modules are those in which the sweep's own kinds of parts are defined, in whoever asks for
-    it.
+    The modules are those in which the user's kinds of parts are defined; `kinds` has those that a
+    script or a notebook defines, pickled.
 
     Raises `Unavailable` if the worker has another version of this package, or lacks a module.
     """
@@ -67,18 +72,21 @@ def compute_region(
     try:
         for name in modules:
             import_module(name)
+        if kinds:
+            Variant.receive(kinds)
     except ImportError as error:
         raise Unavailable(
             f"a worker cannot import the module of a part of the problem: {error}"
         ) from None
-    sweep = _sweep(description)
+    sweep = _sweep(description, kinds)
     # Compiled functions have one set of buffers; a worker with several threads takes turns.
     with _turn:
         return follow_cells(sweep, sweep.numbers(region).ravel())
 
 
 @lru_cache(maxsize=4)
-def _sweep(description: str) -> Sweep:
+def _sweep(description: str, kinds: bytes) -> Sweep:
+    """Return a sweep by its description, and by the kinds of its parts that were received."""
     return Sweep(**json.loads(description))
 
 
@@ -91,19 +99,20 @@ def results(
     """Compute tasks of a sweep and give what they found as it comes, in any order; see
     `need_workers`.
     """
-    modules = _modules(sweep, workers, scheduler)
-    if HERE in modules:
-        workers = 1
+    modules, kinds = _own_parts(sweep, workers, scheduler)
+    if kinds is None:
+        workers, kinds = 1, b""
+    count = min(workers or processors(), max(len(tasks), 1))
+    if scheduler is None and count == 1:
+        kinds = b""  # This process has them.
     description = json.dumps(sweep.describe())
-    calls = {task: (description, __version__, modules, sweep.region(task)) for task in tasks}
+    calls = {task: (description, __version__, modules, kinds, sweep.region(task)) for task in tasks}
     if scheduler is not None:
         yield from _share_with_cluster(scheduler, calls)
         return
     jobs = (Job(task, compute_region, call) for task, call in calls.items())
     try:
-        yield from shared(
-            lambda: next(jobs, None), min(workers or processors(), max(len(tasks), 1))
-        )
+        yield from shared(lambda: next(jobs, None), count)
     except Unavailable as error:
         raise Unavailable(f"{error}; {KEPT}") from None
 
@@ -119,26 +128,52 @@ def need_workers(
     Raises `InvalidInput` if the number of workers is not positive, or there is no scheduler at the
     address; `Unavailable` if dask.distributed is needed and not installed.
     """
-    _modules(sweep, workers, scheduler)
+    _own_parts(sweep, workers, scheduler)
     with nullcontext() if scheduler is None else _cluster(scheduler) as cluster:
         yield cluster
 
 
-def _modules(sweep: Sweep, workers: int | None, scheduler: str | Cluster | None) -> tuple[str, ...]:
-    """The modules that a worker has to import, for kinds of parts that are not of this package."""
+def _own_parts(
+    sweep: Sweep, workers: int | None, scheduler: str | Cluster | None
+) -> tuple[tuple[str, ...], bytes | None]:
+    """Return what workers need for kinds of parts that are not of this package.
+
+    Returns
+    -------
+    tuple
+        The modules to import, and the kinds that a script or a notebook defines, pickled; None
+        where these cannot be sent, and this process has to compute alone.
+    """
     known = is_whole(workers) and workers >= 1
     if not (workers is None or known):
         raise InvalidInput("workers", workers, "a whole number, at least 1")
-    modules = sweep.problem.modules()
-    if HERE in modules and (scheduler is not None or workers not in (None, 1)):
+    own = sorted(sweep.problem.own_kinds(), key=lambda kind: kind.__qualname__)
+    modules = tuple(sorted({kind.__module__ for kind in own} - {HERE}))
+    unimportable = [kind for kind in own if kind.__module__ == HERE]
+    kinds, why = _pickled(unimportable) if unimportable else (b"", "")
+    if kinds is None and (scheduler is not None or workers not in (None, 1)):
         raise InvalidInput(
             "workers" if scheduler is None else "scheduler",
             workers if scheduler is None else scheduler,
             "1",
-            "asks for other processes, which cannot import the parts that the script defines",
+            f"asks for other processes, and the script itself defines parts, which {why}",
             "write workers=1, or define them in a module",
         )
-    return tuple(sorted(modules))
+    return modules, kinds
+
+
+def _pickled(kinds: Sequence[type]) -> tuple[bytes | None, str]:
+    """Return kinds of parts as they are sent to other processes; None, and why, where that cannot
+    be.
+    """
+    if find_spec("cloudpickle") is None:
+        return None, "only cloudpickle sends to other processes (pip install 'tippetop[sweep]')"
+    import cloudpickle  # noqa: PLC0415 - optional
+
+    try:
+        return cloudpickle.dumps(kinds), ""
+    except Exception as error:  # noqa: BLE001 - whatever it is of a user's that cannot be pickled
+        return None, f"cannot be sent to other processes ({error})"
 
 
 def processors() -> int:
