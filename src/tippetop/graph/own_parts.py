@@ -11,8 +11,8 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.support.errors import InvalidInput
 
 PLAIN = (
-    "the operators + - * / and **, and tippetop.extend.where, abs, min, max and sqrt in place of"
-    " Python's if, and, or, min and max and of functions of math and numpy"
+    "the operators + - * / ** < and >, and tippetop.extend.where, abs, min, max and sqrt in place"
+    " of Python's if, and, or, min and max and of functions of math and numpy"
 )
 """What a law or a surface may use."""
 
@@ -27,12 +27,9 @@ def has_choices(top: Top) -> bool:
 
     Raises `InvalidInput` if it asks of its arguments what only numbers have.
     """
-    own = [top.friction, *each_surface(top.surface)]
-    if all(
-        type(part).__module__.partition(".")[0] == __package__.partition(".")[0] for part in own
-    ):
-        return False
-    return _of_kind(top.kind)
+    parts = (top.friction, *each_surface(top.surface))
+    own = [part for part in parts if type(part).__module__.partition(".")[0] != PACKAGE]
+    return bool(own) and _of_kind(top.kind)
 
 
 @lru_cache
@@ -45,8 +42,12 @@ def _of_kind(kind: Kind) -> bool:
         return [*found.force, *found.torque]
 
     def heights(y: Any, numbers: Any) -> list[Scalar]:
-        surface = kind.top(tuple(numbers)).surface
-        return [surface.height(y[0]), surface.slope(y[0]), surface.curvature(y[0])]
+        surfaces = each_surface(kind.top(tuple(numbers)).surface)
+        return [
+            function(y[0])
+            for surface in surfaces
+            for function in (surface.height, surface.slope, surface.curvature)
+        ]
 
     return any(
         node.name in CHOICES

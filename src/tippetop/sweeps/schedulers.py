@@ -25,7 +25,7 @@ from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.ensemble import follow_cells
 
 Found: TypeAlias = dict[str, NDArray[Any]]
-Call: TypeAlias = tuple[str, str, tuple[str, ...], bytes, tuple[slice, ...]]
+Call: TypeAlias = tuple[str, str, tuple[str, ...], tuple[slice, ...], bytes]
 """What `compute_region` is called with."""
 
 AHEAD = 2
@@ -57,8 +57,8 @@ def compute_region(
     description: str,
     version: str,
     modules: tuple[str, ...],
-    kinds: bytes,
     region: tuple[slice, ...],
+    kinds: bytes = b"",
 ) -> Found:
     """Compute a region of the cells from parameters: this is all that a worker is sent.
 
@@ -106,7 +106,7 @@ def results(
     if scheduler is None and count == 1:
         kinds = b""  # This process has them.
     description = json.dumps(sweep.describe())
-    calls = {task: (description, __version__, modules, kinds, sweep.region(task)) for task in tasks}
+    calls = {task: (description, __version__, modules, sweep.region(task), kinds) for task in tasks}
     if scheduler is not None:
         yield from _share_with_cluster(scheduler, calls)
         return
