@@ -209,9 +209,8 @@ def simulate(
         **_method_attributes([method, *tally.methods.values()], units),
         "tippetop_version": __version__,
     }
-    lists = _event_arrays(trajectory.events, search.events, units) | _flight_arrays(
-        tally.flights.rows, units
-    )
+    lists = _event_arrays(trajectory.events, search.events, units)
+    lists |= _flight_arrays(tally.flights.rows, units)
     times = np.append(grid, end_time)[: len(found.times)]
     if early:
         times[-1] = end_time

@@ -221,10 +221,12 @@ class EventSearch:
         found_step, found_part = step[place], part[place]
         inside = np.flatnonzero((high == place) & (low >= 0) & (step[low] == step[place]))
         if len(inside):
-            bracket = part[low[inside]], part[place[inside]]
-            found_part[inside] = find_root(
-                evaluate, bracket, args=(found_step[inside].astype(float),)
-            ).x
+            ends = np.stack([low[inside], place[inside]])
+            root = find_root(evaluate, tuple(part[ends]), args=(found_step[inside].astype(float),))
+            # A look within rounding of zero may have the other sign when it is evaluated again.
+            sizes = np.abs(values[ends])
+            nearest = np.where(sizes[0] < sizes[1], part[ends[0]], part[ends[1]])
+            found_part[inside] = np.where(root.success, root.x, nearest)
         return found_step, found_part
 
 
