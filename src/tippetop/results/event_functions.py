@@ -20,7 +20,8 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.state import State
 from tippetop.mechanics.units import Units
 from tippetop.results.motion_state import MotionState, states_in
-from tippetop.support.errors import InvalidInput, is_number, one_of
+from tippetop.support.errors import InvalidInput, is_number
+from tippetop.support.suggestions import not_one_of
 
 LOOKS = 16
 """Intervals of a step at whose ends a function is evaluated. A step is short beside the radius of
@@ -123,8 +124,7 @@ class EventSearch:
         elif until in KINDS:
             self.kind = str(until)
         elif until is not None:
-            choices = one_of(until, [*self.functions, *KINDS])
-            raise InvalidInput("until", until, f"a function, or the name of an event: {choices}")
+            raise not_one_of("until", until, ["a function", *self.functions, *KINDS])
         self.events = list[OwnEvent]()
         self._signs = dict[str, float]()
 
