@@ -2,9 +2,8 @@
 import { createInterface } from "node:readline";
 import { pathToFileURL } from "node:url";
 
-const { InvalidInput, criticalSpins, doubts, predict, prospects, simulate } = await import(
-  pathToFileURL(process.argv[2])
-);
+const { InvalidInput, criticalSpins, doubts, predict, prospects, sampleCount, simulate } =
+  await import(pathToFileURL(process.argv[2]));
 
 function followed({ problem, times, ...options }) {
   try {
@@ -16,6 +15,7 @@ function followed({ problem, times, ...options }) {
       events: run.events,
       flights: run.flights,
       metrics: run.metrics,
+      account: run.account,
       track: Object.fromEntries(
         Object.entries(track).map(([name, values]) => [name, Array.from(values)]),
       ),
@@ -45,10 +45,16 @@ function foreseen({ problem }) {
   return Object.fromEntries(Object.entries(asked).map(([name, ask]) => [name, told(ask)]));
 }
 
+function answer(asked) {
+  if (asked.theory) return foreseen(asked);
+  if (asked.samples) return sampleCount(asked.problem, asked.samples);
+  return followed(asked);
+}
+
 // Numbers that JSON does not know, as Python writes them.
 const written = (_, value) => (value === Infinity ? "inf" : value);
 
 for await (const line of createInterface({ input: process.stdin })) {
   const asked = JSON.parse(line);
-  console.log(JSON.stringify(asked.theory ? foreseen(asked) : followed(asked), written));
+  console.log(JSON.stringify(answer(asked), written));
 }

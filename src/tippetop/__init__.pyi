@@ -38,6 +38,7 @@ from .problem.shapes import Sphere as Sphere
 from .problem.shapes import Spheroid as Spheroid
 from .results.catalogue import Ending as Ending
 from .results.dataframes import to_dataframe as to_dataframe
+from .results.description import describe as describe
 from .results.netcdf import read_run as read_run
 from .results.netcdf import write_run as write_run
 from .results.run_solution import RunSolution as RunSolution

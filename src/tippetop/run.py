@@ -177,7 +177,8 @@ def simulate(
     launch = rules_of(problem.contact, top, units).launch(state)
     trajectory = Trajectory(launch, duration / units.time, method, phase_limit, step_limit)
     start = Begin(top, units, state, problem.launch.azimuth, launch.energy_lost)
-    recorder, tally, segments = start.recorder(grid / units.time), Tally(), list[Segment]()
+    recorder, tally = start.recorder(grid / units.time), Tally(top, state)
+    segments = list[Segment]()
     for block in search.blocks_of(trajectory):
         recorder.take(block)
         tally.take(block)
@@ -189,12 +190,15 @@ def simulate(
     early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
     found = recorder.finish(trajectory.time, trajectory.state, early)
     ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
+    peak_tilt, peak_time = tally.peak(float(state.axis[2]))
     begin = State.unpack([np.float64(number) for number in state.pack()])
     end_time = duration if trajectory.time == trajectory.end else trajectory.time * units.time
     scalars = metrics(ends, begin, top, units) | {
         "end_time": end_time,
         "energy_start": float(energy(state, top)) * units.energy,
         "impact_energy_lost": ends.struck * units.energy,
+        "peak_tilt": peak_tilt,
+        "peak_time": peak_time * units.time,
         "evaluations": tally.evaluations,
         "energy_error": recorder.monitor.energy_error,
         "jellett_drift": recorder.monitor.jellett_drift,

@@ -44,6 +44,7 @@ def test_a_sweep_writes_a_store_and_maps_beside_it(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "a.final_theta.png",
         "a.flights.png",
+        "a.outcome.png",
         "a.turns_over.png",
         "a.zarr",
     ]

@@ -133,10 +133,10 @@ def test_draws_that_cannot_be_are_refused_by_what_is_wrong(entry, field):
 )
 def test_sweeps_come_back_from_their_description(grid):
     sweep = Sweep(report_problem(), grid, 3.0, 1e-8, 1e-4)
-    again = Sweep(**json.loads(json.dumps(sweep.describe())))
+    again = Sweep(**json.loads(json.dumps(sweep.to_fields())))
     assert again == sweep
     assert again.grid == grid
-    assert again.describe() == sweep.describe()
+    assert again.to_fields() == sweep.to_fields()
 
 
 def test_what_is_written_is_what_is_described():
@@ -146,7 +146,7 @@ def test_what_is_written_is_what_is_described():
         "duration": 3.0,
         "tolerance": 1e-8,
     }
-    assert Sweep(**tables).describe() == tables
+    assert Sweep(**tables).to_fields() == tables
 
 
 @pytest.mark.parametrize("shape", [(1,), (7,), (1000, 1000), (3, 1, 50, 2), (100_000,), (20, 20)])

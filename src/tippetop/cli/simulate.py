@@ -43,8 +43,9 @@ ROWS = (
     ("final tilt", "theta", "rad", ".7g", ""),
     ("final axial spin", "omega3", "rad/s", ".7g", ""),
     ("final precession", "phi_dot", "rad/s", ".7g", "undefined"),
-    ("turns over at", "turns_over", "s", ".7g", "never"),
-    ("within 0.01 rad of its final tilt at", "arrives", "s", ".7g", "never"),
+    ("turns over at", "turns_over", "s", ".7g", "not within the run"),
+    ("within 0.01 rad of its settled tilt at", "arrives", "s", ".7g", "not settled"),
+    ("largest tilt", "highest_tilt", "rad", ".7g", "may still rise"),
     ("least normal force", "least_normal_force", "N", ".7g", ""),
     ("energy at launch", "energy_start", "J", ".6g", ""),
     ("energy lost", "energy_lost", "J", ".7g", ""),
@@ -153,8 +154,10 @@ def simulate(
         written = {kind: path and str(path) for kind, path in files.items()}
         show_json({**summary, **written, "problem": chosen.model_dump()})
     else:
+        advice = f"{summary['outcome'].replace('_', ' ')}: {summary['advice']}"
         show(
-            f"[bold]{summary['outcome'].replace('_', ' ')}[/]: {summary['advice']}",
+            summary["description"],
+            *(() if summary["outcome"] == "completed" else (f"[bold]{advice}[/]",)),
             facts(_rows(summary, chosen.top.conserves_jellett)),
             f"[dim]{summary['steps']} steps of {summary['integrator']} in {elapsed:.3g} s[/]",
             files=wanted.values(),
@@ -165,7 +168,7 @@ def _enough_samples(problem: "tt.Problem", duration: float, wanted: Iterable[str
     """As many samples as the files that are wanted need, and no fewer than usual."""
     if not (MOVING & set(wanted) and math.isfinite(duration)):
         return DEFAULT_SAMPLES
-    from tippetop.export.track import sample_count  # noqa: PLC0415 - slow to import
+    from tippetop.results.sampling import sample_count  # noqa: PLC0415 - slow to import
 
     return max(DEFAULT_SAMPLES, sample_count(problem, duration))
 

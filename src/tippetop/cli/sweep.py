@@ -151,7 +151,7 @@ def sweep(
     }
     if as_json:
         files = {"out": str(out), "maps": [str(path) for path in pictures.values()]}
-        show_json({**summary, **files, "sweep": store.sweep.describe()})
+        show_json({**summary, **files, "sweep": store.sweep.to_fields()})
     else:
         show(*_sentences(summary), files=[out, *pictures.values()])
 

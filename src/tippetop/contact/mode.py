@@ -48,8 +48,7 @@ class Outcome(Enum):
     )
     AT_REST = "The top came to rest, and the table holds it so: nothing happens any more."
     LYING_FLAT = (
-        "The body came to lie flat: there it touches the table all around, which is not followed"
-        " further; this is the end of its motion, but for what the impact of its face would add."
+        "The body lies flat on a face, and may still spin; motion on a flat face is not simulated."
     )
     STOPPED = "The run ended at the event that it was asked to end at."
     TOO_MANY_PHASES = (

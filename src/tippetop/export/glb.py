@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from tippetop import __version__
 from tippetop.export.geometry import Mesh, lathe
 from tippetop.export.poses import poses_at
-from tippetop.export.words import tell
 from tippetop.figures.looks import SCENES, ToyPart, size, toy_parts
 from tippetop.problem.bodies import Body
 from tippetop.problem.problem import Problem
 from tippetop.results.dataset import require_run
+from tippetop.results.description import describe
 from tippetop.results.samples import continuous
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import written_beside
@@ -89,7 +89,7 @@ def glb_bytes(run: xr.Dataset) -> bytes:
             {"sampler": k, "target": {"node": 1, "path": path}} for k, path in enumerate(outputs)
         ]
         model.json["animations"] = [
-            {"name": tell(run).headline, "samplers": samplers, "channels": channels}
+            {"name": describe(run).headline, "samplers": samplers, "channels": channels}
         ]
     model.json["asset"]["extras"] = {"problem": json.loads(run.attrs["problem"])}
     return model.bytes()

@@ -13,11 +13,11 @@ from PIL import Image, ImageDraw, ImageFont
 
 from tippetop.export.poses import contact_path, poses_at
 from tippetop.export.raycast import fine_path, picture, view_of
-from tippetop.export.words import tell
 from tippetop.figures.style import INK
 from tippetop.figures.toy import Toy
 from tippetop.problem.problem import Problem
 from tippetop.results.dataset import require_run
+from tippetop.results.description import describe
 from tippetop.support.errors import FileTrouble, InvalidInput, Unavailable, is_number, is_whole
 from tippetop.support.files import path_of, place_for, require_ending, written_beside
 from tippetop.support.validation import require_callback
@@ -147,7 +147,7 @@ def frames(
     positions, turns = poses.positions / toy.size, poses.turns.as_matrix()
     path, reached = fine_path(contact_path(run) / toy.size, run["normal_force"].values != 0.0)
     seen = reached[np.searchsorted(run["time"].values, times, side="right") - 1]
-    headline = tell(run).headline
+    headline = describe(run).headline
     cell = 10 ** round(math.log10(toy.size / 2)) / toy.size
     for number, (position, frame) in enumerate(zip(positions, turns, strict=True)):
         view = view_of(np.array([position[0], position[1], 0.85]), _EYE, pixels)

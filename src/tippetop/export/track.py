@@ -14,35 +14,21 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop.export.poses import contact_path
-from tippetop.export.words import tell
 from tippetop.figures.looks import SCENES, size, toy_parts
 from tippetop.problem.problem import Problem
+from tippetop.results.description import describe
 
 Array = NDArray[np.float64]
 
 MAGIC = b"TTRK"
-TURN_PER_SAMPLE = 0.6
-"""Angle by which the body may turn between samples, rad."""
-LEAST_RATE = 100.0
-"""Samples per second of even the slowest run."""
-MOST_SAMPLES = 40_000
-"""Samples of a run at most: some 4 MB."""
 SHADINGS = 200
 """Flights shaded at most; nearer ones are shaded together."""
-
-
-def sample_count(problem: Problem, duration: float) -> int:
-    """How many samples a run needs so that it can be played at any speed."""
-    top, start = problem.top, problem.start()
-    fastest = float(np.linalg.norm(start.momentum)) / min(top.transverse_inertia, top.axial_inertia)
-    rate = max(LEAST_RATE, fastest / TURN_PER_SAMPLE)
-    return int(min(duration * rate, MOST_SAMPLES - 1)) + 2
 
 
 def pack_run(run: xr.Dataset) -> bytes:
     """The block of bytes of a run, or of a part of one."""
     problem, (begin, end) = Problem.from_json(run.attrs["problem"]), _ends(run)
-    columns, turns_over = _columns(run), float(run["turns_over"])
+    columns, turns_over, account = _columns(run), float(run["turns_over"]), describe(run)
     header = {
         "samples": run.sizes["time"],
         "duration": end,
@@ -59,7 +45,8 @@ def pack_run(run: xr.Dataset) -> bytes:
             "parts": [part.plain() for part in toy_parts(problem.body)],
         },
         "scenes": SCENES,
-        "story": tell(run)._asdict(),
+        "account": account.plain(),
+        "story": {"headline": account.headline, "details": account.details},
         "problem": json.loads(run.attrs["problem"]),
     }
     text = json.dumps(header, separators=(",", ":")).encode()

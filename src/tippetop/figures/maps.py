@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 import tippetop.figures.annotation as mark
 from tippetop.figures.style import (
     CONVERGED,
-    CYCLE,
     FAINT,
     INK,
     MUTED,
@@ -24,7 +23,7 @@ from tippetop.results.catalogue import SWEPT, Ending, written_unit
 from tippetop.results.flags import encoded
 from tippetop.support.errors import InvalidInput
 
-MAPPED = ("final_theta", "turns_over", "flights")
+MAPPED = ("outcome", "final_theta", "turns_over", "flights")
 """The maps that are drawn of every sweep."""
 
 SHORT = {
@@ -40,7 +39,13 @@ SHORT = {
 name.
 """
 
-NOTHING = {"turns_over": ["never"], "flights": ["none"], "first_lift_off": ["never"]}
+NOTHING = {
+    "turns_over": ["not within the run"],
+    "arrives": ["not settled"],
+    "highest_tilt": ["may still rise"],
+    "flights": ["none"],
+    "first_lift_off": ["not within the run"],
+}
 """What it means where some variables have no value: grey in maps, and no point of a curve."""
 
 UNFINISHED = {
@@ -50,8 +55,25 @@ UNFINISHED = {
 }
 """Launches whose last tilt is not their end, or not to be trusted, and how maps of it name them."""
 
-FLAGS = (*CYCLE, INK)
-"""Colours of the variables of flags, for as many flags as any has."""
+STILL_MOVING = (
+    Ending.MOVING_UPRIGHT,
+    Ending.MOVING_INVERTED,
+    Ending.MOVING_TILTED,
+    Ending.ROLLING,
+)
+"""Launches that had not settled when they ended: a dot in maps of where they were then."""
+
+UPRIGHT, INVERTED, TILTED = "#0B5FA5", "#E07B00", "#109B60"
+FLAGS = (
+    *(UPRIGHT, INVERTED, TILTED, "#9E1F54", "#4A2410", "#C9CFD6", "#05305A", "#8A6D1A"),
+    *("#9CC3E6", "#F6C48A", "#9CDDBD", "#C58BE0", "#EACF36", INK),
+)
+"""Colours of the variables of flags, in their order. Settled ends of launches are strong, the same
+places of moving ones pale, and those that fell back have a colour that no place has.
+"""
+
+DOT = 1.6
+"""Size of the dots of moving launches, points: smaller than the cells of most maps."""
 
 MOST_PANELS = 9
 """Maps that are drawn side by side."""
@@ -164,6 +186,7 @@ def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: dict[str, Any]
         rasterized=True,
         **shade,
     )
+    _dot_moving(axes, sweep, variable, *np.meshgrid(sweep[across].values, sweep[up].values))
     for name, axis in ((across, axes.xaxis), (up, axes.yaxis)):
         axis.set_label_text(_name(sweep, name))
         if _is_geometric(sweep[name].values):
@@ -176,6 +199,7 @@ def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: dict[str, Any]
 def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
     (across,) = (str(name) for name in sweep[variable].dims)
     axes.plot(sweep[across].values, _shown(sweep, variable), ".-", color=CONVERGED, linewidth=0.8)
+    _dot_moving(axes, sweep, variable, sweep[across].values, sweep[variable].values)
     axes.set_xlabel(_name(sweep, across))
     if _is_geometric(sweep[across].values):
         axes.set_xscale("log")
@@ -195,9 +219,28 @@ def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> No
         nothing = ~np.isfinite(values)
         axes.scatter(x[nothing], y[nothing], 8, facecolors="none", edgecolors=MUTED, linewidths=0.4)
         image = axes.scatter(x[~nothing], y[~nothing], 8, values[~nothing], **shade)
+        _dot_moving(axes, sweep, variable, x, y)
         axes.set_ylabel(_name(sweep, fields[1]))
         _bar(figure, [axes], image, sweep, variable)
     axes.set_xlabel(_name(sweep, fields[0]))
+
+
+def _dot_moving(
+    axes: Axes,
+    sweep: xr.Dataset,
+    variable: str,
+    x: np.ndarray[Any, Any],
+    y: np.ndarray[Any, Any],
+) -> None:
+    """Dot the launches in a map of last tilts that were still moving; places have its shape."""
+    moving = _is_moving(sweep, variable).T
+    if moving.any():
+        axes.plot(x[moving], y[moving], ".", color="white", markersize=DOT, rasterized=True)
+
+
+def _is_moving(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
+    """Return which launches had not settled at their end, of a variable for which that counts."""
+    return np.isin(sweep["outcome"].values, STILL_MOVING) & (variable == "final_theta")
 
 
 def _path(sweep: xr.Dataset, name: str) -> str:
@@ -229,7 +272,8 @@ def _title(sweep: xr.Dataset, variable: str) -> str:
         ]
     single = sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("sample" in sweep.coords)
     sign = "no point" if single else "grey"
-    return f"{title}; {sign}: {', '.join(means)}" if means else title
+    title = f"{title}; {sign}: {', '.join(means)}" if means else title
+    return f"{title}; dot: still moving" if _is_moving(sweep, variable).any() else title
 
 
 def _shown(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:

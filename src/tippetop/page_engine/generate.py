@@ -33,6 +33,8 @@ ROOTS = (
     "tippetop.integrators.stepping",
     "tippetop.results.metrics",
     "tippetop.results.samples",
+    "tippetop.results.account",
+    "tippetop.results.sampling",
     "tippetop.results.monitor",
     "tippetop.contact.flights",
     "tippetop.graph.javascript",

@@ -11,6 +11,8 @@ export function predict(problem) {
   return { ...plain(found), certain: found.certain };
 }
 export const criticalSpins = (problem) => plain(m.critical_spins(new m.Problem(problem)));
+/** How many samples a run of a duration, s, needs so that it can be played at any speed. */
+export const sampleCount = (problem, duration) => m.sample_count(new m.Problem(problem), duration);
 export function prospects(body, gravity, tilt) {
   const whole = new m.Body(body);
   return plain(m.prospects(whole, whole.shapes, gravity, tilt));

@@ -59,6 +59,7 @@ export function simulate(
 class Run {
   constructor(problem, duration, tolerance, limits) {
     const { top, contact } = problem;
+    this.problem = problem;
     this.duration = duration;
     this.tolerance = tolerance;
     this.units = m.natural_units(top);
@@ -79,6 +80,7 @@ class Run {
 
     this.segments = [];
     this.steps = 0;
+    this.rolls = false;
     this.firstHorizontal = NaN;
     this.monitor = new m.Monitor(this.top, this.start);
     this.flightRecord = new m.Flights();
@@ -93,6 +95,7 @@ class Run {
   include(segment) {
     const { solution, mode, transition } = segment;
     this.steps += segment.steps;
+    this.rolls = mode.name === "sticking" && mode.top.torque_free;
     if (!mode.touching) this.flightRecord.take(segment);
     if (solution.count) this.includeSteps(mode, solution);
     const lost = transition?.energy_lost ?? 0;
@@ -187,24 +190,33 @@ class Run {
     this.early = judged !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
     const completed = outcome === m.Outcome.COMPLETED;
     this.endTime = completed ? this.duration : trajectory.time * units.time;
-    this.events = plain(trajectory.events.map((event) => m.event_in_si(event, units)));
-    this.metrics = this.metricsInSI();
+    const events = trajectory.events.map((event) => m.event_in_si(event, units));
+    this.events = plain(events);
     this.flights = this.flightRecord.rows.map(([start, end, gap]) => ({
       start: start * units.time,
       end: end * units.time,
       highest_gap: gap * units.length,
     }));
+    const ends = this.ends(judged);
+    const metrics = m.metrics(ends, this.start, this.top, units);
+    this.metrics = Object.fromEntries(metrics.entries());
+    metrics.set("end_time", this.endTime);
+    const peak = [m.highest_seen(ends), this.peakTime() * units.time];
+    const flights = this.flights.map(({ start, end }) => [start, end]);
+    this.facts = new m.Facts(this.problem, judged, metrics, peak, events, flights);
     if (!this.segments.length) this.addLaunch();
   }
 
-  metricsInSI() {
+  /** What is found of the run in natural units, for `m.metrics`. */
+  ends(outcome) {
     const { state, time, events } = this.trajectory;
     // Of every step the value at its start is taken in: the end of the last one is missing.
     const lastAxisZ = this.segments.length ? state.axis[2] : NaN;
-    this.leastAxisZ.includeValue(lastAxisZ);
-    this.mostAxisZ.includeValue(-lastAxisZ);
+    this.leastAxisZ.includeValue(lastAxisZ, null);
+    this.mostAxisZ.includeValue(-lastAxisZ, null);
     const extremes = [this.leastForce, this.leastAxisZ, this.mostAxisZ, this.mostHeight];
-    const ends = m.Ends.of_one(
+    const settled = m.settled_tilt_of_one(outcome, state, this.start, this.top);
+    return m.Ends.of_one(
       state,
       time,
       null,
@@ -213,13 +225,29 @@ class Run {
       this.steps,
       [-this.sums[DRILLED], -this.sums[ROLLED]],
       extremes.map((extreme) => extreme.refined()),
-      [this.firstHorizontal, this.arrival(m.final_band(state))],
+      [this.firstHorizontal, settled, this.arrival(m.settled_band(settled))],
+      Number(this.rolls),
     );
-    return Object.fromEntries(m.metrics(ends, this.start, this.top, this.units).entries());
+  }
+
+  /** When the tilt was largest, in natural units, once `ends` has searched for it. */
+  peakTime() {
+    const { place } = this.leastAxisZ;
+    return place ? place.source.time(place.step, place.part) : this.trajectory.time;
+  }
+
+  /** What became of the launch, as clauses of a name and numbers. */
+  get account() {
+    return m.account_of(this.facts).map(({ name, numbers, part }) => ({
+      name,
+      numbers: Object.fromEntries(numbers.entries()),
+      part,
+    }));
   }
 
   /** First time at which n_z is in a band; NaN if it never is. */
   arrival([low, high]) {
+    if (Number.isNaN(low)) return NaN;
     for (const { solution } of this.segments) {
       for (let step = 0; step < solution.count; step += 1) {
         const part = firstPartInBand(solution, step, low, high);
@@ -337,17 +365,21 @@ class SegmentReader {
 /** The least value of a quantity along a run: the values it is known to take, and where it may be less. */
 class LeastValue {
   value = Infinity;
+  /** Where it takes this value: a source of values, a step and its part; null for the end of the run. */
+  place = null;
   candidates = [];
 
-  includeValue(value) {
-    this.value = Math.min(this.value, value);
+  includeValue(value, place) {
+    const least = Math.min(this.value, value);
+    if (least !== this.value) this.place = place;
+    this.value = least;
   }
 
   /** Take in a value in a step, and the step itself if the quantity may be less there, down to a bound. */
   include(value, bound, source, step, number, sign) {
-    this.value = Math.min(this.value, value);
+    this.includeValue(value, { source, step, part: 0 });
     if (bound < this.value) {
-      this.candidates.push({ bound, values: reading(source, step, number, sign) });
+      this.candidates.push({ bound, source, step, values: reading(source, step, number, sign) });
     }
   }
 
@@ -355,9 +387,10 @@ class LeastValue {
   refined() {
     const candidates = this.candidates.filter(({ bound }) => bound < this.value);
     candidates.sort((a, b) => a.bound - b.bound);
-    for (const { bound, values } of candidates) {
+    for (const { bound, source, step, values } of candidates) {
       if (bound >= this.value) break;
-      this.value = Math.min(this.value, leastInStep(values, this.value));
+      const { part, value } = leastInStep(values, this.value);
+      this.includeValue(value, { source, step, part });
     }
     return this.value;
   }
@@ -368,7 +401,7 @@ function reading(source, step, number, sign = 1) {
   return (part) => sign * source.value(step, number, part);
 }
 
-/** The least value of a function on [0, 1]; Infinity where none may be below a threshold. */
+/** The least value of a function on [0, 1], and where; Infinity where none may be below a threshold. */
 function leastInStep(values, threshold) {
   let low = Infinity;
   let high = -Infinity;
@@ -382,12 +415,14 @@ function leastInStep(values, threshold) {
     if (value > high) high = value;
   }
   const range = high - low;
-  if (low - BETWEEN_PROBES * range > threshold) return Infinity;
+  if (low - BETWEEN_PROBES * range > threshold) return { part: 0, value: Infinity };
   const start = PROBES[Math.max(lowest - 1, 0)];
   const end = PROBES[Math.min(lowest + 1, PROBES_PER_STEP)];
   // The search stops at values below zero, so that these are raised above it.
   const [dip] = m.dip((part) => values(part) - low + range, start, end);
-  return Math.min(low, values(dip));
+  const dipValue = values(dip);
+  if (dipValue < low) return { part: dip, value: dipValue };
+  return { part: PROBES[lowest], value: low };
 }
 
 /** The first part of a step at which n_z is in a band; NaN if it is not in that step. */

@@ -54,6 +54,8 @@ def tables(command: str) -> str:
         "CATALOGUE": {"sampled": {name: _variable(one) for name, one in catalogue.SAMPLED.items()}},
         "NEAR_FINAL": catalogue.NEAR_FINAL,
         "DOUBTS": SENTENCES,
+        "NEAR_POLE": catalogue.NEAR_POLE,
+        "RISE": catalogue.RISE,
     }
     numbers = {
         "UNITS": unit_table(),

@@ -1,10 +1,11 @@
 """A run to be played on the page itself: the launch that the report calls abnormal."""
 
 from tippetop.export.bundle import LOADER, packed, player_packed
-from tippetop.export.track import pack_run, sample_count
-from tippetop.export.words import tell
+from tippetop.export.track import pack_run
 from tippetop.problem.presets import report_problem
 from tippetop.report.experiments.runs import unilateral
+from tippetop.results.description import describe
+from tippetop.results.sampling import sample_count
 from tippetop.run import simulate
 from tippetop.support.errors import Unavailable
 
@@ -22,7 +23,7 @@ def playable(quick: bool) -> dict[str, str] | None:
     samples = sample_count(problem, DURATION)
     run = simulate(problem, DURATION, samples=samples // 2 if quick else samples)
     return {
-        "headline": tell(run).headline,
+        "headline": describe(run).headline,
         "spin": f"{SPIN:g}",
         "player": player,
         "run": packed(pack_run(run)),

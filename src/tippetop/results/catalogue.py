@@ -13,12 +13,23 @@ NEAR_POLE = 0.1
 """Tilt from the vertical, rad, up to which a launch counts as ending upright or inverted."""
 
 NEAR_FINAL = 0.01
-"""How close to its final value the tilt must be to count as arrived, rad (the report's definition).
+"""How close the tilt must be to that at which it settles to count as arrived, rad: the report's
+distance. A smaller one asks for more of the decay, which takes the longer the less there is left.
+"""
+
+RISE = 0.35
+"""Angle, rad, by which a top must rise, and come down again, to have fallen back: 20 degrees, more
+than a tippe top nutates.
 """
 
 
 class Ending(IntEnum):
     """What became of a launch: the numbers for which a sweep's outcomes stand.
+
+    Upright, inverted and tilted are settled ends: the tilt stays there for good (see
+    `tippetop.results.settling`). Their like with MOVING are where a top was when its run ended
+    before that. One that fell back had risen by more than 20 degrees and came down by as much. One
+    that rolls has stopped slipping and loses no energy any more.
 
     Examples
     --------
@@ -39,6 +50,12 @@ class Ending(IntEnum):
     BAD = 5
     AT_REST = 6
     INACCURATE = 7
+    MOVING_UPRIGHT = 8
+    MOVING_INVERTED = 9
+    MOVING_TILTED = 10
+    FELL_BACK = 11
+    ROLLING = 12
+    LYING_FLAT = 13
 
 
 FRAMES: Mapping[str, str] = {
@@ -83,6 +100,8 @@ class Variable(NamedTuple):
     """The frame of its components, among `FRAMES`; none for scalars."""
     convention: str = ""
     """Its sign, its origin or the order of its components."""
+    lasting: bool = False
+    """Whether it does not depend on the length of the run, once it is a number."""
 
     @property
     def missing(self) -> Any:
@@ -326,19 +345,36 @@ METRICS: Mapping[str, Variable] = {
         long_name="precession at the end; not a number where the axis is vertical",
         label=r"final precession $\dot\varphi$",
     ),
+    "is_settled": Variable(
+        f"whether the tilt stays within {NEAR_FINAL} rad of a steady state for good",
+        label="settled",
+        dtype="int8",
+        flags=("moving", "settled"),
+    ),
     "turns_over": Variable(
-        "time at which the tilt first rises past a right angle", "s", "turns over at"
+        "time at which the tilt first rises past a right angle",
+        "s",
+        "turns over at",
+        lasting=True,
     ),
     "arrives": Variable(
-        f"time at which the tilt is first within {NEAR_FINAL} rad of its final value",
+        f"time at which the tilt is first within {NEAR_FINAL} rad of that at which it settles; "
+        "not a number until it has settled",
         "s",
         "arrives at",
+        lasting=True,
+    ),
+    "highest_tilt": Variable(
+        "largest tilt of the axis; not a number while a larger one may follow",
+        "rad",
+        "largest tilt",
+        lasting=True,
     ),
     "least_normal_force": SAMPLED["normal_force"]._replace(
         long_name="least normal force; 0 where the top left the table", label="least normal force"
     ),
     "first_lift_off": Variable(
-        "time at which the table would first have to pull", "s", "first lift-off"
+        "time at which the table would first have to pull", "s", "first lift-off", lasting=True
     ),
     "flights": Variable("number of flights", "1", "flights", dtype="int32"),
     "airborne_time": Variable("time spent in the air", "s", "time in the air"),
@@ -372,12 +408,17 @@ METRICS: Mapping[str, Variable] = {
 }
 """The numbers of a launch: of a run, and over the cells of a sweep."""
 
+LASTING = tuple(name for name, variable in METRICS.items() if variable.lasting)
+"""Those that a longer run does not change, once they are numbers."""
+
 MONITORS: Mapping[str, Variable] = {
     "energy_start": Variable("energy at launch", "J"),
     "impact_energy_lost": Variable("energy lost in impacts", "J"),
     "energy_error": Variable(
         "largest error of the balance of energy and work, relative to the energy", "1"
     ),
+    "peak_tilt": Variable("largest tilt of the axis within the run", "rad"),
+    "peak_time": Variable("time of the largest tilt within the run", "s"),
     "evaluations": Variable("evaluations of the equations of motion", "1", dtype="int64"),
     "jellett_drift": Variable(
         "range of Jellett's integral over the run, relative to |L| h at launch", "1"
@@ -387,7 +428,7 @@ MONITORS: Mapping[str, Variable] = {
 
 SWEPT: Mapping[str, Variable] = {
     "outcome": Variable(
-        f"what became of it (upright, inverted: within {NEAR_POLE} rad)",
+        f"what became of it (upright, inverted: within {NEAR_POLE} rad; moving: not settled)",
         label="outcome",
         dtype="int8",
         flags=meanings(Ending),

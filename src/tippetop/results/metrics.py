@@ -25,7 +25,8 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.mechanics.view import axis_sine, precession_rate
-from tippetop.results.catalogue import NEAR_FINAL, NEAR_POLE, Ending
+from tippetop.results.catalogue import NEAR_FINAL, NEAR_POLE, RISE, Ending
+from tippetop.results.settling import is_barred, tilt
 
 OUTCOMES = tuple(Outcome)
 """How a launch can end, by number."""
@@ -65,8 +66,14 @@ class Ends:
     """Least and largest n_z."""
     turned: Scalar
     """First time n_z fell through 0; nan if it never did."""
+    settled: Scalar
+    """Tilt near which the motion stays for good; nan if it may move (see
+    `tippetop.results.settling`).
+    """
     arrived: Scalar
-    """First time n_z was in the band of `final_band`; nan if it never was."""
+    """First time n_z was in the band of `settled_band`; nan if it never was."""
+    rolls: Scalar
+    """1 where it rolls without slip and without loss at the end, else 0."""
 
     # translate: skip
     @classmethod
@@ -75,7 +82,10 @@ class Ends:
         unknown: dict[str, Any] = {field.name: np.full(count, np.nan) for field in fields(cls)}
         none = {
             name: np.zeros(count)
-            for name in ("struck", "drilled", "rolled", "airborne", "highest_gap", "highest")
+            for name in (
+                *("struck", "drilled", "rolled", "airborne", "highest_gap", "highest"),
+                "rolls",
+            )
         }
         counts = {name: np.zeros(count, dtype=np.int64) for name in ("steps", "flights")}
         outcome = np.full(count, OUTCOMES.index(Outcome.FAILED), dtype=np.int8)
@@ -93,13 +103,14 @@ class Ends:
         steps: int,
         resisted: tuple[float, float],
         least: Sequence[float],
-        when: tuple[float, float],
+        settling: tuple[float, float, float],
+        rolls: float,
     ) -> "Ends":
         """The ends of one launch.
 
         `resisted` has the energy lost to drilling and to rolling; `least`, the least values of the
-        normal force, n_z, -n_z and, in flights, the negative height; `when`, the times `turned` and
-        `arrived`.
+        normal force, n_z, -n_z and, in flights, the negative height; `settling`, the numbers
+        `turned`, `settled` and `arrived`.
         """
         lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
         struck, count = sum([event.energy_lost for event in events]), len(flights.rows)
@@ -118,7 +129,8 @@ class Ends:
             *aloft,
             down,
             -up,
-            *when,
+            *settling,
+            rolls,
         )
 
     # translate: skip
@@ -154,18 +166,13 @@ def arrival_time(tip: Polynomials, low: Scalar, high: Scalar) -> Array:
     return found
 
 
-def final_band(state: State) -> tuple[Scalar, Scalar]:
-    """Least and largest n_z for which the tilt is near its final value, each of shape (n,)."""
-    final = tilt(state)
-    low = np.cos(np.minimum(final + NEAR_FINAL, np.pi))
-    high = np.cos(np.maximum(final - NEAR_FINAL, 0.0))
+def settled_band(settled: Scalar) -> tuple[Scalar, Scalar]:
+    """Return the least and the largest n_z near tilts at which motions settle, each of shape (n,);
+    nan where they do not.
+    """
+    low = np.cos(np.minimum(settled + NEAR_FINAL, np.pi))
+    high = np.cos(np.maximum(settled - NEAR_FINAL, 0.0))
     return low, high
-
-
-def tilt(state: State) -> Array:
-    """Tilts, rad."""
-    found: Array = np.arctan2(axis_sine(state.axis), state.axis[2])
-    return found
 
 
 def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArray[Any]]:
@@ -184,12 +191,17 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
             axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan
         )
         highest = np.fmax(highest_between(top.surface, ends.down, ends.up), ends.highest)
+        risen = highest_seen(ends)
+        over = is_barred(end, top, outer_height(top.surface, ends.down), risen)
+        highest_tilt = np.where(over, risen, np.maximum(ends.settled, risen))
     return {
         "final_theta": tilt(end),
         "final_omega3": axial_spin(end.axis, end.momentum, top) / units.time,
         "final_phi_dot": precession / units.time,
+        "is_settled": np.where(ends.settled == ends.settled, 1, 0),
         "turns_over": ends.turned * units.time,
         "arrives": ends.arrived * units.time,
+        "highest_tilt": highest_tilt,
         "least_normal_force": ends.least_force * units.force,
         "first_lift_off": ends.lift_off * units.time,
         "flights": ends.flights,
@@ -206,13 +218,32 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
     }
 
 
+def highest_seen(ends: Ends) -> Array:
+    """Return the largest tilts that were met on the way, rad."""
+    sine = np.sqrt(np.maximum(1.0 - ends.down**2, 0.0))
+    found: Array = np.arctan2(sine, ends.down)
+    return found
+
+
 # translate: skip
-def ending(ends: Ends) -> NDArray[np.int8]:
-    """Numbers of `tippetop.results.catalogue.Ending`, shape (n,)."""
-    final = tilt(ends.state)
+def ending(ends: Ends, start: State) -> NDArray[np.int8]:
+    """Return numbers of `tippetop.results.catalogue.Ending`, shape (n,), given the states at
+    launch.
+    """
+    final, risen = tilt(ends.state), highest_seen(ends)
     near = [final <= NEAR_POLE, final >= np.pi - NEAR_POLE]
-    found = np.select(near, [Ending.UPRIGHT, Ending.INVERTED], Ending.TILTED)
+    settled = np.isfinite(ends.settled)
+    found = np.where(
+        settled,
+        np.select(near, [Ending.UPRIGHT, Ending.INVERTED], Ending.TILTED),
+        np.select(near, [Ending.MOVING_UPRIGHT, Ending.MOVING_INVERTED], Ending.MOVING_TILTED),
+    )
+    found[~settled & (np.asarray(ends.rolls) > 0.0)] = Ending.ROLLING
     for number, outcome in enumerate(OUTCOMES):
-        if outcome not in (Outcome.COMPLETED, Outcome.LYING_FLAT):
+        if outcome is not Outcome.COMPLETED:
             found[ends.outcome == number] = getattr(Ending, outcome.name, Ending.FAILED)
+    came_down = risen - np.maximum(final, tilt(start)) > RISE
+    below = np.isfinite(ends.turned) & (final < 0.5 * np.pi)
+    known = ~np.isin(found, [Ending.FAILED, Ending.INACCURATE, Ending.LIFTED_OFF])
+    found[known & came_down & (below | settled)] = Ending.FELL_BACK
     return found.astype(np.int8)

@@ -2,6 +2,7 @@
 solution.
 """
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -14,8 +15,17 @@ from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import chebyshev
 from tippetop.integrators.polynomials import Polynomials, least_of_each
 from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
-from tippetop.results.metrics import OUTCOMES, Ends, Flags, arrival_time, final_band, turning_time
+from tippetop.results.metrics import (
+    OUTCOMES,
+    Ends,
+    Flags,
+    arrival_time,
+    settled_band,
+    turning_time,
+)
+from tippetop.results.settling import settled_tilt_of_one
 
 AT_ONCE = 4
 """Steps that are searched together for when something happens first; then so many times more, and
@@ -29,12 +39,14 @@ FORCE_DEGREE = 20
 class Tally:
     """What is found on the way of one launch, block by block."""
 
-    def __init__(self) -> None:
+    def __init__(self, top: Top, start: State) -> None:
+        self._top, self._start, self._rolls = top, start, False
         self._tips: list[tuple[Polynomials, Array, Array, Array]] = []
         self.flights = Flights()
         self._lowest, self._highest, self._raised, self._pressed = (
             list[Polynomials]() for _ in range(4)
         )
+        self._lowest_begin = list[Array]()
         self._turned = np.nan
         self._drilled = self._rolled = 0.0
         self.steps = self.evaluations = 0
@@ -49,6 +61,8 @@ class Tally:
                 self.methods[segment.method.name] = segment.method
             if not segment.mode.touching:
                 self.flights.take(segment)
+        last = block.segments[-1].mode
+        self._rolls = last.name == "sticking" and last.top.torque_free
         for group in block.groups:
             self._see(group, block.starts[group.which])
             if not group.mode.touching:
@@ -66,8 +80,11 @@ class Tally:
         least, most, sag = seen.min(axis=0), seen.max(axis=0), tip.sag
         low, high = least - sag, most + sag
         self._tips.append((tip, starts, low, high))
-        self._lowest.append(tip.some(np.flatnonzero(low <= least.min())))
-        self._highest.append(tip.some(np.flatnonzero(high >= most.max()), sign=-1.0))
+        highest = np.flatnonzero(high >= most.max())
+        self._highest.append(tip.some(highest, sign=-1.0))
+        lowest = np.flatnonzero(low <= least.min())
+        self._lowest.append(tip.some(lowest))
+        self._lowest_begin.append(starts[lowest])
         self._turned = _first(self._turned, tip, starts, (low <= 0.0) & (high >= 0.0), turning_time)
 
     def _rise(self, group: ModeSteps) -> None:
@@ -92,21 +109,40 @@ class Tally:
         self._rolled -= float(np.sum(shares * rates.rolling))
 
     def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
-        """All that was found, as numbers, given how and where it ended."""
+        """Return all that was accumulated, given how and where the launch ended."""
         last = State.unpack([np.float64(number) for number in state.pack()])
         least = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
-        resisted, when = (
-            (self._drilled, self._rolled),
-            (self._turned, self.arrival(*final_band(last))),
-        )
-        number, ended = OUTCOMES.index(outcome), np.float64(time)
+        settled = settled_tilt_of_one(outcome, state, self._start, self._top)
         return Ends.of_one(
-            last, ended, number, events, self.flights, self.steps, resisted, least, when
+            last,
+            np.float64(time),
+            OUTCOMES.index(outcome),
+            events,
+            self.flights,
+            self.steps,
+            (self._drilled, self._rolled),
+            least,
+            (self._turned, settled, self.arrival(*settled_band(settled))),
+            float(self._rolls),
         )
+
+    def peak(self, launched: float) -> tuple[float, float]:
+        """Return the largest tilt on the way, rad, and when it was first reached; `launched` is n_z
+        at launch.
+        """
+        least, when = launched, 0.0
+        for tips, begin in zip(self._lowest, self._lowest_begin, strict=True):
+            place, value = tips.refined_least()
+            which = int(np.argmin(value))
+            if value[which] < least:
+                least, when = float(value[which]), float(begin[which] + place[which])
+        return math.atan2(math.sqrt(max(1.0 - least**2, 0.0)), least), when
 
     def arrival(self, low: Scalar, high: Scalar) -> float:
         """First time at which n_z is between `low` and `high`; nan if it never is."""
         found = float(np.nan)
+        if np.isnan(low):
+            return found
         for tip, starts, least, most in self._tips:
             near = (least <= high) & (most >= low)
             found = _first(found, tip, starts, near, lambda some: arrival_time(some, low, high))

@@ -7,6 +7,7 @@ import xarray as xr
 
 from tippetop.results.catalogue import METRICS, MONITORS
 from tippetop.results.dataset import require_run
+from tippetop.results.description import describe
 
 
 def summarize(run: xr.Dataset) -> dict[str, Any]:
@@ -15,13 +16,17 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
     Returns
     -------
     dict
-        Keys: outcome, advice, duration (s), final (theta, theta_dot, omega3, phi_dot: rad and
-        rad/s), turns_over (s: the tilt first passes pi/2; None if never), arrives (s: first within
-        0.01 rad of its last value), first_lift_off (s), highest (m), least_normal_force (N),
-        energy_start, energy_lost, energy_lost_sliding, energy_lost_drilling, energy_lost_rolling
-        (J), jellett_drift and energy_error (relative), flights (how many), airborne_time (s),
-        highest_gap (m), impact_energy_lost (J), events (kind and time, s), integrator, steps,
-        evaluations. What is not a number is None.
+        Keys: account (clauses with name and numbers, as `tippetop.describe` gives them),
+        description (the account in English), outcome, advice, duration (s), final (theta,
+        theta_dot, omega3, phi_dot: rad and rad/s), is_settled (whether the tilt stays near
+        a steady state for good), turns_over (s: the tilt first passes pi/2; None if not
+        within the run), arrives (s: first within 0.01 rad of the tilt at which it settles;
+        None until then), highest_tilt (rad; None while a larger one may follow),
+        first_lift_off (s), highest (m), least_normal_force (N), energy_start, energy_lost,
+        energy_lost_sliding, energy_lost_drilling, energy_lost_rolling (J), jellett_drift
+        and energy_error (relative), flights (how many), airborne_time (s), highest_gap (m),
+        impact_energy_lost (J), events (kind and time, s), integrator, steps, evaluations.
+        What is not a number is None.
 
     Examples
     --------
@@ -33,11 +38,15 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
     require_run(run)
     last = run.isel(time=-1)
     names = ("theta", "theta_dot", "omega3", "phi_dot")
+    account = describe(run)
     return {
+        "account": account.plain(),
+        "description": str(account),
         "outcome": run.attrs["outcome"],
         "advice": run.attrs["outcome_advice"],
         "duration": float(run["end_time"]),
         "final": {name: _number(last[name]) for name in names},
+        "is_settled": bool(run["is_settled"] == 1),
         **{name: _number(run[name]) for name in NUMBERS},
         "events": [
             {"kind": str(kind), "time": float(at)}
@@ -57,6 +66,9 @@ _OTHERWISE = {
     "steps",
     "evaluations",
     "jellett_error",
+    "is_settled",
+    "peak_tilt",
+    "peak_time",
 }
 NUMBERS = [name for name in (*METRICS, *MONITORS) if name not in _OTHERWISE]
 """The single numbers of a run that are told under their names."""

@@ -134,8 +134,8 @@ class Sweep(Part):
         ranges = [np.arange(part.start, part.stop) for part in region]
         return np.ravel_multi_index(np.ix_(*ranges), self.grid.shape)
 
-    def describe(self) -> dict[str, Any]:
-        """The sweep as plain numbers and words, as in a file: ``Sweep(**description)`` is the
+    def to_fields(self) -> dict[str, Any]:
+        """The sweep as plain numbers and words, as in a file: ``Sweep(**fields)`` is the
         sweep.
         """
         return self.model_dump(mode="json", by_alias=True, exclude_none=True)

@@ -18,8 +18,9 @@ from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.results.catalogue import SWEPT, Ending, Fault
-from tippetop.results.metrics import OUTCOMES, Ends, ending, final_band, metrics
+from tippetop.results.metrics import OUTCOMES, Ends, ending, metrics, settled_band
 from tippetop.results.monitor import WAYS_TO_END, Monitor, kept
+from tippetop.results.settling import settled_tilts
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.definition import Sweep
@@ -84,10 +85,13 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
             lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
             ends = lanes.run()
             judge(ends, some, sweep.tolerance)
-            again = arrivals(lanes, final_band(ends.state))
+            done = ends.outcome == OUTCOMES.index(Outcome.COMPLETED)
+            settled = settled_tilts(ends.state, some.state, some.top)
+            ends.settled = np.where(done, settled, ends.settled)
+            again = arrivals(lanes, settled_band(ends.settled))
             ends.arrived = np.where(np.isnan(again), ends.arrived, again)
         units = Units(*(spread(unit, count)[which] for unit in cells.units))
-        values = metrics(ends, some.state, some.top, units) | {"outcome": ending(ends)}
+        values = metrics(ends, some.state, some.top, units) | {"outcome": ending(ends, some.state)}
         for name, numbers_found in values.items():
             found[name][which] = numbers_found.astype(SWEPT[name].dtype)
     return found

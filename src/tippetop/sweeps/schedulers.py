@@ -105,7 +105,7 @@ def results(
     count = min(workers or processors(), max(len(tasks), 1))
     if scheduler is None and count == 1:
         kinds = b""  # This process has them.
-    description = json.dumps(sweep.describe())
+    description = json.dumps(sweep.to_fields())
     calls = {task: (description, __version__, modules, sweep.region(task), kinds) for task in tasks}
     if scheduler is not None:
         yield from _share_with_cluster(scheduler, calls)

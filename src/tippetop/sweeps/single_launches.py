@@ -65,15 +65,19 @@ def follow(
     end: float,
     tolerance: float,
     settled: float | None = None,
+    launched: State | None = None,
 ) -> tuple[Ends, Tally]:
     """What a launch comes to: followed from a top, a state, a time and what follows, or until it
     settles.
+
+    `launched` is the state at launch, where that is another.
     """
     top, state, time = begin
     analytic = not has_choices(top)
     least = TOLERANCES[default_name(analytic)]
     method = make_integrator(None, max(tolerance, least), analytic=analytic)
-    trajectory, tally = Trajectory(start, end, method, time=time), Tally()
+    trajectory = Trajectory(start, end, method, time=time)
+    tally = Tally(top, launched or state)
     segments, recorder = (
         trajectory.segments(),
         Recorder(top, state, 0.0, np.empty(0), start.energy_lost),

@@ -105,7 +105,7 @@ def layout_attributes(sweep: Sweep) -> dict[str, Any]:
         "Conventions": CONVENTIONS,
         "title": "What becomes of many launches of a spinning top",
         "format": FORMAT,
-        "sweep": json.dumps(sweep.describe()),
+        "sweep": json.dumps(sweep.to_fields()),
         "problem": sweep.problem.to_json(),
         "duration": sweep.duration,
         "tolerance": sweep.tolerance,
@@ -236,7 +236,7 @@ def _has_every_array(path: Path) -> bool:
 
 def refuse_another(path: Path, kept: Sweep, sweep: Sweep) -> None:
     """Refuse, with `FileTrouble`, to resume a store that holds another sweep."""
-    difference = first_difference(kept.describe(), sweep.describe())
+    difference = first_difference(kept.to_fields(), sweep.to_fields())
     if difference is not None:
         name, there, here = difference
         raise FileTrouble(

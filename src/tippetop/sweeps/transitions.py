@@ -214,13 +214,17 @@ class Crossings:
             np.array([lane]),
         )
         begin = slots.launches.rules(int(slots.cell[lane])).top, state, time
-        found, tally = follow(begin, transition, float(slots.end[lane]), self.tolerance)
+        launched = single(slots.launches.state, int(slots.cell[lane]))
+        found, tally = follow(
+            begin, transition, float(slots.end[lane]), self.tolerance, launched=launched
+        )
         for name in ("flights", "airborne", "struck", "drilled", "rolled"):
             getattr(ends, name)[cell] += getattr(found, name)
         for name in ("highest_gap", "highest", "up"):
             getattr(ends, name)[cell] = np.fmax(getattr(ends, name)[cell], getattr(found, name))
         for name in ("lift_off", "least_force", "down"):
             getattr(ends, name)[cell] = np.fmin(getattr(ends, name)[cell], getattr(found, name))
+        ends.settled[cell], ends.rolls[cell] = found.settled, found.rolls
         tip = slots.tip
         tip.turned[where] = np.fmin(tip.turned[where], found.turned)
         arrived = tally.arrival(tip.low[where], tip.high[where]) if self.banded else found.arrived

@@ -222,7 +222,6 @@ def steady_launch(problem: Problem) -> SteadyState[float] | None:
     return steady if max(map(abs, off)) <= ROUNDING * quickest else None
 
 
-# translate: skip
 def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
     """Whether the energy that is left holds an eccentric sphere's tilt within `closeness`, rad, for
     good.

@@ -112,6 +112,17 @@ def weight_moment(c: Scalar, top: Top) -> Scalar:
     return top.mass * top.gravity * top.surface.slope(c)
 
 
+def balance_of_moments(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) -> Scalar:
+    """Return what is zero where the precession without slip at a tilt, rad, with this Jellett's
+    integral is steady: lambda^2 (I3 omega3 / phi' - I1 c) - m g h' (lambda / phi')^2.
+
+    It is regular where the precession is not, and changes sign at the extrema of `least_energy`.
+    """
+    c = functions.cos(tilt)
+    rolling = rolling_precession(tilt, top, functions).jellett
+    return jellett**2 * gyroscopic_reaction(c, top) - weight_moment(c, top) * rolling**2
+
+
 def precession_rate_squared(c: Scalar, top: Top) -> Scalar:
     """phi'^2 of the steady precession, rad^2/s^2: there is none where it is not positive."""
     return weight_moment(c, top) / gyroscopic_reaction(c, top)
@@ -280,13 +291,11 @@ def _precession_tilts(top: Top, jellett: float) -> list[float]:
     """Tilts of the steady precessions with this Jellett's integral, roots of a balance smooth in
     c.
     """
-    scaled, square = natural(top), (jellett / float(natural_units(top).jellett)) ** 2
+    scaled, integral = natural(top), jellett / float(natural_units(top).jellett)
+    square = integral**2
 
     def balance(c: float) -> float:
-        supported = (
-            weight_moment(c, scaled) * rolling_precession(math.acos(c), scaled, math).jellett ** 2
-        )
-        return float((square * gyroscopic_reaction(c, scaled) - supported) / (1.0 + square))
+        return float(balance_of_moments(math.acos(c), integral, scaled, math) / (1.0 + square))
 
     inertias = scaled.transverse_inertia + scaled.axial_inertia
     noise = 1e-15 * inertias * square / (1.0 + square)

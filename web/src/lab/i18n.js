@@ -2,8 +2,11 @@
 
 import { DOUBTS } from "engine-tables";
 
+import account from "../../../src/tippetop/results/account_en.json";
 import de from "../../texts/de.json";
-import en from "../../texts/en.json";
+import english from "../../texts/en.json";
+
+const en = { ...english, account };
 
 // The sentences of doubts are Python's in English.
 export const LANGUAGES = { en: { ...en, doubts: DOUBTS }, de };

@@ -142,8 +142,7 @@ export class Lab extends EventTarget {
   }
 
   say() {
-    const { prospect, units } = this.state;
-    if (this.track) this.player.say(tell(this.track, prospect, units));
+    if (this.track) this.player.say(tell(this.track, this.state.units));
   }
 
   stop() {

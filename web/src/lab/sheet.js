@@ -15,7 +15,7 @@ export function printSheet(lab) {
     if (!lab.track) return;
     const sheet = document.createElement("section");
     sheet.className = "print";
-    const { headline, details } = tell(lab.track, lab.state.prospect, lab.state.units);
+    const { headline, details } = tell(lab.track, lab.state.units);
     sheet.append(
       text("h1", t("page.title")),
       text("h2", headline),

@@ -1,28 +1,60 @@
-// What became of a launch, in words: a headline, and sentences beside it.
+// The account of a run in the page's language: a headline, and sentences beside it.
 
-import { decimal, t } from "./i18n.js";
+import { decimal, part, t } from "./i18n.js";
 import { digits, shown } from "./units.js";
 
-// How near a vertical counts as there, how near all along as having stayed there, rad; the end of a run, its share.
-const NEAR = 0.05;
-const AROUND = 0.3;
-const STILL = 0.02;
-const LATE = 0.1;
+// Times below the first, s, are written in milliseconds, from the second on in four digits.
+const MILLISECONDS = 0.01;
+const TENS = 10;
 
-export function tell(track, prospect, units) {
-  const { header } = track;
-  const details = [];
-  if (prospect?.ends?.length)
-    details.push(far(track, prospect) ? slowly(prospect, units) : heading(prospect, units));
-  if (header.problem.friction.mu === 0) details.push(t("words.frictionless"));
-  if (header.outcome.name === "lifted_off") details.push(t("words.stopped"));
-  else if (!["completed", "at_rest", "lying_flat"].includes(header.outcome.name)) {
-    details.unshift(t("words.ended", { advice: t(`outcomes.${header.outcome.name}`) }));
+// What happened and where it ends; beside it what is implausible, how it began and what theory says.
+export function tell(track, units) {
+  const { account, doubts } = track.header;
+  const of = (...parts) => account.filter((clause) => parts.includes(clause.part));
+  const headline = of("motion", "end")
+    .map((clause) => phrase(clause, units))
+    .join("; ");
+  return {
+    headline: headline.slice(0, 1).toUpperCase() + headline.slice(1),
+    details: [
+      ...doubts.map(doubtInWords),
+      ...of("launch", "theory").map(
+        (clause) => `${part("account.pronoun")} ${phrase(clause, units)}.`,
+      ),
+    ],
+  };
+}
+
+// A clause, without its subject.
+export function phrase({ name, numbers }, units) {
+  const gaps = Object.entries(numbers).map(([gap, value]) => [gap, written(gap, value, units)]);
+  return t(`account.clauses.${name}`, Object.fromEntries(gaps));
+}
+
+// A number with the unit that the gap of a text asks for.
+function written(gap, value, units) {
+  switch (gap) {
+    case "time":
+    case "duration":
+      if (value > 0 && value < MILLISECONDS)
+        return `${digits(1e3 * value, 3)} ${part("account.units.short")}`;
+      return `${digits(value, value < TENS ? 3 : 4)} ${part("account.units.time")}`;
+    case "tilt":
+    case "highest":
+      return shown(value, "angle", units);
+    case "spin":
+    case "precession":
+      return shown(value, "spin", units);
+    case "height":
+    case "length":
+      return `${digits(1e3 * value)} ${part("account.units.length")}`;
+    case "energy":
+      return `${digits(1e6 * value)} ${part("account.units.energy")}`;
+    case "speed":
+    case "force":
+      return `${digits(value, 3)} ${part(`account.units.${gap}`)}`;
   }
-  const jumps = jumpsOf(header);
-  if (jumps) details.unshift(jumps);
-  details.unshift(...header.doubts.map(doubtInWords));
-  return { headline: headline(track, prospect, units), details };
+  return `${value}`;
 }
 
 export function heading({ ends, certain }, units) {
@@ -35,78 +67,10 @@ function doubtInWords({ kind, gaps }) {
   return t("words.doubt", { doubt: t(`doubts.${kind}`, Object.fromEntries(texts)) });
 }
 
-// Whether a run has hardly moved, though its end is elsewhere.
-function far(track, { ends, certain }) {
-  const [low, high] = range(track.columns.theta, 0);
-  return certain && high - low < 0.1 && Math.abs(ends[0].tilt - high) > 0.5;
-}
-
-function slowly({ ends }, units) {
-  return t("words.slowly", { end: endInWords(ends[0], units) });
-}
-
-export function endInWords({ kind, tilt, spin, precession }, units) {
+function endInWords({ kind, tilt, spin, precession }, units) {
   return t(`ends.${kind}`, {
     spin: shown(spin, "spin", units),
     tilt: shown(tilt, "angle", units, 3),
     precession: shown(precession, "spin", units),
   });
-}
-
-function headline(track, prospect, units) {
-  const { metrics, problem, outcome } = track.header;
-  const { theta } = track.columns;
-  const last = theta.at(-1);
-  const tilt = shown(last, "angle", units, 3);
-  const [low, high] = range(theta, 0);
-  const time = (value) => digits(Math.round(100 * value) / 100, 4);
-  if (outcome.name === "lying_flat") return t("words.flat", { time: time(track.duration) });
-  if (high < AROUND && last < NEAR + problem.launch.tilt)
-    return upright(track, prospect, units, last, tilt);
-  if (low > Math.PI - AROUND) return t("words.staysInverted");
-  const [lateLow, lateHigh] = range(theta, 1 - LATE);
-  const settled = lateHigh - lateLow < STILL;
-  if (last > Math.PI - NEAR && (settled || lateLow > Math.PI - 2 * NEAR))
-    return t("words.inverts", { time: time(metrics.arrives) });
-  if (outcome.name === "at_rest") return t("words.rest", { tilt, time: time(track.duration) });
-  // What settles level, as on two balls, has not turned over.
-  const level = settled && Math.abs(last - Math.PI / 2) < NEAR;
-  if (Number.isFinite(track.header.turns_over) && !level) {
-    return t("words.turnsOver", { time: time(metrics.turns_over), tilt });
-  }
-  if (last < NEAR) return t("words.comesUpright");
-  if (high - last > 0.35) return t("words.falls", { tilt });
-  if (settled) return t(high - low < 0.1 ? "words.stays" : "words.settles", { tilt });
-  return t("words.moves", { tilt });
-}
-
-function upright(track, prospect, units, last, tilt) {
-  const { problem } = track.header;
-  const spin = Math.abs(problem.launch.spin);
-  if (problem.friction.mu === 0 || last > NEAR) return t("words.stays", { tilt });
-  const critical = prospect?.critical?.upright;
-  if (critical === undefined || critical === null) return t("words.staysUpright");
-  if (spin < critical)
-    return t("words.staysUprightBelow", { spin: shown(critical, "spin", units) });
-  return t("words.uprightStill");
-}
-
-function jumpsOf({ flights, metrics, outcome }) {
-  if (outcome.name === "lifted_off")
-    return t("words.pulls", { time: digits(metrics.first_lift_off, 3) });
-  if (!metrics.flights) return "";
-  const first = digits(flights[0]?.[0] ?? metrics.first_lift_off, 3);
-  return t(metrics.flights === 1 ? "words.jumpsOnce" : "words.jumps", {
-    count: metrics.flights,
-    time: first,
-  });
-}
-
-function range(values, from) {
-  let [low, high] = [Infinity, -Infinity];
-  for (let i = Math.floor(from * (values.length - 1)); i < values.length; i++) {
-    if (values[i] < low) low = values[i];
-    if (values[i] > high) high = values[i];
-  }
-  return [low, high];
 }

@@ -1,9 +1,9 @@
 // What the page's workers do: runs, their numbers, what a body is good for, and single launches of a map.
 
-import { MISSING, prospects, simulate } from "engine";
+import { MISSING, prospects, sampleCount, simulate } from "engine";
 
 import { numbers } from "../run/numbers.js";
-import { buffersOf, pack, samplesFor } from "../run/pack.js";
+import { buffersOf, pack } from "../run/pack.js";
 
 // How exactly a launch is followed while a slider moves, and how finely it is then sampled; of a map, how exactly.
 const QUICK = { tolerance: 1e-7, samples: 320 };
@@ -18,7 +18,7 @@ function answerRun({ id, problem, duration, quick }) {
     told = performance.now();
     postMessage({ id, share });
   };
-  const samples = quick ? QUICK.samples : samplesFor(problem, duration);
+  const samples = quick ? QUICK.samples : sampleCount(problem, duration);
   const run = simulate(problem, {
     duration,
     onProgress,

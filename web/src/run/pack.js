@@ -5,22 +5,8 @@ import { doubts, lowestSurface } from "engine";
 import { foresee } from "./foresee.js";
 import { SCENES, sizeOf, toyParts } from "./looks.js";
 
-// Angle by which the body may turn between samples, rad, samples per second of even the slowest, and at most.
-const TURN = 0.6;
-const RATE = 100;
-const MOST = 24_000;
-
 const PLAIN = ["theta", "omega3", "phi_dot", "energy", "normal_force", "height"];
 const WIDE = { orientation: 4, angular_momentum: 3, velocity: 3, axis: 3, contact_force: 3 };
-
-export function samplesFor(problem, duration) {
-  const { launch, body } = problem;
-  const most = Math.max(
-    Math.abs(launch.spin) * Math.max(1, body.I3 / body.I1),
-    Math.abs(launch.precession ?? 0),
-  );
-  return Math.ceil(Math.min(duration * Math.max(RATE, most / TURN), MOST)) + 2;
-}
 
 // Of a launch, a problem as plain data, what the engine found.
 export function pack(problem, run, samples) {
@@ -68,6 +54,7 @@ export function pack(problem, run, samples) {
     asked: run.duration,
     outcome: run.outcome,
     metrics,
+    account: run.account,
     turns_over: metrics.turns_over ?? NaN,
     events: run.events,
     modes,

@@ -1,0 +1,349 @@
+"""The account of a run: what became of a launch, as clauses of a name and numbers.
+
+`account_of` makes the clauses of the facts of a run and of what theory says of its launch. It is
+translated for the page. `describe` reads the facts off a run, and the texts of the clauses are in a
+catalogue per language (`account_en.json` here, the part "account" of `web/texts/de.json`).
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from tippetop.contact.lowest_surface import LEVEL
+from tippetop.contact.mode import Event, EventKind, Outcome
+from tippetop.mechanics.hull import Hull, acting, is_edge, lowest_surface
+from tippetop.mechanics.motion import angular_velocity, point_velocity
+from tippetop.mechanics.surface import contact_vector
+from tippetop.problem.problem import Problem
+from tippetop.results.catalogue import NEAR_FINAL, NEAR_POLE, RISE
+from tippetop.support.errors import InvalidInput
+from tippetop.theory.prediction import Prediction, predicted
+from tippetop.theory.steady import SteadyKind, SteadyState
+from tippetop.theory.thresholds import CriticalSpins, stability_limits
+
+SLIPS = 1e-9
+"""Slip at launch, in m/s, from which on it is told: less is rounding."""
+
+
+class Facts(NamedTuple):
+    """What is known of a run, in SI."""
+
+    problem: Problem
+    outcome: Outcome
+    metrics: Mapping[str, float]
+    """Numbers of `tippetop.results.catalogue.METRICS`."""
+    peak: tuple[float, float]
+    """Largest tilt within the run, rad, and when it was reached, s."""
+    events: Sequence[Event]
+    flights: Sequence[tuple[float, float]]
+    """Begin and end of every flight, s."""
+
+
+class Clause(NamedTuple):
+    """One statement of an account."""
+
+    name: str
+    """Which statement it is: a key of the catalogues of texts."""
+    numbers: Mapping[str, float]
+    """Its numbers in SI, by the names of the gaps in its text."""
+    part: str
+    """Where it stands: "launch", "motion", "end" or "theory"."""
+
+
+def account_of(facts: Facts) -> list[Clause]:
+    """Return the clauses of a run: its launch, motion and end, and what theory says beside them."""
+    if facts.outcome is Outcome.INACCURATE:
+        return [_ended_early(facts)]
+    return [*_launch(facts), *_motion(facts), *_end(facts), *_theory(facts)]
+
+
+def known_end(problem: Problem) -> Prediction | None:
+    """Return the steady states that a launch heads for; None where theory does not say."""
+    if problem.friction.vanishes:
+        return None
+    try:
+        prediction = predicted(problem)
+    except InvalidInput:
+        return None
+    return prediction if prediction.reachable else None
+
+
+def known_spins(problem: Problem) -> CriticalSpins | None:
+    """Return the critical spins of a launch; None where Jellett's integral is not conserved, or
+    there are none.
+    """
+    if not problem.top.conserves_jellett or problem.friction.vanishes:
+        return None
+    try:
+        return stability_limits(problem)
+    except InvalidInput:
+        return None
+
+
+def _launch(facts: Facts) -> list[Clause]:
+    """Return how the launch begins: in the air, with an impact, with slip or without."""
+    problem = facts.problem
+    if problem.launch.gap > 0.0:
+        drop = Clause("drops", {"height": problem.launch.gap}, "launch")
+        if not facts.events:
+            return [drop, Clause("never_touches", {"duration": _end_time(facts)}, "motion")]
+        return [drop, Clause("comes_down", {"time": facts.flights[0][1]}, "launch")]
+    clauses = list[Clause]()
+    struck = [event for event in facts.events if event.time == 0.0 and event.impulse > 0.0]
+    if struck:
+        lost = sum([event.energy_lost for event in struck])
+        clauses.append(Clause("strikes_at_launch", {"energy": lost}, "launch"))
+    speed = _slip_at_launch(problem)
+    if any(event.time == 0.0 and event.kind is EventKind.STICK for event in facts.events):
+        # That it rolls on is told of the motion.
+        return clauses
+    if any(event.time == 0.0 and event.kind is EventKind.LIFT_OFF for event in facts.events):
+        return clauses
+    if speed > SLIPS:
+        clauses.append(Clause("slips_at_launch", {"speed": speed}, "launch"))
+    elif not struck:
+        clauses.append(Clause("starts_without_slip", {}, "launch"))
+    return clauses
+
+
+def _slip_at_launch(problem: Problem) -> float:
+    """Return the speed of the contact point at launch, m/s."""
+    start, top = problem.start(), problem.standing()
+    arm = contact_vector(start.axis, top.surface)
+    turning = angular_velocity(start.axis, start.momentum, top)
+    x, y, _ = point_velocity(start.velocity, turning, arm)
+    return math.hypot(float(x), float(y))
+
+
+def _motion(facts: Facts) -> list[Clause]:
+    """Return what happened on the way: passing the horizontal, flights, rocking, sticking, a
+    fall.
+    """
+    clauses = list[Clause]()
+    turned, final = facts.metrics["turns_over"], facts.metrics["final_theta"]
+    ends_level = abs(final - 0.5 * math.pi) < NEAR_FINAL
+    tilted = facts.problem.launch.tilt
+    if tilted > 0.5 * math.pi and final < 0.5 * math.pi:
+        clauses.append(Clause("falls_from_launch", {"tilt": tilted}, "motion"))
+    elif math.isfinite(turned) and not ends_level:
+        name = "turns_over" if tilted < LEANING else "passes_the_horizontal"
+        clauses.append(Clause(name, {"time": turned}, "motion"))
+    if facts.problem.contact.liftoff == "ignore" and facts.metrics["least_normal_force"] < 0.0:
+        force = -facts.metrics["least_normal_force"]
+        clauses.append(Clause("is_pulled", {"force": force}, "motion"))
+    clauses += _flights(facts)
+    doubles = [event.time for event in facts.events if event.kind is EventKind.DOUBLE_CONTACT]
+    if doubles:
+        strikes = [
+            event
+            for event in facts.events
+            if event.time <= doubles[0] and event.kind is EventKind.IMPACT
+        ]
+        name = "rocks" if len(strikes) > 2 else "touches_with_two"
+        clauses.append(Clause(name, {"count": len(strikes), "time": doubles[0]}, "motion"))
+    sticks = _sticks_since(facts)
+    if math.isfinite(sticks):
+        name = "rolls_at_once" if sticks == 0.0 else "sticks"
+        clauses.append(Clause(name, {"time": sticks}, "motion"))
+    highest, when = facts.peak
+    if _fell_back(facts):
+        numbers = {"highest": highest, "time": when, "tilt": final}
+        clauses.append(Clause("falls_back", numbers, "motion"))
+    elif (
+        not math.isfinite(sticks)
+        and facts.metrics["is_settled"] == 0
+        and highest - max(facts.problem.launch.tilt, final) > 2.0 * NEAR_POLE
+    ):
+        name = "rises" if highest - final < RISE else "has_come_down"
+        numbers = {"highest": highest, "time": when, "tilt": final}
+        clauses.append(Clause(name, numbers, "motion"))
+    return clauses
+
+
+def _flights(facts: Facts) -> list[Clause]:
+    """Return how often the top leaves the table."""
+    flights = [
+        flight for flight in facts.flights if flight[0] > 0.0 or facts.problem.launch.gap == 0.0
+    ]
+    clauses = list[Clause]()
+    if flights:
+        name = "flies_once" if len(flights) == 1 else "flies"
+        numbers = {"count": len(flights), "time": flights[0][0]}
+        clauses.append(Clause(name, numbers, "motion"))
+    return clauses
+
+
+def _sticks_since(facts: Facts) -> float:
+    """Return since when the top rolls without slip and without loss until its end, s; nan if it
+    does not.
+    """
+    if not facts.problem.top.torque_free or facts.outcome is not Outcome.COMPLETED:
+        return math.nan
+    changes = [
+        event
+        for event in facts.events
+        if event.kind in (EventKind.STICK, EventKind.SLIP, EventKind.LIFT_OFF, EventKind.IMPACT)
+    ]
+    if not changes or changes[-1].kind is not EventKind.STICK:
+        return math.nan
+    return changes[-1].time
+
+
+def _fell_back(facts: Facts) -> bool:
+    """Return whether the top rose and came down again, as an ending of a sweep has it."""
+    final, (highest, _) = facts.metrics["final_theta"], facts.peak
+    if facts.outcome in (Outcome.LIFTED_OFF, Outcome.FAILED, Outcome.INACCURATE):
+        return False
+    if highest - max(final, facts.problem.launch.tilt) <= RISE:
+        return False
+    passed = math.isfinite(facts.metrics["turns_over"]) and final < 0.5 * math.pi
+    return passed or facts.metrics["is_settled"] == 1
+
+
+def _end(facts: Facts) -> list[Clause]:
+    """Return where the motion is at its end, whether it is settled there, and on what it stands."""
+    final, spin = facts.metrics["final_theta"], facts.metrics["final_omega3"]
+    outcome, time = facts.outcome, _end_time(facts)
+    clauses = list[Clause]()
+    if outcome is Outcome.LYING_FLAT:
+        name = "lies_flat" if abs(spin) < STILL else "lies_flat_and_spins"
+        clauses.append(Clause(name, {"time": time, "spin": abs(spin)}, "end"))
+    elif outcome is Outcome.AT_REST:
+        clauses.append(Clause("comes_to_rest", {"tilt": final, "time": time}, "end"))
+    elif outcome is Outcome.LIFTED_OFF:
+        numbers = {"time": facts.metrics["first_lift_off"], "tilt": final}
+        clauses.append(Clause("would_be_pulled", numbers, "end"))
+    elif outcome is not Outcome.COMPLETED:
+        clauses.append(_ended_early(facts))
+    elif facts.metrics["is_settled"] == 1:
+        clauses.append(_settled(facts))
+    elif _is_undisturbed(facts):
+        name = "stays_exactly_upright" if final < 1.0 else "stays_exactly_inverted"
+        clauses.append(Clause(name, {}, "end"))
+    elif math.isfinite(_sticks_since(facts)):
+        clauses.append(Clause("rolls_on", {"tilt": final, "time": time}, "end"))
+    else:
+        name = "still_moves"
+        if _is_aloft(facts):
+            name = "still_flies"
+        elif final < (NEAR_POLE if facts.problem.launch.tilt > NEAR_POLE else NEAR_FINAL):
+            name = "still_upright"
+        elif final > math.pi - NEAR_POLE:
+            name = "still_inverted"
+        clauses.append(Clause(name, {"tilt": final, "time": time}, "end"))
+    return [*clauses, *_standing(facts)]
+
+
+def _is_aloft(facts: Facts) -> bool:
+    """Return whether the run ends in a flight."""
+    return any(end >= _end_time(facts) for _, end in facts.flights)
+
+
+STILL = 1e-6
+"""Spin that is none, rad/s."""
+
+LEANING = 0.8
+"""Tilt at launch, rad, from which on passing the horizontal is no turning over."""
+
+
+def _is_undisturbed(facts: Facts) -> bool:
+    """Return whether the axis was exactly vertical all along."""
+    return (
+        facts.problem.launch.tilt in (0.0, math.pi)
+        and facts.metrics["final_theta"] == facts.problem.launch.tilt
+        and (facts.peak[0] == 0.0 or facts.problem.launch.tilt > 0.0)
+    )
+
+
+def _settled(facts: Facts) -> Clause:
+    """Return where the motion has settled, and when it first came there."""
+    final, arrives = facts.metrics["final_theta"], facts.metrics["arrives"]
+    launch = facts.problem.launch.tilt
+    numbers = {"tilt": final, "time": arrives}
+    stays = abs(final - launch) < RISE and facts.peak[0] - max(final, launch) < RISE
+    if final < NEAR_FINAL:
+        return Clause("stays_upright" if stays else "settles_upright", numbers, "end")
+    if final > math.pi - NEAR_FINAL:
+        return Clause("stays_inverted" if stays else "settles_inverted", numbers, "end")
+    if arrives == 0.0:
+        return Clause("stays_at", numbers, "end")
+    return Clause("settles_at", numbers, "end")
+
+
+def _standing(facts: Facts) -> list[Clause]:
+    """Return on which of its surfaces a body of several stands at the end."""
+    surface = facts.problem.top.surface
+    if (
+        not isinstance(surface, Hull)
+        or _is_aloft(facts)
+        or facts.outcome not in (Outcome.COMPLETED, Outcome.AT_REST)
+    ):
+        return []
+    cosine = math.cos(facts.metrics["final_theta"])
+    lowest = lowest_surface(surface, cosine)
+    least = float(lowest.height(cosine)) - LEVEL * float(surface.size)
+    touching = [one.active for one in surface.each if float(one.height(cosine)) >= least]
+    if len(touching) > 1:
+        numbers = {"surface": touching[0], "second": touching[1]}
+        return [Clause("stands_on_two", numbers, "end")]
+    name = "stands_on_edge" if is_edge(lowest) else "stands_on_surface"
+    if acting(lowest).spherical:
+        name = "stands_on_sphere"
+    number = getattr(lowest, "active", 0)
+    size = float(surface.sizes[number])
+    return [Clause(name, {"surface": number, "length": size}, "end")]
+
+
+def _ended_early(facts: Facts) -> Clause:
+    """Return why a run ended before its time."""
+    return Clause(f"ended_{facts.outcome.name}", {"time": _end_time(facts)}, "end")
+
+
+def _theory(facts: Facts) -> list[Clause]:
+    """Return what theory says beside a run that it explains, or whose end it knows."""
+    problem = facts.problem
+    launch, settled = problem.launch, facts.metrics["is_settled"] == 1
+    if problem.friction.vanishes:
+        return [Clause("no_friction", {}, "theory")]
+    pulled = problem.contact.liftoff == "ignore" and facts.metrics["least_normal_force"] < 0.0
+    if facts.outcome is not Outcome.COMPLETED or pulled:
+        return []
+    if math.isfinite(_sticks_since(facts)):
+        turned = math.isfinite(facts.metrics["turns_over"])
+        return [] if settled or turned else [Clause("sticking_explained", {}, "theory")]
+    if not problem.top.torque_free:
+        numbers = {"spin": facts.metrics["final_omega3"]}
+        return [Clause("torque_takes_spin", numbers, "theory")]
+    clauses, spins, spin = list[Clause](), known_spins(problem), abs(launch.spin)
+    low = launch.tilt < RISE and facts.peak[0] < RISE
+    if spins is not None and low and spin < spins.upright:
+        name = "too_slow_to_rise" if math.isfinite(spins.upright) else "never_rises"
+        clauses.append(Clause(name, {"spin": spins.upright}, "theory"))
+    end = None if settled else known_end(problem)
+    if end is None:
+        return clauses
+    if _is_undisturbed(facts):
+        return [*clauses, _of_state("beside", end.final)]
+    rises = end.certain and end.final.tilt > 0.5 * math.pi
+    if rises and launch.tilt < 0.5 * math.pi and not math.isfinite(facts.metrics["turns_over"]):
+        clauses.append(Clause("not_yet_over", {"duration": _end_time(facts)}, "theory"))
+    if not end.certain:
+        clauses.append(Clause("ends_are_several", {"count": len(end.reachable)}, "theory"))
+    return [*clauses, *[_of_state("heads_for", state) for state in end.reachable]]
+
+
+def _of_state(verb: str, state: SteadyState[float]) -> Clause:
+    """Return the clause of a steady state that a launch, or one beside it, heads for."""
+    numbers = {"tilt": state.tilt, "spin": state.spin, "precession": state.precession}
+    name = "upright"
+    if state.kind is SteadyKind.INVERTED:
+        name = "inverted"
+    elif state.kind is SteadyKind.PRECESSION:
+        name = "precession"
+    elif state.kind is SteadyKind.LEVEL:
+        name = "level"
+    return Clause(f"{verb}_{name}", numbers, "theory")
+
+
+def _end_time(facts: Facts) -> float:
+    return facts.metrics["end_time"]

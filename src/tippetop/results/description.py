@@ -1,0 +1,140 @@
+"""Accounts of runs in words: the clauses of `tippetop.results.account` read off a run, and their
+English.
+"""
+
+import json
+import math
+from collections.abc import Mapping
+from functools import lru_cache
+from importlib import resources
+from typing import Any, NamedTuple
+
+import xarray as xr
+
+from tippetop.contact.mode import Event, EventKind, Outcome
+from tippetop.problem.problem import Problem
+from tippetop.results.account import Clause, Facts, account_of
+from tippetop.results.catalogue import METRICS
+from tippetop.results.dataset import require_run
+
+MILLISECONDS, TENS = 0.01, 10.0
+"""Times below the first, s, are written in milliseconds, and from the second on in four digits."""
+
+
+class Account(NamedTuple):
+    """What became of a launch, as clauses; `str` is English."""
+
+    clauses: tuple[Clause, ...]
+
+    def __str__(self) -> str:
+        sentences = [phrase(clause) for clause in self.clauses]
+        subjects = [_english()["subject"], *[_english()["pronoun"]] * len(sentences)]
+        return " ".join(
+            f"{subject} {text}." for subject, text in zip(subjects, sentences, strict=False)
+        )
+
+    @property
+    def headline(self) -> str:
+        """What it does and where it ends, as one phrase without its subject."""
+        told = [clause for clause in self.clauses if clause.part in ("motion", "end")]
+        return "; ".join(phrase(clause) for clause in told)
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """How it begins and what theory says, as sentences."""
+        pronoun = _english()["pronoun"]
+        told = [clause for clause in self.clauses if clause.part in ("launch", "theory")]
+        return tuple(f"{pronoun} {phrase(clause)}." for clause in told)
+
+    def plain(self) -> list[dict[str, Any]]:
+        """Return the clauses as plain dictionaries of name and numbers."""
+        return [{"name": clause.name, **clause.numbers} for clause in self.clauses]
+
+
+def describe(run: xr.Dataset) -> Account:
+    """Return the account of a run: how it begins, what happens, where it ends, what theory says.
+
+    Raises `InvalidInput` if the run is none.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> account = tt.describe(tt.simulate(tt.presets.report_problem(spin=155.0), duration=20.0))
+    >>> [clause.name for clause in account.clauses]
+    ['starts_without_slip', 'turns_over', 'settles_inverted']
+    >>> print(account.headline.partition(";")[0])
+    turns over: its axis passes the horizontal at 5.88 s
+    """
+    require_run(run)
+    times, impulses = run["event_time"].values, run["event_impulse"].values
+    rows = zip(
+        run["event_kind"].values,
+        times.tolist(),
+        impulses.tolist(),
+        run["event_energy_lost"].values.tolist(),
+        run["event_surface"].values.tolist(),
+        strict=True,
+    )
+    events = [Event(EventKind(str(kind)), *numbers) for kind, *numbers in rows]
+    flights = zip(
+        run["flight_start"].values.tolist(), run["flight_end"].values.tolist(), strict=True
+    )
+    facts = Facts(
+        Problem.from_json(run.attrs["problem"]),
+        Outcome[run.attrs["outcome"].upper()],
+        {name: run[name].item() for name in METRICS},
+        (run["peak_tilt"].item(), run["peak_time"].item()),
+        events,
+        list(flights),
+    )
+    return Account(tuple(account_of(facts)))
+
+
+def phrase(clause: Clause) -> str:
+    """Return a clause in English, without its subject."""
+    texts = _english()
+    gaps = {name: written(name, value, texts["units"]) for name, value in clause.numbers.items()}
+    return str(texts["clauses"][clause.name].format(**gaps))
+
+
+@lru_cache
+def _english() -> dict[str, Any]:
+    text = resources.files("tippetop.results").joinpath("account_en.json").read_text("utf-8")
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def written(gap: str, value: float, units: Mapping[str, str]) -> str:
+    """Return a number for people, with the unit that the gap of a text asks for."""
+    match gap:
+        case "time" | "duration":
+            if 0.0 < value < MILLISECONDS:
+                return f"{_digits(1e3 * value, 3)} {units['short']}"
+            return f"{_digits(value, 3 if value < TENS else 4)} {units['time']}"
+        case "tilt" | "highest":
+            return f"{_digits(round(math.degrees(value), 1), 4)}°"
+        case "force":
+            return f"{_digits(value, 3)} {units['force']}"
+        case "spin" | "precession":
+            return f"{_digits(value, 4)} {units['spin']}"
+        case "height" | "length":
+            return f"{_digits(1e3 * value, 4)} {units['length']}"
+        case "energy":
+            return f"{_digits(1e6 * value, 4)} {units['energy']}"
+        case "speed":
+            return f"{_digits(value, 3)} {units['speed']}"
+    return f"{value:.0f}"
+
+
+def _digits(value: float, count: int) -> str:
+    """Return a number of so many digits, with a true minus sign and none before zero."""
+    rounded = float(f"{value:.{count}g}")
+    if abs(rounded) < ZERO:
+        return "0"
+    text = f"{rounded:.{count}g}"
+    text = f"{rounded:f}".rstrip("0").rstrip(".") if "e" in text and abs(rounded) < 1e6 else text
+    return text.replace("-", "−")
+
+
+ZERO = 1e-4
+"""Numbers for people that are zero, in the units that they are told in: less is rounding."""

@@ -1,0 +1,163 @@
+"""Where a motion has settled: the tilt near which it stays for good."""
+
+import math
+
+import numpy as np
+
+from tippetop.contact.mode import Outcome
+from tippetop.integrators.base import Array
+from tippetop.mechanics.hull import Hull, acting, each_surface, lowest_surface
+from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.state import State
+from tippetop.mechanics.surface import Surface
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.view import axis_sine
+from tippetop.results.catalogue import NEAR_FINAL
+from tippetop.theory.prediction import is_held
+from tippetop.theory.steady import balance_of_moments, has_level_spin, least_energy
+
+NEAR_STEADY = 1e-3
+"""Deviation from a vertical or level spin, in natural units, up to which a body without Jellett's
+integral counts as in it. What is left decays exponentially; a larger bound takes slow passages for
+ends, a smaller one needs longer runs.
+"""
+
+APPROACHED = 0.1
+"""Part of the deviation at launch that may be left: a launch beside an unstable spin begins with a
+small deviation, which grows.
+"""
+
+HALVINGS = 44
+"""Bisections of 0.02 rad to the rounding of an angle."""
+
+
+def tilt(state: State) -> Array:
+    """Return the tilts, rad."""
+    found: Array = np.arctan2(axis_sine(state.axis), state.axis[2])
+    return found
+
+
+def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) -> float:
+    """Return the tilt near which one launch that ended with an outcome stays for good, rad, or nan.
+
+    It is told as by `settled_tilt`. What came to rest or lies flat stays where it is. All numbers
+    are floats in natural units.
+    """
+    here = math.atan2(axis_sine(state.axis), state.axis[2])
+    if outcome in (Outcome.AT_REST, Outcome.LYING_FLAT):
+        return here
+    if outcome is not Outcome.COMPLETED or not top.torque_free:
+        return math.nan
+    if isinstance(top.surface, Hull):
+        lowest = lowest_surface(top.surface, state.axis[2])
+        if not _only_touches(lowest, here):
+            return math.nan
+        top = top._replace(surface=lowest)
+    if acting(top.surface).spherical:
+        return _steady_tilt_near(here, state, top) if is_held(state, top, NEAR_FINAL) else math.nan
+    if not _has_come_to_steady_spin(state, start, top):
+        return math.nan
+    if has_level_spin(top) and abs(state.axis[2]) < axis_sine(state.axis):
+        return 0.5 * math.pi
+    return 0.0 if state.axis[2] > 0.0 else math.pi
+
+
+def _steady_tilt_near(here: float, state: State, top: Top) -> float:
+    """Return the tilt of the least energy within `NEAR_FINAL` of a sphere's tilt, rad.
+
+    There the moments balance; without such a tilt it is the pole within reach.
+    """
+    integral = jellett(state, top)
+
+    def balance(at: float) -> float:
+        return float(balance_of_moments(at, integral, top, math))
+
+    low, high = max(here - NEAR_FINAL, 0.0), min(here + NEAR_FINAL, math.pi)
+    if balance(low) * balance(high) < 0.0:
+        return crossing(balance, low, high)
+    return 0.0 if low == 0.0 else math.pi if high == math.pi else here
+
+
+def _has_come_to_steady_spin(state: State, start: State, top: Top) -> Scalar:
+    """Return whether a body has come near a spin about a vertical or level axis since launch."""
+    left = deviation(state, top)
+    return (left <= NEAR_STEADY) & (left <= APPROACHED * deviation(start, top))
+
+
+def _only_touches(active: Surface, at: float) -> bool:
+    """Return whether no other surface of a hull reaches the table near a tilt, rad."""
+    number = getattr(active, "active", 0)
+    near = (math.cos(at - NEAR_FINAL), math.cos(at), math.cos(at + NEAR_FINAL))
+    others = [one for one in each_surface(active) if getattr(one, "active", 0) != number]
+    return all(float(one.height(c)) < float(active.height(c)) for one in others for c in near)
+
+
+# translate: skip
+def settled_tilts(state: State, start: State, top: Top) -> Array:
+    """Return the tilts near which motions stay for good, rad, shape (n,); nan where they may move.
+
+    A sphere under friction without torque keeps Jellett's integral and loses energy. Its tilt has
+    settled once the energy that is left bars every tilt farther than `NEAR_FINAL`; it settles at
+    the steady state between the bars. A body of another shape has settled once it spins about a
+    vertical or a level axis that it has come to, to within `NEAR_STEADY`. Under friction with a
+    torque every motion changes until it is at rest.
+
+    `start` has the states at launch; every number is of shape (n,), in natural units, and so are
+    those of the top, which has one surface.
+    """
+    here = tilt(state)
+    if not top.torque_free:
+        return np.full(here.shape, np.nan)
+    if top.surface.spherical:
+        held = is_held(state, top, NEAR_FINAL)
+        return np.where(held, _steady_tilts_near(here, state, top), np.nan)
+    come = _has_come_to_steady_spin(state, start, top)
+    vertical = np.where(state.axis[2] > 0.0, 0.0, math.pi)
+    leans = np.abs(state.axis[2]) < axis_sine(state.axis)
+    level = (top.surface.slope(0.0) == 0.0) & leans
+    return np.where(come, np.where(level, 0.5 * math.pi, vertical), np.nan)
+
+
+# translate: skip
+def _steady_tilts_near(here: Array, state: State, top: Top) -> Array:
+    """Return for many spheres what `_steady_tilt_near` returns for one."""
+    integral = jellett(state, top)
+    low, high = np.maximum(here - NEAR_FINAL, 0.0), np.minimum(here + NEAR_FINAL, math.pi)
+    pole = np.where(low == 0.0, 0.0, np.where(high == math.pi, math.pi, here))
+    before = balance_of_moments(low, integral, top, np)
+    crosses = before * balance_of_moments(high, integral, top, np) < 0.0
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        same = balance_of_moments(middle, integral, top, np) * before > 0.0
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return np.where(crosses, 0.5 * (low + high), pole)
+
+
+def deviation(state: State, top: Top) -> Scalar:
+    """Return how far motions are from a spin about a vertical or level axis, in natural units.
+
+    It is the largest of the horizontal angular momentum, the velocity, and the sine of the angle
+    between the axis and the nearest direction in which the body can spin steadily.
+    """
+    sine, cosine = axis_sine(state.axis), abs(state.axis[2])
+    lean = np.where(top.surface.slope(0.0) == 0.0, np.minimum(sine, cosine), sine)
+    x, y, _ = state.momentum
+    u, v, w = state.velocity
+    speed = (u**2 + v**2 + w**2) ** 0.5
+    return np.maximum(np.maximum(lean, speed), (x**2 + y**2) ** 0.5)
+
+
+def is_barred(state: State, top: Top, height: Scalar, at: Scalar) -> Scalar:
+    """Return whether the energy that is left bars some tilts, rad, where the centre of mass is at
+    least so high.
+    """
+    least = height
+    if acting(top.surface).spherical and top.torque_free and not isinstance(top.surface, Hull):
+        least = least_energy(at, jellett(state, top), top, np)
+    return energy(state, top) < least * (1.0 - ROUNDING)
+
+
+ROUNDING = 1e-12
+"""Part of the energy that is rounding."""

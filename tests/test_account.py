@@ -1,0 +1,247 @@
+"""The account of a run: the same clauses and numbers everywhere, and true ones."""
+
+import json
+import math
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+import tippetop as tt
+from accounts import DRY, LAUNCHES, REPORT, report
+from launches import TOLERANCE, in_javascript
+from tippetop.cli.commands import app
+from tippetop.export.bundle import player_packed
+from tippetop.export.track import pack_run, unpack_header
+from tippetop.results.catalogue import LASTING
+from tippetop.results.description import Account, describe
+from tippetop.theory.prediction import predict
+from tippetop.theory.thresholds import critical_spins
+
+TEXTS = Path(__file__).parents[1] / "web" / "texts"
+SLOW = {
+    *("patch", "puck", "two balls, smoothed", "egg, dry", "rolling resistance, viscous"),
+    *("Leine and Glocker's stem", "ring top, falls", "rolling resistance", "egg"),
+}
+"""Launches that take more than a second."""
+
+
+@cache
+def followed(name: str) -> xr.Dataset:
+    problem, duration = LAUNCHES[name]
+    return tt.simulate(problem, duration, samples=101, integrator="compiled", tolerance=TOLERANCE)
+
+
+def named(account: Account, name: str) -> dict[str, float]:
+    (found,) = [dict(clause.numbers) for clause in account.clauses if clause.name == name]
+    return found
+
+
+def names(account: Account) -> list[str]:
+    return [clause.name for clause in account.clauses]
+
+
+def test_there_are_forty_launches_over_every_law_and_ending() -> None:
+    assert len(LAUNCHES) >= 40
+    laws = {problem.friction.kind for problem, _ in LAUNCHES.values()}
+    assert laws == {"viscous", "coulomb", "contensou", "regularized_coulomb"}
+
+
+def test_the_page_gives_the_same_account() -> None:
+    questions = [
+        {
+            "problem": problem.model_dump(mode="json"),
+            "duration": duration,
+            "tolerance": TOLERANCE,
+            "times": [0.0],
+        }
+        for problem, duration in LAUNCHES.values()
+    ]
+    answers = list(in_javascript(questions))
+    wrong = dict[str, Any]()
+    for name, answer in zip(LAUNCHES, answers, strict=True):
+        ours = describe(followed(name)).plain()
+        theirs = [{"name": one["name"], **one["numbers"]} for one in answer.get("account", [])]
+        if not same(ours, theirs):
+            wrong[name] = ours, theirs or answer
+    assert not wrong
+
+
+def same(ours: list[dict[str, Any]], theirs: list[dict[str, Any]]) -> bool:
+    """Return whether two accounts have the same clauses, with numbers equal to a part in 10^6."""
+    if [one["name"] for one in ours] != [one["name"] for one in theirs]:
+        return False
+    return all(
+        a.keys() == b.keys()
+        and all(
+            a[key] == b[key]
+            or (
+                isinstance(a[key], float)
+                and math.isclose(a[key], b[key], rel_tol=1e-6, abs_tol=1e-7)
+            )
+            for key in a
+        )
+        for a, b in zip(ours, theirs, strict=True)
+    )
+
+
+@pytest.mark.parametrize("name", ["report", "flies", "half way", "puck"])
+def test_the_command_line_and_the_page_of_a_run_give_the_same_account(
+    name: str, tmp_path: Path
+) -> None:
+    problem, duration = LAUNCHES[name]
+    (tmp_path / "launch.toml").write_text(problem.to_toml(), encoding="utf-8")
+    said = CliRunner().invoke(
+        app, ["simulate", str(tmp_path / "launch.toml"), "--duration", str(duration), "--json"]
+    )
+    assert said.exit_code == 0, said.output
+    run = tt.simulate(problem, duration, samples=11)
+    account = describe(run)
+    assert json.loads(said.stdout)["account"] == account.plain()
+    header = unpack_header(pack_run(run))
+    assert header["account"] == account.plain()
+    assert header["story"]["headline"].lower() == account.headline.lower()
+    assert tt.summarize(run)["description"] == str(account)
+
+
+def test_the_catalogues_have_the_same_texts() -> None:
+    import tippetop.results as room  # noqa: PLC0415 - for its place
+
+    folder = Path(str(room.__file__)).parent
+    english = json.loads((folder / "account_en.json").read_text("utf-8"))
+    german = json.loads((TEXTS / "de.json").read_text("utf-8"))["account"]
+    assert english["clauses"].keys() == german["clauses"].keys()
+    assert english["units"].keys() == german["units"].keys()
+    for name, text in english["clauses"].items():
+        gaps = {part.partition("}")[0] for part in text.split("{")[1:]}
+        others = {part.partition("}")[0] for part in german["clauses"][name].split("{")[1:]}
+        assert gaps == others, name
+
+
+def test_every_clause_of_the_launches_has_a_text() -> None:
+    for name in LAUNCHES.keys() - SLOW:
+        account = describe(followed(name))
+        assert "{" not in str(account)
+        assert "nan" not in str(account), account
+
+
+def test_a_run_that_is_too_short_does_not_say_never() -> None:
+    for name in ("report, short", "little friction"):
+        account = describe(followed(name))
+        assert "not_yet_over" in names(account)
+        assert "heads_for_inverted" in names(account)
+        assert "never" not in str(account)
+
+
+def test_a_dry_top_is_told_to_stick() -> None:
+    account = describe(followed("dry, slips first"))
+    run = followed("dry, slips first")
+    times = run["event_time"].values[run["event_kind"].values == "stick"]
+    assert named(account, "sticks")["time"] == times[-1]
+    assert "sticking_explained" in names(account)
+
+
+def test_a_top_that_falls_back_is_told_from_one_that_turns_over() -> None:
+    problem = REPORT.replace(
+        {"friction.kind": "contensou", "friction.patch_radius": 5e-4, "launch.spin": 80.0}
+    )
+    run = tt.simulate(problem, 30.0, samples=30_001)
+    told = named(describe(run), "falls_back")
+    theta, time = run["theta"].values, run["time"].values
+    assert told["highest"] == pytest.approx(theta.max(), abs=1e-5)
+    assert told["time"] == pytest.approx(time[theta.argmax()], abs=2e-3)
+    assert told["tilt"] == pytest.approx(theta[-1], rel=1e-12)
+
+
+def test_a_disk_that_lies_flat_still_spins() -> None:
+    run = followed("puck")
+    told = named(describe(run), "lies_flat_and_spins")
+    assert told["spin"] == abs(float(run["final_omega3"])) > 50.0
+    assert told["time"] == float(run["end_time"])
+
+
+def test_two_balls_stand_on_the_ball_that_touches() -> None:
+    told = named(describe(followed("two balls, dry")), "stands_on_sphere")
+    assert told == {"surface": 0, "length": 0.2}
+
+
+def test_slow_tops_are_told_why_they_stay() -> None:
+    account = describe(followed("too slow"))
+    spins = critical_spins(report(20.0))
+    assert named(account, "too_slow_to_rise") == {"spin": spins.upright}
+
+
+def test_a_moving_top_is_told_where_it_heads() -> None:
+    account = describe(followed("just fast enough"))
+    final = predict(report(32.0)).final
+    told = named(account, "heads_for_precession")
+    assert told == {"tilt": final.tilt, "spin": final.spin, "precession": final.precession}
+
+
+DOUBLED = [
+    *("report", "report, not yet settled", "little friction", "too slow", "half way", "flies"),
+    *("comes upright", "falls from inverted", "exactly upright, slow", "no friction", "dry"),
+    *("dropped", "smoothed", "patch, to its rest", "egg, slow", "Leine and Glocker's"),
+    *("coin", "ring top", "two balls, dry", "dry ball at rest"),
+]
+
+
+@pytest.mark.parametrize("name", DOUBLED)
+def test_a_longer_run_changes_no_number_that_is_said_to_last(name: str) -> None:
+    problem, duration = LAUNCHES[name]
+    told = set[str]()
+    before = tt.simulate(problem, duration, samples=2)
+    after = tt.simulate(problem, 2.0 * duration, samples=2)
+    for number in LASTING:
+        if math.isfinite(float(before[number])):
+            told.add(number)
+            assert float(after[number]) == pytest.approx(float(before[number]), rel=0, abs=1e-9), (
+                number
+            )
+    if name in ("report", "half way", "flies"):
+        assert {"arrives", "highest_tilt"} <= told
+
+
+def test_what_settles_stays_near_where_it_settled() -> None:
+    """The tilt of a run that is settled half-way is within twice 0.01 rad of its last one since."""
+    for name in ("report", "half way", "too slow", "comes upright", "falls from inverted", "flies"):
+        problem, duration = LAUNCHES[name]
+        for share in (0.25, 0.5, 0.75):
+            part = tt.simulate(problem, share * duration, samples=2)
+            if part["is_settled"] == 1:
+                run = tt.simulate(problem, duration, samples=20_001)
+                later = run["theta"].values[run["time"].values >= share * duration]
+                assert np.ptp(later) <= 0.02
+                assert abs(later[0] - float(part["final_theta"])) < 1e-6
+
+
+def test_settled_ends_are_apart_from_moving_ones_in_sweeps() -> None:
+    spins = {"launch.spin": [20.0, 50.0, 155.0]}
+    short, long = (tt.sweep(REPORT, spins, duration=end, workers=1) for end in (2.0, 20.0))
+    assert [tt.Ending(int(one)).name for one in long["outcome"]] == [
+        "UPRIGHT",
+        "TILTED",
+        "INVERTED",
+    ]
+    assert [tt.Ending(int(one)).name for one in short["outcome"]][1:] == ["MOVING_UPRIGHT"] * 2
+    assert long["is_settled"].values.tolist() == [1, 1, 1]
+    dry = tt.sweep(REPORT.replace(DRY), spins, duration=2.0, workers=1)
+    assert {tt.Ending(int(one)).name for one in dry["outcome"]} == {"ROLLING"}
+
+
+def test_sweeps_tell_tops_that_fell_back() -> None:
+    problem = REPORT.replace({"friction.kind": "contensou", "friction.patch_radius": 5e-4})
+    swept = tt.sweep(problem, {"launch.spin": [10.0, 80.0]}, duration=30.0, workers=1)
+    assert [tt.Ending(int(one)).name for one in swept["outcome"]][1] == "FELL_BACK"
+    assert int(swept["outcome"][0]) != tt.Ending.FELL_BACK
+
+
+def test_a_run_s_page_has_the_account(tmp_path: Path) -> None:
+    assert player_packed()
+    run = followed("report")
+    page = tt.write_html(run, tmp_path / "run.html").read_text("utf-8")
+    assert describe(run).headline[1:].split(";")[0] in page
