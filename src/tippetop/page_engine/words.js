@@ -13,8 +13,10 @@ function quoted(text) {
 const ESCAPES = { "\n": "\\n", "\r": "\\r", "\t": "\\t" };
 
 function escaped(code) {
-  const [sign, width] = code < 0x100 ? ["x", 2] : code < 0x10000 ? ["u", 4] : ["U", 8];
-  return `\\${sign}${code.toString(16).padStart(width, "0")}`;
+  const digits = code.toString(16);
+  if (code < 0x100) return `\\x${digits.padStart(2, "0")}`;
+  if (code < 0x10000) return `\\u${digits.padStart(4, "0")}`;
+  return `\\U${digits.padStart(8, "0")}`;
 }
 
 /** Strings, numbers, truth values and None as Python's `repr`; whole numbers are taken for integers. */
@@ -34,8 +36,8 @@ export const removeprefix = (text, part) =>
 /** A number as it is typed, with powers of ten from some size on. */
 export function typed(value, most = 1e16) {
   if (!Number.isFinite(value)) return String(value).toLowerCase().replace("inity", "");
-  const size = Math.abs(value),
-    plainly = value === 0 || (size >= 1e-4 && size < most);
+  const size = Math.abs(value);
+  const plainly = value === 0 || (size >= 1e-4 && size < most);
   return plainly ? String(value) : value.toExponential().replace(/([+-])(\d)$/, "$10$2");
 }
 
@@ -76,23 +78,19 @@ const table = (value) =>
     .map(([name, inner]) => `${repr(name)}: ${short(inner)}`)
     .join(", ")}}`;
 
+/** A value as it would be typed. */
+function written(value) {
+  if (Array.isArray(value)) return `[${value.map(short).join(", ")}]`;
+  if (typeof value === "number") return typed(value);
+  if (value === null) return "None";
+  if (typeof value === "object") return value.description ?? table(value);
+  if (typeof value === "boolean") return repr(value);
+  return /^[0-9+\-.,]/.test(value) && isprintable(value) ? value : repr(value);
+}
+
 /** A value in a sentence, as it would be typed. */
 export function short(value) {
-  const text = Array.isArray(value)
-    ? `[${value.map(short).join(", ")}]`
-    : typeof value === "number"
-      ? typed(value)
-      : value === null
-        ? "None"
-        : typeof value === "object"
-          ? (value.description ?? table(value))
-          : typeof value === "boolean"
-            ? value
-              ? "True"
-              : "False"
-            : /^[0-9+\-.,]/.test(value) && isprintable(value)
-              ? value
-              : repr(value);
+  const text = written(value);
   return text.length <= 60 ? text : `${text.slice(0, 57)}...`;
 }
 
