@@ -90,7 +90,7 @@ def test_a_job_that_kills_every_process_is_given_up() -> None:
 @pytest.mark.parametrize(
     ("call", "kind", "match"),
     [
-        (refuse, InvalidInput, "spin = -1"),
+        (refuse, InvalidInput, "spin: -1 is not more"),
         (be_odd, RuntimeError, "Odd"),
         (divmod, TypeError, "divmod"),
     ],

@@ -200,7 +200,7 @@ def test_wrong_arms_are_refused_and_right_ones_are_written():
     problem = REPORT.replace({"rolling_resistance": 1e-5})
     assert tt.Problem.from_toml(problem.to_toml()) == problem
     assert tt.Problem.from_json(problem.to_json()) == problem
-    assert "rolling_resistance: 1e-05" in problem.to_toml()
+    assert "rolling_resistance = 1e-05" in problem.to_toml()
 
 
 SMOOTH = [tt.ViscousFriction(mu=0.3), tt.RegularizedCoulombFriction(mu=0.3, eps=0.05)]

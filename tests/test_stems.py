@@ -19,7 +19,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_units
-from tippetop.results.catalogue import SWEPT
+from tippetop.results.catalogue import SWEPT, Fault
 
 LEINE_GLOCKER = tt.Problem(
     body=tt.Body(
@@ -219,19 +219,19 @@ def test_several_surfaces_go_into_text_and_come_back() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "field", "accepted"),
+    ("changes", "field", "words"),
     [
-        ({"body.shape.1.center": 0.01}, "body.shape.1", "a surface that the others do not enclose"),
+        ({"body.shape.1.center": 0.01}, "body.shape.1", "is enclosed by the others"),
         ({"body.shape.1.radius": -1.0}, "body.shape.1.radius", "a number greater than 0"),
         ({"body.shape": []}, "body.shape", "a table of its fields"),
-        ({"contact.liftoff": "ignore"}, "contact.liftoff", "'fly' for a body of several surfaces"),
+        ({"contact.liftoff": "ignore"}, "contact.liftoff", "is for bodies of one surface"),
     ],
 )
-def test_what_cannot_be_is_refused_in_a_sentence(changes, field, accepted) -> None:
+def test_what_cannot_be_is_refused_in_a_sentence(changes, field, words) -> None:
     with pytest.raises(tt.InvalidInput) as caught:
         LEINE_GLOCKER.replace(changes)
     assert caught.value.field == field
-    assert caught.value.accepted == accepted
+    assert words in str(caught.value)
 
 
 def test_jellett_s_integral_is_that_of_the_surface_that_touches_in_whatever_order_they_are() -> (
@@ -249,8 +249,8 @@ def test_jellett_s_integral_is_that_of_the_surface_that_touches_in_whatever_orde
 
 def test_sweeps_follow_stems_as_runs_do() -> None:
     axes = {"body.shape.1.center": [0.005, 0.026, 0.028], "launch.spin": [120.0, 155.0]}
-    found = tt.sweep(REPORT, axes, duration=7.0, tolerance=1e-14, workers=1)
-    assert (found["fault"].sel(center=0.005) == "value_out_of_range").all()
+    found = tt.sweep(REPORT, axes, duration=7.0, tolerance=1e-14, workers=1, decode=False)
+    assert (found["fault"].sel(center=0.005) == Fault.VALUE_OUT_OF_RANGE).all()
     for center in axes["body.shape.1.center"][1:]:
         for spin in axes["launch.spin"]:
             changes = {"body.shape.1.center": center, "launch.spin": spin}

@@ -10,7 +10,6 @@ import tippetop as tt
 from tippetop.contact.liftoff import FreeToFly
 from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.sweeps import Store
-from tippetop.sweeps.store_layout import Status
 
 SPINS = [10.0, 20.0, 30.0, 40.0]
 BAD = 2
@@ -47,7 +46,7 @@ def test_a_launch_that_raises_fails_alone(
     before = swept(problem)
     monkeypatch.setattr(FreeToFly, "launch", raising)
     for after in (swept(problem), swept(problem, out=tmp_path / "a.zarr")):
-        assert (after["status"] == Status.DONE).all()
+        assert (after["status"] == "done").all()
         assert int(after["outcome"][BAD]) == tt.Ending.FAILED
         assert np.isnan(after["final_theta"][BAD])
         others = [0, 1, 3]
@@ -91,6 +90,6 @@ def test_a_store_that_could_never_be_written_leaves_nothing(
 
 @pytest.mark.parametrize("name", ["a.nc", "a.h5", "a.csv"])
 def test_a_store_does_not_have_the_name_of_another_kind_of_file(tmp_path: Path, name: str) -> None:
-    with pytest.raises(tt.InvalidInput, match=r"out .*zarr"):
+    with pytest.raises(tt.InvalidInput, match=r"out: .*zarr"):
         swept(problem_of(False), out=tmp_path / name)
     assert list(tmp_path.iterdir()) == []

@@ -155,7 +155,7 @@ def _fit_run(points: Array, within: float, rounding: float) -> tuple[list[Edge],
     return [edge for part in parts for edge in part], deviation
 
 
-class Piece(NamedTuple):
+class CurvePiece(NamedTuple):
     """A part of a polyline, and what it stands for."""
 
     kind: str
@@ -189,10 +189,10 @@ class Polyline:
         self.is_sharp = np.zeros(len(points), dtype=bool)
         self.is_sharp[1:-1] = (np.abs(turns) > COARSEST) & is_long
 
-    def pieces(self) -> list[Piece]:
+    def pieces(self) -> list[CurvePiece]:
         """The parts, one after the other."""
         if self._is_ellipse():
-            return [Piece("curve", 0, self.count)]
+            return [CurvePiece("curve", 0, self.count)]
         first, last = self._arc_at_start(), self._arc_at_end()
         begin = first.end if first else 0
         if last and last.begin < begin:
@@ -204,14 +204,14 @@ class Polyline:
             piece = self._arc_from(k, end) or self._line_from(k, end)
             if piece is None:
                 is_soft = self.is_soft[k] or self.is_soft[k + 1]
-                piece = Piece("curve" if is_soft else "line", k, k + 1)
+                piece = CurvePiece("curve" if is_soft else "line", k, k + 1)
             pieces.append(piece)
             k = piece.end
         return self._with_curves([*pieces, *([last] if last else [])])
 
-    def _with_curves(self, pieces: list[Piece]) -> list[Piece]:
+    def _with_curves(self, pieces: list[CurvePiece]) -> list[CurvePiece]:
         """The parts, with neighbouring edges of one smooth curve put together."""
-        found: list[Piece] = []
+        found: list[CurvePiece] = []
         for k, stated in enumerate(pieces):
             piece = stated
             if piece.kind == "near arc":
@@ -240,16 +240,16 @@ class Polyline:
         circle = circle_on_axis(self.points)
         return circle is None or not self._are_on(self.points, circle, self.within)
 
-    def _arc_at_start(self) -> Piece | None:
+    def _arc_at_start(self) -> CurvePiece | None:
         """The arc around a point of the axis with which it begins, if it does."""
         return self._arc_at_axis(self.points, self.is_sharp)
 
-    def _arc_at_end(self) -> Piece | None:
+    def _arc_at_end(self) -> CurvePiece | None:
         """The arc around a point of the axis with which it ends, if it does."""
         piece = self._arc_at_axis(self.points[::-1], self.is_sharp[::-1])
         return piece and piece._replace(begin=self.count - piece.end, end=self.count)
 
-    def _arc_at_axis(self, points: Array, is_sharp: np.ndarray) -> Piece | None:
+    def _arc_at_axis(self, points: Array, is_sharp: np.ndarray) -> CurvePiece | None:
         # On the axis the line meets its mirror image.
         if points[0].real or 2.0 * abs(_slope(points[1] - points[0])) > COARSEST:
             return None
@@ -262,7 +262,7 @@ class Polyline:
         is_soft = self.is_soft if points is self.points else self.is_soft[::-1]
         return self._longest_arc(circle, 0, FEWEST_ON_ARC // 2, limit, points, is_soft, 0.5)
 
-    def _arc_from(self, begin: int, end: int) -> Piece | None:
+    def _arc_from(self, begin: int, end: int) -> CurvePiece | None:
         """The longest arc from a point, if there is one."""
 
         def circle(last: int, within: float) -> Circle | None:
@@ -291,7 +291,7 @@ class Polyline:
         points: Array,
         is_soft: np.ndarray,
         share: float,
-    ) -> Piece | None:
+    ) -> CurvePiece | None:
         """The longest arc up to a point, if it is one rather than a part of another curve.
 
         It is a share of the arc: half of one that goes on beyond the axis.
@@ -304,10 +304,10 @@ class Polyline:
         if found is not None and end - begin >= ABRUPT * (last - begin):
             turn = abs(_turn(points[begin : end + 1], found[0])) / share
             if turn >= NARROW or not (is_soft[begin] or is_soft[end]):
-                return Piece("arc", begin, end, found)
+                return CurvePiece("arc", begin, end, found)
         found = circle(last, self.within)
         if found is not None and abs(_turn(points[begin : last + 1], found[0])) / share >= WIDE:
-            return Piece("near arc", begin, last, found)
+            return CurvePiece("near arc", begin, last, found)
         return None
 
     def _are_on(self, points: Array, circle: Circle, within: float) -> bool:
@@ -320,7 +320,7 @@ class Polyline:
         forward = steps if steps.sum() > 0.0 else -steps
         return bool(forward.min() > -2.0 * within / radius and forward.max() <= COARSEST)
 
-    def _line_from(self, begin: int, end: int) -> Piece | None:
+    def _line_from(self, begin: int, end: int) -> CurvePiece | None:
         """The longest straight line of several edges from a point, if there is one."""
         last = self._straight_to(begin, end, self.close)
         if last - begin < 2:
@@ -332,7 +332,7 @@ class Polyline:
                 return None
         nearly = self._straight_to(begin, end, self.within)
         is_abrupt = last - begin >= ABRUPT * (nearly - begin)
-        return Piece("line", begin, last) if is_abrupt else None
+        return CurvePiece("line", begin, last) if is_abrupt else None
 
     def _straight_to(self, begin: int, end: int, within: float) -> int:
         """The last point up to which a line is straight, to within a distance."""
@@ -347,7 +347,7 @@ class Polyline:
 
         return _last_true(is_straight, begin + 1, end)
 
-    def edges(self, pieces: list[Piece]) -> list[list[Edge]]:
+    def edges(self, pieces: list[CurvePiece]) -> list[list[Edge]]:
         """The edges that state each part."""
         joints = [complex(self.points[piece.begin]) for piece in pieces]
         joints.append(complex(self.points[-1]))
@@ -442,11 +442,11 @@ def _slope(chord: complex) -> float:
     return math.atan2(chord.imag, abs(chord.real)) if chord else 0.0
 
 
-def _as_drawn_if_short(piece: Piece) -> list[Piece]:
+def _as_drawn_if_short(piece: CurvePiece) -> list[CurvePiece]:
     """A curve, or its edges as drawn if these are too few for one; other parts as they are."""
     if piece.kind != "curve" or piece.end - piece.begin >= FEWEST_ON_CURVE:
         return [piece]
-    return [Piece("line", k, k + 1) for k in range(piece.begin, piece.end)]
+    return [CurvePiece("line", k, k + 1) for k in range(piece.begin, piece.end)]
 
 
 def _joint(point: complex, circles: list[Circle], within: float) -> complex:
@@ -464,7 +464,7 @@ def _joint(point: complex, circles: list[Circle], within: float) -> complex:
     return center + arm / abs(arm) * radius
 
 
-def _tangents(piece: Piece, points: Array, within: float) -> Array:
+def _tangents(piece: CurvePiece, points: Array, within: float) -> Array:
     """Unit tangents of a part: at its points if it is a curve, else at its ends."""
     if piece.kind == "curve":
         return tangents_along(points, within)
