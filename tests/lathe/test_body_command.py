@@ -137,3 +137,20 @@ def test_a_section_shows_every_surface(files):
     axes = section(piece).axes[0]
     low, high = axes.get_xlim()
     assert low < -20 < 20 < high
+
+
+TOP_HEAVY = """
+unit = "in"
+density = 2700
+profile = [
+  [0, -0.5], [0.5, 0, 0.5], [0.35355339, 0.35355339, 0.5],
+  [0.125, 0.35355339], [0.125, 0.875], [0, 1.0, 0.125],
+]
+"""
+
+
+def test_a_top_heavy_body_is_said_not_to_turn_over(files):
+    (files / "heavy.toml").write_text(TOP_HEAVY)
+    with pytest.warns(tt.Implausible, match="above the ball's centre: it does not turn over"):
+        done = CliRunner().invoke(app, ["body", "heavy.toml"])
+    assert done.exit_code == 0

@@ -121,9 +121,12 @@ def _fit(piece: "tt.Workpiece") -> list[str]:
 
 def _told(piece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
     """What is told of a body; what it cannot be simulated for is the trouble with it."""
+    from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415 - slow to import
+
     trouble = None
     try:
-        tt.Body.turned(piece, whole=whole)
+        turned = tt.Body.turned(piece, whole=whole)
+        warn_if_implausible(tt.presets.report_problem().model_copy(update={"body": turned}))
     except InvalidInput as error:
         trouble = str(error)
     mass, center, I1, I3 = piece.mass_properties
