@@ -68,7 +68,7 @@ def test_a_sweep_is_a_table_of_launches(swept: xr.Dataset) -> None:
 def test_draws_are_a_table_too() -> None:
     draws = tt.Draws((tt.Range("launch.spin", 10.0, 200.0),), count=3, seed=1)
     table = tt.to_dataframe(tt.sweep(tt.presets.report_problem(), draws, duration=0.01))
-    assert list(table.columns[:2]) == ["draw", "spin"]
+    assert list(table.columns[:2]) == ["sample", "spin"]
     assert table["spin"].between(10.0, 200.0).all()
 
 
@@ -113,7 +113,7 @@ def test_what_is_no_table_is_refused(
         call(flying, *place, table="flight")
     with pytest.raises(tt.InvalidInput, match="None for a sweep"):
         call(swept, *place, table="events")
-    with pytest.raises(tt.InvalidInput, match=r"^run = "):
+    with pytest.raises(tt.InvalidInput, match=r"^run: "):
         call(3, *place)
     assert list(tmp_path.iterdir()) == []
 
