@@ -211,8 +211,8 @@ class TestRefusals:
             presets.report_problem().replace({"friction": patch})
         told = the_one_line_of(caught.value)
         assert told.startswith(
-            f"friction.patch_radius: {typed(radius)} does not fit this body (write one"
-            " from 2.01e-11 to 0.02 m;"
+            f"friction.patch_radius: {typed(radius)} does not fit this body (write a"
+            " radius from 2.01e-11 to 0.02 m;"
         )
 
     @pytest.mark.parametrize("size", [0.01, 0.0123456, 0.0199999, 0.0999951, 1 / 7])
