@@ -14,6 +14,7 @@ import pytest
 import tippetop as tt
 from browsing import Visit
 from tippetop.export.solid import solids
+from tippetop.results.catalogue import DERIVED
 
 BEECH = 720.0
 """Density of the page's first material, kg/m^3."""
@@ -198,6 +199,7 @@ def test_downloads_open_again(lab: Lab, tmp_path: Path) -> None:
     assert pytest.approx(problem.body.I1, rel=1e-12) == written.body.I1
     tt.write_csv(tt.simulate(written, 3.0), tmp_path / "python.csv")
     numbers, expected = (pd.read_csv(path) for path in (files["csv"], tmp_path / "python.csv"))
+    expected = expected[[name for name in expected if not name.startswith(tuple(DERIVED))]]
     assert list(numbers.columns) == list(expected.columns)
     assert list(numbers["mode"]) == list(expected["mode"])
     for name in expected.columns.drop("mode"):
