@@ -22,6 +22,7 @@ def named(fields: dict[str, Any]) -> str:
     """What becomes of a problem in Python: an outcome, or the field that is refused."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
+        warnings.simplefilter("ignore", tt.Implausible)
         try:
             run = tt.simulate(
                 tt.Problem(**fields),
@@ -42,7 +43,7 @@ def named_there(found: dict[str, Any]) -> str:
     return (
         found["outcome"]["name"]
         if "outcome" in found
-        else found.get("refused", str(found)).split()[0]
+        else found.get("refused", str(found)).split()[0].removesuffix(":")
     )
 
 

@@ -313,13 +313,13 @@ def _refuse_what_does_not_fit(problem: Problem) -> None:
     """Refuse a patch, or an arm, that is larger than the body, or a patch that is but a point."""
     size = max(sizes(problem.body.surface))
     if not problem.friction.fits(size):
+        accepted = f"a radius from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} m"
         raise InvalidInput(
             "friction.patch_radius",
             getattr(problem.friction, "patch_radius", MISSING),
-            f"from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)}",
+            accepted,
             "does not fit this body",
-            f"write one from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} m; for a"
-            " smaller patch, a point, there is coulomb",
+            f"write {accepted}; for a smaller patch, a point, there is coulomb",
         )
     if problem.rolling_resistance > size:
         raise InvalidInput(

@@ -14,17 +14,25 @@ export function refusal(error, { units, setup }) {
   const { name } = part(`quantities.${field}`);
   if (error.missing) return { field: null, sentence: t("controls.missing", { name }) };
   const scale = scaleOf(dial, setup);
-  const accepted = acceptedText(error.accepted, dial, scale, units);
-  const { fault, hint } = error;
+  const kind = kindOf(dial, setup);
+  const accepted = acceptedText(error.accepted, kind, scale, units);
+  const { value, fault } = error;
   const gaps = {
     name,
-    value: valueText(error.value, kindOf(dial, setup), scale, units),
+    value: valueText(value, kind, scale, units),
     accepted,
     fault: translated(fault ?? ""),
   };
   const sentence = t(fault ? "controls.refusedFor" : "controls.refused", gaps);
-  const note = translated(hint || (fault && accepted ? `write ${accepted}` : ""));
+  const note = fault ? translated(advice(error, accepted)) : "";
   return { field, sentence: `${sentence}${note && ` (${note})`}.` };
+}
+
+// What to write instead of a value that has a fault. The engine's hints give numbers in SI, so that only those about
+// the unit of a text hold at a dial.
+function advice({ value, hint }, accepted) {
+  if (typeof value === "string" && hint) return hint;
+  return accepted && `write ${accepted}`;
 }
 
 // The dial of a field, which the engine names with or without its table.
@@ -39,19 +47,18 @@ function valueText(value, kind, scale, units) {
 }
 
 const BOUND =
-  /(at least|greater than|from|at most|less than|to|=) (pi|\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.]| I1)/g;
+  /(at least|greater than|from|at most|less than|to|=) (pi|\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?: [ms])?(?![\w.]| I1)/g;
 
 // Bounds as the engine says them are in SI; here they are told in the unit of the dial, rounded so that the
 // visitor may enter them.
-function acceptedText(text, { kind }, scale, units) {
+function acceptedText(text, kind, scale, units) {
   const unit = unitOf(kind, units);
   const size = scale * unit.size;
   const bounds = text.replace(BOUND, (_, words, number) => {
-    const isPi = number === "pi";
-    const bound = (isPi ? Math.PI : Number(number)) / size;
+    const bound = (number === "pi" ? Math.PI : Number(number)) / size;
     const isLower = /least|greater|from/.test(words);
     const rounded = digits(isLower ? roundedUp(bound) : -roundedUp(-bound));
-    return `${words} ${isPi ? withUnit(rounded, unit) : rounded}`;
+    return `${words} ${bound ? withUnit(rounded, unit) : rounded}`;
   });
   return translated(bounds);
 }

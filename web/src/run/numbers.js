@@ -1,4 +1,5 @@
-// A run as a table of numbers: every variable of the catalogue over time, as Python's export/csv.py writes it.
+// A run as a table of numbers: the sampled variables of the catalogue over time, as Python's export/tables.py writes
+// them; those that follow from them are left out.
 
 import { simulate } from "engine";
 import { CATALOGUE } from "engine-tables";
