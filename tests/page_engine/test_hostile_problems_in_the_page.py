@@ -43,7 +43,7 @@ def named_there(found: dict[str, Any]) -> str:
     return (
         found["outcome"]["name"]
         if "outcome" in found
-        else found.get("refused", str(found)).split()[0]
+        else found.get("refused", str(found)).split()[0].removesuffix(":")
     )
 
 
