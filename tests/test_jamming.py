@@ -259,13 +259,15 @@ HARDLY_SLIPPING = (
         1.9654419219846964,
         tt.Launch(
             tilt=1.134105914090758,
-            spin=10.68002851652686,
+            spin=10.680028516526859,
             tilt_rate=-2.3897441807935573,
             slip=(-0.46940436818002873, 0.09348584975117358),
         ),
     ).replace({"rolling_resistance": 0.00018500667863262965}),
 )
-"""Launches whose slip is less than 1e-8 m/s where it jams."""
+"""Launches whose slip is less than 1e-8 m/s where it jams, and where rounding then lets nothing
+strike: of launches a few units in the last place beside them, some strike.
+"""
 
 
 @pytest.mark.parametrize("problem", HARDLY_SLIPPING)

@@ -92,11 +92,26 @@ def test_the_guard_of_a_ring_falls_where_its_gap_does() -> None:
         axis = (np.sin(tilt), 0.0, np.cos(tilt))
         gap = height + contact_vector(axis, ring)[2]
         if height - 0.05 + 0.3 * axis[2] > 0.0:
-            assert (gap_guard(axis, height, ring) > 0.0) == (gap > 0.0)
+            assert (gap_guard(axis, height, 0.0, ring) > 0.0) == (gap > 0.0)
     hull = Hull.of((SphereSurface(2.0, 0.1), RingSurface(0.5, 0.2, 0.03)))
     axis = (0.6, 0.0, 0.8)
     level = hull.each[1].height(0.8)
-    assert gap_guard(axis, level, hull.each[1]) == pytest.approx(0.0, abs=1e-15)
+    assert gap_guard(axis, level, 0.0, hull.each[1]) == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("margin", [1e-15, 1e-12])
+def test_a_margin_is_not_rounded_to_the_digits_of_the_height(margin: float) -> None:
+    """Where the gap is zero the guard is the margin times the slope of the guard over the height.
+
+    The slope is 1 for a sphere, and for a ring twice the height of its middle, here 2 * 1.5.
+    """
+    axis = (0.6, 0.0, 0.8)
+    sphere = SphereSurface(3.0, 0.1)
+    level = sphere.height(0.8)
+    assert gap_guard(axis, level, margin, sphere) == pytest.approx(margin, rel=1e-12)
+    # h = 0.25 + 2.5 * 0.6: every number of the guard is exact.
+    ring = RingSurface(2.5, 0.0, 0.25)
+    assert gap_guard(axis, 1.75, margin, ring) == pytest.approx(3.0 * margin, rel=1e-12)
 
 
 @pytest.mark.parametrize("tilt", [1e-9, 1e-8, 1e-7, 1e-5, 9e-4, np.pi - 1e-7])
@@ -121,4 +136,4 @@ def test_energy_of_an_edge_near_flat_is_the_closed_form(tilt: float) -> None:
     assert float(run["energy"][0]) == pytest.approx(expected, rel=1e-14)
     swept = tt.sweep(problem, {"launch.spin": [7.0, 8.0]}, duration=0.1, workers=1)
     assert list(swept["final_theta"].values) == pytest.approx([tilt, tilt], rel=1e-9)
-    assert tt.Ending(int(swept["outcome"][0])) is not tt.Ending.FAILED
+    assert (swept["outcome"] == "lying_flat").all()

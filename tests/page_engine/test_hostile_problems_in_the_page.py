@@ -22,7 +22,7 @@ def named(fields: dict[str, Any]) -> str:
     """What becomes of a problem in Python: an outcome, or the field that is refused."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        warnings.simplefilter("ignore", tt.Implausible)
+        warnings.filterwarnings("ignore", category=tt.Implausible)
         try:
             run = tt.simulate(
                 tt.Problem(**fields),

@@ -71,11 +71,13 @@ def _face(top: Top, axis: Vector) -> Scalar:
 
 
 def _gap_of(number: int) -> Callable[[Top, Vector], Scalar]:
-    """What falls through zero as the gap of a surface does while the active one touches."""
+    """What falls through zero as the gap of a surface and `MARGIN` do while the active one
+    touches.
+    """
 
     def gap(top: Top, axis: Vector) -> Scalar:
-        height = support_at(axis, top.surface)[0] + MARGIN
-        return gap_guard(axis, height, each_surface(top.surface)[number])
+        height = support_at(axis, top.surface)[0]
+        return gap_guard(axis, height, MARGIN, each_surface(top.surface)[number])
 
     return gap
 

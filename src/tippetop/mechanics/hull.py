@@ -44,9 +44,10 @@ class Hull(NamedTuple):
         height, slope, curvature = support_at(axis, self.units[self.active])
         return size * height, size * slope, size * curvature
 
-    def gap_guard(self, axis: Vector, height: Scalar) -> Scalar:
-        """Return what falls through zero as the gap of the active surface does."""
-        return gap_guard(axis, height / self.sizes[self.active], self.units[self.active])
+    def gap_guard(self, axis: Vector, height: Scalar, margin: Scalar) -> Scalar:
+        """Return what falls through zero as the gap of the active surface and a margin do."""
+        size, unit = self.sizes[self.active], self.units[self.active]
+        return gap_guard(axis, height / size, margin / size, unit)
 
     @property
     def spherical(self) -> bool:

@@ -238,15 +238,17 @@ class RingSurface(NamedTuple):
             -self.radius * (inverse * inverse * inverse),
         )
 
-    def gap_guard(self, axis: Vector, height: Scalar) -> Scalar:
-        """Return what falls through zero as the gap of this ring does, m^2, smooth at every tilt.
+    def gap_guard(self, axis: Vector, height: Scalar, margin: Scalar) -> Scalar:
+        """Return what falls through zero as the gap of this ring and a margin do, m^2, smooth at
+        every tilt.
 
         The gap is d - radius s, where d = height - tube + center c is how high the ring's middle is
         above a table that its tube touches. This is its product with d + radius s, which is
-        positive wherever the gap is not negative.
+        positive wherever the gap is not negative. The margin, added to d, adds 2 d margin.
         """
         middle = height - self.tube + self.center * axis[2]
-        return middle * middle - self.radius * self.radius * _sine_squared(axis)
+        product = middle * middle - self.radius * self.radius * _sine_squared(axis)
+        return product + 2.0 * middle * margin
 
     def face_guard(self, axis: Vector) -> Scalar:
         """Falls through zero where the body comes to lie flat: s^2 less that of `FLAT`."""
@@ -282,15 +284,16 @@ def support_at(axis: Vector, surface: Surface) -> Support:
     return surface.height(c), surface.slope(c), surface.curvature(c)
 
 
-def gap_guard(axis: Vector, height: Scalar, surface: Surface) -> Scalar:
-    """Return what falls through zero as the gap of a surface does, for the height of the centre of
-    mass, m.
+def gap_guard(axis: Vector, height: Scalar, margin: Scalar, surface: Surface) -> Scalar:
+    """Return what falls through zero as the gap of a surface and a margin do, for the height of the
+    centre of mass, m.
 
-    It is the gap, or for a surface whose gap is not smooth at every tilt its own `gap_guard`.
+    It is their sum, or for a surface whose gap is not smooth at every tilt its own `gap_guard`. The
+    margin is added last: added to the height it would be rounded to digits of the height.
     """
     if hasattr(surface, "gap_guard"):
-        return surface.gap_guard(axis, height)
-    return height - surface.height(axis[2])
+        return surface.gap_guard(axis, height, margin)
+    return height - surface.height(axis[2]) + margin
 
 
 def contact_vector(axis: Vector, surface: Surface) -> Vector:
