@@ -289,7 +289,7 @@ def test_the_law_with_a_choice_is_the_one_defined() -> None:
 
 
 def test_power_series_do_not_follow_a_law_with_a_choice() -> None:
-    with pytest.raises(InvalidInput, match="do not see past the choices") as caught:
+    with pytest.raises(InvalidInput, match="does not see past the choices") as caught:
         tt.simulate(PROBLEMS["law with a choice"], DURATION, integrator="taylor")
     assert caught.value.field == "integrator"
 
@@ -322,8 +322,8 @@ class NotPlainFriction(tt.Friction):
 @pytest.mark.parametrize(
     ("rooted", "sentence"),
     [
-        (False, r"Choosing\.traction = 'a choice by if, and, or, min or max' is not possible"),
-        (True, r"Rooted\.traction = TypeError\('must be real number, not Node'\) is not possible"),
+        (False, r"Choosing\.traction: a choice by if, and, or, min or max "),
+        (True, r"Rooted\.traction: TypeError\('must be real number, not Node'\) "),
     ],
 )
 @pytest.mark.parametrize(
@@ -397,7 +397,8 @@ def test_the_mode_is_the_one_defined() -> None:
 
 @EACH
 def test_sweeps_find_what_runs_find(what: str) -> None:
-    found = tt.sweep(PROBLEMS[what], OVER[what], duration=DURATION, tolerance=1e-14, workers=1)
+    asked = {"duration": DURATION, "tolerance": 1e-14, "workers": 1, "decode": False}
+    found = tt.sweep(PROBLEMS[what], OVER[what], **asked)
     names = {str(found[name].attrs["path"]): name for name in found.dims}
     cells = found.stack(cell=list(names.values()))
     for place in range(cells.sizes["cell"]):

@@ -249,7 +249,8 @@ def test_a_part_of_a_sweep_in_its_place_and_by_its_name(name):
 def test_a_sweep_of_both_axes_and_draws():
     draws = tt.Draws((tt.Range("launch.spin", 1.0, 2.0),), count=2)
     refused(
-        "axes and draws", lambda: Sweep(PROBLEM, Product.of({"launch.tilt": [0.1]}), draws=draws)
+        "axes, draws, samples",
+        lambda: Sweep(PROBLEM, Product.of({"launch.tilt": [0.1]}), draws=draws),
     )
 
 

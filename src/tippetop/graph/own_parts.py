@@ -8,13 +8,13 @@ from tippetop.graph.recording import record
 from tippetop.mechanics.hull import each_surface
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 
-PLAIN = (
-    "the operators + - * / ** < and >, and tippetop.extend.where, abs, min, max and sqrt in place"
-    " of Python's if, and, or, min and max and of functions of math and numpy"
+CANNOT_BE_RECORDED = "cannot be recorded as an expression"
+HINT = (
+    "write laws and surfaces with + - * / ** < and >, and with tippetop.extend.where, abs, min, max"
+    " and sqrt in place of Python's if, and, or, min and max and of functions of math and numpy"
 )
-"""What a law or a surface may use."""
 
 PACKAGE = __name__.partition(".")[0]
 
@@ -61,6 +61,7 @@ def _recorded(name: str, function: Any, numbers: int) -> tuple[Any, ...]:
     try:
         return record(function, 5, numbers).nodes
     except NotRecordable as error:
-        raise InvalidInput(name, "a choice by if, and, or, min or max", PLAIN) from error
+        choice = Described("a choice by if, and, or, min or max")
+        raise InvalidInput(name, choice, "", CANNOT_BE_RECORDED, HINT) from error
     except (TypeError, ValueError, ArithmeticError, AttributeError) as error:
-        raise InvalidInput(name, error, PLAIN) from error
+        raise InvalidInput(name, error, "", CANNOT_BE_RECORDED, HINT) from error

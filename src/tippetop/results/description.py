@@ -75,7 +75,9 @@ def describe(run: xr.Dataset) -> Account:
         run["event_surface"].values.tolist(),
         strict=True,
     )
-    events = [Event(EventKind(str(kind)), *numbers) for kind, *numbers in rows]
+    # Events of the user's own have other names; an account tells of the run's.
+    kinds = {kind.value for kind in EventKind}
+    events = [Event(EventKind(kind), *numbers) for kind, *numbers in rows if kind in kinds]
     flights = zip(
         run["flight_start"].values.tolist(), run["flight_end"].values.tolist(), strict=True
     )

@@ -61,8 +61,9 @@ class Tally:
                 self.methods[segment.method.name] = segment.method
             if not segment.mode.touching:
                 self.flights.take(segment)
-        last = block.segments[-1].mode
-        self._rolls = last.name == "sticking" and last.top.torque_free
+        for segment in block.segments[-1:]:
+            mode = segment.mode
+            self._rolls = mode.name == "sticking" and mode.top.torque_free
         for group in block.groups:
             self._see(group, block.starts[group.which])
             if not group.mode.touching:
