@@ -61,7 +61,11 @@ def test_the_command_line_says_what_python_says(problem, run):
 @pytest.mark.skipif(not has_taylor(), reason="sweeps and runs then use methods of different orders")
 def test_a_sweep_says_what_a_run_says(problem, run):
     found = tt.sweep(
-        problem, {"launch.tilt": [problem.launch.tilt]}, duration=20.0, tolerance=EXACT
+        problem,
+        {"launch.tilt": [problem.launch.tilt]},
+        duration=20.0,
+        tolerance=EXACT,
+        decode=False,
     )
     cell = found.isel(tilt=0)
     for name in SAME:

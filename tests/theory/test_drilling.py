@@ -202,8 +202,8 @@ def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
         {"body.shape.kind": "spheroid", "body.shape.across": 0.02, "body.shape.along": 0.03}
     )
     asks = [
-        ("spin = 0 .* without drilling", lambda: time_to_stand(still, top)),
-        ("spin = 0 .* without drilling", lambda: outlook(problem.replace({"launch.spin": 0.0}))),
+        ("spin: 0 .* without drilling", lambda: time_to_stand(still, top)),
+        ("spin: 0 .* without drilling", lambda: outlook(problem.replace({"launch.spin": 0.0}))),
         ("friction = .* without torque", lambda: eigenvalues(branch, top)),
         (
             "rolling_resistance = 1e-05",
