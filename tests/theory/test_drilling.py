@@ -204,18 +204,18 @@ def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
     asks = [
         ("spin: 0 .* without drilling", lambda: time_to_stand(still, top)),
         ("spin: 0 .* without drilling", lambda: outlook(problem.replace({"launch.spin": 0.0}))),
-        ("friction = .* without torque", lambda: eigenvalues(branch, top)),
+        ("friction: .* without torque", lambda: eigenvalues(branch, top)),
         (
-            "rolling_resistance = 1e-05",
+            "rolling_resistance: 1e-05",
             lambda: eigenvalues(branch, _on(ViscousLaw(0.3), RollingResistance(1e-5))),
         ),
-        ("friction = .* without torque", lambda: tt.predict(problem)),
+        ("friction: .* without torque", lambda: tt.predict(problem)),
         (
             "friction: .*may roll for ever",
             lambda: spectrum(leaning, _on(CoulombLaw(0.3))),
         ),
         (
-            "rolling_resistance = 1e-05",
+            "rolling_resistance: 1e-05",
             lambda: spectrum(leaning, _on(ViscousLaw(0.3), RollingResistance(1e-5))),
         ),
         ("body.shape", lambda: standing_time(egg.replace({"launch.tilt": 0.1}))),
