@@ -81,9 +81,9 @@ class Tally:
         least, most, sag = seen.min(axis=0), seen.max(axis=0), tip.sag
         low, high = least - sag, most + sag
         self._tips.append((tip, starts, low, high))
-        highest = np.flatnonzero(high >= most.max())
+        highest = np.flatnonzero(high >= np.fmax.reduce(most))
         self._highest.append(tip.some(highest, sign=-1.0))
-        lowest = np.flatnonzero(low <= least.min())
+        lowest = np.flatnonzero(low <= np.fmin.reduce(least))
         self._lowest.append(tip.some(lowest))
         self._lowest_begin.append(starts[lowest])
         self._turned = _first(self._turned, tip, starts, (low <= 0.0) & (high >= 0.0), turning_time)
@@ -134,8 +134,9 @@ class Tally:
         least, when = launched, 0.0
         for tips, begin in zip(self._lowest, self._lowest_begin, strict=True):
             place, value = tips.refined_least()
-            which = int(np.argmin(value))
-            if value[which] < least:
+            lower = np.flatnonzero(value < least)  # none where a step is no number
+            if lower.size:
+                which = lower[np.argmin(value[lower])]
                 least, when = float(value[which]), float(begin[which] + place[which])
         return math.atan2(math.sqrt(max(1.0 - least**2, 0.0)), least), when
 
