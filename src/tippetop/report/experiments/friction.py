@@ -105,8 +105,10 @@ def _other_spins(quick: bool) -> xr.Dataset:
 def _wide(quick: bool) -> xr.Dataset:
     mu = np.geomspace(0.03, 10.0, 9) if quick else np.geomspace(0.01, 10.0, 28)
     spins = np.array([100.0, SPIN])
-    # Long enough to turn over, and the same for neighbours, so that they can be followed together.
-    windows = WINDOW * 2.0 ** np.ceil(np.log2(np.maximum(1.0, (3.0 / mu + 4.0) / WINDOW)))
+    # Long enough to turn over and to settle, which strong friction delays; and the same for
+    # neighbours, so that they can be followed together.
+    needed = np.maximum(3.0 / mu + 4.0, 30.0 * mu)
+    windows = WINDOW * 2.0 ** np.ceil(np.log2(np.maximum(1.0, needed / WINDOW)))
     times = np.empty((len(spins), len(mu)))
     for window in np.unique(windows):
         times[:, windows == window] = converged_times(
@@ -116,7 +118,7 @@ def _wide(quick: bool) -> xr.Dataset:
     slopes = [linregress(np.log(mu[small]), np.log(row[small])).slope for row in times]
     return dataset(
         {"spin_wide": spins, "mu_wide": mu},
-        {"window_wide": "20 s, doubled until it is no less than 3 / mu + 4 s"},
+        {"window_wide": "20 s, doubled until it is no less than 3 / mu + 4 and 30 mu s"},
         flip_time_wide=(times, "s", "flip time", "spin_wide", "mu_wide"),
         small_exponent=(slopes, "1", "exponent of mu up to 0.1 s/m", "spin_wide"),
     )
