@@ -58,7 +58,7 @@ class Product(Entry):
 
     @model_serializer
     def _written(self) -> dict[str, Any]:
-        return _table(self.axes)
+        return entries_by_field(self.axes)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -166,7 +166,7 @@ class Draws(Entry):
 
     @field_serializer("ranges")
     def _written(self, ranges: tuple[Range, ...]) -> dict[str, Any]:
-        return _table(ranges)
+        return entries_by_field(ranges)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -251,8 +251,8 @@ def check_fields(name: str, fields: Sequence[str]) -> None:
         raise InvalidInput(name, list(fields), "at least one field, and none of them twice")
 
 
-def _table(entries: Iterable[Axis | Range]) -> dict[str, Any]:
-    """What is written of axes, or ranges, by their fields."""
+def entries_by_field(entries: Iterable[Any]) -> dict[str, Any]:
+    """Return what is written of axes, ranges or columns, by their fields."""
     return {entry.field: entry.model_dump(by_alias=True, exclude={"field"}) for entry in entries}
 
 

@@ -14,10 +14,17 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, field_serializer, model_validator
 
 from tippetop.integrators.base import Array
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.validation import Number, Whole
 from tippetop.sweeps.axes import Count, Entry, Flat
-from tippetop.sweeps.grid import SAMPLE, check_fields, read_fields, sampled_coordinates, shares_of
+from tippetop.sweeps.grid import (
+    SAMPLE,
+    check_fields,
+    entries_by_field,
+    read_fields,
+    sampled_coordinates,
+    shares_of,
+)
 
 MOST_NUMBERS = 10**6
 """Numbers that listed samples may have in all: they are kept in the description of a sweep."""
@@ -128,11 +135,15 @@ class LaunchSamples(Entry):
         for column in listed:
             if len(column.numbers) != self.count:
                 raise InvalidInput(
-                    column.field, f"{len(column.numbers)} values", f"one a sample: {self.count}"
+                    column.field,
+                    Described(f"{len(column.numbers)} values"),
+                    f"one a sample: {self.count}",
                 )
         if len(listed) * self.count > MOST_NUMBERS:
             raise InvalidInput(
-                "samples", f"{len(listed) * self.count} numbers", f"at most {MOST_NUMBERS}"
+                "samples",
+                Described(f"{len(listed) * self.count} numbers"),
+                f"at most {MOST_NUMBERS}",
             )
         return self
 
@@ -154,7 +165,7 @@ class LaunchSamples(Entry):
 
     @field_serializer("columns")
     def _written(self, columns: tuple[Column, ...]) -> dict[str, Any]:
-        return {one.field: one.model_dump(by_alias=True, exclude={"field"}) for one in columns}
+        return entries_by_field(columns)
 
     @property
     def fields(self) -> tuple[str, ...]:
