@@ -244,3 +244,33 @@ def test_a_run_may_end_where_a_block_of_steps_does(monkeypatch: pytest.MonkeyPat
     run = tt.simulate(bouncing, 0.5, events={"up": up}, until="up")
     assert float(run["end_time"]) == times_of(run, "touchdown")[0]
     assert float(run["velocity"][-1, 2]) < 0.0
+
+
+DRY_TOP = tt.presets.report_problem(spin=155.0).replace({"friction.kind": "coulomb"})
+RESTARTED = {
+    "slides": (tt.presets.report_problem(spin=155.0), 2.0),
+    "sticks": (DRY_TOP, 0.3),
+    "flies": (tt.presets.report_problem(spin=50.0, tilt=0.4).replace({"launch.gap": 0.05}), 0.05),
+    "upright": (tt.presets.report_problem(spin=155.0, tilt=0.0), 0.5),
+    "a stem": (tt.presets.leine_glocker_problem(), 1.0),
+}
+
+
+@pytest.mark.parametrize("name", RESTARTED)
+def test_a_restart_goes_on_as_the_run_does(name: str) -> None:
+    problem, time = RESTARTED[name]
+    later = np.linspace(0.0, 0.1, 11)
+    run, solution = tt.simulate(problem, time + 0.1, times=[0.0, *(time + later)], dense=True)
+    again = tt.simulate(solution.problem_at(time), 0.1, times=later)
+    for field in ("axis", "angular_momentum", "velocity", "height", "contact_force"):
+        expected = run[field].values[1:]
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(again[field], expected, rtol=0, atol=1e-9 * scale, err_msg=field)
+    assert len(again["flight_start"]) == len(run["flight_start"])
+
+
+def test_a_restart_needs_one_time_within_the_run() -> None:
+    _, solution = tt.simulate(tt.presets.report_problem(), 1.0, dense=True)
+    for time in (1.5, [0.1, 0.2], "soon"):
+        with pytest.raises(tt.InvalidInput, match="time"):
+            solution.problem_at(time)

@@ -106,6 +106,16 @@ class RampFriction(tt.Friction):
         return RampLaw(self.mu, self.full)
 
 
+@tt.extend.friction_law(mu="1", more="1", slow="m s-1")
+def stribeck_function(
+    slip: Horizontal, angular_velocity: Vector, mu: Scalar, more: Scalar, slow: Scalar
+) -> tuple[Scalar, Scalar]:
+    """Return the force of `StribeckLaw`."""
+    speed = (slip[0] ** 2 + slip[1] ** 2) / slow**2
+    factor = -mu / slow * (1.0 + more / (1.0 + speed)) * (1.0 + speed) ** -0.5
+    return factor * slip[0], factor * slip[1]
+
+
 class SquashedSurface(NamedTuple):
     """A sphere squashed along its axis: h = r - center c - squash c^2."""
 
@@ -236,6 +246,9 @@ PROBLEMS = {
     "law with rolling resistance": REPORT.model_copy(
         update={"friction": STRIBECK, "rolling_resistance": 1e-4}
     ),
+    "law of a function": REPORT.model_copy(
+        update={"friction": stribeck_function(mu=0.2, more=0.5, slow=0.05)}
+    ),
     "law with a choice": REPORT.model_copy(update={"friction": RampFriction(mu=0.2, full=0.05)}),
     "surface": REPORT.model_copy(update={"body": SQUASHED}),
     "mode": REPORT.model_copy(update={"contact": PinnedAtFirst(until=DRAWN)}),
@@ -246,6 +259,7 @@ OVER = {
         "friction.more": [0.1, 0.6],
         "rolling_resistance": [1e-5, 3e-4],
     },
+    "law of a function": {"friction.slow": [0.05, 0.1], "launch.spin": [90.0, 155.0]},
     "law with a choice": {"friction.full": [0.02, 0.05], "launch.spin": [90.0, 155.0]},
     "surface": {"body.shape.squash": [1e-3, 2e-3], "launch.spin": [90.0, 155.0]},
     "mode": {"contact.until": [0.1, 0.3], "launch.spin": [90.0, 155.0]},
@@ -276,6 +290,28 @@ def test_the_law_is_the_one_defined() -> None:
     # At launch slip is zero: what is left of it is rounding of 3 m/s, which the law multiplies by
     # 0.3 / 0.05.
     np.testing.assert_allclose(force, expected, rtol=1e-9, atol=6.0 * np.spacing(3.0))
+
+
+def test_a_law_of_a_function_is_that_of_a_class() -> None:
+    """The numbers are the same but for the order of roundings in the natural units."""
+    of_class, of_function = (
+        tt.simulate(PROBLEMS[what], DURATION, samples=11) for what in ("law", "law of a function")
+    )
+    for name in ("theta", "omega3", "work"):
+        np.testing.assert_allclose(of_class[name], of_function[name], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("units", "field"), [({"mu": "furlong"}, "mu"), ({"kind": "1"}, "kind"), ({"nu": "1"}, "law")]
+)
+def test_a_law_of_a_function_names_what_cannot_be(units: dict[str, str], field: str) -> None:
+    def law(slip: Horizontal, omega: Vector, mu: Scalar) -> tuple[Scalar, Scalar]:
+        return -mu * slip[0], -mu * slip[1]
+
+    with pytest.raises(InvalidInput) as caught:
+        tt.extend.friction_law(**units)(law)
+    assert caught.value.field == field
+    assert "law" not in tt.Friction.kinds
 
 
 def test_the_law_with_a_choice_is_the_one_defined() -> None:

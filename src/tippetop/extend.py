@@ -30,6 +30,7 @@ from tippetop.mechanics.vectors import Vector as Vector
 from tippetop.mechanics.vectors import power
 from tippetop.problem.contact_rules import Contact as Contact
 from tippetop.problem.frictions import Friction as Friction
+from tippetop.problem.function_law import friction_law as friction_law
 from tippetop.problem.shapes import Shape as Shape
 from tippetop.results.event_functions import EventFunction as EventFunction
 from tippetop.results.motion_state import MotionState as MotionState

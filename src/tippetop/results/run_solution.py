@@ -13,9 +13,13 @@ from tippetop.contact.mode import Segment
 from tippetop.contact.readings import Instants, instants, read
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of
+from tippetop.mechanics.hull import outer_height
+from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
+from tippetop.problem.launch import Launch
+from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import LISTED, METRICS, MONITORS
 from tippetop.results.dataset import assemble
 from tippetop.results.derived import derive
@@ -109,6 +113,39 @@ class RunSolution:
         step = block.step_at(times)
         part = np.clip(parts_of(times, block.starts[step], block.ends[step]), 0.0, 1.0)
         return states_in(block, step, part, begin.units, seconds)
+
+    def problem_at(self, time: float) -> Problem:
+        """Return the problem whose launch is the state at a time, s.
+
+        A run of it goes on as this one does from there. Its times begin at 0, its position at the
+        origin, and its marker lies in the plane of axis and vertical, as those of every launch do.
+
+        Raises `InvalidInput` if the time is no number, or not between the launch and the end.
+
+        Examples
+        --------
+        >>> import tippetop as tt
+        >>> run, solution = tt.simulate(tt.presets.report_problem(155.0), 20.0, dense=True)
+        >>> later = tt.simulate(solution.problem_at(2.0), duration=18.0)
+        >>> bool(abs(later["turns_over"] + 2.0 - run["turns_over"]) < 1e-9)
+        True
+        """
+        state = self(time)
+        if np.ndim(state.time) > 0:
+            raise InvalidInput("time", time, "one time")
+        problem = Problem.from_json(self.run.attrs["problem"])
+        axis, top = tuple(state.axis.tolist()), problem.top
+        flies = state.normal_force == 0.0
+        x, y, z = state.velocity.tolist()
+        gap = state.height - float(outer_height(top.surface, axis[2]))
+        launch = Launch.from_angular_velocity(
+            angular_velocity(axis, tuple(state.angular_momentum.tolist()), top),
+            tilt=state.theta,
+            azimuth=state.phi,
+            velocity=(x, y, z if flies else 0.0),
+            gap=max(gap, 0.0) if flies else 0.0,
+        )
+        return problem.replace({"launch": launch})
 
     @np.errstate(all="ignore")
     def sample(self, times: ArrayLike) -> xr.Dataset:
