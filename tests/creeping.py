@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 from tippetop.mechanics.beginning import beginning
+from tippetop.mechanics.contacts.contact_point import ContactPoint, flat
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import ContactPoint, contact_motion, flat, slip_length
+from tippetop.mechanics.rolling import contact_motion, slip_length
 from tippetop.mechanics.stick_slip import slip_part
 
 

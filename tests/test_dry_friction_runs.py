@@ -15,14 +15,10 @@ from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.sliding import Sliding
 from tippetop.contact.stopping import Stopping
 from tippetop.integrators import has_taylor, make_integrator
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
-from tippetop.mechanics.rolling import (
-    ContactPoint,
-    contact_motion,
-    slip_reserve,
-    velocity_without_slip,
-)
+from tippetop.mechanics.rolling import contact_motion, slip_reserve, velocity_without_slip
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_state, natural_units

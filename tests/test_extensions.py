@@ -32,8 +32,10 @@ from tippetop.extend import (
 from tippetop.graph.hoisting import played
 from tippetop.graph.recording import record
 from tippetop.integrators.base import Guard, Motion
+from tippetop.mechanics.contacts.contact_point import ContactPoint
+from tippetop.mechanics.contacts.system import Component, Constraint, free_rates, solve_constraints
 from tippetop.mechanics.motion import axis_rate, on_table
-from tippetop.mechanics.rolling import ContactPoint, velocity_without_slip
+from tippetop.mechanics.rolling import sum_at, velocity_without_slip
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row
@@ -199,7 +201,8 @@ class Pinned(IntegratedMode):
 def pin(y: Row, top: Top) -> tuple[Wrench, ContactPoint]:
     """The force that holds the contact point."""
     point = ContactPoint.of((y[0], y[1], y[2]), (y[3], y[4], y[5]), top)
-    return point.holding(list(enumerate(FORCES)))[0], point
+    held = [Constraint.of(Component(0, force.force)) for force in FORCES]
+    return sum_at(0, solve_constraints((point,), held, free_rates((point,))).wrenches), point
 
 
 @lru_cache

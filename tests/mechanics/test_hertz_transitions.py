@@ -12,12 +12,12 @@ from dry_runs import DryRun
 from tippetop.contact.closed import split
 from tippetop.contact.closing import closing_of
 from tippetop.integrators.scipy_methods import SciPy
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contensou_hertz import BRANCH_TORQUE, HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.ending import Vanishing, closing_rates
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.rolling import (
-    ContactPoint,
     contact_motion,
     spun_up,
     velocity_without_slip,

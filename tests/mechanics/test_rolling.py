@@ -10,18 +10,14 @@ from scipy.integrate import solve_ivp
 
 from strategies import numbers, slides
 from tippetop.contact.sliding import Sliding
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzDrillingLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, axis_rate, contact, on_table, sliding_rates
-from tippetop.mechanics.rolling import (
-    ContactPoint,
-    contact_motion,
-    velocity_without_slip,
-    without_drilling,
-)
+from tippetop.mechanics.rolling import contact_motion, velocity_without_slip, without_drilling
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import HORIZON, rolling_stopping_guard, size, slip_of
 from tippetop.mechanics.surface import SphereSurface, contact_vector

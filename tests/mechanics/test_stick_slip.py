@@ -21,18 +21,14 @@ from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.beginning import beginning
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.friction import NO_TORQUE, Traction
 from tippetop.mechanics.motion import angular_velocity, on_table, sliding_rates
-from tippetop.mechanics.rolling import (
-    ContactPoint,
-    contact_motion,
-    velocity_without_slip,
-    without_drilling,
-)
+from tippetop.mechanics.rolling import contact_motion, velocity_without_slip, without_drilling
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import Growing, Onset, onset, rates_of
 from tippetop.mechanics.state import SlidingState

@@ -12,11 +12,10 @@ from tippetop.contact.mode import EventKind, IntegratedMode, Reaction, Transitio
 from tippetop.contact.surfaces import follow_surface, surface_guards
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.branches import on_other_branch
+from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.rolling import (
-    Acceleration,
-    ContactPoint,
     contact_motion,
     rolling_reserve,
     velocity_without_slip,

@@ -9,6 +9,7 @@ from tippetop.contact.closed import BRANCH, LIFT_OFF, LIMIT_BRANCH, ROLLING, SLI
 from tippetop.contact.surfaces import surface_guards
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.mechanics.branches import has_limit_branches, limit_guard
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.ending import (
     Closing,
     Vanishing,
@@ -20,7 +21,7 @@ from tippetop.mechanics.ending import (
     reopening_guard,
     slip_beside,
 )
-from tippetop.mechanics.rolling import ContactPoint, is_set_valued, rolling_reserve, slip_reserve
+from tippetop.mechanics.rolling import is_set_valued, rolling_reserve, slip_reserve
 from tippetop.mechanics.stick_slip import branch_guard
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector

@@ -13,10 +13,15 @@ from tippetop.contact.mode import Mode, Segment, Transition, failed
 from tippetop.contact.passing import LOOKS
 from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
-from tippetop.mechanics.contact_pair import ContactPair, directions_of, slip_apart, slips_of
+from tippetop.mechanics.contact_pair import ContactPair, slip_apart, slips_of
 from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.pair_motion import PairMotion, pair_motion
-from tippetop.mechanics.rolling import slip_length, velocity_without_slip, without_drilling
+from tippetop.mechanics.rolling import (
+    directions_of,
+    slip_length,
+    velocity_without_slip,
+    without_drilling,
+)
 from tippetop.mechanics.slip_onset import Growing, onset
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import scaled, velocity_of

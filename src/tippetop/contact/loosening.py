@@ -13,8 +13,9 @@ from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.branches import on_branch
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.rolling import ContactPoint, is_set_valued
+from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.slip_onset import onset
 from tippetop.mechanics.state import State

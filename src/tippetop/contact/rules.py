@@ -21,10 +21,11 @@ from tippetop.contact.surfaces import lies_flat, number_of
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
-from tippetop.mechanics.rolling import ContactPoint, contact_motion, is_set_valued
+from tippetop.mechanics.rolling import contact_motion, is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import (
     HORIZON,

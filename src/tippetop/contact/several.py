@@ -13,6 +13,7 @@ from tippetop.contact.two_closed import rolling_of
 from tippetop.contact.two_resolver import settled, slipping
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contact_pair import ContactPair, Tops, without_tilting
+from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.impact import Impact, impact
@@ -123,13 +124,14 @@ class OnSeveral(FreeToFly):
         reaction = mode.reaction(mode.numbers(state))
         wrench = Wrench(reaction.force, reaction.torque)
         return any(
-            self._stays(other, state)
-            and ContactPair.of(state.axis, state.momentum, (self.top, other)).under([(0, wrench)])[
-                1
-            ][2]
-            < 0.0
+            self._stays(other, state) and self._opening(other, state, wrench) < 0.0
             for other in self._beside(state)
         )
+
+    def _opening(self, other: Top, state: State, wrench: Wrench) -> float:
+        """Return the acceleration of another surface's gap under a wrench at the active one."""
+        pair = ContactPair.of(state.axis, state.momentum, (self.top, other))
+        return float(rates_under(pair, [(0, wrench)], free_rates(pair)).points[1][2])
 
     def _impact(self, state: State, restitution: float, integrator: Integrator | None) -> Impact:
         """That of the active surface alone, unless it presses another that touches onto the table.
@@ -162,7 +164,7 @@ class OnSeveral(FreeToFly):
             pair = ContactPair.of(state.axis, state.momentum, (self.top, other))
             slip = slip_of(*along_table(state), self.top)
             wrench = contact_motion(pair.first, slip, pair.first.turning[:2])[0]
-            back = float(abs(pair.under([(0, wrench)])[1][2]))
+            back = float(abs(self._opening(other, state, wrench)))
         slowest = max(SLOWEST_ROCKING * max(1.0, back) ** 0.5, (2.0 * back * depth) ** 0.5)
         return bool(gap_rate(state, other) <= slowest)
 

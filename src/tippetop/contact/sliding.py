@@ -6,8 +6,9 @@ from typing import Any, ClassVar, Self
 from tippetop.contact.closed import BRANCH, LIFT_OFF, STOPPING, ClosedMode, GuardValue, motion_of
 from tippetop.contact.mode import Transition
 from tippetop.integrators.base import Motion
+from tippetop.mechanics.contacts.contact_point import flat
 from tippetop.mechanics.motion import sliding_rates
-from tippetop.mechanics.rolling import flat, is_set_valued, slip_length
+from tippetop.mechanics.rolling import is_set_valued, slip_length
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import (
     branch_guard,

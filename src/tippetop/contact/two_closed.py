@@ -23,15 +23,15 @@ from tippetop.mechanics.contact_pair import (
     Tops,
     apart,
     at_rest,
-    directions_of,
     slip_apart,
     slips_of,
     turning_along,
     without_tilting,
 )
+from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.pair_resolver import Resolution, resolution, rolling_of_slip
-from tippetop.mechanics.rolling import is_set_valued, slip_length, spun_up
+from tippetop.mechanics.rolling import directions_of, is_set_valued, slip_length, spun_up
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import is_rolling, least_slip, size, slip_of
 from tippetop.mechanics.top import Top
@@ -122,7 +122,7 @@ class TwoClosed:
         Where rolling is held, what one contact may do alone both may; else that which is pressed
         the more.
         """
-        normal, free = found.motion.normal, self.pair.free
+        normal, free = found.motion.normal, free_rates(self.pair).points
         candidates = [BOTH] if normal[0] > 0.0 and normal[1] > 0.0 else []
         if self.stopped and candidates and not found.rolls:
             return candidates
@@ -133,7 +133,7 @@ class TwoClosed:
         candidates += [
             name for way, name in zip(ways, (FIRST, SECOND), strict=True) if way == OPENS
         ]
-        return candidates + ([NEITHER] if free[0][2] >= 0.0 and free[1][2] >= 0.0 else [])
+        return candidates + ([NEITHER] if min(free[0][2], free[1][2]) >= 0.0 else [])
 
     def _alone(self, number: int) -> str:
         """What the other contact does where one alone is pressed: opens, or is held as it is."""
@@ -146,7 +146,8 @@ class TwoClosed:
             return CLOSES
         if found.rolling is None:
             return HELD
-        opens = self.pair.under([(number, found.wrench)])[1 - number][2] >= 0.0
+        rates = rates_under(self.pair, [(number, found.wrench)], free_rates(self.pair))
+        opens = rates.points[1 - number][2] >= 0.0
         return OPENS if opens else CLOSES
 
     def going_on(self, found: Resolution) -> Transition:
@@ -162,7 +163,7 @@ class TwoClosed:
             patches = self.rolls and slip_length(self.tops[0].friction) is not None
             least = rolling_of_slip(self.pair, self.rolls) if patches else -1.0
             mode = StickingOnTwo(self.tops[0], self.rules, self.tops[1], self.rolls, least)
-            still = rests(self.state, *found.motion.moving[2])
+            still = rests(self.state, *found.motion.rates.turning)
             return Transition(
                 (), Resting(self.tops[0], self.rules, mode) if still else mode, self.state
             )

@@ -121,7 +121,7 @@ def _left(state: State, here: TwoClosed) -> float:
         return 0.0
     pair = ContactPair.of(state.axis, state.momentum, tops)
     found = pair_motion(pair, (slips[0], slips[1]), here.rolls)
-    change: Slip = found.moving[number][:2]
+    change: Slip = found.rates.points[number][:2]
     if slip_length(tops[0].friction) is not None:
         slip, change = (slips[0][0], slips[0][1], slip_apart(pair)), found.rate
     rate = inner(slip, change)

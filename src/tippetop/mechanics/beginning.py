@@ -3,17 +3,11 @@
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, TypeAlias
 
+from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import presses
-from tippetop.mechanics.rolling import (
-    Acceleration,
-    ContactPoint,
-    contact_motion,
-    rolling_reserve,
-    slip_length,
-    slip_reserve,
-)
+from tippetop.mechanics.rolling import contact_motion, rolling_reserve, slip_length, slip_reserve
 from tippetop.mechanics.stick_slip import inner, scaled, size
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.wrench import Slip, Wrench

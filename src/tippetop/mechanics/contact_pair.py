@@ -28,31 +28,29 @@ already.
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tippetop.mechanics.contacts.contact_point import ContactPoint
+from tippetop.mechanics.contacts.system import (
+    At,
+    Component,
+    Constraint,
+    ContactRates,
+    solve_constraints,
+)
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import ContactPoint, slip_length
+from tippetop.mechanics.rolling import (
+    directions_of,
+    rolling_constraints,
+    slip_length,
+    sticking_constraints,
+)
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, add, cross, dot, scale, solve
-from tippetop.mechanics.wrench import EAST, NORTH, Slip, Wrench
+from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, add, cross, dot, scale
+from tippetop.mechanics.wrench import Slip
 
 Tops = tuple[Top, Top]
 """A top with one, and with the other, of two of its surfaces active."""
-
-Slips = tuple[Slip | None, Slip | None]
-"""Slip of both contacts, or its direction; None where it is held."""
-
-Moving = tuple[Vector, Vector, Vector]
-"""Velocities, or accelerations, of both contact points, and angular velocity, or acceleration."""
-
-At = tuple[int, Wrench]
-"""A wrench, and the number of the contact at which it acts."""
-
-Held = tuple[int, Vector]
-"""A component that is held: number in `Moving`, and direction."""
-
-TURNING = 2
-"""Number of the angular velocity in `Moving`."""
 
 
 class ContactPair(NamedTuple):
@@ -67,84 +65,12 @@ class ContactPair(NamedTuple):
         first, second = (ContactPoint.of(axis, momentum, top) for top in tops)
         return cls(first, second)
 
-    @property
-    def free(self) -> Moving:
-        """Accelerations without contact forces."""
-        return self.first.free.point, self.second.free.point, self.first.free.turning
-
-    def response(self, at: At) -> Moving:
-        """Accelerations that a wrench adds; or velocities, if it is one of impulses."""
-        number, wrench = at
-        here, there = (self, self[::-1])[number]
-        point, turning = here.response(wrench)
-        other = add(point, cross(turning, add(there.arm, scale(-1.0, here.arm))))
-        return (other, point, turning) if number else (point, other, turning)
-
-    def holding(
-        self,
-        ended: tuple[bool, bool],
-        normal: tuple[Wrench, Wrench],
-        moving: Moving,
-        *,
-        stopped: bool,
-    ) -> list[At]:
-        """What keeps both contacts closed, and at rest where slip has ended, and rolling.
-
-        Parameters
-        ----------
-        ended
-            On which contacts slip has ended.
-        normal
-            A unit normal force at each, with what goes with it.
-        moving
-            Accelerations without it, or velocities, which it makes zero.
-        stopped
-            Whether rolling has ended.
-
-        Returns
-        -------
-        list
-            Wrenches, or impulses of such; that which holds rolling is last.
-        """
-        along, across = directions_of(self.first.axis)
-        held: list[Held] = [(0, along), (0, across), (1, across)] if all(ended) else []
-        if any(ended) and not held:
-            held = [(int(ended[1]), EAST), (int(ended[1]), NORTH)]
-        units: list[At] = [(number, Wrench(way, NO_TORQUE)) for number, way in held]
-        units += [*enumerate(normal)]
-        held += [(0, VERTICAL), (1, VERTICAL)]
-        if stopped:
-            units.append((0, Wrench(NO_TORQUE, along)))
-            held.append((TURNING, along))
-        responses = [self.response(unit) for unit in units]
-        rows = [[dot(found[number], way) for found in responses] for number, way in held]
-        sizes = solve(rows, [-dot(moving[number], way) for number, way in held])
-        return [
-            (number, Wrench(scale(size, unit.force), scale(size, unit.torque)))
-            for size, (number, unit) in zip(sizes, units, strict=True)
-        ]
-
     def moment(self, wrenches: Sequence[At]) -> Vector:
         """Moment of some wrenches about the centre of mass, N m."""
         total = NO_TORQUE
         for number, wrench in wrenches:
             total = add(total, self[number].moment(wrench))
         return total
-
-    def under(self, wrenches: Sequence[At]) -> Moving:
-        """Accelerations under some wrenches."""
-        one, other, turning = self.free
-        for at in wrenches:
-            more = self.response(at)
-            one, other, turning = add(one, more[0]), add(other, more[1]), add(turning, more[2])
-        return one, other, turning
-
-
-def directions_of(axis: Vector) -> tuple[Vector, Vector]:
-    """Horizontal unit vectors e along the axis and t across it."""
-    inverse = (axis[0] * axis[0] + axis[1] * axis[1]) ** -0.5
-    x, y = axis[0] * inverse, axis[1] * inverse
-    return (x, y, 0.0 * x), (-y, x, 0.0 * x)
 
 
 def apart(pair: ContactPair) -> Scalar:
@@ -194,9 +120,16 @@ def at_rest(
     They act at the contacts, and keep the normal velocities: what little slip is left goes as
     friction takes it.
     """
-    omega, up = pair.first.turning, Wrench(VERTICAL, NO_TORQUE)
-    one, other = (add(velocity, cross(omega, point.arm)) for point in pair)
-    impulses = pair.holding(ended, (up, up), (one, other, omega), stopped=stopped)
+    omega = pair.first.turning
+    velocities = ContactRates(
+        tuple([add(velocity, cross(omega, point.arm)) for point in pair]), omega
+    )
+    held = [
+        *sticking_constraints(pair, ended),
+        *[Constraint.of(Component(number, VERTICAL)) for number in (0, 1)],
+        *(rolling_constraints(pair, None) if stopped else []),
+    ]
+    impulses = solve_constraints(pair, held, velocities).wrenches
     momentum = add(pair.first.momentum, pair.moment(impulses))
     for _, impulse in impulses:
         velocity = add(velocity, scale(1.0 / pair.first.top.mass, impulse.force))

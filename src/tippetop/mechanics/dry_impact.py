@@ -19,17 +19,12 @@ from dataclasses import dataclass
 from typing import Self
 
 from tippetop.mechanics.beginning import settling
+from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.impact_process import SteppedProcess
 from tippetop.mechanics.impulse import FUZZ, Goal, Impulse, first_reach
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import (
-    Acceleration,
-    ContactPoint,
-    is_set_valued,
-    slip_length,
-    struck_wrench,
-)
+from tippetop.mechanics.rolling import is_set_valued, slip_length, struck_wrench
 from tippetop.mechanics.runge_kutta import RungeKuttaStep
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import come_to_rest, inner, plus, scaled, size, slip_part

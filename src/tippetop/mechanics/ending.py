@@ -16,16 +16,9 @@ value, R = 0.
 
 from typing import NamedTuple
 
+from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint, flat
 from tippetop.mechanics.motion import angular_velocity, axis_rate
-from tippetop.mechanics.rolling import (
-    Acceleration,
-    ContactPoint,
-    contact_motion,
-    flat,
-    going_on,
-    slip_length,
-    slip_wrenches,
-)
+from tippetop.mechanics.rolling import contact_motion, pressing_wrench, slip_length, slip_wrenches
 from tippetop.mechanics.stick_slip import HORIZON, inner, plus, scaled, size, slip_of, slip_part
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, dot, scale
@@ -223,9 +216,9 @@ def jamming_guard(state: Closing, ending: Vanishing, top: Top) -> Scalar:
     changes as fast, and would seem to end, however much of it is left.
     """
     point = ContactPoint.of(state.axis, state.momentum, top)
-    pressed = going_on(
+    pressed = pressing_wrench(
         point, *ending.beside(point, state.direction, slip_beside(state, ending, top))
-    )[0]
+    )
     return point.response(pressed).point[2] - JAMMING * point.response(FORCES[2]).point[2]
 
 

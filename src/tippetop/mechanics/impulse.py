@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from operator import mul
 from typing import NamedTuple, TypeAlias
 
+from tippetop.mechanics.contacts.contact_point import ContactPoint, flat
 from tippetop.mechanics.motion import angular_velocity, point_velocity
-from tippetop.mechanics.rolling import ContactPoint, flat
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import inner, plus

@@ -4,16 +4,21 @@ then.
 
 import math
 
+from tippetop.mechanics.contacts.system import (
+    Component,
+    Constraint,
+    ContactRates,
+    solve_constraints,
+)
 from tippetop.mechanics.impulse import Striking
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, contact, moment_per_normal_force, on_table
-from tippetop.mechanics.rolling import Acceleration, holding_slip
+from tippetop.mechanics.rolling import sticking_constraints, sum_at
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import plus, scaled, size, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
-from tippetop.mechanics.vectors import add, scale
-from tippetop.mechanics.wrench import FORCES
+from tippetop.mechanics.vectors import VERTICAL, add, scale
 
 PROBED = 1e-6
 """Part of the slip that an impulse takes or turns that tells how the Delassus number changes with
@@ -87,6 +92,8 @@ def stuck_at_once(state: State, top: Top) -> State:
     opening.
     """
     body, (x, y, *_) = Striking.of(state, top), slip_of(*along_table(state), top)
-    moving = body.contact._replace(free=Acceleration((x, y, 0.0), body.contact.turning))
-    impulse, _ = moving.holding([*holding_slip(top.friction), (2, FORCES[2])])
+    points, velocities = (body.contact,), ContactRates(((x, y, 0.0),), body.contact.turning)
+    closed = Constraint.of(Component(0, VERTICAL))
+    held = [*sticking_constraints(points, [True]), closed]
+    impulse = sum_at(0, solve_constraints(points, held, velocities).wrenches)
     return body.after((*impulse.force, *impulse.torque))

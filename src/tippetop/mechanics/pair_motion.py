@@ -2,18 +2,19 @@
 
 from typing import Any, NamedTuple
 
-from tippetop.mechanics.contact_pair import (
-    ContactPair,
-    Moving,
-    Slips,
-    apart,
-    directions_of,
-    slips_of,
-    turning_along,
-)
+from tippetop.mechanics.contact_pair import ContactPair, apart, slips_of, turning_along
+from tippetop.mechanics.contacts.system import ContactRates
 from tippetop.mechanics.coulomb import TINY
 from tippetop.mechanics.friction import NO_TORQUE
-from tippetop.mechanics.rolling import normal_wrench, slip_reserve, turning_with
+from tippetop.mechanics.rolling import (
+    Slips,
+    directions_of,
+    slip_reserve,
+    solve_contacts,
+    sum_at,
+    turning_with,
+)
+from tippetop.mechanics.stick_slip import scaled
 from tippetop.mechanics.vectors import Scalar, Vector, add, cross, dot, scale
 from tippetop.mechanics.wrench import Slip, Wrench
 
@@ -25,8 +26,8 @@ class PairMotion(NamedTuple):
     """The contact points."""
     wrenches: tuple[Wrench, Wrench]
     """What the table does at each; along e, where both stick, all at the first."""
-    moving: Moving
-    """Accelerations."""
+    rates: ContactRates
+    """Accelerations of both contact points, and angular acceleration."""
     holding: Scalar = 0.0
     """Couple along e that holds rolling, N m; none where nothing does."""
 
@@ -58,8 +59,8 @@ class PairMotion(NamedTuple):
     @property
     def rate(self) -> Slip:
         """Rate of xi."""
-        point, _, turning = self.moving
-        return (point[0], point[1], apart(self.pair) * turning[2])
+        point, _ = self.rates.points
+        return (point[0], point[1], apart(self.pair) * self.rates.turning[2])
 
     def needed(self, number: int) -> Scalar:
         """Force across e at a contact, N."""
@@ -89,7 +90,7 @@ class PairMotion(NamedTuple):
     @property
     def rolling_rate(self) -> Scalar:
         """Rate of omega_e, rad/s^2."""
-        return dot(self.moving[2], directions_of(self.pair.first.axis)[0])
+        return dot(self.rates.turning, directions_of(self.pair.first.axis)[0])
 
     @property
     def rolling_reserve(self) -> Scalar:
@@ -138,15 +139,9 @@ def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
     rolls
         Sign of omega_e, 0 where it is held at zero; without rolling resistance it does not matter.
     """
-    along, resistance = directions_of(pair.first.axis)[0], pair.first.top.rolling_resistance
-    couple = None if resistance is None else scale(-rolls * resistance.length, along)
-    one, other = (normal_wrench(*contact, couple) for contact in zip(pair, slips, strict=True))
-    stopped = resistance is not None and not rolls
-    wrenches = pair.holding(
-        (slips[0] is None, slips[1] is None), (one, other), pair.free, stopped=stopped
-    )
-    found = [Wrench(NO_TORQUE, NO_TORQUE), Wrench(NO_TORQUE, NO_TORQUE)]
-    for number, wrench in wrenches:
-        found[number] = Wrench(*(add(a, b) for a, b in zip(found[number], wrench, strict=True)))
+    along = directions_of(pair.first.axis)[0]
+    stopped = pair.first.top.resists_rolling and not rolls
+    rolling = None if stopped else scaled(rolls, along[:2])
+    wrenches, rates = solve_contacts(pair, slips, rolling)
     holding = dot(wrenches[-1][1].torque, along) if stopped else 0.0
-    return PairMotion(pair, (found[0], found[1]), pair.under(wrenches), holding)
+    return PairMotion(pair, (sum_at(0, wrenches), sum_at(1, wrenches)), rates, holding)

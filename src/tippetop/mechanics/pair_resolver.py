@@ -3,18 +3,12 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tippetop.mechanics.contact_pair import (
-    ContactPair,
-    Slips,
-    apart,
-    directions_of,
-    slips_of,
-    turning_along,
-)
+from tippetop.mechanics.contact_pair import ContactPair, apart, slips_of, turning_along
+from tippetop.mechanics.contacts.system import rates_added
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.pair_motion import PairMotion, pair_motion
-from tippetop.mechanics.rolling import slip_length
+from tippetop.mechanics.rolling import Slips, directions_of, slip_length
 from tippetop.mechanics.stick_slip import plus, scaled, size
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import scale
@@ -118,7 +112,7 @@ def letting_go(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         found = motion(ways[0])
-        return [Resisted(found.moving[0][:2], stiffness * size(found.wrenches[0].force[:2]))]
+        return [Resisted(found.rates.points[0][:2], stiffness * size(found.wrenches[0].force[:2]))]
 
     way = directions(response, [scaled(-1.0, motion(None).wrenches[0].force[:2])])[0]
     return Resolution(motion(way), (False, False), rolls, (*way, 0.0))
@@ -133,9 +127,9 @@ def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
         If there is no direction of xi for it, or more than one.
     """
     across, lever = directions_of(pair.first.axis)[1], float(apart(pair))
-    turned = pair.response((1, Wrench(across, NO_TORQUE)))[2][2]
+    turned = rates_added(pair, 1, Wrench(across, NO_TORQUE)).turning[2]
     stiffness = _stiffness(pair) + float(abs(lever * turned))
-    drilled = abs(lever * float(pair.response((0, DRILLING))[2][2]))
+    drilled = abs(lever * float(rates_added(pair, 0, DRILLING).turning[2]))
 
     def motion(way: Slip) -> PairMotion:
         return pair_motion(pair, slips_of(pair, way), rolls)
@@ -153,7 +147,7 @@ def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
 
 
 def _stiffness(pair: ContactPair) -> float:
-    responses = [pair.response((0, Wrench(way, NO_TORQUE)))[0] for way in (EAST, NORTH)]
+    responses = [rates_added(pair, 0, Wrench(way, NO_TORQUE)).points[0] for way in (EAST, NORTH)]
     return float(abs(responses[0][0]) + abs(responses[1][1]))
 
 

@@ -16,10 +16,10 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
+from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
 from tippetop.mechanics.ending import Closing, Vanishing, slip_beside
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import Acceleration, ContactPoint
 from tippetop.mechanics.stick_slip import inner, plus, scaled
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar, add, scale
