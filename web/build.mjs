@@ -2,6 +2,7 @@
 
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
+import { deflateRawSync } from "node:zlib";
 import { build } from "esbuild";
 
 const HERE = new URL(".", import.meta.url);
@@ -34,13 +35,14 @@ async function bundled(entry, options) {
   return { script: text(".js"), style: text(".css") };
 }
 
-// Makes the code of the workers, which a page from a file can start from its own text only, a module.
+// Makes the code of the workers, which a page from a file can start from its own text only, a module: packed.
 function workers(code) {
+  const contents = deflateRawSync(code, { level: 9 }).toString("base64");
   return {
     name: "workers",
     setup({ onResolve, onLoad }) {
       onResolve({ filter: /^worker-code$/ }, ({ path }) => ({ path, namespace: "workers" }));
-      onLoad({ filter: /.*/, namespace: "workers" }, () => ({ contents: code, loader: "text" }));
+      onLoad({ filter: /.*/, namespace: "workers" }, () => ({ contents, loader: "text" }));
     },
   };
 }

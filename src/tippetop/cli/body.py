@@ -146,7 +146,7 @@ def _told(piece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
 
 def _surfaces(piece: "tt.Workpiece") -> list[dict[str, Any]]:
     """What a body stands on by its tilt; arcs that stand for one smooth curve together."""
-    from tippetop.problem.bodies import allowance  # noqa: PLC0415 - slow to import
+    from tippetop.problem.turned import allowance  # noqa: PLC0415 - slow to import
 
     hull, center = piece.hull, piece.mass_properties.center
     reach = allowance(piece)
@@ -175,7 +175,7 @@ def _surfaces(piece: "tt.Workpiece") -> list[dict[str, Any]]:
 
 def _expected(piece: "tt.Workpiece") -> dict[str, Any]:
     """What the theory says of it; nothing but None where it does not lie on a sphere."""
-    from tippetop.problem.bodies import touching  # noqa: PLC0415 - slow to import
+    from tippetop.problem.turned import touching  # noqa: PLC0415 - slow to import
     from tippetop.theory.prospects import prospects  # noqa: PLC0415
 
     mass, _, I1, I3 = piece.mass_properties

@@ -1,7 +1,10 @@
 """Circles, ellipses and tangent arcs through points of the half-plane beside the axis."""
 
+# translate module: numpy
+
 import cmath
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -41,12 +44,12 @@ def circle_on_axis(points: Array) -> tuple[complex, float] | None:
     """Return centre and radius of the circle closest to points whose centre is on the axis."""
     base = 1j * points.imag.mean()
     arms = points - base
-    matrix = np.stack([2.0 * arms.imag, np.ones(len(arms))], axis=1)
-    (height, rest), *_ = np.linalg.lstsq(matrix, np.abs(arms) ** 2, rcond=None)
-    square = float(rest + height**2)
+    columns = [2.0 * arms.imag, np.ones(len(arms))]
+    height, remainder = least_squares(columns, np.abs(arms) ** 2)
+    square = remainder + height**2
     if not square > 0.0:
         return None
-    return base + 1j * float(height), math.sqrt(square)
+    return base + 1j * height, math.sqrt(square)
 
 
 def ellipse_on_axis(points: Array) -> tuple[float, float, float, float] | None:
@@ -56,8 +59,7 @@ def ellipse_on_axis(points: Array) -> tuple[float, float, float, float] | None:
     base = points.imag.mean()
     size = float(np.abs(points - 1j * base).max())
     r, z = points.real / size, (points.imag - base) / size
-    matrix = np.stack([r**2, z**2, z], axis=1)
-    (p, q, s), *_ = np.linalg.lstsq(matrix, np.ones(len(points)), rcond=None)
+    p, q, s = least_squares([r**2, z**2, z], np.ones(len(points)))
     if not (p > 0.0 and q > 0.0):
         return None
     level = 1.0 + s * s / (4.0 * q)
@@ -66,6 +68,15 @@ def ellipse_on_axis(points: Array) -> tuple[float, float, float, float] | None:
     gradient = 2.0 * np.hypot(r / across**2, (z - center) / along**2)
     apart = float(np.abs(value / gradient).max())
     return size * across, size * along, base + size * center, size * apart
+
+
+# translate: runtime
+def least_squares(
+    columns: Sequence[NDArray[np.float64]], values: NDArray[np.float64]
+) -> tuple[float, ...]:
+    """Return the factors of columns whose sum is closest to some values."""
+    found, *_ = np.linalg.lstsq(np.stack(columns, axis=1), values, rcond=None)
+    return tuple(found.tolist())
 
 
 def biarc(start: complex, along: complex, end: complex, towards: complex) -> list[Edge] | None:
@@ -99,7 +110,7 @@ def tangents_along(points: Array, within: float) -> Array:
     """Return unit tangents of the smooth curve through points: those of circles through as many of
     them around each as are within a distance of one.
     """
-    tangents = np.zeros(len(points), dtype=complex)
+    tangents = np.full(len(points), 0j)
     last = len(points) - 1
     for k in range(len(points)):
         low, high = max(0, k - 1), min(last, k + 1)

@@ -3,6 +3,8 @@
 A point is a complex number: its distance from the axis and, times i, its height along it, m.
 """
 
+# translate module: numpy
+
 import cmath
 import math
 from typing import NamedTuple
@@ -18,8 +20,15 @@ NEWTON = 3
 TANGENT = 1e-12
 """Sine of the angle below which edges that meet are not told from edges that touch."""
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
-_SHARES = (_NODES + 1.0) / 2.0
+
+# translate: runtime
+def gauss_rule() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the places and weights of Gauss's rule of 20 points on (0, 1)."""
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    return (nodes + 1.0) / 2.0, weights / 2.0
+
+
+SHARES, WEIGHTS = gauss_rule()
 
 
 class Edge(NamedTuple):
@@ -66,7 +75,7 @@ class Edge(NamedTuple):
 
     def points(self, share: ArrayLike) -> Points:
         """Points after these shares of it, from 0 at its start to 1 at its end."""
-        t = np.asarray(share, dtype=float)
+        t = np.asarray(share)
         half = self.turn / 2.0
         # The chord of a part of an arc: no digits are lost however straight the arc is.
         along = t * np.sinc(t * half / math.pi) / np.sinc(half / math.pi)
@@ -74,7 +83,7 @@ class Edge(NamedTuple):
 
     def velocities(self, share: ArrayLike) -> Points:
         """Derivatives of `points` with respect to the share."""
-        t = np.asarray(share, dtype=float)
+        t = np.asarray(share)
         return np.asarray(
             self.chord / np.sinc(self.turn / math.tau) * np.exp(1j * (t - 0.5) * self.turn)
         )
@@ -87,7 +96,7 @@ class Edge(NamedTuple):
         over an angle of at most pi: Gauss's rule with 20 points is exact for both, but for
         rounding.
         """
-        return self.points(_SHARES), _WEIGHTS / 2.0 * self.velocities(_SHARES).imag
+        return self.points(SHARES), WEIGHTS * self.velocities(SHARES).imag
 
     def share(self, point: complex) -> float:
         """The share of it after which it comes to a point that is on it, or on its line or
@@ -111,7 +120,8 @@ class Edge(NamedTuple):
         if not outward:
             return abs(self.radius)
         on_circle = self.center + outward / abs(outward) * abs(self.radius)
-        return abs(on_circle - point) if 0.0 < self.share(on_circle) < 1.0 else ends
+        share = self.share(on_circle)
+        return abs(on_circle - point) if 0.0 < share < 1.0 else ends
 
     def angle_seen(self, point: complex) -> float:
         """Angle by which the direction from a point that is not on it turns along the way, rad."""

@@ -5,6 +5,8 @@ Runs of straight edges become lines and arcs of circles where the points are on 
 along other smooth curves, and edges as drawn between corners.
 """
 
+# translate module: numpy
+
 import cmath
 import math
 from collections.abc import Callable, Sequence
@@ -180,13 +182,13 @@ class Polyline:
         turns = np.angle(chords[1:] * chords[:-1].conjugate())
         ratios = lengths[1:] / lengths[:-1]
         is_even = (ratios <= UNEVEN) & (ratios >= 1.0 / UNEVEN)
-        self.is_soft = np.zeros(len(points), dtype=bool)
+        self.is_soft = np.full(len(points), False)
         self.is_soft[1:-1] = (np.abs(turns) <= SMOOTH) & is_even
         self.curvature = np.zeros(len(points))
         self.curvature[1:-1] = np.abs(turns) / np.minimum(lengths[1:], lengths[:-1])
         # Short edges turn anyhow, by the scatter of their ends.
         is_long = np.minimum(lengths[1:], lengths[:-1]) > 10.0 * within
-        self.is_sharp = np.zeros(len(points), dtype=bool)
+        self.is_sharp = np.full(len(points), False)
         self.is_sharp[1:-1] = (np.abs(turns) > COARSEST) & is_long
 
     def pieces(self) -> list[CurvePiece]:
@@ -358,7 +360,8 @@ class Polyline:
         lines = []
         for piece, (start, end) in zip(pieces, pairwise(joints), strict=True):
             points = self.points[piece.begin : piece.end + 1].copy()
-            points[0], points[-1] = start, end
+            points[0] = start
+            points[-1] = end
             lines.append(points)
         tangents = [
             _tangents(piece, points, self.within)
@@ -412,7 +415,8 @@ def _beside_axis(edge: Edge) -> Edge:
     if not edge.turn:
         return edge
     innermost = edge.center - abs(edge.radius)
-    is_across = innermost.real < 0.0 < edge.share(innermost) < 1.0
+    share = edge.share(innermost)
+    is_across = innermost.real < 0.0 < share < 1.0
     return Edge(edge.start, edge.end) if is_across else edge
 
 
@@ -429,7 +433,8 @@ def _with_poles(points: Array) -> Array:
         turns = np.abs(np.angle(chords[1:] * chords[:-1].conjugate()))
         width = 2.0 * abs(chords[0])
         is_even = 0.5 * width <= abs(chords[1]) <= 2.0 * width
-        if is_even and 1e-3 < turns.max() <= min(COARSEST, 2.0 * turns.min()):
+        largest = turns.max()
+        if is_even and 1e-3 < largest <= min(COARSEST, 2.0 * turns.min()):
             circle = circle_on_axis(line[1:3])
             if circle is not None:
                 center, radius = circle

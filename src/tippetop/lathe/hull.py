@@ -6,6 +6,8 @@ the support function is rho sin(theta) - zeta cos(theta) + tube. The largest one
 body: the surface on which it stands.
 """
 
+# translate module: numpy
+
 import cmath
 import math
 from itertools import pairwise
@@ -14,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.lathe.arcs import least_squares
 from tippetop.lathe.profile import ROUNDING, Profile
 
 ON_AXIS = 1e-4
@@ -49,6 +52,11 @@ class Zone(NamedTuple):
     def support(self, tilt: float) -> float:
         """Height above the table of the origin of the profile's coordinates, m."""
         return self.radius * math.sin(tilt) - self.height * math.cos(tilt) + self.tube
+
+    def apart(self, other: "Zone") -> float:
+        """Largest difference of its three lengths from those of another, m."""
+        across, along = abs(self.radius - other.radius), abs(self.height - other.height)
+        return max(across, along, abs(self.tube - other.tube))
 
     @property
     def name(self) -> str:
@@ -115,15 +123,15 @@ class ConvexHull(NamedTuple):
         support = np.array([self.support(tilt) for tilt in tilts.tolist()])
         sine, cosine = np.sin(tilts), np.cos(tilts)
         # (h + height cos)^2 = across^2 sin^2 + along^2 cos^2 is linear in what is looked for.
-        matrix = np.stack([sine**2, cosine**2, -2.0 * support * cosine], axis=1)
-        (square, remainder, height), *_ = np.linalg.lstsq(matrix, support**2, rcond=None)
+        columns = [sine**2, cosine**2, -2.0 * support * cosine]
+        square, remainder, height = least_squares(columns, support**2)
         along = remainder + height**2
         if not (square > 0.0 and along > 0.0):
             return None
         spheroid = np.sqrt(square * sine**2 + along * cosine**2) - height * cosine
         if np.abs(spheroid - support).max() > within:
             return None
-        return math.sqrt(square), math.sqrt(along), float(height)
+        return math.sqrt(square), math.sqrt(along), height
 
     def whole(self, reach: float) -> list[Zone]:
         """Its surfaces, each once, as they make up the body if they are whole.
@@ -131,18 +139,24 @@ class ConvexHull(NamedTuple):
         Left out are those that then reach out of the others by less than a length, m, wherever it
         stands.
         """
-        kept = list({zone[:3]: zone for zone in self.zones}.values())
-        for zone in list(kept):
-            others = [other for other in kept if other is not zone]
-            tilts = np.concatenate(
-                [np.linspace(*part[3:], 33) for part in self.zones if part[:3] == zone[:3]]
-            )
+        surfaces: list[Zone] = []
+        for zone in self.zones:
+            if not any(zone.apart(other) == 0.0 for other in surfaces):
+                surfaces.append(zone)
+        for zone in list(surfaces):
+            others = [other for other in surfaces if other is not zone]
+            tilts = [
+                tilt
+                for part in self.zones
+                if part.apart(zone) == 0.0
+                for tilt in np.linspace(part.low, part.high, 33).tolist()
+            ]
             beyond = [
                 zone.support(t) - max(other.support(t) for other in others) for t in tilts if others
             ]
             if max(beyond, default=math.inf) <= reach:
-                kept.remove(zone)
-        return kept
+                surfaces = others
+        return surfaces
 
 
 def hull_of(profile: Profile) -> ConvexHull:
@@ -169,9 +183,9 @@ def _is_end_of_sphere(zone: Zone, zones: list[Zone]) -> bool:
     """Whether it only seems to be a tip, because the arc of the sphere beside it is a little off
     the axis.
     """
+    ends = (zone.low, zone.high)
     beside = any(
-        other.name == "sphere" and {zone.low, zone.high} & {other.low, other.high}
-        for other in zones
+        other.name == "sphere" and (other.low in ends or other.high in ends) for other in zones
     )
     return zone.name == "tip" and zone.high - zone.low < 2.0 * ON_AXIS and beside
 
@@ -188,11 +202,7 @@ def _merged(zones: list[Zone], within: float) -> list[Zone]:
     found: list[Zone] = []
     for zone in zones:
         last = found[-1] if found else None
-        if (
-            last
-            and max(abs(one - other) for one, other in zip(last[:3], zone[:3], strict=True))
-            <= within
-        ):
+        if last and last.apart(zone) <= within:
             found[-1] = last._replace(high=zone.high)
         else:
             found.append(zone._replace(low=last.high if last else 0.0))

@@ -1,5 +1,7 @@
 """What turned bodies weigh, where their centre of mass is, and how hard they are to turn."""
 
+# translate module: numpy
+
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeAlias

@@ -2,6 +2,8 @@
 body.
 """
 
+# translate module: numpy
+
 import math
 from collections.abc import Sequence
 from functools import cached_property
@@ -194,7 +196,8 @@ def _edge(points: Sequence[Sequence[float]], number: int, size: float, field: st
     half = math.pi / 2.0 if share > 1.0 - HALF_CIRCLE else math.asin(share)
     edge = Edge(start, end, math.copysign(2.0 * half, radius))
     innermost = edge.center - abs(edge.radius)
-    if innermost.real < -ROUNDING * size and 0.0 < edge.share(innermost) < 1.0:
+    share = edge.share(innermost)
+    if innermost.real < -ROUNDING * size and 0.0 < share < 1.0:
         raise InvalidInput(
             f"{field}.{number}", list(points[number]), "an arc that stays beside the axis"
         )
@@ -246,7 +249,8 @@ def _innermost(edge: Edge) -> complex:
     """
     if edge.turn:
         point = edge.center - abs(edge.radius)
-        if 1e-6 < edge.share(point) < 1.0 - 1e-6:
+        share = edge.share(point)
+        if 1e-6 < share < 1.0 - 1e-6:
             return point
     return complex(edge.points(0.5))
 
@@ -254,21 +258,33 @@ def _innermost(edge: Edge) -> complex:
 def _refuse_meetings(edges: list[Edge], within: float, field: str) -> None:
     """Refuse a line that meets itself elsewhere than where an edge follows another."""
     reach = np.array([edge.sagitta + within for edge in edges])
-    ends = np.array([[edge.start, edge.end] for edge in edges])
-    low = [part.min(axis=1) - reach for part in (ends.real, ends.imag)]
-    high = [part.max(axis=1) + reach for part in (ends.real, ends.imag)]
-    near = np.triu(np.ones((len(edges), len(edges)), dtype=bool), 1)
-    for least, most in zip(low, high, strict=True):
-        near &= (least[:, None] <= most) & (least <= most[:, None])
-    for one, other in np.argwhere(near).tolist():
-        shared = _shared_ends(edges, one, other)
-        for point in meetings(edges[one], edges[other], within):
-            if all(abs(point - end) > 10.0 * within for end in shared):
-                place = (
-                    f"a line whose edges {one + 1} and {other + 1} meet at ({point.real:g},"
-                    f" {point.imag:g})"
-                )
-                raise InvalidInput(field, Described(place), "a line that does not meet itself")
+    starts = np.array([edge.start for edge in edges])
+    ends = np.array([edge.end for edge in edges])
+    left = np.minimum(starts.real, ends.real) - reach
+    right = np.maximum(starts.real, ends.real) + reach
+    low = np.minimum(starts.imag, ends.imag) - reach
+    high = np.maximum(starts.imag, ends.imag) + reach
+    for one in range(len(edges) - 1):
+        near = (
+            (left[one + 1 :] <= right[one])
+            & (right[one + 1 :] >= left[one])
+            & (low[one + 1 :] <= high[one])
+            & (high[one + 1 :] >= low[one])
+        )
+        for place in np.flatnonzero(near).tolist():
+            _refuse_meeting(edges, one, one + 1 + place, within, field)
+
+
+def _refuse_meeting(edges: list[Edge], one: int, other: int, within: float, field: str) -> None:
+    """Refuse two edges that meet elsewhere than where one follows the other."""
+    shared = _shared_ends(edges, one, other)
+    for point in meetings(edges[one], edges[other], within):
+        if all(abs(point - end) > 10.0 * within for end in shared):
+            place = (
+                f"a line whose edges {one + 1} and {other + 1} meet at ({point.real:g},"
+                f" {point.imag:g})"
+            )
+            raise InvalidInput(field, Described(place), "a line that does not meet itself")
 
 
 def _shared_ends(edges: list[Edge], one: int, other: int) -> list[complex]:

@@ -2,6 +2,8 @@
 their digits.
 """
 
+# translate module: numpy
+
 import cmath
 import math
 from collections.abc import Callable, Sequence
@@ -25,6 +27,7 @@ Point = tuple[float, ...]
 RoundingAt = Callable[[Point], float]
 
 
+# translate: runtime
 def rounding_of(number: float) -> float:
     """Return half a unit of the last decimal of a number, 0 of a whole number.
 
@@ -39,7 +42,9 @@ def rounding_of(number: float) -> float:
 
 def usual_rounding(points: Sequence[Point]) -> float:
     """Return the rounding that half of the numbers of points do not exceed, but for whole ones."""
-    roundings = sorted(filter(None, (rounding_of(number) for point in points for number in point)))
+    roundings = sorted(
+        rounding for point in points for rounding in map(rounding_of, point) if rounding
+    )
     return roundings[len(roundings) // 2] if roundings else 0.0
 
 

@@ -1,16 +1,17 @@
 """Drawings on a sheet: where the axis is, which half of the outline is turned, what is a bore."""
 
+# translate module: numpy
+
 import math
 import re
-from collections.abc import Callable, Sequence
-from itertools import combinations
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.lathe.fitting import fit
-from tippetop.lathe.profile import Profile, area_of, profile_of
+from tippetop.lathe.profile import ROUNDING, Profile, area_of, profile_of
 from tippetop.lathe.rounding import unrounded
 from tippetop.lathe.strokes import Path, is_closed, joined, points_of, right_parts
 from tippetop.support.errors import Described, InvalidInput
@@ -55,8 +56,20 @@ class Reading(NamedTuple):
     """Sentences that say where the axis is, and how well the drawing is a body of revolution."""
 
 
-class _NoAxis(Exception):
+class _NoAxis(ValueError):
     """No axis is found; the text says what the drawing shows instead."""
+
+
+class _Frame(NamedTuple):
+    """How sentences name a place across an axis that was turned upright."""
+
+    name: str
+    sign: float
+    unit: str
+
+    def told(self, x: float) -> str:
+        """Return a place in the drawing's own numbers, as "x = 10 mm"."""
+        return f"{self.name} = {self.sign * x + 0.0:.6g} {self.unit}"
 
 
 class _Axis(NamedTuple):
@@ -68,6 +81,7 @@ class _Axis(NamedTuple):
     """How it was found."""
 
 
+# translate: skip
 def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> Reading:
     """Return the profile that a drawing shows, in its own unit.
 
@@ -78,23 +92,29 @@ def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> 
     Raises `InvalidInput` if no axis is found, if the two sides differ, or if the outlines are not
     those of one body with cavities in it.
     """
+    directions, place = _stated(axis)
+    return read_along(sheet, directions, place, tolerance, field)
+
+
+def read_along(
+    sheet: Sheet, directions: str, place: float | None, tolerance: float, field: str
+) -> Reading:
+    """Return the profile that a drawing shows around an axis along one of some directions, at a
+    place or where it is found; see `read_sheet`.
+    """
     if not sheet.paths:
         raise InvalidInput(
             field, Described("a drawing without lines"), "one with an outline of the body"
         )
-    direction, place = _stated(axis)
     reasons = []
-    for name in direction:
+    for name in directions:
         # A level axis is turned upright: what is to the right on the sheet is up.
         turn = 1.0 if name == "x" else 1j
         sign = 1.0 if name == "x" else (1.0 if sheet.is_y_down else -1.0)
         paths = [(called, _times(path, turn)) for called, path in sheet.paths]
-
-        def told(x: float, name: str = name, sign: float = sign) -> str:
-            return f"{name} = {sign * x + 0.0:.6g} {sheet.unit}"
-
+        frame = _Frame(name, sign, sheet.unit)
         try:
-            return _read(paths, None if place is None else sign * place, told, tolerance, field)
+            return _read(paths, None if place is None else sign * place, frame, tolerance, field)
         except _NoAxis as reason:
             reasons.append(str(reason))
     raise InvalidInput(
@@ -105,6 +125,7 @@ def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> 
     )
 
 
+# translate: skip
 def _stated(axis: str | None) -> tuple[str, float | None]:
     """The directions that an axis may have, and its place."""
     if axis is None:
@@ -128,7 +149,7 @@ def _times(path: Path, factor: complex) -> Path:
 def _read(
     paths: list[tuple[str, Path]],
     place: float | None,
-    told: Callable[[float], str],
+    frame: _Frame,
     tolerance: float,
     field: str,
 ) -> Reading:
@@ -142,7 +163,7 @@ def _read(
     outlines, center_lines = _outlines(paths, GAP * size)
     if not outlines:
         raise _NoAxis("straight lines that do not meet")
-    axis = _axis(outlines, center_lines, place, size, told)
+    axis = _axis(outlines, center_lines, place, size, frame)
     points, _ = _chords([path for _, path in outlines])
     reach = points.real - axis.place
     side = -1.0 if reach.max() <= GAP * size else 1.0
@@ -159,7 +180,7 @@ def _read(
             raise InvalidInput(
                 field,
                 Described(f"an open line from {first} to {last}"),
-                f"lines that end on the axis, {told(axis.place)}, or where they begin",
+                f"lines that end on the axis, {frame.told(axis.place)}, or where they begin",
             )
         stated.append((name, unrounded(_ended(points_of(part), GAP * size), ALONG * size)))
     outer, cavities = nested(stated, tolerance, field)
@@ -181,7 +202,8 @@ def _ended(points: list[Point], gap: float) -> list[Point]:
     if max(first[0], last[0]) > gap:
         points[-1] = (*first[:2], *last[2:])
     else:
-        points[0], points[-1] = (0.0, *first[1:]), (0.0, *last[1:])
+        points[0] = (0.0, *first[1:])
+        points[-1] = (0.0, *last[1:])
     return [(max(0.0, point[0]), *point[1:]) for point in points]
 
 
@@ -208,8 +230,7 @@ def _outlines(
         others, center_lines = paths, []
     outlines = []
     for path in joined([path for _, path in others], gap):
-        used = {id(stroke.at) for stroke in path}
-        names = [name for name, part in others if id(part[0].at) in used]
+        names = [name for name, part in others if any(part[0].at == stroke.at for stroke in path)]
         outlines.append((names[0], path))
     return outlines, center_lines
 
@@ -219,21 +240,21 @@ def _axis(
     center_lines: list[Path],
     place: float | None,
     size: float,
-    told: Callable[[float], str],
+    frame: _Frame,
 ) -> _Axis:
     """The upright axis of a drawing."""
     paths = [path for _, path in outlines]
     points, _ = _chords(paths)
     low, high = float(points.real.min()), float(points.real.max())
     if place is not None:
-        return _placed(paths, place, size, told, "The axis is where it is stated,")
-    upright = {
-        round(path[0].first.real, 12)
+        return _placed(paths, place, size, frame, "The axis is where it is stated,")
+    upright = [
+        path[0].first.real
         for path in center_lines
         if abs(path[0].first.real - path[0].last.real) <= ALONG * size
-    }
-    if len(upright) == 1:
-        return _placed(paths, upright.pop(), size, told, "The axis is the centre line")
+    ]
+    if upright and max(upright) - min(upright) <= ALONG * size:
+        return _placed(paths, upright[0], size, frame, "The axis is the centre line")
     edges = [
         edge
         for edge in (0.0, low, high)
@@ -243,7 +264,7 @@ def _axis(
     middle = 0.5 * (low + high)
     difference = _difference(paths, middle)
     if edges and (not edges[0] or is_open or difference > ASYMMETRY * size):
-        return _Axis(edges[0], f"The axis is the straight edge at {told(edges[0])}.")
+        return _Axis(edges[0], f"The axis is the straight edge at {frame.told(edges[0])}.")
     if is_open:
         first, last = next(
             (path[0].first, path[-1].last) for path in paths if not is_closed(path, GAP * size)
@@ -254,27 +275,26 @@ def _axis(
         )
     if difference > ASYMMETRY * size:
         raise _NoAxis(f"two sides that differ by {100.0 * difference / size:.3g} % of the size")
-    return _placed(paths, middle, size, told, "The axis is the middle of the outline,")
+    return _placed(paths, middle, size, frame, "The axis is the middle of the outline,")
 
 
-def _placed(
-    paths: list[Path], place: float, size: float, told: Callable[[float], str], how: str
-) -> _Axis:
+def _placed(paths: list[Path], place: float, size: float, frame: _Frame, how: str) -> _Axis:
     """An axis at a place, of a drawing on one side of it, or on both if these agree."""
     points, _ = _chords(paths)
     reach = points.real - place
     if reach.min() >= -GAP * size or reach.max() <= GAP * size:
-        return _Axis(place, f"{how} at {told(place)}.")
+        return _Axis(place, f"{how} at {frame.told(place)}.")
     difference = _difference(paths, place) / size
     if difference > ASYMMETRY:
         raise InvalidInput(
             "axis",
-            Described(f"{told(place)}, with sides that differ by {100.0 * difference:.3g} %"),
+            Described(f"{frame.told(place)}, with sides that differ by {100.0 * difference:.3g} %"),
             f"an axis on whose sides the drawing differs by {100.0 * ASYMMETRY:g} % at most, or one"
             " side alone",
         )
-    agreement = f"the two sides differ by {100.0 * difference:.2g} % of the size at most"
-    return _Axis(place, f"{how} at {told(place)}; {agreement}.")
+    percent = 100.0 * difference if difference > ROUNDING else 0.0
+    agreement = f"the two sides differ by {percent:.2g} % of the size at most"
+    return _Axis(place, f"{how} at {frame.told(place)}; {agreement}.")
 
 
 def _is_half(paths: list[Path], edge: float, size: float) -> bool:
@@ -306,9 +326,12 @@ def _apart(points: NDArray[np.complex128], chords: Chords) -> float:
     """Largest distance of points from the closest of some chords."""
     starts, ends = chords
     along = np.where(starts == ends, 1e-300, ends - starts)
-    gone = (points[:, None] - starts) / along
-    distances = np.abs(gone - np.clip(gone.real, 0.0, 1.0)) * np.abs(along)
-    return float(distances.min(axis=1).max())
+    lengths, closest = np.abs(along), []
+    for point in points.tolist():
+        share = (point - starts) / along
+        distances = np.abs(share - np.clip(share.real, 0.0, 1.0)) * lengths
+        closest.append(float(distances.min()))
+    return max(closest)
 
 
 def _chords(paths: Sequence[Path]) -> Chords:
@@ -324,12 +347,11 @@ def nested(
     outlines: Sequence[tuple[str, Sequence[Point]]], tolerance: float, field: str
 ) -> tuple[list[Point], list[list[Point]]]:
     """The outer outline, and the cavities in it; refuses other outlines."""
-    found: list[tuple[str, Sequence[Point], Profile]] = [
+    profiles: list[tuple[str, Sequence[Point], Profile]] = [
         (name, points, profile_of(fit(points, tolerance).points, field=field))
         for name, points in outlines
     ]
-    found.sort(key=lambda one: -area_of(one[2].edges))
-    (outer_name, outer, body), *inner = found
+    (outer_name, outer, body), *inner = sorted(profiles, key=lambda one: -area_of(one[2].edges))
     for name, _, profile in inner:
         sides = profile.sides(body)
         if "out" in sides:
@@ -339,9 +361,9 @@ def nested(
                 Described(f"{name}, which {how} {outer_name}"),
                 "one outline around the body, and bores inside it: unite the parts of the body",
             )
-    for (name, _, one), (other_name, _, other) in combinations(inner, 2):
-        if "out" not in other.sides(one) or "in" in one.sides(other):
-            raise InvalidInput(
-                field, Described(f"{other_name}, which is inside {name}"), "bores beside each other"
-            )
+    for number, (other_name, _, other) in enumerate(inner):
+        for name, _, one in inner[:number]:
+            if "out" not in other.sides(one) or "in" in one.sides(other):
+                inside = Described(f"{other_name}, which is inside {name}")
+                raise InvalidInput(field, inside, "bores beside each other")
     return list(outer), [list(points) for _, points, _ in inner]

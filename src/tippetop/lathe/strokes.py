@@ -4,6 +4,8 @@ A point is a complex number. Strokes are joined to paths, cut at an axis, and wr
 profile.
 """
 
+# translate module: numpy
+
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise

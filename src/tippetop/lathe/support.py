@@ -2,8 +2,9 @@
 tilt.
 """
 
+# translate module: by hand in ovals.js
+
 import numpy as np
-from scipy.optimize import linprog
 
 from tippetop.lathe.hull import ConvexHull
 
@@ -24,6 +25,8 @@ def polynomial_support(
     Elsewhere it is below the hull, unless it may reach out of the body as a whole. Everywhere it is
     the support function of a convex surface.
     """
+    from scipy.optimize import linprog  # noqa: PLC0415 - slow to import
+
     tilts = np.pi * np.arange(STEPS + 1) / STEPS
     c, s = np.cos(tilts), np.sin(tilts)
     support = np.array([hull.support(tilt) for tilt in tilts.tolist()]) + center * c

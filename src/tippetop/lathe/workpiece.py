@@ -2,6 +2,8 @@
 them.
 """
 
+# translate module: numpy
+
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Annotated, Literal, Self
@@ -185,4 +187,5 @@ def _within(inner: Profile, outer: Profile) -> bool:
 
 def _apart(one: Profile, other: Profile) -> bool:
     """Whether neither of two profiles has a part inside the other, though they may touch."""
-    return "out" in one.sides(other) and "in" not in one.sides(other) | other.sides(one)
+    sides = one.sides(other)
+    return "out" in sides and "in" not in sides and "in" not in other.sides(one)

@@ -25,6 +25,8 @@ ROOTS = (
     "tippetop.contact.trajectory",
     "tippetop.problem.problem",
     "tippetop.problem.plausibility",
+    "tippetop.problem.turned",
+    "tippetop.lathe.sheet",
     "tippetop.theory.prediction",
     "tippetop.theory.prospects",
     "tippetop.mechanics.view",

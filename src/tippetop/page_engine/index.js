@@ -37,3 +37,4 @@ export function ownOutline(body, edges) {
 
 /** The outline of the hull of its surfaces. */
 export const outline = (body) => m.outline(new m.Body(body).surface);
+export { fromDrawing, fromPoints, pointsOf, turned, weighed } from "./brought.js";

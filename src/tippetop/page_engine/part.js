@@ -143,6 +143,12 @@ function isListed(value, { points, count }) {
 }
 
 function takenParts(name, value, field, wrong) {
+  if (field.listed && !Array.isArray(value)) {
+    wrong.push(refused(name, value, "a list of tables"));
+    return value;
+  }
+  if (field.listed)
+    return value.map((inner, place) => part(`${name}.${place}`, inner, field.parts, wrong));
   if (!(Array.isArray(value) && field.several)) return part(name, value, field.parts, wrong);
   const parts = value.map((inner, place) => part(`${name}.${place}`, inner, field.parts, wrong));
   if (!parts.length) wrong.push(refused(name, value, TABLE));

@@ -1,6 +1,7 @@
 // What Python means where JavaScript means something else: for the translated modules.
 import { repr } from "./words.js";
 
+export * from "./arrays.js";
 export * from "./words.js";
 
 export class ArithmeticError extends Error {}
@@ -93,6 +94,9 @@ function finite(result, operand) {
   return result;
 }
 
+/** Whether undefined results are errors. */
+export const heeds = () => strict;
+
 /** Quotient and remainder as Python has them: the remainder is exact, with the sign of the divisor. */
 function divided(a, b) {
   if (b === 0) throw new ZeroDivisionError("division by zero");
@@ -121,10 +125,12 @@ function truths(a, b) {
     throw new TypeError("| and & are of truth values only");
 }
 export function either(a, b) {
+  if (hasattr(a, "__or__")) return a.__or__(b);
   truths(a, b);
   return a || b;
 }
 export function both(a, b) {
+  if (hasattr(a, "__and__")) return a.__and__(b);
   truths(a, b);
   return a && b;
 }
@@ -212,6 +218,9 @@ export const math = {
   isinf: (x) => Math.abs(x) === Infinity,
   sinh: (x) => finite(Math.sinh(x), x),
   cosh: (x) => finite(Math.cosh(x), x),
+  tau: 2 * Math.PI,
+  radians: (x) => (x * Math.PI) / 180,
+  copysign: (a, b) => (b < 0 || Object.is(b, -0) ? -Math.abs(a) : Math.abs(a)),
   dist: (a, b) => Math.hypot(...Array.from(a, (x, i) => x - b[i])),
 };
 
@@ -404,15 +413,55 @@ export function item(all, place) {
 
 export function put(all, place, value) {
   if (all instanceof Dict) all.set(place, value);
+  else if (all.__setitem__ !== undefined) all.__setitem__(place, value);
   else all[place < 0 ? all.length + place : place] = value;
 }
 
-/** A slice of a sequence, backwards. */
+/** The first place of a slice, and how many there are; null stands for an end that is left out. */
+export function span(length, from, to, step) {
+  const inside = (place, low, high) =>
+    Math.min(Math.max(place < 0 ? place + length : place, low), high);
+  const [low, high] = step > 0 ? [0, length] : [-1, length - 1];
+  const [first, last] = step > 0 ? [low, high] : [high, low];
+  const start = from === null ? first : inside(from, low, high);
+  const end = to === null ? last : inside(to, low, high);
+  return [start, Math.max(0, Math.ceil((end - start) / step))];
+}
+
+/** A slice of a sequence with a step. */
 export function slice(all, from, to, step) {
-  if (step !== -1 || from < 0 || to < 0) throw new RangeError("such a slice is not known here");
-  const start = to === null ? 0 : to + 1;
-  const end = from === null ? undefined : from + 1;
-  return tuple(all).slice(start, end).reverse();
+  if (all.strided) return all.strided(from, to, step);
+  const row = tuple(all);
+  const [start, count] = span(row.length, from, to, step);
+  return filled(count, (place) => row[start + place * step]);
+}
+
+/** Write the values of an array, or one value, to a slice of an array. */
+export function put_slice(all, from, to, value) {
+  const part = all.strided(from, to, 1);
+  for (let place = 0; place < part.length; place++)
+    part.__setitem__(place, value.length === undefined ? value : item(value, place));
+}
+
+/** A value of an object that is computed when it is first asked for. */
+export function remembered(one, name, compute) {
+  const value = compute();
+  Object.defineProperty(one, name, { value });
+  return value;
+}
+
+/** A function with its first operands set. */
+export const partial =
+  (function_, ...first) =>
+  (...others) =>
+    function_(...first, ...others);
+
+/** Half a unit of the last decimal of a number, 0 of a whole number. */
+export function rounding_of(number) {
+  const [, places = "", power = "0"] =
+    /^-?\d+(?:\.(\d*?)0*)?(?:e([+-]\d+))?$/.exec(String(number)) ?? [];
+  const exponent = Number(power) - places.length;
+  return exponent < 0 ? 0.5 * 10 ** exponent : 0;
 }
 
 export function len(all) {
@@ -431,9 +480,9 @@ export function index(all, one) {
   if (place < 0) throw new ValueError("it is not in the list");
   return place;
 }
-export function pop(all) {
+export function pop(all, place = -1) {
   if (!all.length) throw new TypeError("pop from an empty list");
-  return all.pop();
+  return all.splice(place, 1)[0];
 }
 export const add_to = (all, one) => {
   all.add(place_of(one));

@@ -9,12 +9,11 @@ from pydantic import AfterValidator, model_validator
 
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.surface import Surface
-from tippetop.problem.shapes import DEGREE, EccentricSphere, Oval, Ring, Shape, Sphere, Spheroid
+from tippetop.problem.shapes import Shape
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.validation import ONE_OR_SEVERAL, Part, Points, Positive, Quantity
 
 if TYPE_CHECKING:
-    from tippetop.lathe.hull import Zone
     from tippetop.lathe.workpiece import Insert, Workpiece
 
 
@@ -158,6 +157,7 @@ class Body(Part):
         """
         from tippetop.lathe.files import read_workpiece  # noqa: PLC0415 - slow to import
         from tippetop.lathe.workpiece import Workpiece  # noqa: PLC0415
+        from tippetop.problem.turned import turned_fields  # noqa: PLC0415
 
         given = {"density": density, "inserts": inserts, "unit": unit, "tolerance": tolerance}
         fields = {name: value for name, value in given.items() if value is not None}
@@ -170,100 +170,10 @@ class Body(Part):
                 piece = read_workpiece(profile, axis=axis, **fields)
             case _:
                 piece = Workpiece(**{"profile": profile, **fields})
-        mass, center, I1, I3 = piece.mass_properties
-        shapes = touching(piece, whole)
-        shown = piece.outline.points_above(center)
-        return cls(
-            mass=mass, shape=shapes[0] if len(shapes) == 1 else shapes, I1=I1, I3=I3, profile=shown
-        )
+        mass, shapes, I1, I3, shown = turned_fields(piece, whole)
+        shape = shapes[0] if len(shapes) == 1 else shapes
+        return cls(mass=mass, shape=shape, I1=I1, I3=I3, profile=shown)
 
-
-# translate: skip
-def touching(piece: "Workpiece", whole: bool = False) -> list[Shape]:
-    """The surfaces that a turned body touches the table with, as seen from its centre of mass.
-
-    Smooth curves that are no circles become ovals. Raises `InvalidInput` if there are others than
-    spheres, rings, ovals and one spheroid; or, unless they may be taken as whole, if one of these,
-    were it whole, would be outside of the body.
-    """
-    center, hull = piece.mass_properties.center, piece.hull
-    reach = allowance(piece)
-    spheroid = hull.spheroid(reach) if len(hull.zones) > 2 else None
-    if spheroid is not None:
-        across, along, height = spheroid
-        return [Spheroid(across=across, along=along, center=height - center)]
-    smooth = hull.smooth_parts(reach)
-    ovals = [_oval(piece, *part, whole) for part in smooth]
-
-    def is_left(zone: "Zone") -> bool:
-        return not any(low <= zone.low and zone.high <= high for low, high in smooth)
-
-    zones = [zone for zone in hull.zones if is_left(zone)]
-    if len(zones) > MOST:
-        raise InvalidInput(
-            "profile",
-            Described(f"a body that stands on {len(zones)} surfaces"),
-            f"at most {MOST}",
-            "has too many",
-            "draw arcs rather than many short edges",
-        )
-    found = {zone: _shape(zone, zone.height - center) for zone in zones}
-    for zone in zones:
-        if hull.protrusion(zone)[0] > reach and not whole:
-            part = Described(
-                f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
-            )
-            raise InvalidInput("profile", part, "", CUT_OFF, AS_WHOLE)
-    if ovals:
-        return [*ovals, *dict.fromkeys(found.values())]
-    shapes = [found[zone] for zone in hull.whole(reach)]
-    match shapes:
-        case [Sphere(radius=radius, center=above)] if 0.0 < above < radius:
-            return [EccentricSphere(radius=radius, eccentricity=above / radius)]
-    return shapes
-
-
-# translate: skip
-def allowance(piece: "Workpiece") -> float:
-    """How far surfaces that a turned body touches the table with may reach out of it, m."""
-    return PROTRUDING * piece.outline.size + 2.0 * piece.deviation
-
-
-# translate: skip
-def _oval(piece: "Workpiece", low: float, high: float, whole: bool) -> Shape:
-    """The smooth surface that a turned body stands on between two tilts."""
-    from tippetop.lathe.support import polynomial_support  # noqa: PLC0415 - slow to import
-
-    center = piece.mass_properties.center
-    support, apart = polynomial_support(piece.hull, low, high, center, DEGREE, whole)
-    if apart > OFF_OVAL * piece.outline.size:
-        part = Described(f"a curve cut off, from tilt {low:.4g} to {high:.4g}")
-        raise InvalidInput("profile", part, "", CUT_OFF, AS_WHOLE)
-    return Oval(support=tuple(support))
-
-
-# translate: skip
-def _shape(zone: "Zone", center: float) -> Shape:
-    if zone.radius == 0.0 and zone.tube:
-        return Sphere(radius=zone.tube, center=center)
-    if zone.radius > 0.0:
-        return Ring(radius=zone.radius, center=center, tube=zone.tube)
-    part = "a sharp tip" if zone.name == "tip" else "an arc around a point beyond the axis"
-    wanted = "part of a body that stands on spheres, rings and smooth curves"
-    raise InvalidInput("profile", Described(part), wanted, hint="round it, by 1 mm or so")
-
-
-CUT_OFF = "would reach out of the body where it goes on"
-AS_WHOLE = "take surfaces as whole with whole=True, at the command line --whole"
-
-MOST = 12
-"""Most surfaces of a turned body."""
-
-PROTRUDING = 1e-6
-"""How far a surface taken as whole may reach out of the body, in sizes of this."""
-
-OFF_OVAL = 1e-3
-"""How far an oval may be from the curve that it stands for, in sizes of the body."""
 
 LOOKS, SEARCHES = 64, 5
 """Looks at the tilts where a surface may be outermost, repeated so often around the best of them.

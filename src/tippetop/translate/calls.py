@@ -26,7 +26,9 @@ class Calls(Expressions):
         match node.func:
             case ast.Attribute(value=ast.Call(func=ast.Name(id="super")), attr=attr):
                 return f"super{'' if attr == '__init__' else '.' + attr}({self._placed(node)})"
-            case ast.Attribute(value=ast.Name(id="math" | "np" as name)) if not self.is_local(name):
+            case ast.Attribute(value=ast.Name(id="math" | "np" | "cmath" as name)) if (
+                not self.is_local(name)
+            ):
                 if node.keywords:
                     raise self.refusal(node, f"functions of {name} take no keywords here")
                 return f"{self.text(node.func)}({self._placed(node)})"

@@ -17,11 +17,12 @@ from dataclasses import dataclass, field
 
 from tippetop.translate.refusal import Untranslatable
 
-MODULE_WORDS = ("numbers", "arrays", "series", "skip")
+MODULE_WORDS = ("numbers", "arrays", "numpy", "series", "skip")
 """What a module may declare.
 
 numbers: operands are numbers, so that JavaScript's operators do.
 arrays: values are numbers and arrays of numbers, and no division by zero is an error.
+numpy: values may be complex numbers and NumPy's arrays of one dimension, of any kind of number.
 series: what is indexed may be an object with ``__getitem__``.
 skip: nothing of the module is translated, and a use of it is refused.
 by hand in <file>: the module has a counterpart written in JavaScript, in this file.

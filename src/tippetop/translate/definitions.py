@@ -124,6 +124,13 @@ class Definitions(Statements):
         if "abstractmethod" in marks:
             return
         yield from first_line(node)
+        if self.numpy and "cached_property" in marks:
+            yield f"get {safe(node.name)}() {{"
+            remembered = f'return py.remembered(this, "{node.name}", () => {{'
+            yield from indented(iter([remembered]))
+            yield from indented(indented(self._body(node)))
+            yield from ("  });", "}")
+            return
         head = "constructor" if node.name == "__init__" else safe(node.name)
         if marks & {"property", "cached_property"}:
             head = f"get {head}"

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from tippetop.translate.inference import Inference
 from tippetop.translate.program import ENUMERATIONS, Program, names_in, safe
-from tippetop.translate.runtime_names import MODULES
+from tippetop.translate.runtime_names import MODULES, NUMPY_ARRAYS
 from tippetop.translate.types import ROWS, Type, is_only, kinds_of
 
 ARROW, OR, AND, BITS, EQUAL, LESS, SUM, PRODUCT, UNARY, ATOM = range(10)
@@ -24,8 +24,11 @@ ARITHMETIC = {
     ast.Mod: ("mod", "", ATOM),
     ast.BitOr: ("either", "", ATOM),
     ast.BitAnd: ("both", "", ATOM),
+    ast.MatMult: ("matmul", "", ATOM),
 }
 COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
+COMPARING = {ast.Lt: "lt", ast.LtE: "le", ast.Gt: "gt", ast.GtE: "ge"}
+"""The runtime's functions of comparison, for what may be an array."""
 
 LARGEST = 2**53
 """Integers beyond this are not exact in JavaScript."""
@@ -56,7 +59,7 @@ class Expressions(Inference):
         words = program.declared[module].words
         self.arrays = "arrays" in words
         self.numbers = self.arrays or "numbers" in words
-        self.series = "series" in words
+        self.series, self.numpy = "series" in words, "numpy" in words
         self.declared, self.rows = set[str](), dict[str, str]()
 
     @abstractmethod
@@ -76,6 +79,8 @@ class Expressions(Inference):
             return "this"
         if (self.module, name) in self.program.names:
             return self.program.names[self.module, name]
+        if name == "np" and self.numpy:
+            return "py.numpy"
         if name in self.program.runtime or name in MODULES:
             return f"py.{safe(name)}"
         raise self.refusal(node, f"no translated module and not the runtime has '{name}'")
@@ -136,9 +141,14 @@ class Expressions(Inference):
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 return f"!{self.truth(operand, UNARY)}", UNARY
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                if self.numbers or isinstance(operand, ast.Constant):
+                is_real = isinstance(operand, ast.Constant) and not isinstance(
+                    operand.value, complex
+                )
+                if self.numbers or is_real:
                     return f"-{self.text(operand, ATOM)}", UNARY
                 return f"py.neg({self.text(operand)})", ATOM
+            case ast.UnaryOp(op=ast.Invert(), operand=operand) if self.numpy:
+                return f"py.invert({self.text(operand)})", ATOM
             case ast.BoolOp(op=op, values=values):
                 word, text = "or" if isinstance(op, ast.Or) else "and", self.text(values[-1])
                 for value in reversed(values[:-1]):
@@ -186,6 +196,8 @@ class Expressions(Inference):
 
     def _constant(self, node: ast.Constant) -> str:
         value = node.value
+        if isinstance(value, complex) and self.numpy:
+            return f"new py.Complex({value.real!r}, {value.imag!r})"
         if value is not None and not isinstance(value, bool | int | float | str):
             raise self.refusal(node, "such a constant is not translated")
         if isinstance(value, int) and abs(value) > LARGEST:
@@ -196,11 +208,14 @@ class Expressions(Inference):
         """Return a field, a property, a member of `math` or NumPy, or a method with its object."""
         value, attr = node.value, node.attr
         if isinstance(value, ast.Name) and value.id in MODULES and not self.is_local(value.id):
-            if attr not in MODULES[value.id]:
+            names = NUMPY_ARRAYS if value.id == "np" and self.numpy else MODULES[value.id]
+            if attr not in names:
                 raise self.refusal(node, f"the runtime has no {value.id}.{attr}")
             return f"{self.text(value)}.{attr}"
         receiver = self.type_of(value)
         members = self.members(receiver, attr)
+        if self.numpy and attr in ("real", "imag") and not members:
+            return f"{self.text(value, ATOM)}.{attr}"
         for one in {id(member.owner): member.owner for member in members}.values():
             if one.kind == "py.IntEnum" and attr in ("name", "value"):
                 raise self.refusal(node, f"a member of {one.node.name} is a number in JavaScript")
@@ -224,7 +239,8 @@ class Expressions(Inference):
         return "no class" if kind.kind in ("any", "union") else f"{article} {kind.kind}"
 
     def _arithmetic(self, node: ast.BinOp) -> tuple[str, int]:
-        if type(node.op) not in ARITHMETIC:
+        is_product = isinstance(node.op, ast.MatMult)
+        if type(node.op) not in ARITHMETIC or (is_product and not self.numpy):
             raise self.refusal(node, "such an operator is not translated")
         word, sign, binds = ARITHMETIC[type(node.op)]
         left, right = self.type_of(node.left), self.type_of(node.right)
@@ -280,6 +296,8 @@ class Expressions(Inference):
         self, node: ast.Compare, left: ast.expr, op: ast.cmpop, right: ast.expr
     ) -> tuple[str, int]:
         kinds = self.type_of(left), self.type_of(right)
+        if self.numpy and type(op) in COMPARISONS:
+            return f"py.{COMPARING[type(op)]}({self.text(left)}, {self.text(right)})", ATOM
         if type(op) in COMPARISONS:
             for side, kind in zip((left, right), kinds, strict=True):
                 is_row = is_list(side) or not kinds_of(kind) <= {*ORDERED, "module"}
@@ -389,7 +407,7 @@ class Expressions(Inference):
                 raise self.refusal(node, "negative places are not translated in modules of arrays")
             case _ if self.arrays:
                 return f"{value}[{self.text(node.slice)}]"
-            case ast.Constant(value=int(number)) if not self.series:
+            case ast.Constant(value=int(number)) if not (self.series or self.numpy):
                 if not is_only(self.type_of(node.value), "dict"):
                     return f"{value}[{number}]"
         return f"py.item({value}, {self.text(node.slice)})"

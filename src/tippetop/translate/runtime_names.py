@@ -8,6 +8,7 @@ FUNCTIONS: dict[str, tuple[str, ...]] = {
     "all": (),
     "any": (),
     "bool": (),
+    "complex": (),
     "dict": (),
     "enumerate": ("iterable", "start"),
     "float": (),
@@ -37,6 +38,7 @@ FUNCTIONS: dict[str, tuple[str, ...]] = {
 
 IMPORTED = {
     "dataclasses": ("replace",),
+    "functools": ("partial",),
     "itertools": ("pairwise",),
     "operator": ("mul",),
 }
@@ -52,9 +54,9 @@ ERRORS = (
 VALUES = ("NotImplemented",)
 
 MATH = (
-    *("acos", "asin", "atan", "atan2", "ceil", "cos", "cosh", "dist", "exp", "expm1"),
+    *("acos", "asin", "atan", "atan2", "ceil", "copysign", "cos", "cosh", "dist", "exp", "expm1"),
     *("factorial", "floor", "hypot", "inf", "isfinite", "isinf", "isnan", "log", "log10"),
-    *("log1p", "nan", "pi", "sin", "sinh", "sqrt", "tan", "tanh"),
+    *("log1p", "nan", "pi", "radians", "sin", "sinh", "sqrt", "tan", "tanh", "tau"),
 )
 """Members of `math`."""
 
@@ -65,11 +67,25 @@ NUMPY = (
 )
 """Members of NumPy."""
 
-MODULES = {"math": MATH, "np": NUMPY}
+NUMPY_ARRAYS = (
+    *("abs", "angle", "arange", "arcsin", "arctan2", "argmin", "array", "asarray", "clip"),
+    *("concatenate", "cos", "diff", "exp", "flatnonzero", "full", "hypot", "inf", "linspace"),
+    *("maximum", "minimum", "mod", "ones", "pi", "ptp", "sin", "sinc", "sqrt", "where", "zeros"),
+)
+"""Members of NumPy in modules that declare ``numpy``."""
+
+CMATH = ("exp", "phase", "rect")
+"""Members of `cmath`."""
+
+MODULES = {"math": MATH, "np": NUMPY, "cmath": CMATH}
 
 METHODS: dict[str, tuple[str, int, int]] = {
+    "all": ("{0}.all()", 0, 0),
+    "any": ("{0}.any()", 0, 0),
     "append": ("{0}.push({1})", 1, 1),
     "add": ("py.add_to({0}, {1})", 1, 1),
+    "conjugate": ("{0}.conjugate()", 0, 0),
+    "copy": ("{0}.copy()", 0, 0),
     "get": ("{0}.get({1})", 1, 2),
     "index": ("py.index({0}, {1})", 1, 1),
     "isprintable": ("py.isprintable({0})", 0, 0),
@@ -77,11 +93,15 @@ METHODS: dict[str, tuple[str, int, int]] = {
     "join": ("py.join({0}, {1})", 1, 1),
     "keys": ("{0}.keys()", 0, 0),
     "lower": ("{0}.toLowerCase()", 0, 0),
+    "max": ("{0}.max()", 0, 0),
+    "mean": ("{0}.mean()", 0, 0),
+    "min": ("{0}.min()", 0, 0),
     "model_copy": ("{0}.model_copy({1})", 1, 1),
     "model_dump": ("{0}.model_dump({1})", 0, 0),
-    "pop": ("py.pop({0}, {1})", 0, 0),
+    "pop": ("py.pop({0}, {1})", 0, 1),
     "removeprefix": ("py.removeprefix({0}, {1})", 1, 1),
     "startswith": ("{0}.startsWith({1})", 1, 1),
+    "sum": ("{0}.sum()", 0, 0),
     "tolist": ("py.list({0})", 0, 0),
     "values": ("{0}.values()", 0, 0),
 }

@@ -77,7 +77,7 @@ class Statements(Calls):
                 case ast.Assign(
                     targets=[ast.Name(id=name)],
                     value=ast.Subscript(value=array, slice=ast.Slice()),
-                ) if self.arrays or is_only(self.type_of(array), "array"):
+                ) if not self.numpy and (self.arrays or is_only(self.type_of(array), "array")):
                     views.add(name)
         self._views = frozenset(views)
 
@@ -166,6 +166,11 @@ class Statements(Calls):
         match target:
             case ast.Subscript(value=row, slice=place):
                 self._require_no_view(target, row)
+                if isinstance(place, ast.Slice) and self.numpy:
+                    bounds = [
+                        self.text(one) if one else "null" for one in (place.lower, place.upper)
+                    ]
+                    return f"py.put_slice({self.text(row, ATOM)}, {', '.join(bounds)}, {value});"
                 if self.arrays:
                     return f"{self.text(target)} = {value};"
                 return f"py.put({self.text(row, ATOM)}, {self.text(place)}, {value});"

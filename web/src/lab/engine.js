@@ -1,21 +1,29 @@
 // The page's side of its workers: the newest launch wanted is followed next, and what is no longer wanted is ended.
 
-import code from "worker-code";
+import packed from "worker-code";
 import { Track } from "../player/track.js";
 
 // How long a run that nobody waits for any more may go on before its worker is ended, ms.
 const PATIENCE = 400;
 
+// Where the workers' program is, which the page holds packed.
+const PROGRAM = await unpacked(packed).then((program) => URL.createObjectURL(program));
+
+function unpacked(text) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+  return new Response(stream, { headers: { "Content-Type": "text/javascript" } }).blob();
+}
+
 class Helper {
   constructor() {
-    this.address = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
     this.jobs = new Map();
     this.count = 0;
     this.begin();
   }
 
   begin() {
-    this.worker = new Worker(this.address);
+    this.worker = new Worker(PROGRAM);
     this.worker.onmessage = ({ data: { id, share, answer, error } }) => {
       const job = this.jobs.get(id);
       if (!job) return;
@@ -95,6 +103,16 @@ export class Engine {
   // What a body is good for, without a run.
   prospects(body, { gravity, launch: { tilt } }) {
     return this.asides.ask("body", { body, gravity, tilt });
+  }
+
+  // What a workpiece, points or a drawing is.
+  brought(job) {
+    return this.asides.ask("brought", job);
+  }
+
+  // The density of the uniform solid that a body is, null if it is none.
+  solid(body) {
+    return this.asides.ask("solid", { body });
   }
 
   // All numbers of a launch over time, as a text.

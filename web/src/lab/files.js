@@ -20,39 +20,6 @@ export function save(name, content) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-// A problem as TOML: plain values, then tables, then lists of tables.
-export function toml(problem) {
-  return `${tomlLines(problem, "").join("\n").trimStart()}\n`;
-}
-
-// The lines of a table, whose own name with dots is given.
-function tomlLines(table, name) {
-  const entries = Object.entries(table).filter(
-    ([, value]) => value !== null && value !== undefined,
-  );
-  const plain = entries.filter(([, value]) => !isTable(value));
-  const tables = entries.filter(([, value]) => isTable(value));
-  const lines = plain.map(([key, value]) => `${key} = ${tomlValue(value)}`);
-  for (const [key, value] of tables) {
-    const path = name ? `${name}.${key}` : key;
-    const heading = Array.isArray(value) ? `[[${path}]]` : `[${path}]`;
-    for (const one of [value].flat()) lines.push("", heading, ...tomlLines(one, path));
-  }
-  return lines;
-}
-
-// Whether a value is a table or a list of tables.
-function isTable(value) {
-  if (typeof value !== "object") return false;
-  return !Array.isArray(value) || typeof value[0] === "object";
-}
-
-function tomlValue(value) {
-  if (Array.isArray(value)) return `[${value.map(tomlValue).join(", ")}]`;
-  if (typeof value === "number") return Number.isInteger(value) ? `${value}.0` : String(value);
-  return JSON.stringify(value);
-}
-
 // The command that repeats a run.
 export function commandLine({ header: { problem, asked } }) {
   const words = Array.isArray(problem.body.shape) ? ["tippetop.toml"] : settings(problem);

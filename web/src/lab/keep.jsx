@@ -1,14 +1,17 @@
 // What can be taken along: numbers, launch, film, picture, print, command line.
 
-import { useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 
-import { commandLine, film, glb, picture, save, toml } from "./files.js";
+import { commandLine, film, glb, picture, save } from "./files.js";
 import { t } from "./i18n.js";
 import { stl } from "./solid.js";
+import { toml } from "./toml.js";
+import { digits } from "./units.js";
 
 export function Keep({ lab }) {
   const [recording, record] = useState(false);
   const { track, player } = lab;
+  const density = useSolid(lab, track?.header.problem.body);
   const video = async () => {
     record(true);
     const content = await film(player).catch(() => null);
@@ -32,7 +35,12 @@ export function Keep({ lab }) {
       <p>{t("keep.intro")}</p>
       <div class="files">
         {Object.entries(files).map(([kind, call]) => (
-          <button type="button" data-kind={kind} disabled={!track} onClick={call}>
+          <button
+            type="button"
+            data-kind={kind}
+            disabled={!track || (kind === "stl" && !density)}
+            onClick={call}
+          >
             {t(`keep.${kind}`)}
           </button>
         ))}
@@ -48,6 +56,9 @@ export function Keep({ lab }) {
           {t("keep.print")}
         </button>
       </div>
+      <p class="hint" role="status">
+        {solidWords(density, track)}
+      </p>
       <h3>{t("keep.command")}</h3>
       <pre tabIndex={0} role="region" aria-label={t("keep.command")}>
         {command}
@@ -57,4 +68,27 @@ export function Keep({ lab }) {
       </button>
     </div>
   );
+}
+
+// The density of the solid that would be the top on the table; null if none of one material is, undefined until known.
+function useSolid(lab, body) {
+  const [density, say] = useState(undefined);
+  useEffect(() => {
+    let isWanted = true;
+    const answer = (found) => {
+      if (isWanted) say(found);
+    };
+    if (body) lab.engine.solid(body).then(answer, () => answer(null));
+    return () => {
+      isWanted = false;
+    };
+  }, [JSON.stringify(body)]);
+  return density;
+}
+
+function solidWords(density, track) {
+  if (!track || density === undefined) return "";
+  if (density === null) return t("keep.noSolid");
+  const { mass } = track.header.problem.body;
+  return t("keep.filling", { density: digits(density / 1000, 3), mass: digits(1e3 * mass, 3) });
 }

@@ -1,6 +1,7 @@
 // The page's state and what changes it. One launch is shown; what is asked for later overtakes what was asked before.
 
 import { stillness } from "../player/player.js";
+import { jobFor } from "./bring.js";
 import { Engine } from "./engine.js";
 import { LANGUAGES, preferred, speak, t } from "./i18n.js";
 import { readLink, writeLink } from "./link.js";
@@ -153,6 +154,12 @@ export class Lab extends EventTarget {
       busy: null,
       trouble: { field: null, sentence: t("page.stopped") },
     });
+  }
+
+  // What somebody brings is: its weight, and the body or why it cannot be simulated.
+  async whatIs(content, choices) {
+    const { problem } = this.state.setup;
+    return this.engine.brought({ ...jobFor({ content, ...choices }), problem });
   }
 
   pin() {

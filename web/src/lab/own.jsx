@@ -2,6 +2,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 
+import { Bring, Brought, dropping } from "./brought.jsx";
 import { t } from "./i18n.js";
 import { changed } from "./setup.js";
 import { bodyOf, FIRST, MATERIALS, massesOf, possible, sectionOf } from "./turning.js";
@@ -20,6 +21,34 @@ const MM = 1e3;
 const EDGE = 0.003;
 
 export function Own({ lab }) {
+  const { brought, units } = lab.state;
+  return (
+    <div class="own" {...dropping(lab)}>
+      {brought?.content ? (
+        <Brought lab={lab}>{(body) => <Verdict lab={lab} body={body} units={units} />}</Brought>
+      ) : (
+        <Shaped lab={lab} />
+      )}
+      <Bring lab={lab} />
+    </div>
+  );
+}
+
+// What a body will do, before it is spun.
+function Verdict({ lab, body, units }) {
+  const ahead = useProspects(lab, body);
+  return (
+    <>
+      <h3>{t("own.before")}</h3>
+      <p class="own-verdict" role="status">
+        {ahead === null ? t("controls.unknown") : sentence(ahead, units)}
+      </p>
+    </>
+  );
+}
+
+// A top that is shaped by its sliders.
+function Shaped({ lab }) {
   const [top, make] = useState(lab.own ?? FIRST);
   const { units } = lab.state;
   const set = (changes) => {
@@ -35,7 +64,7 @@ export function Own({ lab }) {
     lab.go(changed(lab.state.setup, launch));
   };
   return (
-    <div class="own">
+    <>
       <p>{t("own.intro")}</p>
       <Section top={top} onDrag={(stem) => set({ stem })} />
       {Object.keys(DIALS).map((name) => (
@@ -57,8 +86,7 @@ export function Own({ lab }) {
       <button type="button" class="strong" disabled={alpha <= 0} onClick={spin}>
         {t("own.spin")}
       </button>
-      <p class="own-brought">{t("own.brought")}</p>
-    </div>
+    </>
   );
 }
 

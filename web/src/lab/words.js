@@ -62,7 +62,7 @@ export function heading({ ends, certain }, units) {
   return t(certain ? "controls.heads" : "controls.headsMany", { end: texts.join(" / ") });
 }
 
-function doubtInWords({ kind, gaps }) {
+export function doubtInWords({ kind, gaps }) {
   const texts = Object.entries(gaps).map(([name, text]) => [name, decimal(text)]);
   return t("words.doubt", { doubt: t(`doubts.${kind}`, Object.fromEntries(texts)) });
 }

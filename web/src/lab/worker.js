@@ -1,6 +1,17 @@
 // What the page's workers do: runs, their numbers, what a body is good for, and single launches of a map.
 
-import { MISSING, prospects, sampleCount, simulate } from "engine";
+import {
+  doubts,
+  fromDrawing,
+  fromPoints,
+  MISSING,
+  pointsOf,
+  prospects,
+  sampleCount,
+  simulate,
+  turned,
+  weighed,
+} from "engine";
 
 import { numbers } from "../run/numbers.js";
 import { buffersOf, pack } from "../run/pack.js";
@@ -9,7 +20,17 @@ import { buffersOf, pack } from "../run/pack.js";
 const QUICK = { tolerance: 1e-7, samples: 320 };
 const COARSE = 1e-6;
 
-const JOBS = { run: answerRun, cell: answerCell, body: answerBody, numbers };
+const JOBS = {
+  run: answerRun,
+  cell: answerCell,
+  body: answerBody,
+  brought: answerBrought,
+  solid: answerSolid,
+  numbers,
+};
+
+// How far the mass properties of a solid may be from those of the top that is simulated, relative.
+const SAME_SOLID = 1e-3;
 
 function answerRun({ id, problem, duration, quick }) {
   let told = 0;
@@ -41,24 +62,42 @@ function answerBody({ body, gravity, tilt }) {
   return prospects(body, gravity, tilt);
 }
 
+// What a workpiece, points or a drawing weighs, and the body that it is; or why it cannot be simulated.
+function answerBrought({ table, points, paths, fields, whole, problem }) {
+  let read = { table, remarks: [] };
+  if (points !== undefined) read = fromPoints(pointsOf(points), fields);
+  if (paths) read = fromDrawing(paths, fields);
+  const answer = { remarks: read.remarks, weight: weighed(read.table) };
+  try {
+    const body = turned(read.table, whole);
+    return { ...answer, body, doubts: doubts({ ...problem, body }) };
+  } catch (error) {
+    return { ...answer, refusal: plainError(error) };
+  }
+}
+
+// The density of the uniform solid that is the top which is simulated; null if there is none.
+function answerSolid({ body }) {
+  if (!body.profile) return null;
+  const { mass, center, I1, I3 } = weighed({ profile: body.profile, density: 1 });
+  const density = body.mass / mass;
+  const size = Math.sqrt(body.I1 / body.mass);
+  const differences = [center / size, (density * I1) / body.I1 - 1, (density * I3) / body.I3 - 1];
+  return differences.every((one) => Math.abs(one) <= SAME_SOLID) ? density : null;
+}
+
 self.onmessage = ({ data }) => {
   const { id, job } = data;
   try {
     const answer = JOBS[job](data);
     postMessage({ id, answer }, answer?.track ? buffersOf(answer.track) : []);
   } catch (error) {
-    const { field, value, accepted, fault, hint, message } = error;
-    postMessage({
-      id,
-      error: {
-        field,
-        missing: value === MISSING,
-        value,
-        accepted,
-        fault,
-        hint,
-        message: message ?? String(error),
-      },
-    });
+    postMessage({ id, error: plainError(error) });
   }
 };
+
+function plainError(error) {
+  const { field, value, accepted, fault, hint, message } = error;
+  const missing = value === MISSING;
+  return { field, missing, value, accepted, fault, hint, message: message ?? String(error) };
+}
