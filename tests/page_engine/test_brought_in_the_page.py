@@ -110,15 +110,14 @@ def random_profiles(count: int) -> list[list[list[float]]]:
 def cases() -> list[dict[str, object]]:
     tables = [tomllib.loads(text) for text in WORKPIECES.values()]
     asked: list[dict[str, object]] = [{"table": table} for table in tables]
-    for number, profile in enumerate(random_profiles(40)):
+    for number, profile in enumerate(random_profiles(24)):
         table = {"profile": profile, "density": 700}
         asked.append({"table": table, "whole": number % 2 == 0})
-    for points in outlines().values():
+    for number, points in enumerate(outlines().values()):
         whole = [*points, *(-p.conjugate() for p in points[-2:0:-1])]
-        for line in (points, whole):
-            for between, digits in (("\t", 4), (",", 2)):
-                fields = {"unit": "mm", "density": 700}
-                asked.append({"text": points_text(line, between, digits), "fields": fields})
+        line, between, digits = (points, "\t", 4) if number % 2 else (whole, ",", 2)
+        fields = {"unit": "mm", "density": 700}
+        asked.append({"text": points_text(line, between, digits), "fields": fields})
     asked.append({"text": "1;2\n3;x\n", "fields": {"density": 700}})
     return asked
 
@@ -165,8 +164,8 @@ def test_what_is_brought_is_the_same_body_in_the_page(tmp_path: Path) -> None:
         else:
             assert flat(ours["body"]) == pytest.approx(flat(body), rel=1e-8, abs=1e-10), case
             bodies += 1
-    assert bodies >= 12
-    assert ovals >= 2
+    assert bodies >= 6
+    assert ovals == 1
 
 
 def flat(value: object, name: str = "") -> dict[str, float]:
