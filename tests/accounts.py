@@ -9,6 +9,7 @@ DRY = {"friction.kind": "coulomb", "friction.mu": 0.3}
 PATCH = {"friction.kind": "contensou", "friction.mu": 0.3, "friction.patch_radius": 5e-4}
 SMOOTHED = {"friction.kind": "regularized_coulomb", "friction.mu": 0.3, "friction.eps": 1e-3}
 EGG = tt.Body(mass=0.02, shape=tt.Spheroid(across=0.015, along=0.025), I1=3.4e-6, I3=1.8e-6)
+OFF_CENTRE = EGG.model_copy(update={"shape": tt.Spheroid(across=0.015, along=0.025, center=0.003)})
 PUCK = tt.Body(
     mass=0.02,
     shape=[tt.Ring(radius=0.02, center=-0.0025), tt.Ring(radius=0.02, center=0.0025)],
@@ -83,11 +84,12 @@ LAUNCHES: dict[str, tuple[tt.Problem, float]] = {
     "Leine and Glocker's stem": (STEM, 8.0),
     "egg": (of(EGG, VISCOUS, tilt=1.4, spin=0.0, precession=150.0), 20.0),
     "egg, slow": (of(EGG, VISCOUS, tilt=1.4, spin=0.0, precession=20.0), 20.0),
+    "egg off its centre": (of(OFF_CENTRE, tt.ViscousFriction(mu=3.0), tilt=1.2, spin=0.0), 5.0),
     "egg, dry": (of(EGG, COULOMB, tilt=1.4, spin=0.0, precession=150.0), 2.0),
     "puck": (of(PUCK, COULOMB, tilt=0.02, spin=100.0, velocity=(0.5, 0.0, 0.0)), 20.0),
     "coin": (of(tt.presets.COIN, COULOMB, tilt=1.2, spin=0.0, gap=0.01), 5.0),
     "ring top": (of(RING_TOP, tt.CoulombFriction(mu=0.2), tilt=0.001, spin=50.0), 5.0),
-    "ring top, falls": (of(RING_TOP, tt.ViscousFriction(mu=0.3), tilt=0.1, spin=3.0), 5.0),
+    "ring top, falls": (of(RING_TOP, tt.ViscousFriction(mu=0.3), tilt=0.1, spin=3.0), 20.0),
     "two balls, dry": (
         of(
             TWO_BALLS,

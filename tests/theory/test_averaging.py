@@ -30,6 +30,7 @@ from tippetop.theory.nutation import (
     upside_down,
 )
 from tippetop.theory.prediction import predict
+from tippetop.theory.slow_time import time_to_end
 from tippetop.theory.steady import jellett_of_launch
 
 REPORT = presets.report_problem(spin=100.0)
@@ -72,6 +73,27 @@ def flip_time(problem, window, count):
 def test_the_limit_of_the_flip_time_of_the_report():
     """mu t for mu -> 0, known to five digits from full runs."""
     assert flip_time_limit(REPORT) == pytest.approx(2.3437, abs=6e-5)
+
+
+@pytest.mark.parametrize("problem", [*LAUNCHES, *SUBTLE])
+def test_the_time_in_plain_numbers_is_that_of_the_slow_flow(problem):
+    """The same rates by another integrator, without a dense solution."""
+    ends = predict(problem)
+    if ends.certain:
+        time = time_to_end(problem, ends.final.tilt, 0.01)
+        assert time * problem.friction.mu == pytest.approx(flip_time_limit(problem), rel=3e-4)
+
+
+def test_no_time_is_told_where_the_slow_flow_does_not_hold():
+    changes = [
+        {"launch.tilt": 0.0},
+        {"launch.gap": 0.01},
+        {"friction.kind": "coulomb"},
+        {"rolling_resistance": 1e-5},
+        {"launch.spin": 1000.0},
+    ]
+    for change in changes:
+        assert math.isnan(time_to_end(REPORT.replace(change), math.pi, 0.01)), change
 
 
 @pytest.mark.skipif(not has_taylor(), reason="long runs need the Taylor integrator")

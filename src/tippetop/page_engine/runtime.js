@@ -209,6 +209,7 @@ export const math = {
   log10: (x) => Math.log10(within_domain(x, x > 0)),
   log1p: (x) => Math.log1p(within_domain(x, x > -1)),
   acos: (x) => Math.acos(within_domain(x, x >= -1 && x <= 1)),
+  acosh: (x) => Math.acosh(within_domain(x, x >= 1)),
   asin: (x) => Math.asin(within_domain(x, x >= -1 && x <= 1)),
   exp: (x) => finite(Math.exp(x), x),
   expm1: (x) => finite(Math.expm1(x), x),
@@ -237,7 +238,7 @@ export const np = {
   minimum: Math.min,
   maximum: Math.max,
   fmax: (a, b) => (a >= b || Number.isNaN(b) ? a : b),
-  copysign: (a, b) => (b < 0 || Object.is(b, -0) ? -Math.abs(a) : Math.abs(a)),
+  copysign: math.copysign,
   less: (a, b) => (hasattr(a, "__lt__") ? a.__lt__(b) : a < b),
   where: (condition, a, b) => {
     if (hasattr(condition, "graph")) return condition.graph.select(condition, a, b);

@@ -59,6 +59,7 @@ def tables(command: str) -> str:
         "DOUBTS": SENTENCES,
         "NEAR_POLE": catalogue.NEAR_POLE,
         "RISE": catalogue.RISE,
+        "LEANS_AT_LAUNCH": catalogue.LEANS_AT_LAUNCH,
     }
     numbers = {
         "UNITS": unit_table(),

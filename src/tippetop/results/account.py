@@ -15,9 +15,10 @@ from tippetop.mechanics.hull import Hull, acting, is_edge, lowest_surface
 from tippetop.mechanics.motion import angular_velocity, point_velocity
 from tippetop.mechanics.surface import contact_vector
 from tippetop.problem.problem import Problem
-from tippetop.results.catalogue import NEAR_FINAL, NEAR_POLE, RISE
+from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import Prediction, predicted
+from tippetop.theory.slow_time import time_to_end
 from tippetop.theory.steady import SteadyKind, SteadyState
 from tippetop.theory.thresholds import CriticalSpins, stability_limits
 
@@ -126,7 +127,7 @@ def _motion(facts: Facts) -> list[Clause]:
     if tilted > 0.5 * math.pi and final < 0.5 * math.pi:
         clauses.append(Clause("falls_from_launch", {"tilt": tilted}, "motion"))
     elif math.isfinite(turned) and not ends_level:
-        name = "turns_over" if tilted < LEANING else "passes_the_horizontal"
+        name = "turns_over" if tilted < LEANS_AT_LAUNCH else "passes_the_horizontal"
         clauses.append(Clause(name, {"time": turned}, "motion"))
     if facts.problem.contact.liftoff == "ignore" and facts.metrics["least_normal_force"] < 0.0:
         force = -facts.metrics["least_normal_force"]
@@ -192,12 +193,13 @@ def _sticks_since(facts: Facts) -> float:
 def _fell_back(facts: Facts) -> bool:
     """Return whether the top rose and came down again, as an ending of a sweep has it."""
     final, (highest, _) = facts.metrics["final_theta"], facts.peak
+    launched = facts.problem.launch.tilt
     if facts.outcome in (Outcome.LIFTED_OFF, Outcome.FAILED, Outcome.INACCURATE):
         return False
-    if highest - max(final, facts.problem.launch.tilt) <= RISE:
+    if highest - max(final, launched) <= RISE:
         return False
-    passed = math.isfinite(facts.metrics["turns_over"]) and final < 0.5 * math.pi
-    return passed or facts.metrics["is_settled"] == 1
+    turned = math.isfinite(facts.metrics["turns_over"]) and launched < LEANS_AT_LAUNCH
+    return (turned and final < 0.5 * math.pi) or facts.metrics["is_settled"] == 1
 
 
 def _end(facts: Facts) -> list[Clause]:
@@ -241,9 +243,6 @@ def _is_aloft(facts: Facts) -> bool:
 
 STILL = 1e-6
 """Spin that is none, rad/s."""
-
-LEANING = 0.8
-"""Tilt at launch, rad, from which on passing the horizontal is no turning over."""
 
 
 def _is_undisturbed(facts: Facts) -> bool:
@@ -329,7 +328,12 @@ def _theory(facts: Facts) -> list[Clause]:
         clauses.append(Clause("not_yet_over", {"duration": _end_time(facts)}, "theory"))
     if not end.certain:
         clauses.append(Clause("ends_are_several", {"count": len(end.reachable)}, "theory"))
-    return [*clauses, *[_of_state("heads_for", state) for state in end.reachable]]
+    clauses += [_of_state("heads_for", state) for state in end.reachable]
+    if end.certain:
+        about = time_to_end(problem, end.final.tilt, NEAR_FINAL)
+        if about > _end_time(facts):
+            clauses.append(Clause("is_there_after", {"about": about}, "theory"))
+    return clauses
 
 
 def _of_state(verb: str, state: SteadyState[float]) -> Clause:

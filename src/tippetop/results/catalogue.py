@@ -22,6 +22,9 @@ RISE = 0.35
 than a tippe top nutates.
 """
 
+LEANS_AT_LAUNCH = 0.8
+"""Tilt at launch, rad, from which on passing the horizontal is no turning over."""
+
 
 class Ending(IntEnum):
     """What became of a launch: the numbers for which a sweep's outcomes stand.

@@ -113,6 +113,8 @@ def written(gap: str, value: float, units: Mapping[str, str]) -> str:
             if 0.0 < value < MILLISECONDS:
                 return f"{_digits(1e3 * value, 3)} {units['short']}"
             return f"{_digits(value, 3 if value < TENS else 4)} {units['time']}"
+        case "about":
+            return f"{_digits(value, 2)} {units['time']}"
         case "tilt" | "highest":
             return f"{_digits(round(math.degrees(value), 1), 4)}°"
         case "force":

@@ -25,7 +25,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.mechanics.view import axis_sine, precession_rate
-from tippetop.results.catalogue import NEAR_FINAL, NEAR_POLE, RISE, Ending
+from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE, Ending
 from tippetop.results.settling import is_barred, tilt
 
 OUTCOMES = tuple(Outcome)
@@ -243,7 +243,7 @@ def ending(ends: Ends, start: State) -> NDArray[np.int8]:
         if outcome is not Outcome.COMPLETED:
             found[ends.outcome == number] = getattr(Ending, outcome.name, Ending.FAILED)
     came_down = risen - np.maximum(final, tilt(start)) > RISE
-    below = np.isfinite(ends.turned) & (final < 0.5 * np.pi)
+    below = np.isfinite(ends.turned) & (tilt(start) < LEANS_AT_LAUNCH) & (final < 0.5 * np.pi)
     known = ~np.isin(found, [Ending.FAILED, Ending.INACCURATE, Ending.LIFTED_OFF])
     found[known & came_down & (below | settled)] = Ending.FELL_BACK
     return found.astype(np.int8)

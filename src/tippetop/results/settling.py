@@ -6,7 +6,7 @@ import numpy as np
 
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
-from tippetop.mechanics.hull import Hull, acting, each_surface, lowest_surface
+from tippetop.mechanics.hull import Hull, acting, each_surface, lowest_surface, outer_height
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.state import State
@@ -29,6 +29,9 @@ APPROACHED = 0.1
 small deviation, which grows.
 """
 
+BESIDE_POLE = 1e-6
+"""Tilt from a pole, rad, at which the slope of the height is computed: at the pole it is zero."""
+
 HALVINGS = 44
 """Bisections of 0.02 rad to the rounding of an angle."""
 
@@ -42,14 +45,22 @@ def tilt(state: State) -> Array:
 def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) -> float:
     """Return the tilt near which one launch that ended with an outcome stays for good, rad, or nan.
 
-    It is told as by `settled_tilt`. What came to rest or lies flat stays where it is. All numbers
-    are floats in natural units.
+    It is told as by `settled_tilts`. What came to rest or lies flat stays where it is; what rolls
+    on two surfaces stays at the tilt at which both touch. All numbers are floats in natural units.
     """
     here = math.atan2(axis_sine(state.axis), state.axis[2])
     if outcome in (Outcome.AT_REST, Outcome.LYING_FLAT):
         return here
-    if outcome is not Outcome.COMPLETED or not top.torque_free:
+    if outcome is not Outcome.COMPLETED:
         return math.nan
+    settled = _settled_spin_tilt(here, state, start, top) if top.torque_free else math.nan
+    return settled if math.isfinite(settled) else _tilt_of_rest(here, state, top)
+
+
+def _settled_spin_tilt(here: float, state: State, start: State, top: Top) -> float:
+    """Return the tilt at which a motion under friction without torque goes on spinning, rad, or
+    nan.
+    """
     if isinstance(top.surface, Hull):
         lowest = lowest_surface(top.surface, state.axis[2])
         if not _only_touches(lowest, here):
@@ -62,6 +73,28 @@ def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) 
     if has_level_spin(top) and abs(state.axis[2]) < axis_sine(state.axis):
         return 0.5 * math.pi
     return 0.0 if state.axis[2] > 0.0 else math.pi
+
+
+def _tilt_of_rest(here: float, state: State, top: Top) -> float:
+    """Return the tilt within `NEAR_FINAL` at which the body lies at rest, rad; nan where the energy
+    that is left suffices to leave its neighbourhood.
+
+    There the centre of mass is lowest: on one surface or, where two meet, on both.
+    """
+    low, high = here - NEAR_FINAL, here + NEAR_FINAL
+    left, weight = float(energy(state, top)), float(top.mass * top.gravity)
+    for at in (low, high):
+        if 0.0 < at < math.pi and weight * float(outer_height(top.surface, math.cos(at))) <= left:
+            return math.nan
+
+    def slope(at: float) -> float:
+        cosine = math.cos(at)
+        return -math.sin(at) * float(lowest_surface(top.surface, cosine).slope(cosine))
+
+    low, high = max(low, BESIDE_POLE), min(high, math.pi - BESIDE_POLE)
+    if slope(low) >= 0.0:
+        return 0.0
+    return math.pi if slope(high) <= 0.0 else crossing(slope, low, high)
 
 
 def _steady_tilt_near(here: float, state: State, top: Top) -> float:
@@ -101,23 +134,49 @@ def settled_tilts(state: State, start: State, top: Top) -> Array:
     A sphere under friction without torque keeps Jellett's integral and loses energy. Its tilt has
     settled once the energy that is left bars every tilt farther than `NEAR_FINAL`; it settles at
     the steady state between the bars. A body of another shape has settled once it spins about a
-    vertical or a level axis that it has come to, to within `NEAR_STEADY`. Under friction with a
-    torque every motion changes until it is at rest.
+    vertical or a level axis that it has come to, to within `NEAR_STEADY`. Any other body, and any
+    under friction with a torque, has settled once the energy that is left does not lift it out of
+    the tilts within `NEAR_FINAL`; it settles where it then lies at rest.
 
     `start` has the states at launch; every number is of shape (n,), in natural units, and so are
     those of the top, which has one surface.
     """
     here = tilt(state)
+    resting = _tilts_of_rest(here, state, top)
     if not top.torque_free:
-        return np.full(here.shape, np.nan)
+        return resting
     if top.surface.spherical:
         held = is_held(state, top, NEAR_FINAL)
-        return np.where(held, _steady_tilts_near(here, state, top), np.nan)
+        return np.where(held, _steady_tilts_near(here, state, top), resting)
     come = _has_come_to_steady_spin(state, start, top)
     vertical = np.where(state.axis[2] > 0.0, 0.0, math.pi)
     leans = np.abs(state.axis[2]) < axis_sine(state.axis)
     level = (top.surface.slope(0.0) == 0.0) & leans
-    return np.where(come, np.where(level, 0.5 * math.pi, vertical), np.nan)
+    return np.where(come, np.where(level, 0.5 * math.pi, vertical), resting)
+
+
+# translate: skip
+def _tilts_of_rest(here: Array, state: State, top: Top) -> Array:
+    """Return for many bodies of one surface what `_tilt_of_rest` returns for one."""
+    surface = top.surface
+
+    def slope(at: Array) -> Array:
+        found: Array = -np.sin(at) * surface.slope(np.cos(at))
+        return found
+
+    low, high = here - NEAR_FINAL, here + NEAR_FINAL
+    left, weight = energy(state, top), top.mass * top.gravity
+    held = np.full(here.shape, True)
+    for at in (low, high):
+        inside = (at > 0.0) & (at < math.pi)
+        held &= ~inside | (weight * surface.height(np.cos(at)) > left)
+    low, high = np.maximum(low, BESIDE_POLE), np.minimum(high, math.pi - BESIDE_POLE)
+    pole = np.where(slope(low) >= 0.0, 0.0, np.where(slope(high) <= 0.0, math.pi, np.nan))
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        falls = slope(middle) < 0.0
+        low, high = np.where(falls, middle, low), np.where(falls, high, middle)
+    return np.where(held, np.where(np.isnan(pole), 0.5 * (low + high), pole), np.nan)
 
 
 # translate: skip

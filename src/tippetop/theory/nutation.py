@@ -172,6 +172,7 @@ def amplitudes(path: Orbit) -> Amplitudes:
     return Amplitudes((path.middle + apart) / 4.0, (path.middle - apart) / 4.0)
 
 
+# translate: skip
 def turning_tilts(pair: Amplitudes) -> tuple[Scalar, Scalar]:
     """Least and largest tilt of a nutation with these amplitudes, rad; arrays of them too."""
     fast, slow = np.sqrt(pair.fast), np.sqrt(pair.slow)

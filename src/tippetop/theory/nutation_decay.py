@@ -7,15 +7,15 @@ to.
 """
 
 import math
-from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import DOP853, OdeSolution
 
 from tippetop.integrators.base import Array
+from tippetop.mechanics.runge_kutta import Point
 from tippetop.mechanics.view import Angles
-from tippetop.theory.dissipation import AmplitudeRates, amplitude_rates, least_reaction
+from tippetop.theory.dissipation import amplitude_rates, least_reaction
 from tippetop.theory.nutation import (
     Amplitudes,
     Numbers,
@@ -44,13 +44,17 @@ class Nutation(NamedTuple):
     """
 
     @property
-    def point(self) -> Array:
+    def point(self) -> Point:
         """Logarithms of its amplitudes, and sqrt(|p3|): what is followed."""
         pair = amplitudes(self.orbit)
         least = _NO_AMPLITUDE * (pair.fast + pair.slow)
-        logs = [math.log(max(amplitude, least)) + self.log_scale for amplitude in pair]
-        logs[int(pair.fast > pair.slow)] += self.log_share
-        return np.array([*logs, math.sqrt(abs(self.orbit.far))])
+        fast = math.log(max(float(pair.fast), least)) + self.log_scale
+        slow = math.log(max(float(pair.slow), least)) + self.log_scale
+        if pair.fast > pair.slow:
+            slow += self.log_share
+        else:
+            fast += self.log_share
+        return (fast, slow, math.sqrt(abs(self.orbit.far)))
 
     @property
     def grazes(self) -> bool:
@@ -119,6 +123,7 @@ class Goals(NamedTuple):
     """Whether the table only pushes, so that there is no flow where a nutation needs more."""
 
 
+# translate: skip
 class Stage(NamedTuple):
     """A part of the slow flow, in natural units."""
 
@@ -141,9 +146,12 @@ class Stage(NamedTuple):
 
     def points(self, times: Array) -> Array:
         """`Nutation.point` at these times, shape (3, n)."""
-        return np.asarray(self.begin.point[:, None] if self.path is None else self.path(times))
+        if self.path is None:
+            return np.array(self.begin.point)[:, None]
+        return np.asarray(self.path(times))
 
 
+# translate: skip
 def follow_nutation(
     begin: Nutation, jellett: float, numbers: Numbers, goals: Goals, tolerance: float
 ) -> Stage:
@@ -154,40 +162,39 @@ def follow_nutation(
     """
     turned, seen = begin.turned, begin.orbit
     seen_numbers = numbers.turned if turned else numbers
-    point = begin.point
+    point = np.array(begin.point)
 
     def rates(_: float, y: Array) -> Array:
-        return np.array(_rates(_amplitudes_of(y), float(y[2]), jellett, seen_numbers))
+        return np.array(rates_at((float(y[0]), float(y[1]), float(y[2])), jellett, seen_numbers))
 
     first = _LONGEST / max(1.0, _LONGEST * np.abs(rates(0.0, point)).max())
     solver = DOP853(rates, 0.0, point, _LONGEST, first_step=first, rtol=tolerance, atol=tolerance)
     knots, pieces = [0.0], []
     final, done, pulled = math.nan, True, False
     for _ in range(_MOST_STEPS):
-        seen = orbit_of_amplitudes(
-            _amplitudes_of(solver.y), float(solver.y[2]), jellett, seen_numbers
-        )
+        fast, slow, root = solver.y.tolist()
+        seen = orbit_of_amplitudes(amplitudes_of((fast, slow, root)), root, jellett, seen_numbers)
         pulled = goals.unilateral and least_reaction(seen, seen_numbers) < 0.0
         if pulled:
             break
         final = _reached(_tilts_of(solver.y, turned), goals)
         if math.isfinite(final):
             break
-        if seen.middle > _FAR_FROM_POLE:
+        if seen.middle > FAR_FROM_POLE:
             done = False
             break
         if solver.status == "finished" or solver.step() is not None:
             break
         knots.append(float(solver.t))
         pieces.append(solver.dense_output())
-    share = min(0.0, -abs(solver.y[0] - solver.y[1]) - math.log(_LEAST_AMPLITUDE))
+    share = min(0.0, -abs(solver.y[0] - solver.y[1]) - math.log(LEAST_AMPLITUDE))
     path = OdeSolution(knots, pieces) if pieces else None
     return Stage(
         np.array(knots), path, begin, Nutation(seen, turned, log_share=share), final, done, pulled
     )
 
 
-_FAR_FROM_POLE = 1.3
+FAR_FROM_POLE = 1.3
 """Middle of the nutation, 1 - cos(theta), beyond which the other pole is clearly nearer."""
 
 _NARROW = 1e-6
@@ -201,39 +208,50 @@ _NARROWEST = -55.0
 
 _LONGEST = 1e5
 _MOST_STEPS = 1000
-_LEAST_AMPLITUDE = 1e-7
+LEAST_AMPLITUDE = 1e-7
+"""Least ratio of an amplitude to the other at which rates are computed: below it the rate of the
+smaller one is rounding.
+"""
+
 _NO_AMPLITUDE = 1e-16
 _ROUNDING = 1e-12
 
 
-def _rates(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> AmplitudeRates:
-    """Rates of the amplitudes; not a number where there is no nutation, so that the step is made
-    smaller.
+def rates_at(point: Point, jellett: float, numbers: Numbers) -> Point:
+    """Return the rates of a `Nutation.point` over mu t, in natural units.
+
+    They are no numbers where there is no nutation, so that a step that leads there is made smaller.
     """
+    pair = amplitudes_of(point)
     if math.sqrt(pair.fast) + math.sqrt(pair.slow) <= 1.0 + _ROUNDING:
-        with suppress(ValueError, ZeroDivisionError):
-            return amplitude_rates(pair, root, jellett, numbers)
-    return AmplitudeRates(math.nan, math.nan, math.nan)
+        try:
+            rates = amplitude_rates(pair, point[2], jellett, numbers)
+        except (ValueError, ZeroDivisionError):
+            return (math.nan, math.nan, math.nan)
+        return (rates.fast, rates.slow, rates.root)
+    return (math.nan, math.nan, math.nan)
 
 
-def _amplitudes_of(y: Array) -> Amplitudes:
-    """The amplitudes with these logarithms, neither taken so small that its rate would be lost in
+def amplitudes_of(point: Point) -> Amplitudes:
+    """Return the amplitudes of a `Nutation.point`, neither so small that its rate would be lost in
     rounding.
 
     The logarithmic rate of a small amplitude does not depend on its size, nor do those of two small
     ones.
     """
-    lift = max(0.0, _NARROWEST - max(y[0], y[1]))
-    fast, slow = math.exp(min(y[0] + lift, 0.0)), math.exp(min(y[1] + lift, 0.0))
-    return Amplitudes(max(fast, _LEAST_AMPLITUDE * slow), max(slow, _LEAST_AMPLITUDE * fast))
+    lift = max(0.0, _NARROWEST - max(point[0], point[1]))
+    fast, slow = math.exp(min(point[0] + lift, 0.0)), math.exp(min(point[1] + lift, 0.0))
+    return Amplitudes(max(fast, LEAST_AMPLITUDE * slow), max(slow, LEAST_AMPLITUDE * fast))
 
 
+# translate: skip
 def _tilts_of(y: Array, turned: bool) -> tuple[Array, Array]:
     """Turning tilts of a nutation with this `Nutation.point`, seen from theta = 0, or from pi."""
     low, high = turning_tilts(Amplitudes(*np.exp(y[:2])))
     return (math.pi - high, math.pi - low) if turned else (low, high)
 
 
+# translate: skip
 def _reached(tilts: tuple[Array, Array], goals: Goals) -> float:
     """Tilt of the stable steady state that the whole nutation is close to, or nan."""
     low, high = tilts

@@ -56,7 +56,7 @@ VALUES = ("NotImplemented",)
 MATH = (
     *("acos", "asin", "atan", "atan2", "ceil", "copysign", "cos", "cosh", "dist", "exp", "expm1"),
     *("factorial", "floor", "hypot", "inf", "isfinite", "isinf", "isnan", "log", "log10"),
-    *("log1p", "nan", "pi", "radians", "sin", "sinh", "sqrt", "tan", "tanh", "tau"),
+    *("acosh", "log1p", "nan", "pi", "radians", "sin", "sinh", "sqrt", "tan", "tanh", "tau"),
 )
 """Members of `math`."""
 

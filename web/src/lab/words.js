@@ -39,6 +39,8 @@ function written(gap, value, units) {
       if (value > 0 && value < MILLISECONDS)
         return `${digits(1e3 * value, 3)} ${part("account.units.short")}`;
       return `${digits(value, value < TENS ? 3 : 4)} ${part("account.units.time")}`;
+    case "about":
+      return `${digits(value, 2)} ${part("account.units.time")}`;
     case "tilt":
     case "highest":
       return shown(value, "angle", units);

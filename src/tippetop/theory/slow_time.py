@@ -1,0 +1,170 @@
+"""The time a launch takes to its end under weak viscous friction, in plain numbers.
+
+`tippetop.theory.averaging` has the same slow flow as a function of time. Here it is followed by
+steps of Dormand and Prince's method, only to when it first is near its end.
+"""
+
+import math
+from typing import NamedTuple
+
+from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.runge_kutta import POWER, Point, RungeKuttaStep, step_from, step_to
+from tippetop.mechanics.top import natural_units
+from tippetop.mechanics.view import Angles
+from tippetop.problem.problem import Problem
+from tippetop.theory.dissipation import least_reaction
+from tippetop.theory.nutation import Numbers, numbers_of, orbit_of_amplitudes
+from tippetop.theory.nutation_decay import (
+    FAR_FROM_POLE,
+    LEAST_AMPLITUDE,
+    Nutation,
+    amplitudes_of,
+    launched,
+    rates_at,
+)
+from tippetop.theory.steady import jellett_of_launch
+
+TOLERANCE = 1e-6
+"""Error of the logarithms of the amplitudes in a step: the time is told in two digits."""
+
+MOST_STEPS = 200
+MOST_STAGES = 20
+PARTS = 16
+"""Instants of a step at which it is seen whether the end is near."""
+
+
+class SlowPath(NamedTuple):
+    """A part of the slow flow, seen from one pole, and the tilt it leads to."""
+
+    jellett: float
+    """Jellett's integral, in natural units."""
+    numbers: Numbers
+    """Numbers of the top, with alpha as it is seen from that pole."""
+    turned: bool
+    """Whether that pole is theta = pi."""
+    goal: float
+    """Tilt of the end, rad."""
+    distance: float
+    """How near to it is near, rad."""
+
+    def rates(self, point: Point) -> Point:
+        """Return the rates of a `Nutation.point` over mu t."""
+        return rates_at(point, self.jellett, self.numbers)
+
+    def beyond(self, point: Point) -> float:
+        """Return how far the end is outside the tilts of a nutation, beyond `distance`, rad."""
+        fast, slow = math.exp(0.5 * point[0]), math.exp(0.5 * point[1])
+        low = 2.0 * math.asin(min(abs(fast - slow), 1.0))
+        high = 2.0 * math.asin(min(fast + slow, 1.0))
+        goal = math.pi - self.goal if self.turned else self.goal
+        return max(low - goal, goal - high) - self.distance
+
+
+def time_to_end(problem: Problem, goal: float, distance: float) -> float:
+    """Return about when the tilt of a launch first is near its end under weak friction, s.
+
+    The time is exact for weak friction, and a few per cent off where friction turns the top over
+    within a few precessions. `goal` is the tilt of the end, `distance` what is near, both in rad.
+    The time is nan for bodies that are no eccentric spheres, friction that is not viscous, launches
+    exactly upright or inverted, launches above the table, and where the table would have to pull.
+    """
+    launch, top = problem.launch, problem.top
+    law, surface = top.friction, top.surface
+    if not isinstance(law, ViscousLaw) or isinstance(surface, Hull) or not surface.spherical:
+        return math.nan
+    numbers = numbers_of(top)
+    vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0
+    if vertical or launch.gap > 0.0 or numbers.alpha == 0.0 or not top.torque_free:
+        return math.nan
+    units = natural_units(top)
+    time = float(units.time)
+    angles = Angles(
+        launch.tilt,
+        launch.tilt_rate * time,
+        0.0,
+        launch.precession * time,
+        launch.spin * time,
+        (0.0, 0.0),
+    )
+    jellett = jellett_of_launch(problem) / float(units.jellett)
+    nutation, passed = launched(angles, numbers), 0.0
+    for _ in range(MOST_STAGES):
+        own = numbers.turned if nutation.turned else numbers
+        path = SlowPath(jellett, own, nutation.turned, goal, distance)
+        taken, end = _follow(path, nutation, problem.contact.liftoff != "ignore")
+        passed += taken
+        if end is None:
+            return passed / (float(top.gravity) * float(law.mu))
+        nutation = end.turn(numbers)
+    return math.nan
+
+
+def _follow(path: SlowPath, begin: Nutation, unilateral: bool) -> tuple[float, Nutation | None]:
+    """Return mu t, in natural units, until the end is near, and None; or until the other pole is
+    nearer, and the nutation there.
+
+    mu t is nan, beside None, where the flow does not lead on.
+    """
+    point, passed = begin.point, 0.0
+    if path.beyond(point) <= 0.0:
+        return 0.0, None
+    slope = path.rates(point)
+    fastest = max(abs(slope[0]), abs(slope[1]), abs(slope[2]))
+    size = 1.0 / fastest if fastest > 0.0 else 1.0
+    for _ in range(MOST_STEPS):
+        step = step_from(point, slope, size, path.rates)
+        error = step.doubt(largest) / TOLERANCE
+        if not (all(math.isfinite(value) for value in step.there) and error <= 1.0):
+            size *= 0.5 if not error > 1.0 else max(0.2, 0.9 * error**POWER)
+            continue
+        near = _first_near(path, step)
+        if math.isfinite(near):
+            return passed + near * size, None
+        point, slope, passed = step.there, step.new_slope, passed + size
+        size *= min(5.0, 0.9 * error**POWER) if error > 0.0 else 5.0
+        seen = orbit_of_amplitudes(amplitudes_of(point), point[2], path.jellett, path.numbers)
+        if unilateral and least_reaction(seen, path.numbers) < 0.0:
+            return math.nan, None
+        if seen.middle > FAR_FROM_POLE:
+            share = min(0.0, -abs(point[0] - point[1]) - math.log(LEAST_AMPLITUDE))
+            return passed, Nutation(seen, path.turned, log_share=share)
+    return math.nan, None
+
+
+def largest(point: Point) -> float:
+    """Return the largest absolute value."""
+    return max(abs(point[0]), abs(point[1]), abs(point[2]))
+
+
+def _first_near(path: SlowPath, step: RungeKuttaStep) -> float:
+    """Return the first part of a step at which the end is near; nan if there is none.
+
+    Where the amplitudes pass each other the nutation goes through the pole for an instant.
+    """
+
+    def at(part: float) -> Point:
+        return step_to(step.here, step.slopes[0], part * step.size, path.rates)
+
+    def beyond(part: float) -> float:
+        return path.beyond(at(part))
+
+    def apart(part: float) -> float:
+        point = at(part)
+        return point[0] - point[1]
+
+    before, difference = 0.0, step.here[0] - step.here[1]
+    for count in range(1, PARTS + 1):
+        after = count / PARTS
+        point = step.between(after)
+        instants = [after]
+        passes = (point[0] - point[1]) * difference < 0.0
+        if passes and apart(before) * apart(after) < 0.0:
+            instants = [crossing(apart, before, after), after]
+        for instant in instants:
+            if path.beyond(step.between(instant)) <= 0.0 and beyond(instant) <= 0.0:
+                # No instant between the last step's end and this one was near by the cubic.
+                return crossing(beyond, 0.0 if beyond(before) <= 0.0 else before, instant)
+        before, difference = after, point[0] - point[1]
+    return math.nan
