@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("heyoka")
 
-from tippetop.contact.liftoff import FreeToFly
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.mode import EventKind, Outcome
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.taylor import Taylor
@@ -32,7 +32,8 @@ class DryRun:
 
     def follow(self, end):
         """Go on up to a time, or to where the table would have to pull."""
-        trajectory = Trajectory(FreeToFly(self.top, 0.0).launch(self.start), end, self.integrator)
+        automaton = Automaton(self.top, "fly", 0.0)
+        trajectory = Trajectory(automaton, automaton.launch(self.start), end, self.integrator)
         for segment in trajectory.segments():
             if not segment.mode.touching:
                 break

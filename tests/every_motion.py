@@ -81,7 +81,7 @@ def sliding_motions(top):
             }
         for way in (0.0, -1.0)[: 1 + rolls]:
             for told, form in modes.items():
-                mode = form(top, None, other, way)
+                mode = form(top, other, way)
                 yield f"two {way}{told}", mode.motion, mode.parameters
 
 
@@ -89,7 +89,7 @@ def sticking_motions(top):
     """Every motion of a top in which it sticks."""
     kind, numbers, rolls = top.kind, top.numbers, top.resists_rolling
     for form in (Sticking, StickingWithoutRolling)[: 1 + rolls]:
-        yield form.name, form(top, None).motion, numbers
+        yield form.name, form(top).motion, numbers
     if rolls:
         yield (
             "sticking closing",

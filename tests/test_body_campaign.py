@@ -7,7 +7,7 @@ import pytest
 
 import tippetop as tt
 from campaigns import seeds
-from tippetop.contact.choice import rules_of
+from tippetop.contact.choice import automaton_of
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.flight import gap, gap_rate
@@ -145,7 +145,9 @@ def test_what_touches_within_rounding_does_not_sink_in(back: float) -> None:
     state = state._replace(momentum=(*turned, state.momentum[2]))
     state = on_table(along_table(state), first)
     assert gap_rate(state, second) == pytest.approx(3e-7, rel=1e-6)
-    rules = rules_of(problem.contact, first, units)
-    run = Trajectory(rules.resting(0.0, state), 0.1, make_integrator("dop853", 3e-14))
+    automaton = automaton_of(problem.contact, first, units)
+    run = Trajectory(
+        automaton, automaton.resting(0.0, state), 0.1, make_integrator("dop853", 3e-14)
+    )
     for segment in run.segments():
         assert min(gap(segment.end_state, one) for one in top.each) > -1e-12

@@ -10,8 +10,9 @@ from typer.testing import CliRunner
 
 import tippetop as tt
 from tippetop.cli.commands import app
-from tippetop.contact.choice import rules_for
-from tippetop.contact.liftoff import FreeToFly
+from tippetop.contact.automaton import Automaton
+from tippetop.contact.closed import STOPPING
+from tippetop.contact.mode import ModeEnd
 from tippetop.contact.sliding import Sliding
 from tippetop.contact.stopping import Stopping
 from tippetop.integrators import has_taylor, make_integrator
@@ -229,9 +230,10 @@ def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> N
         body=tt.presets.REPORT, friction=tt.CoulombFriction(mu=0.01), launch=launch
     )
     top = natural(problem.top)
-    rules = rules_for(top, "ignore", 0.0)
+    automaton, slides = Automaton(top, "ignore", 0.0), Sliding(top, pulls=True)
     start = natural_state(problem.start(), natural_units(problem.top))
-    assert type(rules.stopping(start, slips=True).then) is mode
+    end = ModeEnd(STOPPING, start)
+    assert type(automaton.follow(slides, end, 0.0).then) is mode
 
 
 def test_what_could_be_held_by_a_pull_only_slips():
@@ -252,7 +254,7 @@ def test_what_could_be_held_by_a_pull_only_slips():
         state = on_table(
             SlidingState(axis, momentum, velocity_without_slip(axis, momentum, top)), top
         )
-        mode = FreeToFly(top, 0.0).resting(0.0, state).then
+        mode = Automaton(top, "fly", 0.0).resting(0.0, state).then
         segment = next(mode.segments(0.0, state, 1e-3, make_integrator("dop853")))
         touch = contact(*along_table(segment.end_state), top)
         assert touch.normal_force > 0.0

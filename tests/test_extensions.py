@@ -15,8 +15,8 @@ import pytest
 from pydantic import Field, model_validator
 
 import tippetop as tt
-from tippetop.contact.liftoff import FreeToFly
-from tippetop.contact.mode import IntegratedMode, Reaction, Transition
+from tippetop.contact.automaton import Automaton
+from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Transition
 from tippetop.extend import (
     NO_TORQUE,
     FrictionLaw,
@@ -31,7 +31,7 @@ from tippetop.extend import (
 )
 from tippetop.graph.hoisting import played
 from tippetop.graph.recording import record
-from tippetop.integrators.base import Guard, Motion
+from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.system import Component, Constraint, free_rates, solve_constraints
 from tippetop.mechanics.motion import axis_rate, on_table
@@ -194,9 +194,6 @@ class Pinned(IntegratedMode):
         wrench, _ = pin(y, self.top)
         return Reaction(wrench.force, NO_TORQUE, 0.0)
 
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        return FreeToFly(self.top, self.rules.restitution).launch(state)
-
 
 def pin(y: Row, top: Top) -> tuple[Wrench, ContactPoint]:
     """The force that holds the contact point."""
@@ -220,21 +217,28 @@ def pinned_motion(kind: Kind) -> Motion:
 
 
 @dataclass(frozen=True)
-class PinRules(FreeToFly):
+class PinAutomaton(Automaton):
     """As for any top that may fly, once it is released."""
 
     left: float
 
     def launch(self, state: State) -> Transition:
-        return Transition((), Pinned(self.top, self, self.left), state)
+        return Transition((), Pinned(self.top, self.left), state)
+
+    def follow(
+        self, mode: Mode, end: ModeEnd, time: float, integrator: Integrator | None = None
+    ) -> Transition:
+        if end.cause == "released":
+            return super().launch(end.state)
+        return super().follow(mode, end, time, integrator)
 
 
 class PinnedAtFirst(tt.Contact):
     kind: Literal["pinned_at_first"] = "pinned_at_first"
     until: Annotated[Positive, Quantity("s", "when the pin is drawn")]
 
-    def rules(self, top: Top, units: Units) -> PinRules:
-        return PinRules(top, self.restitution, self.until / units.time)
+    def rules(self, top: Top, units: Units) -> PinAutomaton:
+        return PinAutomaton(top, self.liftoff, self.restitution, self.until / units.time)
 
 
 DRAWN = 0.2037

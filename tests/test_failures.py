@@ -26,8 +26,8 @@ TWO = tt.Problem(
 
 SITES: list[tuple[str, tt.Problem, str]] = [
     ("flight.touchdown", THROWN, "The end of the flight"),
-    ("liftoff.impact", THROWN, "The impulse of the impact"),
-    ("rules.settling", SLIPPERY, "The force that holds the contact"),
+    ("collision.impact", THROWN, "The impulse of the impact"),
+    ("automaton.settling", SLIPPERY, "The force that holds the contact"),
     ("loosening.beginning", SLIPPERY, "The direction in which slip begins"),
     ("loosening.beginning", BRAKED, "The direction in which slip and rolling begin"),
     ("two_closed.TwoClosed.resolved", TWO, "The forces on two surfaces that touch"),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tippetop.contact.liftoff import FreeToFly
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.striking import impact_of_patch
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.mechanics.contensou import EllipsoidalLaw
@@ -129,8 +129,8 @@ def test_slip_and_drilling_that_end_in_an_impact_are_left_to_what_knows_that():
 def test_a_touchdown_takes_this_way_where_nothing_is_given_back():
     state, top = struck_top(HertzLaw(0.3, 0.1), np.random.default_rng(9))
     for restitution in (0.0, 0.5):
-        rules = FreeToFly(top, restitution)
-        ours, theirs = rules.touchdown(1.0, state, TAYLOR), rules.touchdown(1.0, state)
+        automaton = Automaton(top, "fly", restitution)
+        ours, theirs = (automaton.touchdown(1.0, state, way) for way in (TAYLOR, None))
         assert [event.kind for event in ours.events] == [event.kind for event in theirs.events]
         assert type(ours.then) is type(theirs.then)
         assert ours.state.pack() == pytest.approx(theirs.state.pack(), abs=1e-7)

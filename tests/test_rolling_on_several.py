@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 import moreau
 import tippetop as tt
 from lying import R, lying, resisted
-from tippetop.contact import closed, double, two_closed, two_resolver
-from tippetop.contact.choice import rules_for
+from tippetop.contact import closed, double, touching, two_closed
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contact_pair import ContactPair, turning_along
@@ -186,7 +186,7 @@ def test_rolling_that_slip_held_up_begins_when_that_ends(monkeypatch: pytest.Mon
     }
     found = []
     for slowest in (1e-9, 1e-6):
-        for module in (double, two_closed, two_resolver):
+        for module in (double, two_closed, touching):
             monkeypatch.setattr(module, "SLOWEST_SLIP", slowest)
         closed.motion_of.cache_clear()
         run = followed(body.replace(launch), 0.004)
@@ -230,9 +230,10 @@ def ends(
     """
     units, top = natural_units(problem.top), problem.top
     top = natural(top if law is None else top._replace(friction=law, rolling_resistance=None))
-    start = rules_for(top, "fly", 0.0).launch(natural_state(problem.start(), units))
+    automaton = Automaton(top, "fly", 0.0)
+    start = automaton.launch(natural_state(problem.start(), units))
     method = make_integrator("dop853", 3e-14) if law is None else make_integrator("collocation")
-    run = Trajectory(start, duration / units.time, method)
+    run = Trajectory(automaton, start, duration / units.time, method)
     modes = {segment.mode.label for segment in run.segments()}
     assert run.outcome is not None
     return np.array([*run.state.axis, *run.state.momentum, *run.state.velocity]), modes

@@ -7,11 +7,11 @@ import pytest
 import xarray as xr
 
 import tippetop as tt
-from tippetop.contact import several
+from tippetop.contact import automaton, collision, touching
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.double import SlidingOnTwo, on_two
 from tippetop.contact.mode import EventKind, Mode
 from tippetop.contact.passing import Resting
-from tippetop.contact.several import OnSeveral
 from tippetop.mechanics.contact_pair import ContactPair
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.rolling import normal_wrench
@@ -118,8 +118,9 @@ def test_modes_name_the_surfaces_that_touch(run) -> None:
 def test_the_end_of_rocking_converges_at_first_order(monkeypatch: pytest.MonkeyPatch) -> None:
     bounds = np.array([1e-4, 1e-5, 1e-6])
     ends, tilts = [], []
-    for bound in (*bounds, several.SLOWEST_ROCKING):
-        monkeypatch.setattr(several, "SLOWEST_ROCKING", bound)
+    for bound in (*bounds, touching.SLOWEST_ROCKING):
+        for module in (touching, collision, automaton):
+            monkeypatch.setattr(module, "SLOWEST_ROCKING", bound)
         run = tt.simulate(LEINE_GLOCKER, 5.0, samples=11)
         ends.append(times(run, "double contact")[0])
         tilts.append(float(run["final_omega3"]))
@@ -179,7 +180,7 @@ def test_two_patches_which_each_drill_or_slide_move_a_body_as_newton_and_euler_s
     velocity = slips[0] - np.cross(turning, arms[0])
     sliding = SlidingState(*(tuple(v.tolist()) for v in (axis, momentum, velocity[:2])))
 
-    mode = on_two(on_table(sliding, tops[0]), OnSeveral(tops[0], 0.0), tops[1], 0.0)
+    mode = on_two(on_table(sliding, tops[0]), tops, 0.0)
     rates = np.array(mode.motion.rates(sliding.pack(), mode.parameters))
 
     tractions = [
@@ -308,7 +309,7 @@ def test_two_balls_that_friction_holds_rock_to_rest() -> None:
     )
 
 
-def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[OnSeveral, State]:
+def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[Automaton, State]:
     """A body on two like spheres, whose axis lies along x and which moves along it, in natural
     units.
     """
@@ -319,24 +320,24 @@ def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[OnSe
     top = natural(problem.top)
     top = top._replace(surface=top.surface.each[1])
     state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (velocity, 0.0)), top)
-    return OnSeveral(top, 0.0), state
+    return Automaton(top, "fly", 0.0), state
 
 
 @pytest.mark.parametrize("velocity", [0.0, 1e-12, 1e-10])
 def test_what_hardly_slips_on_two_surfaces_rests(velocity: float) -> None:
-    rules, state = lying("coulomb", (-0.02, 0.02), velocity)
-    assert isinstance(rules.resting(0.0, state).then, Resting)
+    automaton, state = lying("coulomb", (-0.02, 0.02), velocity)
+    assert isinstance(automaton.resting(0.0, state).then, Resting)
 
 
 def test_what_slips_on_two_surfaces_goes_on() -> None:
-    rules, state = lying("coulomb", (-0.02, 0.02), 1e-8)
-    assert isinstance(rules.resting(0.0, state).then, SlidingOnTwo)
+    automaton, state = lying("coulomb", (-0.02, 0.02), 1e-8)
+    assert isinstance(automaton.resting(0.0, state).then, SlidingOnTwo)
 
 
 def test_the_farther_of_two_surfaces_beside_the_centre_of_mass_opens_and_is_named() -> None:
     """The body is about to tip over the nearer one."""
-    rules, state = lying("viscous", (0.01, 0.02), 0.0)
-    found = rules.resting(0.0, state)
+    automaton, state = lying("viscous", (0.01, 0.02), 0.0)
+    found = automaton.resting(0.0, state)
     assert [(event.kind, event.surface) for event in found.events] == [(EventKind.OPENING, 1)]
     assert isinstance(found.then, Mode)
     assert found.then.label == "sliding_on_0"

@@ -10,7 +10,7 @@ import xarray as xr
 
 import tippetop as tt
 from lying import lying
-from tippetop.contact.choice import rules_of
+from tippetop.contact.choice import automaton_of
 from tippetop.contact.double import SlidingOnTwo
 from tippetop.contact.double_sticking import (
     SlipBeginningOnTwo,
@@ -97,9 +97,11 @@ def followed(seed: int):
     """The segments of such a body."""
     problem = lying(seed)
     units = natural_units(problem.top)
-    rules = rules_of(problem.contact, natural(problem.top), units)
-    start = rules.launch(natural_state(problem.start(), units))
-    run = Trajectory(start, DURATION[seed] / units.time, make_integrator("dop853", 3e-14))
+    automaton = automaton_of(problem.contact, natural(problem.top), units)
+    start = automaton.launch(natural_state(problem.start(), units))
+    run = Trajectory(
+        automaton, start, DURATION[seed] / units.time, make_integrator("dop853", 3e-14)
+    )
     return list(run.segments())
 
 
@@ -224,7 +226,7 @@ def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
     knots = begin.solution.knots
     early, late = (knots[0] + part * (knots[-1] - knots[0]) for part in (0.3, 0.9))
     mode, (first, last) = begin.mode, begin.solution(np.array([early, late])).tolist()
-    slides = SlidingOnTwo(mode.top, mode.rules, mode.other, mode.rolls)
+    slides = SlidingOnTwo(mode.top, mode.other, mode.rolls)
     start = early, np.array(slides.numbers(mode.state(first)))
     (arc,) = make_integrator("collocation").integrate(slides.motion, slides.parameters, start, late)
     assert arc.end_state == pytest.approx(slides.numbers(mode.state(last)), abs=1e-11)

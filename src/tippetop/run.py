@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from tippetop import __version__
-from tippetop.contact.choice import rules_of
+from tippetop.contact.choice import automaton_of
 from tippetop.contact.mode import Event, Outcome, Segment
 from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
 from tippetop.graph.own_parts import has_choices
@@ -174,8 +174,11 @@ def simulate(
     method = integrator_of(integrator, tolerance, step, units, not has_choices(problem.top))
     warn_if_implausible(problem)
     state = natural_state(problem.start(), units)
-    launch = rules_of(problem.contact, top, units).launch(state)
-    trajectory = Trajectory(launch, duration / units.time, method, phase_limit, step_limit)
+    automaton = automaton_of(problem.contact, top, units)
+    launch = automaton.launch(state)
+    trajectory = Trajectory(
+        automaton, launch, duration / units.time, method, phase_limit, step_limit
+    )
     start = Begin(top, units, state, problem.launch.azimuth, launch.energy_lost)
     recorder, tally = start.recorder(grid / units.time), Tally(top, state)
     segments = list[Segment]()

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun
 from tippetop.contact.arriving import DEGREE, Arrival, arriving
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.closing import closing_of
-from tippetop.contact.liftoff import Bilateral
 from tippetop.contact.mode import EventKind
 from tippetop.contact.stopping import Stopping
 from tippetop.contact.trajectory import Trajectory
@@ -121,10 +121,12 @@ def test_friction_that_turns_slip_much_faster_than_it_ends_takes_few_steps(integ
     axis, momentum, slip = tuple(start[:3]), tuple(start[3:6]), [start[-2] * e for e in start[6:9]]
     velocity = velocity_of(axis, momentum, slip, top)
     run = DryRun(top, axis, momentum, velocity, integrator)
-    begun = Bilateral(top).launch(run.start)
-    segments = Trajectory(begun, 1.5 * end[-1], integrator).segments()
+    automaton = Automaton(top, "ignore", 0.0)
+    segments = Trajectory(
+        automaton, automaton.launch(run.start), 1.5 * end[-1], integrator
+    ).segments()
     first = next(segments)
-    assert isinstance(begun.then, Stopping)
+    assert isinstance(first.mode, Stopping)
     assert first.transition.events[0].kind is EventKind.STICK
     assert first.end_time == pytest.approx(end[-1], rel=1e-8)
     assert first.solution(np.array([first.end_time]))[0, :6] == pytest.approx(end[:6], abs=1e-9)

@@ -221,5 +221,5 @@ def test_slip_is_watched_by_how_fast_it_falls_along_the_motion(slide, law):
 
     falls = float(derivative(square, 0.0))
     scale = float(square(0.0)) + abs(falls) + scale_of(top, ContactPoint.of(*state[:2], top)) ** 2
-    found = Sliding(top, None).slip_left(state.pack())
+    found = Sliding(top).slip_left(state.pack())
     assert found == pytest.approx(float(square(0.0)) + 0.5 * HORIZON * falls, abs=1e-11 * scale)

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from dry_runs import launched
 from tippetop.contact import slip_step
-from tippetop.contact.liftoff import FreeToFly
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.slipping import change_over, dips, parts_left
@@ -37,7 +37,8 @@ def followed(name, end):
     top = Top(1.0, 131 / 350, 2 / 5, shape, CoulombLaw(mu), 1.0)
     top, axis, momentum, velocity = launched(top, tilt, spin)
     start = on_table(SlidingState(axis, momentum, velocity), top)
-    trajectory = Trajectory(FreeToFly(top, 0.0).launch(start), end, make_integrator())
+    automaton = Automaton(top, "fly", 0.0)
+    trajectory = Trajectory(automaton, automaton.launch(start), end, make_integrator())
     return list(trajectory.segments()), [(event.kind, event.time) for event in trajectory.events]
 
 

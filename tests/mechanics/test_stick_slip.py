@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 
 from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.closed import SLIP, split
 from tippetop.contact.growth import growth
-from tippetop.contact.liftoff import Bilateral
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.sticking import Sticking
@@ -202,7 +202,7 @@ def swinging(top):
 
 def stuck_reserve(axis, momentum, top):
     """Positive while the table can hold the contact, and the body rolls as it does."""
-    [slip] = [guard for guard in Sticking(top, None).motion.guards if guard.name == SLIP]
+    [slip] = [guard for guard in Sticking(top).motion.guards if guard.name == SLIP]
     return slip.value((*axis, *momentum), top.numbers)
 
 
@@ -316,7 +316,8 @@ def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
         monkeypatch.setattr(Loosening, "slips", lambda *_: None)
     top, axis, momentum, velocity = launched(report(CoulombLaw(0.2)), 1.0, 50.0 / SECOND)
     start = on_table(SlidingState(axis, momentum, velocity), top)
-    trajectory = Trajectory(Bilateral(top).launch(start), 0.4 * SECOND, make_integrator())
+    automaton = Automaton(top, "ignore", 0.0)
+    trajectory = Trajectory(automaton, automaton.launch(start), 0.4 * SECOND, make_integrator())
     segment, *_ = (one for one in trajectory.segments() if isinstance(one.mode, mode))
     assert [event.kind for event in segment.transition.events] == [EventKind.STICK]
     solution = segment.solution
@@ -360,8 +361,7 @@ def test_the_table_pulls_from_the_first_instant_on_as_it_does_where_slip_begins(
     top, axis, momentum = starting(family, 1)
     velocity = velocity_without_slip(axis, momentum, top)
     state = on_table(SlidingState(axis, momentum, velocity), top)
-    rules = Bilateral(top)
-    (segment,) = Loosening(top, rules, Vanishing(slip=True), 1).segments(
+    (segment,) = Loosening(top, Vanishing(slip=True), pulls=True, power=1).segments(
         0.0, state, 1.0, make_integrator()
     )
     point = ContactPoint.of(axis, momentum, top)

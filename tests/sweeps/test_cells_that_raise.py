@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.contact.liftoff import FreeToFly
+from tippetop.contact.automaton import Automaton
 from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.sweeps import Store
 
@@ -35,16 +35,16 @@ def test_a_launch_that_raises_fails_alone(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, several: bool, error: Exception
 ) -> None:
     """One by one, in lanes, and in a store."""
-    problem, launch = problem_of(several), FreeToFly.launch
+    problem, launch = problem_of(several), Automaton.launch
     bad = natural_state(problem.start(), natural_units(problem.top)).momentum[2]
 
-    def raising(self: FreeToFly, state: Any) -> Any:
+    def raising(self: Automaton, state: Any) -> Any:
         if np.isclose(state.momentum[2], bad):
             raise error
         return launch(self, state)
 
     before = swept(problem)
-    monkeypatch.setattr(FreeToFly, "launch", raising)
+    monkeypatch.setattr(Automaton, "launch", raising)
     for after in (swept(problem), swept(problem, out=tmp_path / "a.zarr")):
         assert (after["status"] == "done").all()
         assert str(after["outcome"][BAD].values) == "failed"
@@ -54,10 +54,10 @@ def test_a_launch_that_raises_fails_alone(
 
 
 def test_what_ends_the_program_ends_the_sweep(monkeypatch: pytest.MonkeyPatch) -> None:
-    def raising(self: FreeToFly, state: Any) -> Any:
+    def raising(self: Automaton, state: Any) -> Any:
         raise MemoryError
 
-    monkeypatch.setattr(FreeToFly, "launch", raising)
+    monkeypatch.setattr(Automaton, "launch", raising)
     with pytest.raises(MemoryError):
         swept(problem_of(True))
 

@@ -8,7 +8,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import tippetop as tt
-from tippetop.contact.liftoff import FreeToFly
 from tippetop.contact.sticking import Sticking
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
@@ -37,7 +36,7 @@ def top_of(surface, inertias):
 def rolling_growth(kind, top, spin):
     """Largest growth rate of the mode that sticks, about its vertical spin, by its own rates."""
     pole = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
-    mode = Sticking(top, FreeToFly(top, 0.0))
+    mode = Sticking(top)
     start = (0.0, 0.0, pole, 0.0, 0.0, pole * top.axial_inertia * spin)
     matrix = jacobian(mode.rates, [np.array([number]) for number in start])[0]
     horizontal = [0, 1, 3, 4]

@@ -8,12 +8,10 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar, Self, TypeAlias
 
-from tippetop.contact.mode import EventKind, IntegratedMode, Reaction, Transition
-from tippetop.contact.surfaces import follow_surface, surface_guards
+from tippetop.contact.mode import IntegratedMode, Reaction
+from tippetop.contact.surfaces import surface_guards
 from tippetop.integrators.base import Guard, Motion
-from tippetop.mechanics.branches import on_other_branch
 from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
-from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.rolling import (
     contact_motion,
@@ -163,25 +161,6 @@ class ClosedMode(StatedMode):
         """Positive while rolling goes on for a while."""
         point, _, _, acceleration = self.found(y)
         return remaining(point.turning[:2], acceleration.turning[:2])
-
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        """What is about to end, begins, or holds from here on."""
-        if guard == LIFT_OFF:
-            return self.rules.lift_off(time, state)
-        if guard in (STOPPING, ROLLING_STOPPING):
-            return self.rules.stopping(state, slips=not self.sticks)
-        if guard in (BRANCH, LIMIT_BRANCH):
-            return Transition((), replace(self, top=on_other_branch(self.top)), state)
-        found = follow_surface(self, guard, time, state)
-        if found is not None:
-            return found
-        wrench = self.found(self.numbers(state))[2]
-        if wrench.force[2] <= 0.0 and not self.rules.pulls:
-            return self.rules.lift_off(time, state)
-        slip = guard == SLIP
-        event = self.rules.event(EventKind.SLIP if slip else EventKind.ROLL, time)
-        beginning = Vanishing(slip, held=self.held if slip else self.sticks)
-        return self.rules.giving_way(state, (event,), beginning, wrench)
 
 
 def _of_top(value: Callable[[Top, Vector], Scalar]) -> Callable[[Any, Row], Scalar]:

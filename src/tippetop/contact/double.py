@@ -3,12 +3,12 @@
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 from tippetop.contact.closed import ROLLING, ROLLING_STOPPING, GuardValue, StatedMode, split
-from tippetop.contact.mode import Before, Event, EventKind, Reaction, Transition
+from tippetop.contact.mode import Reaction, numbered
 from tippetop.contact.surfaces import number_of
-from tippetop.mechanics.branches import is_branched, on_numbered_branch, on_other_branch
+from tippetop.mechanics.branches import is_branched, on_numbered_branch
 from tippetop.mechanics.contact_pair import ContactPair, Tops
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.pair_motion import PairMotion, pair_motion
@@ -20,10 +20,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 from tippetop.mechanics.wrench import Slip
 
-if TYPE_CHECKING:
-    from tippetop.contact.several import OnSeveral
-
-OPENING, ENDING, BRANCHING = "opening ", "ending ", "branching "
+OPENING, ENDING, BRANCHING = "opening", "ending", "branching"
 
 SLOWEST_SLIP = 1e-9
 """Slip in natural units at which it ends on one of two contacts, or on both where drilling is
@@ -35,8 +32,6 @@ resisted too, and is not followed further.
 class OnTwo(StatedMode):
     """Two surfaces touch."""
 
-    rules: "OnSeveral"
-    """What follows where one of them opens, sticks or slips."""
     other: Top
     """The top with the second surface active."""
     rolls: float = 0.0
@@ -98,7 +93,7 @@ class OnTwo(StatedMode):
         While both contacts stay closed the tilt does not change, and no further surface comes to
         the table.
         """
-        found = [(f"{OPENING}{number}", _normal(number)) for number in (0, 1)]
+        found = [(numbered(OPENING, number), _normal(number)) for number in (0, 1)]
         if self.stopped:
             found.append((ROLLING, lambda mode, y: mode.found(y)[0].rolling_reserve))
         elif self.top.resists_rolling:
@@ -121,32 +116,18 @@ class OnTwo(StatedMode):
         """The angular momentum, without rolling where that is held."""
         return without_rolling(axis, momentum, self.top) if self.stopped else momentum
 
-    def settled(self, time: float, state: State, rolls: float) -> Transition:
-        """What the resolver finds where slip, or rolling, has ended, or begins as signed."""
-        return self.rules.settled_on_two(
-            time, state, self.tops, Before(self.stuck, bool(self.rolls)), rolls
-        )
+    @abstractmethod
+    def slips_on(self, contact: int) -> bool:
+        """Return whether a contact slips."""
 
-    def follow_rolling(self, guard: str, time: float, state: State) -> Transition:
-        """What follows where rolling ends, or can be held no longer: there are no other guards."""
-        ends = guard == ROLLING_STOPPING
-        return self.settled(
-            time, state, 0.0 if ends else rolling_way(self.found(self.numbers(state))[0])
-        )
+    def rolling_direction(self, state: State) -> float:
+        """Return the sign of omega_e with which rolling begins that can be held no longer."""
+        return rolling_way(self.found(self.numbers(state))[0])
 
     @property
     def tops(self) -> Tops:
         """The top with either surface active: the branches of their laws may differ."""
         return self.top, self.other
-
-    def opening(self, number: int, time: float, state: State, *, slips: bool) -> Transition:
-        """One of both surfaces opens, while the other goes on, slipping or not."""
-        left, kept = (self.tops, self.tops[::-1])[number]
-        event = Event(EventKind.OPENING, time, surface=number_of(left))
-        state = state._replace(momentum=self.stilled(state.axis, state.momentum))
-        return Transition(
-            (event,), self.rules.on(number_of(kept)).going_on(state, slips=slips), state
-        )
 
 
 @dataclass(frozen=True)
@@ -179,40 +160,31 @@ class SlidingOnTwo(OnTwo):
         """The guards of slip's end, and of the branches of the law, too."""
         found = [*super().guard_values(), *self.endings()]
         if is_branched(self.top.friction):
-            found += [(f"{BRANCHING}{number}", _branch(number)) for number in (0, 1)]
+            found += [(numbered(BRANCHING, number), _branch(number)) for number in (0, 1)]
         return found
 
     def endings(self) -> list[GuardValue]:
         """The guards of slip's end: on both contacts at once where drilling is resisted too."""
         law = self.top.friction
         if slip_length(law) is not None:
-            return [(f"{ENDING}both", lambda mode, y: _left(*mode.found(y)[1]))]
+            return [(ENDING, lambda mode, y: _left(*mode.found(y)[1]))]
         return (
-            [(f"{ENDING}{number}", _slip(number)) for number in (0, 1)]
+            [(numbered(ENDING, number), _slip(number)) for number in (0, 1)]
             if is_set_valued(law)
             else []
         )
 
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        """One surface opens, while the other goes on; or slip or rolling ends."""
-        if guard.startswith(OPENING):
-            return self.opening(int(guard.removeprefix(OPENING)), time, state, slips=True)
-        if guard.startswith(BRANCHING):
-            tops, number = list(self.tops), int(guard.removeprefix(BRANCHING))
-            tops[number] = on_other_branch(tops[number])
-            return Transition((), replace(self, top=tops[0], other=tops[1]), state)
-        if guard.startswith(ENDING):
-            return self.settled(time, state, self.rolls)
-        return self.follow_rolling(guard, time, state)
+    def slips_on(self, contact: int) -> bool:
+        """Return that both do."""
+        return True
 
 
-def on_two(state: State, rules: "OnSeveral", other: Top, rolls: float) -> SlidingOnTwo:
-    """The mode of a body that slides on the surface of some rules and on another."""
-    tops: Tops = (rules.top, other)
+def on_two(state: State, tops: Tops, rolls: float) -> SlidingOnTwo:
+    """Return the mode of a body that slides on two surfaces."""
+    one, other = tops
     if is_branched(other.friction):
-        one, two = (on_numbered_branch(top, slip_of(*along_table(state), top)) for top in tops)
-        tops = one, two
-    return SlidingOnTwo(tops[0], rules, tops[1], rolls)
+        one, other = (on_numbered_branch(top, slip_of(*along_table(state), top)) for top in tops)
+    return SlidingOnTwo(one, other, rolls)
 
 
 def _normal(number: int) -> Callable[[Any, Row], Scalar]:

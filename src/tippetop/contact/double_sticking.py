@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from tippetop.contact.closed import GuardValue, split
-from tippetop.contact.double import OPENING, OnTwo, SlidingOnTwo, on_two
+from tippetop.contact.closed import SLIP, GuardValue, split
+from tippetop.contact.double import ENDING, OnTwo, SlidingOnTwo
 from tippetop.contact.loosening import ACCURACY, ORDER, nothing, piece
-from tippetop.contact.mode import Mode, Segment, Transition, failed
+from tippetop.contact.mode import Segment, explanation, numbered
 from tippetop.contact.passing import LOOKS
 from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
@@ -29,8 +29,6 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 from tippetop.mechanics.wrench import Slip
 
-SLIP, ENDING = "slip ", "ending"
-
 
 @dataclass(frozen=True)
 class HeldOnTwo(OnTwo):
@@ -48,13 +46,6 @@ class HeldOnTwo(OnTwo):
         momentum = self.stilled(axis, momentum)
         velocity = velocity_without_slip(axis, momentum, self.top)
         return on_table(SlidingState(axis, momentum, velocity), self.top)
-
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        """Slip begins; or rolling ends or begins."""
-        if guard.startswith(SLIP):
-            which = guard.removeprefix(SLIP)
-            return self.rules.slipping_on_two(time, state, self.tops, which, self.rolls)
-        return self.follow_rolling(guard, time, state)
 
 
 @dataclass(frozen=True)
@@ -74,6 +65,10 @@ class StickingAndSliding(HeldOnTwo):
         """The first surface."""
         return (number_of(self.top),)
 
+    def slips_on(self, contact: int) -> bool:
+        """Return that the second does."""
+        return contact == 1
+
     def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
         """What the table does, and how both contacts slip."""
         pair = ContactPair.of(*split(y), self.tops)
@@ -85,19 +80,10 @@ class StickingAndSliding(HeldOnTwo):
     def guard_values(self) -> list[GuardValue]:
         """The guards of what holds the first, and of slip on the second, too."""
         own: list[GuardValue] = [
-            (f"{SLIP}first", lambda mode, y: mode.found(y)[0].reserve(0)),
+            (numbered(SLIP, 0), lambda mode, y: mode.found(y)[0].reserve(0)),
             (ENDING, lambda mode, y: mode.sign * slip_apart(ContactPair.of(*split(y), mode.tops))),
         ]
         return own + super().guard_values()
-
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        """A contact opens; or slip ends on the second, or begins on the first."""
-        if guard.startswith(OPENING):
-            number = int(guard.removeprefix(OPENING))
-            return self.opening(number, time, state, slips=number == 0)
-        if guard == ENDING:
-            return self.settled(time, state, self.rolls)
-        return super().follow(guard, time, state)
 
 
 @dataclass(frozen=True)
@@ -128,6 +114,10 @@ class StickingOnTwo(HeldOnTwo):
         """Both surfaces."""
         return number_of(self.top), number_of(self.other)
 
+    def slips_on(self, contact: int) -> bool:
+        """Return that none does."""
+        return False
+
     def without_tops(self) -> Self:
         """Without what is a parameter, too."""
         return replace(super().without_tops(), least=0.0)
@@ -141,14 +131,12 @@ class StickingOnTwo(HeldOnTwo):
         found = super().guard_values()
         if slip_length(self.top.friction) is None:
             found += [
-                (f"{SLIP}0", lambda mode, y: mode.found(y)[0].left(0)),
-                (f"{SLIP}1", lambda mode, y: mode.found(y)[0].left(1)),
-                (f"{SLIP}both", lambda mode, y: mode.found(y)[0].both_reserve),
+                (numbered(SLIP, 0), lambda mode, y: mode.found(y)[0].left(0)),
+                (numbered(SLIP, 1), lambda mode, y: mode.found(y)[0].left(1)),
+                (SLIP, lambda mode, y: mode.found(y)[0].both_reserve),
             ]
         elif self.rolls:
-            found.append(
-                (f"{SLIP}both", lambda mode, y: mode.rolls * mode.found(y)[0].rolling - mode.least)
-            )
+            found.append((SLIP, lambda mode, y: mode.rolls * mode.found(y)[0].rolling - mode.least))
         return found
 
     def state(self, y: Row) -> State:
@@ -160,12 +148,6 @@ class StickingOnTwo(HeldOnTwo):
         """What the table does, and that neither contact slips."""
         pair = ContactPair.of(*split(y), self.tops)
         return pair_motion(pair, (None, None), self.rolls), ((0.0, 0.0), (0.0, 0.0))
-
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        """A contact opens, or one slips, or both."""
-        if guard.startswith(OPENING):
-            return self.opening(int(guard.removeprefix(OPENING)), time, state, slips=False)
-        return super().follow(guard, time, state)
 
 
 @dataclass(frozen=True)
@@ -219,10 +201,6 @@ class SlipBeginningOnTwo(SlidingOnTwo):
         looks = [at(look) for look in range(1, LOOKS + 1)]
         return all(value(self, y) > 0.0 for _, value in self.guard_values() for y in looks)
 
-    def onwards(self, last: State) -> Mode:
-        """Sliding on two."""
-        return on_two(last, self.rules, self.other, self.rolls)
-
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
     ) -> Iterator[Segment]:
@@ -233,5 +211,4 @@ class SlipBeginningOnTwo(SlidingOnTwo):
             duration = min(begun.valid_until(ACCURACY), end - time)
             yield piece(self, rows, self.direction, (time, duration, end))
         except ArithmeticError as error:
-            unknown = failed("How slip begins on two surfaces", error, state)
-            yield nothing(self.onwards(state), time, unknown)
+            yield nothing(self, time, state, explanation("How slip begins on two surfaces", error))

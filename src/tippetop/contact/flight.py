@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from tippetop.contact.mode import Mode, Outcome, Segment, Transition, failed
+from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Segment, explanation
 from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import ELEMENTARY, DenseSolution
@@ -31,6 +31,9 @@ whose rate is singular at the farther pole: longer ones would come near that.
 MOST_STEPS = 4096
 """Polynomials in a segment at most."""
 
+LANDING = "landing"
+"""Cause of the end of a flight on the table."""
+
 TOUCHING = 1e-12
 """Gap, and gap rate, in natural units, up to which a surface touches, and neither opens nor closes.
 """
@@ -53,12 +56,13 @@ class Flight(Mode):
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
     ) -> Iterator[Segment]:
-        """Evaluate the flight, which needs no integrator: the impact at its end may."""
+        """Evaluate the flight, which needs no integrator."""
         try:
             landing, lowest = self._landing(state, end - time)
         except ArithmeticError as error:
             nothing = DenseSolution.nothing(time, len(state.pack()))
-            yield Segment(self, nothing, state, failed("The end of the flight", error, state))
+            why = explanation("The end of the flight", error)
+            yield Segment(self, nothing, state, ModeEnd(FAILURE, state, detail=why))
             return
         duration = end - time if landing is None else landing
         count = 1 + int(duration * precession(state, self.top) / TURN)
@@ -67,14 +71,13 @@ class Flight(Mode):
             elapsed = [duration / count * step for step in range(first, last + 1)]
             elapsed[-1] = duration if last == count else elapsed[-1]
             here = fly(state, elapsed[-1], self.top, math)
-            transition, reach = None, time + elapsed[-1]
+            how, reach = None, time + elapsed[-1]
             if last == count:
                 reach = end if landing is None else reach
-                low = None if landing is None else lowest
-                transition = self._transition(reach, here, low, integrator)
+                how = self._end(here, None if landing is None else lowest)
             solution = self._solution(state, elapsed).moved(time, reach)
             highest = highest_gap(state, self.top, elapsed[-1])
-            yield Segment(self, solution, here, transition, highest_gap=highest)
+            yield Segment(self, solution, here, how, highest_gap=highest)
 
     def _solution(self, state: State, elapsed: Sequence[float]) -> DenseSolution:
         """The flight from a state on, in steps of equal length."""
@@ -99,15 +102,12 @@ class Flight(Mode):
                     found, lowest = sooner, other
         return found, lowest
 
-    def _transition(
-        self, time: float, state: State, lowest: Top | None, integrator: Integrator
-    ) -> Transition:
+    def _end(self, state: State, lowest: Top | None) -> ModeEnd:
+        """Return how the flight ends: on a surface, or with the run."""
         if lowest is None:
-            return Transition((), Outcome.COMPLETED, state)
+            return ModeEnd(COMPLETED, state)
         here = state._replace(height=support_at(state.axis, lowest.surface)[0])
-        if lowest == self.top:
-            return self.rules.touchdown(time, here, integrator)
-        return self.rules.touch(number_of(lowest), time, here, integrator)
+        return ModeEnd(LANDING, here, number_of(lowest))
 
 
 def start_of(state: State, top: Top) -> Start:

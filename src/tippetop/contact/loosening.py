@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tippetop.contact.growth import growth
-from tippetop.contact.mode import Mode, Outcome, Segment, Transition, failed
+from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Segment, explanation
 from tippetop.contact.passing import LOOKS, SETTLED, Passing
 from tippetop.contact.slipping import slip_phase
 from tippetop.integrators.base import Integrator
@@ -44,6 +44,11 @@ lasts.
 TINY = 1e-100
 """What begins at zero, and has no direction there, in natural units: nothing, but for that."""
 
+BEGUN, ENDED = "begun", "slip ended"
+"""Causes of the end of such a mode: what begins is followed like anything else from here on, or
+slip has ended.
+"""
+
 UNSEEN = "slip, or rolling, cannot be told from its beginning"
 """Why a run fails where what begins is lost in rounding."""
 
@@ -74,12 +79,12 @@ class Loosening(Passing):
             begin = onset(known, self.power, ORDER)
         except ArithmeticError as error:
             what = "slip" if self.ending.slip else "rolling"
-            unknown = failed(f"The direction in which {what} begins", error, state)
-            yield nothing(self.told, time, unknown)
+            why = explanation(f"The direction in which {what} begins", error)
+            yield nothing(self.told, time, state, why)
             return
         duration = min(begin.valid_until(ACCURACY), longest, end - time)
         if duration <= 1e-299:
-            yield nothing(self.told, time, Transition((), Outcome.FAILED, state, UNSEEN))
+            yield nothing(self.told, time, state, UNSEEN)
             return
         yield piece(passing, begin.rows, direction, (time, duration, end))
 
@@ -88,9 +93,7 @@ class Loosening(Passing):
         beginning.
         """
         begin = (*state.axis, *state.momentum)
-        phase = slip_phase(
-            begin, direction, self.top, self.ending, end - time, pulls=self.rules.pulls
-        )
+        phase = slip_phase(begin, direction, self.top, self.ending, end - time, pulls=self.pulls)
         if not phase.rows:
             return None
         start = [*begin, *scaled(TINY, direction)]
@@ -98,14 +101,9 @@ class Loosening(Passing):
         duration = phase.knots[-1]
         reach = end if duration >= end - time else time + duration
         solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach)
-        if phase.ended:
-            then = self.rules.beside_others(
-                reach, self.rules.settled(reach, last, new=(True, False))
-            )
-        else:
-            mode = Outcome.COMPLETED if reach >= end else self.rules.going_on(last, slips=True)
-            then = Transition((), mode, last)
-        return Segment(self, solution, last, then, len(phase.knots) - 1, phase.sweeps)
+        cause = COMPLETED if reach >= end else BEGUN
+        how = ModeEnd(ENDED if phase.ended else cause, last)
+        return Segment(self, solution, last, how, len(phase.knots) - 1, phase.sweeps)
 
     def _directed(self, state: State) -> "tuple[Loosening, tuple[float, ...], float]":
         """The mode on its law's branch, the direction of what begins, and how long it lasts at
@@ -132,10 +130,6 @@ class Loosening(Passing):
             longest = PART * size(beside) / size(other.rate(found.acceleration, top))
         return replace(self, top=top), way, longest
 
-    def onwards(self, last: State) -> Mode:
-        """The mode that takes over."""
-        return self.rules.going_on(last, slips=not self.stuck)
-
     @property
     def stuck(self) -> bool:
         """Whether the contact sticks meanwhile."""
@@ -158,8 +152,8 @@ class BothLoosening(Loosening):
         try:
             found = beginning(point, None, None, (True, True))
         except ArithmeticError as error:
-            unknown = failed("The direction in which slip and rolling begin", error, state)
-            yield nothing(self.told, time, unknown)
+            why = explanation("The direction in which slip and rolling begin", error)
+            yield nothing(self.told, time, state, why)
             return
         assert found.slip is not None
         passing, pace = (
@@ -207,13 +201,10 @@ def piece(
         [0.0, duration], [[*rows[:first], *apart, *rows[past:]]]
     ).moved(time, reach)
     last = mode.state([horner(row, duration) for row in rows])
-    try:
-        then = Transition((), Outcome.COMPLETED if reach >= end else mode.onwards(last), last)
-    except ArithmeticError:
-        then = Transition((), Outcome.FAILED, last, UNSEEN)
-    return Segment(mode, solution, last, then, steps=1)
+    how = ModeEnd(COMPLETED if reach >= end else BEGUN, last)
+    return Segment(mode, solution, last, how, steps=1)
 
 
-def nothing(mode: Mode, time: float, ending: Transition) -> Segment:
-    """No motion at all."""
-    return Segment(mode, DenseSolution.nothing(time, 8), ending.state, ending)
+def nothing(mode: Mode, time: float, state: State, why: str) -> Segment:
+    """Return a segment without any motion, after which a run fails."""
+    return Segment(mode, DenseSolution.nothing(time, 8), state, ModeEnd(FAILURE, state, detail=why))

@@ -1,15 +1,16 @@
 """Contact modes as data: what a mode of motion states, and what runs it.
 
-All is in natural units (see `tippetop.mechanics.top`). A mode states how its numbers change, the
-guards that end it by name, and what follows each. `tippetop.contact.trajectory` follows one launch
-from mode to mode, and the engine of sweeps many; neither knows mechanics.
+All is in natural units (see `tippetop.mechanics.top`). A mode states how its numbers change and the
+guards that end it by name, and it says what ended it. `tippetop.contact.automaton` decides what
+follows. `tippetop.contact.trajectory` follows one launch from mode to mode, and the engine of
+sweeps many; neither knows mechanics.
 """
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
@@ -19,10 +20,6 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.touchdown import highest_gap
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Row, Scalar, Vector
-
-if TYPE_CHECKING:
-    from tippetop.contact.rules import Rules
-
 
 BROKEN = "a number on the way to it is too large for a computer, or zero where it divides"
 """Why something cannot be found where arithmetic breaks down."""
@@ -121,14 +118,58 @@ class Transition:
         return sum([event.energy_lost for event in self.events])
 
 
-def failed(
-    what: str, error: ArithmeticError, state: State, events: tuple[Event, ...] = ()
-) -> Transition:
-    """The end of a run where something cannot be found; arithmetic's own words say nothing of the
+COMPLETED, FAILURE = "completed", "failure"
+"""Causes of a mode's end that are no guard: the run is over, or the mode cannot be followed."""
+
+BOTH = -1
+"""Number that stands for both contacts in the name of a guard."""
+
+
+@dataclass(frozen=True)
+class ModeEnd:
+    """How a mode ended."""
+
+    cause: str
+    """Name of the guard that fell to zero, without a number, or one of the causes above."""
+    state: State
+    """The state at the end, floats."""
+    contact: int = BOTH
+    """Number of the contact, or of the surface, to which it happened, if a number is in the name.
+    """
+    detail: str = ""
+    """More about a failure."""
+    numbers: tuple[float, ...] = ()
+    """The numbers of the mode at the end, where they say more than the state."""
+
+    @classmethod
+    def by_guard(cls, name: str, state: State, numbers: tuple[float, ...] = ()) -> "ModeEnd":
+        """Return the end by a guard whose name may have a number."""
+        cause, *contact = name.split(NUMBER_SIGN)
+        return cls(cause, state, int(contact[0]) if contact else BOTH, numbers=numbers)
+
+
+NUMBER_SIGN = " #"
+"""What stands before the number in the name of a guard."""
+
+
+def numbered(guard: str, contact: int) -> str:
+    """Return the name of a guard of one contact, or surface, of several."""
+    return f"{guard}{NUMBER_SIGN}{contact}"
+
+
+def explanation(what: str, error: ArithmeticError) -> str:
+    """Return a sentence that something cannot be found; arithmetic's own words say nothing of the
     motion.
     """
     why = str(error) if isinstance(error, Unsolved) else BROKEN
-    return Transition(events, Outcome.FAILED, state, f"{what} cannot be found: {why}.")
+    return f"{what} cannot be found: {why}."
+
+
+def failed(
+    what: str, error: ArithmeticError, state: State, events: tuple[Event, ...] = ()
+) -> Transition:
+    """Return the end of a run where something cannot be found."""
+    return Transition(events, Outcome.FAILED, state, explanation(what, error))
 
 
 class Reaction(NamedTuple):
@@ -162,8 +203,8 @@ class Segment:
     """The numbers of the mode as functions of time."""
     end_state: State
     """The state at its end, floats."""
-    transition: Transition | None
-    """What follows where the mode ended, None where it goes on."""
+    mode_end: ModeEnd | None
+    """How the mode ended; None where it goes on."""
     steps: int = 0
     evaluations: int = 0
     """Work done by the integrator."""
@@ -171,6 +212,8 @@ class Segment:
     """How high the lowest point rose above the table in this flight so far."""
     method: Integrator | None = None
     """The integrator that took the steps, if it is not the one that was asked."""
+    transition: Transition | None = None
+    """What follows where the mode ended, once it is decided."""
 
     @property
     def end_time(self) -> float:
@@ -189,19 +232,11 @@ class Segment:
             self,
             solution=solution,
             end_state=end_state,
+            mode_end=None,
             transition=None,
             steps=min(self.steps, len(solution.terms)),
             highest_gap=gap,
         )
-
-
-class Before(NamedTuple):
-    """What two contacts did before something happened to them."""
-
-    stuck: tuple[int, ...] = ()
-    """Numbers of the surfaces that stuck."""
-    rolled: bool = False
-    """Whether the body rolled, if that is resisted."""
 
 
 @dataclass(frozen=True)
@@ -210,8 +245,6 @@ class Mode(ABC):
 
     top: Top
     """The top in natural units."""
-    rules: "Rules"
-    """What follows where contact begins or ends."""
 
     name: ClassVar[str]
     """Its name in a result."""
@@ -267,11 +300,9 @@ class IntegratedMode(Mode):
         return True
 
     def without_tops(self) -> Self:
-        """What remains of it when its tops are taken away, and what follows it: what it is among
-        its like.
-        """
+        """What remains of it when its tops are taken away: what it is among its like."""
         nothing: Any = None
-        return replace(self, top=nothing, rules=nothing)
+        return replace(self, top=nothing)
 
     @property
     @abstractmethod
@@ -287,16 +318,6 @@ class IntegratedMode(Mode):
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """The numbers that the equations move, from a state, in plain operators."""
 
-    @abstractmethod
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        """What follows when a guard falls through zero."""
-
-    def unable(self, failure: str, time: float, state: State) -> Transition:
-        """What follows when the integrator cannot go on: nothing, where a mode does not say
-        otherwise.
-        """
-        return Transition((), Outcome.FAILED, state, failure)
-
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
     ) -> Iterator[Segment]:
@@ -304,13 +325,13 @@ class IntegratedMode(Mode):
         begin = time, as_array(self.numbers(state))
         for arc in integrator.integrate(self.motion, self.parameters, begin, end):
             last = self.state(arc.end_state.tolist())
-            transition = None
+            how = None
             if arc.failure is not None:
-                transition = self.unable(arc.failure, arc.solution.end, last)
+                how = ModeEnd(FAILURE, last, detail=arc.failure)
             elif arc.guard is not None:
-                transition = self.follow(arc.guard, arc.solution.end, last)
+                how = ModeEnd.by_guard(arc.guard, last)
             elif arc.solution.end >= end:
-                transition = Transition((), Outcome.COMPLETED, last)
+                how = ModeEnd(COMPLETED, last)
             yield Segment(
-                self, arc.solution, last, transition, arc.steps, arc.evaluations, method=arc.method
+                self, arc.solution, last, how, arc.steps, arc.evaluations, method=arc.method
             )

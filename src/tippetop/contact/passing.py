@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from tippetop.contact.closed import ClosedMode, split
-from tippetop.contact.mode import IntegratedMode, Mode, Outcome, Reaction, Segment, Transition
+from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment
 from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
 from tippetop.contact.sticking import Sticking
 from tippetop.contact.surfaces import passes_flat, stays_open
@@ -19,6 +19,9 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import scaled, velocity_of
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 from tippetop.mechanics.wrench import Slip
+
+AT_REST = "at rest"
+"""Cause of the end of `Resting`."""
 
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
@@ -41,6 +44,8 @@ class Passing(Mode):
 
     ending: Vanishing
     """Which velocity ends or begins, and whether the other is held."""
+    pulls: bool = False
+    """Whether the table may pull."""
 
     name: ClassVar[str] = "passing"
 
@@ -48,8 +53,8 @@ class Passing(Mode):
     def told(self) -> ClosedMode:
         """The mode as which it is told."""
         if self.ending.slip:
-            return (SlidingWithoutRolling if self.ending.held else Sliding)(self.top, self.rules)
-        return (Sticking if self.ending.held else Sliding)(self.top, self.rules)
+            return (SlidingWithoutRolling if self.ending.held else Sliding)(self.top)
+        return Sticking(self.top) if self.ending.held else Sliding(self.top)
 
     @property
     def label(self) -> str:
@@ -96,7 +101,7 @@ class Passing(Mode):
             return False
         if passes_flat(self.top, [at(look) for look in range(LOOKS + 1)]):
             return False
-        return self.rules.pulls or all(self.reaction(at(look)).force[2] > 0.0 for look in pressed)
+        return self.pulls or all(self.reaction(at(look)).force[2] > 0.0 for look in pressed)
 
     @property
     def free(self) -> int:
@@ -126,7 +131,7 @@ class Resting(Mode):
         """Stay as it is."""
         numbers = self.told.numbers(state)
         still = straight(numbers, numbers, time, time + SHORT * max(1.0, time))
-        yield Segment(self.told, still, state, Transition((), Outcome.AT_REST, state))
+        yield Segment(self.told, still, state, ModeEnd(AT_REST, state))
 
 
 def straight(

@@ -1,15 +1,14 @@
 """The top touches the table and slides, rolling or not."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from tippetop.contact.closed import BRANCH, LIFT_OFF, STOPPING, ClosedMode, GuardValue, motion_of
-from tippetop.contact.mode import Transition
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contacts.contact_point import flat
 from tippetop.mechanics.motion import sliding_rates
 from tippetop.mechanics.rolling import is_set_valued, slip_length
-from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import (
     branch_guard,
     nearing_guard,
@@ -33,17 +32,13 @@ class SlidingMode(ClosedMode):
 
     near: bool = False
     """Whether slip is so small that it may be about to end, which then is guarded."""
-    guarded: bool = True
-    """Whether it ends where the table would have to pull; of a mode without rules."""
-
-    def without_tops(self) -> Self:
-        """Without its rules, but for what they say of lift-off."""
-        return replace(super().without_tops(), guarded=not self.rules.pulls)
+    pulls: bool = False
+    """Whether the table may pull; else the mode ends where it would have to."""
 
     def guard_values(self) -> list[GuardValue]:
         """The guards of lift-off, of slip that ends, and of the branch of the law, too."""
         law, own = self.top.friction, list[GuardValue]()
-        if self.guarded:
+        if not self.pulls:
             own.append((LIFT_OFF, lambda mode, y: mode.found(y)[2].force[2]))
         if is_set_valued(law) and self.near:
             own.append((STOPPING, lambda mode, y: mode.slip_left(y)))
@@ -62,12 +57,6 @@ class SlidingMode(ClosedMode):
         """Positive while slip goes on for a while."""
         change = slip_part(flat(self.found(y)[3]), slip_length(self.top.friction))
         return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
-
-    def follow(self, guard: str, time: float, state: State) -> Transition:
-        """The end of slip is to be guarded, or no longer; or what follows any contact."""
-        if guard in (NEARING, PARTING):
-            return Transition((), self.rules.going_on(state, slips=True), state)
-        return super().follow(guard, time, state)
 
 
 @dataclass(frozen=True)
@@ -95,10 +84,6 @@ class Sliding(SlidingMode):
         """Time derivatives of the 8 numbers of a sliding state, in the fewest operations."""
         return sliding_rates(SlidingState.unpack(y), self.top).pack()
 
-    def unable(self, failure: str, time: float, state: State) -> Transition:
-        """Friction that turns may have jammed the contact: no step is short enough then."""
-        return self.rules.jammed(time, state) or super().unable(failure, time, state)
-
     def rolling_left(self, y: Row) -> Scalar:
         """Positive while rolling goes on for a while."""
         return rolling_stopping_guard(
@@ -113,5 +98,5 @@ def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
     be soon.
     """
     nothing: Any = None
-    form = (SlidingWithoutRolling if held else Sliding)(nothing, nothing, False, guarded)
+    form = (SlidingWithoutRolling if held else Sliding)(nothing, False, not guarded)
     return motion_of(form, (kind,))

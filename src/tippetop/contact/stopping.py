@@ -1,21 +1,28 @@
 """The last moments of slip, or of rolling, under friction that is set-valued."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from tippetop.contact.arriving import Arrival, arriving
-from tippetop.contact.closing import FEW, JAMMED, LANDED, OWN, closing_motion, closing_of, followed
-from tippetop.contact.mode import EventKind, Outcome, Segment, Transition
+from tippetop.contact.closing import (
+    FEW,
+    JAMMED,
+    LANDED,
+    OWN,
+    TIME,
+    closing_motion,
+    closing_of,
+    followed,
+)
+from tippetop.contact.mode import COMPLETED, FAILURE, ModeEnd, Segment
 from tippetop.contact.passing import DEGREE, LOOKS, SETTLED, Passing, in_one_step, shown, straight
-from tippetop.contact.surfaces import follow_surface, passes_flat
+from tippetop.contact.surfaces import passes_flat
 from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
-from tippetop.mechanics.branches import on_other_branch
-from tippetop.mechanics.ending import Closing, Vanishing, landed, landing_guard
+from tippetop.mechanics.ending import Closing, landed, landing_guard
 from tippetop.mechanics.rolling import slip_length
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import scaled, size
-from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 
 LANDING = (3e-8, 1e-16)
@@ -61,7 +68,7 @@ class Stopping(Passing):
     @property
     def motion(self) -> Motion:
         """Its equations in the clock."""
-        return closing_motion(self.top.kind, self.ending, not self.rules.pulls)
+        return closing_motion(self.top.kind, self.ending, not self.pulls)
 
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
@@ -85,10 +92,10 @@ class Stopping(Passing):
                 in_one_step(arrival.onwards, until, arrival.left),
             )
         solution = self._in_time(arcs, until, onwards).moved(time, time + onwards.end)
-        then, steps = self._next(arc, solution.end, last), sum(one.steps for one in arcs)
+        how, steps = self._end(arc, last), sum(one.steps for one in arcs)
         steps += arrival is not None
         method = next((one.method for one in arcs[::-1] if one.method is not None), None)
-        yield Segment(self, solution, last, then, steps, steps, method=method)
+        yield Segment(self, solution, last, how, steps, steps, method=method)
 
     def _followed(
         self, begin: Row, longest: float, integrator: Integrator
@@ -148,41 +155,16 @@ class Stopping(Passing):
         free = velocity if self.ending.moves else ()
         return (*state.axis, *state.momentum, *free, *scaled(1.0 / size(xi), xi), size(xi), 0.0)
 
-    def _next(self, arc: Arc | None, time: float, state: State) -> Transition:
-        ending, stuck = self.ending, not self.ending.slip and self.ending.held
-        if arc is None or arc.guard == LANDED:
-            new = ending.slip, not ending.slip
-            return self.rules.beside_others(
-                time, self.rules.settled(time, state, new, held=ending.held)
-            )
+    def _end(self, arc: Arc | None, state: State) -> ModeEnd:
+        """Return what ended the mode."""
+        if arc is None:
+            return ModeEnd(LANDED, state)
         if arc.failure is not None or arc.guard is None:
-            return Transition(
-                (), Outcome.FAILED, state, arc.failure or "the slip neither ends nor goes on"
-            )
-        found = follow_surface(self, arc.guard, time, state)
-        if found is not None:
-            return found
-        if arc.guard == "time":
-            return Transition((), Outcome.COMPLETED, state)
-        if arc.guard == JAMMED:
-            return self.rules.jammed(time, state) or self.rules.inconsistent(time, state, ())
-        if arc.guard == "lift-off":
-            return self.rules.lift_off(time, state)
-        if arc.guard == "reopening":
-            return Transition((), self.rules.going_on(state, slips=not stuck), state)
-        if arc.guard == "overtaken":
-            return Transition((), replace(self, ending=Vanishing(not ending.slip), begin=()), state)
-        if arc.guard in ("branch", "limit branch"):
-            return Transition((), self._onwards(arc, on_other_branch(self.top)), state)
-        if arc.guard in ("slip", "rolling"):
-            slip = arc.guard == "slip"
-            event = self.rules.event(EventKind.SLIP if slip else EventKind.ROLL, time)
-            return self.rules.giving_way(state, (event,), Vanishing(slip=slip))
-        raise AssertionError(f"nothing is said of what follows {arc.guard}")
-
-    def _onwards(self, arc: Arc, top: Top) -> "Stopping":
-        """The mode that takes the clock up where an arc leaves it, on another branch of the law."""
-        return replace(self, top=top, begin=(*arc.end_state.tolist()[:-1], 0.0))
+            detail = arc.failure or "the slip neither ends nor goes on"
+            return ModeEnd(FAILURE, state, detail=detail)
+        if arc.guard == TIME:
+            return ModeEnd(COMPLETED, state)
+        return ModeEnd.by_guard(arc.guard, state, tuple(arc.end_state.tolist()))
 
     def _in_time(self, arcs: Sequence[Arc], until: float, rest: DenseSolution) -> DenseSolution:
         """The numbers of the mode as polynomials in time: up to some time from the clock's, and the

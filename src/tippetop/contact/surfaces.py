@@ -5,14 +5,13 @@ on it.
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from tippetop.contact.mode import Mode, Outcome, Transition
+from tippetop.contact.mode import numbered
 from tippetop.mechanics.hull import Hull, acting, each_surface, is_edge
-from tippetop.mechanics.state import State
 from tippetop.mechanics.surface import gap_guard, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 
-FACE, TOUCH = "face", "touch "
+FACE, TOUCH = "face", "touch"
 
 MARGIN = 1e-15
 """Gap, in sizes, below zero at which a surface touches: one that just let go is there by rounding.
@@ -35,7 +34,7 @@ def surface_guards(top: Top) -> list[tuple[str, Callable[[Top, Vector], Scalar]]
     open_ones = [
         number for number in range(len(each_surface(top.surface))) if number != number_of(top)
     ]
-    return found + [(f"{TOUCH}{number}", _gap_of(number)) for number in open_ones]
+    return found + [(numbered(TOUCH, number), _gap_of(number)) for number in open_ones]
 
 
 def lies_flat(top: Top, axis: Vector) -> Scalar:
@@ -99,12 +98,3 @@ def clearance(top: Top, c: float) -> float:
         if number != number_of(top)
     ]
     return float(min(gaps))
-
-
-def follow_surface(mode: Mode, guard: str, time: float, state: State) -> Transition | None:
-    """What follows one of these guards; None for any other."""
-    if guard == FACE:
-        return Transition((), Outcome.LYING_FLAT, state)
-    if guard.startswith(TOUCH):
-        return mode.rules.touch(int(guard.removeprefix(TOUCH)), time, state)
-    return None

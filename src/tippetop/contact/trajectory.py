@@ -1,8 +1,10 @@
 """One launch, followed from mode to mode: the executor of single launches."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.mode import Event, Mode, Outcome, Segment, Transition
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.state import State
@@ -26,6 +28,8 @@ class Trajectory:
 
     Attributes
     ----------
+    automaton
+        The rules of what follows each mode.
     start
         How the run begins.
     end
@@ -45,6 +49,7 @@ class Trajectory:
 
     def __init__(
         self,
+        automaton: Automaton,
         start: Transition,
         end: float,
         integrator: Integrator,
@@ -52,6 +57,7 @@ class Trajectory:
         step_limit: int = STEP_LIMIT,
         time: float = 0.0,
     ) -> None:
+        self.automaton = automaton
         self.start, self.end, self.integrator = start, end, integrator
         self.limit, self.step_limit = limit, step_limit
         self.time, self.state = time, start.state
@@ -68,14 +74,16 @@ class Trajectory:
                 )
                 return
             modes += 1
-            for segment in transition.then.segments(
-                self.time, self.state, self.end, self.integrator
-            ):
+            mode = transition.then
+            for segment in mode.segments(self.time, self.state, self.end, self.integrator):
                 self.time, self.state = segment.end_time, segment.end_state
                 steps += max(segment.steps, len(segment.solution.knots) - 1)
-                if segment.transition is not None:
-                    transition = self._enter(segment.transition)
+                if segment.mode_end is not None:
+                    transition = self._enter(
+                        self.automaton.follow(mode, segment.mode_end, self.time, self.integrator)
+                    )
                     steps += sum(event.steps for event in transition.events)
+                    segment = replace(segment, transition=transition)  # noqa: PLW2901
                 yield segment
                 if steps >= self.step_limit and self.outcome is None:
                     self.outcome = Outcome.TOO_MANY_STEPS

@@ -1,45 +1,39 @@
-"""What follows where two surfaces touch and have no normal velocities, and slip ends or begins at
-them.
-"""
+"""The resolver of two contacts that are closed and have no normal velocities: what they do."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
-from tippetop.contact.double import SLOWEST_SLIP, on_two
-from tippetop.contact.double_sticking import (
-    SlipBeginningOnTwo,
-    StickingAndSliding,
-    StickingAndSlidingBack,
-    StickingOnTwo,
-)
-from tippetop.contact.mode import Transition
-from tippetop.contact.passing import Resting
-from tippetop.contact.rules import rests
+from tippetop.contact.double import SLOWEST_SLIP, OnTwo
+from tippetop.contact.mode import Event, EventKind
 from tippetop.contact.surfaces import number_of
 from tippetop.mechanics.beginning import settling
-from tippetop.mechanics.branches import off_branch, on_branch
+from tippetop.mechanics.branches import off_branch
 from tippetop.mechanics.contact_pair import (
     ContactPair,
     Tops,
     apart,
     at_rest,
     slip_apart,
-    slips_of,
     turning_along,
     without_tilting,
 )
 from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.pair_resolver import Resolution, resolution, rolling_of_slip
+from tippetop.mechanics.pair_motion import pair_motion
+from tippetop.mechanics.pair_resolver import (
+    Resolution,
+    both_letting_go,
+    letting_go,
+    resolution,
+    rolling_of_slip,
+    turning_about,
+)
 from tippetop.mechanics.rolling import directions_of, is_set_valued, slip_length, spun_up
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import is_rolling, least_slip, size, slip_of
+from tippetop.mechanics.stick_slip import inner, is_rolling, least_slip, size, slip_of
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import scale
+from tippetop.mechanics.vectors import Vector, scale
 from tippetop.mechanics.wrench import Slip
-
-if TYPE_CHECKING:
-    from tippetop.contact.several import OnSeveral
 
 TOGETHER = 30.0
 """How many times `SLOWEST_SLIP` the slip of the other contact may be where it ends on one to end
@@ -56,12 +50,24 @@ FIRST, SECOND, BOTH, NEITHER = "first", "second", "both", "neither"
 OPENS, HELD, CLOSES = "opens", "held", "closes"
 
 
+class Before(NamedTuple):
+    """What two contacts did before something happened to them."""
+
+    stuck: tuple[int, ...] = ()
+    """Numbers of the surfaces that stuck."""
+    rolled: bool = False
+    """Whether the body rolled, if that is resisted."""
+
+    @classmethod
+    def of(cls, mode: OnTwo) -> "Before":
+        """Return what they did in a mode."""
+        return cls(mode.stuck, bool(mode.rolls))
+
+
 @dataclass(frozen=True)
 class TwoClosed:
     """Two contacts that are closed and have no normal velocities."""
 
-    rules: "OnSeveral"
-    """The rules of the body."""
     tops: Tops
     """The top with either surface active; if slip has ended on one, that comes first."""
     state: State
@@ -76,7 +82,6 @@ class TwoClosed:
     @classmethod
     def of(
         cls,
-        rules: "OnSeveral",
         state: State,
         tops: Tops,
         rolls: float,
@@ -97,7 +102,7 @@ class TwoClosed:
             momentum, velocity = at_rest(pair, state.velocity, ended, stopped=stopped)
             state = state._replace(momentum=momentum, velocity=velocity)
             pair = ContactPair.of(state.axis, state.momentum, tops)
-        return cls(rules, tops, state, ended, rolls, pair)
+        return cls(tops, state, ended, rolls, pair)
 
     @property
     def stopped(self) -> bool:
@@ -150,33 +155,31 @@ class TwoClosed:
         opens = rates.points[1 - number][2] >= 0.0
         return OPENS if opens else CLOSES
 
-    def going_on(self, found: Resolution) -> Transition:
-        """The mode in which both go on."""
-        if found.rolls != self.rolls:
-            return self._rolling(found.rolls).going_on(found)
-        if found.begins is not None:
-            return self.letting_go(found)
-        if not any(found.sticks):
-            rules = self.rules.on(number_of(self.tops[0]))
-            return Transition((), on_two(self.state, rules, self.tops[1], self.rolls), self.state)
-        if all(found.sticks):
-            patches = self.rolls and slip_length(self.tops[0].friction) is not None
-            least = rolling_of_slip(self.pair, self.rolls) if patches else -1.0
-            mode = StickingOnTwo(self.tops[0], self.rules, self.tops[1], self.rolls, least)
-            still = rests(self.state, *found.motion.rates.turning)
-            return Transition(
-                (), Resting(self.tops[0], self.rules, mode) if still else mode, self.state
-            )
-        return Transition((), self._turning(self.tops, self.xi[2]), self.state)
+    def slipping(self, contact: int | None) -> Resolution:
+        """Return how slip begins at the limit of what the table can: on this of the contacts that
+        stick, or on both (None).
 
-    def _turning(self, tops: Tops, zeta: float) -> StickingAndSliding:
-        """The mode in which the first of these contacts sticks, and the second slips so."""
-        return (StickingAndSliding if zeta >= 0.0 else StickingAndSlidingBack)(
-            tops[0], self.rules, tops[1], self.rolls
-        )
+        Raises
+        ------
+        ArithmeticError
+            If there is no direction for it, or more than one.
+        """
+        if contact is None or slip_length(self.tops[0].friction) is not None:
+            return both_letting_go(self.pair, self.rolls)
+        if not all(self.ended):
+            return letting_go(self.pair, self.xi, self.rolls)
+        needed = pair_motion(self.pair, (None, None), self.rolls).needed(contact)
+        sign = 1.0 if (needed > 0.0) == (contact == 0) else -1.0
+        return turning_about(self.pair, 1 - contact, sign, self.rolls)
 
-    def _rolling(self, rolls: float) -> "TwoClosed":
-        """The same where rolling has begun."""
+    @property
+    def slowest_rolling(self) -> float:
+        """The |omega_e| at which patches slip that stick while the body rolls; -1 for none."""
+        patches = self.rolls and slip_length(self.tops[0].friction) is not None
+        return rolling_of_slip(self.pair, self.rolls) if patches else -1.0
+
+    def where_rolling_begins(self, rolls: float) -> "TwoClosed":
+        """Return the same where rolling has begun."""
         least = 2.0 * least_slip(*along_table(self.state), self.tops[0])
         change = scale(rolls * least, directions_of(self.state.axis)[0])
         state = self.state._replace(
@@ -185,23 +188,49 @@ class TwoClosed:
         pair = ContactPair.of(state.axis, state.momentum, self.tops)
         return replace(self, state=state, rolls=rolls, pair=pair)
 
-    def letting_go(self, found: Resolution, growing: int = 1) -> Transition:
-        """The mode in which slip begins, with some power of time."""
-        assert found.begins is not None
-        if any(found.sticks):
-            least = 2.0 * least_slip(*along_table(self.state), self.tops[0])
-            tops = self.tops if found.sticks[0] else self.tops[::-1]
-            sign = found.begins[2] if found.sticks[0] else -found.begins[2]
-            change = (0.0, 0.0, found.begins[2] * least / apart(self.pair))
-            momentum = spun_up(self.state.axis, self.state.momentum, change, self.tops[0])
-            turning = self._turning(tops, sign)
-            return Transition((), turning, turning.state((*self.state.axis, *momentum)))
-        begin = (*self.state.axis, *self.state.momentum, 0.0, 0.0, self.xi[2])
-        slips = slips_of(self.pair, found.begins)
-        one, other = (on_branch(top, slip) for top, slip in zip(self.tops, slips, strict=True))
-        way = found.begins if all(self.ended) else found.begins[:2]
-        mode = SlipBeginningOnTwo(one, self.rules, other, self.rolls, begin, way, growing)
-        return Transition((), mode, mode.state(begin))
+    def momentum_of_first_slip(self, begins: Slip) -> Vector:
+        """Return the angular momentum where turning about one contact has begun in a direction."""
+        least = 2.0 * least_slip(*along_table(self.state), self.tops[0])
+        change = (0.0, 0.0, begins[2] * least / apart(self.pair))
+        return spun_up(self.state.axis, self.state.momentum, change, self.tops[0])
+
+    def changes(
+        self, times: tuple[float, float], resolved: Resolution, before: Before
+    ) -> tuple[Event, ...]:
+        """Return the events of contacts that stick and did not, or slip and stuck; and the same of
+        rolling.
+
+        The times are that of slip's end, or beginning, and that of rolling's.
+        """
+        events = []
+        for top, held in zip(self.tops, resolved.sticks, strict=True):
+            surface = number_of(top)
+            if held != (surface in before.stuck):
+                kind = EventKind.STICK if held else EventKind.SLIP
+                events.append(Event(kind, times[0], surface=surface))
+        if before.rolled != bool(resolved.rolls):
+            kind = EventKind.ROLL if resolved.rolls else EventKind.HALT
+            events += [Event(kind, times[1], surface=number_of(top)) for top in self.tops]
+        return tuple(sorted(events, key=lambda event: event.time))
+
+
+def time_to_end(state: State, here: TwoClosed) -> float:
+    """Return the time to the end of slip that is followed no further, at its present rate."""
+    if not any(here.ended):
+        return 0.0
+    tops = here.tops
+    slips = [slip_of(*along_table(state), top) for top in tops]
+    number = 0 if size(slips[0]) <= size(slips[1]) else 1
+    slip, speed = slips[number], size(slips[number])
+    if not 0.0 < speed <= TOGETHER * SLOWEST_SLIP or not size(slips[1 - number]):
+        return 0.0
+    pair = ContactPair.of(state.axis, state.momentum, tops)
+    found = pair_motion(pair, (slips[0], slips[1]), here.rolls)
+    change: Slip = found.rates.points[number][:2]
+    if slip_length(tops[0].friction) is not None:
+        slip, change = (slips[0][0], slips[0][1], slip_apart(pair)), found.rate
+    rate = inner(slip, change)
+    return inner(slip, slip) / -rate if rate < 0.0 else 0.0
 
 
 def rolling_of(state: State, top: Top) -> float:

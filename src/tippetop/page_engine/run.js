@@ -67,10 +67,10 @@ class Run {
     this.start = m.natural_state(problem.start(), this.units);
     m.require_limits(duration, this.units.time, ...limits);
 
-    const rules = m.rules_for(this.top, contact.liftoff, contact.restitution);
-    const launch = rules.launch(this.start);
+    const automaton = new m.Automaton(this.top, contact.liftoff, contact.restitution);
+    const launch = automaton.launch(this.start);
     const end = duration / this.units.time;
-    this.trajectory = new m.Trajectory(launch, end, integrator(tolerance), ...limits);
+    this.trajectory = new m.Trajectory(automaton, launch, end, integrator(tolerance), ...limits);
 
     this.pole = this.start.axis[2] >= 0 ? 1 : -1;
     this.sums = new Float64Array(SUMS);

@@ -49,7 +49,7 @@ class Contact(Variant):
 
         Returns
         -------
-        tippetop.contact.rules.Rules or None
+        tippetop.contact.automaton.Automaton or None
             None, unless a subclass has rules of its own.
         """
         return None

@@ -13,7 +13,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.contact.choice import rules_of
+from tippetop.contact.choice import automaton_of
 from tippetop.contact.trajectory import LONGEST
 from tippetop.integrators.base import Array
 from tippetop.mechanics.hull import Hull, is_edge, sizes
@@ -73,7 +73,7 @@ class Cells:
         found = np.empty(len(which), dtype=object)
         for place, cell in enumerate(which.tolist()):
             here = Units(*(float(unit[cell]) for unit in units))
-            found[place] = partial(rules_of, single_part(contact_rule, cell), units=here)
+            found[place] = partial(automaton_of, single_part(contact_rule, cell), units=here)
         return found
 
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.contact.choice import rules_for
-from tippetop.contact.rules import Rules
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.sliding import Sliding
 from tippetop.integrators.base import Array
 from tippetop.mechanics.branches import is_branched, off_branch, on_numbered_branch
@@ -65,19 +64,19 @@ class Launches:
         found: Flags = none if resistance is None else none | (resistance.length == 0.0)
         return found
 
-    def rules(self, launch: int) -> Rules:
+    def automaton(self, launch: int) -> Automaton:
         """What follows where the contact of one launch begins or ends."""
         top = off_branch(self._top(launch))
         if top.rolling_resistance is not None and top.rolling_resistance.length == 0.0:
             top = top._replace(rolling_resistance=None)
         if self.own is not None:
-            rules: Rules = self.own[launch](top)
-            return rules
-        return rules_for(top, self.liftoff, float(self.restitution[launch]))
+            own: Automaton = self.own[launch](top)
+            return own
+        return Automaton(top, self.liftoff, float(self.restitution[launch]))
 
     def sliding(self, launch: int) -> Sliding:
         """The mode of one launch that slides."""
-        return Sliding(self._top(launch), self.rules(launch))
+        return Sliding(self._top(launch), pulls=self.liftoff == "ignore")
 
     def _top(self, launch: int) -> Top:
         return self.kind.top(tuple(self.numbers[:, launch].tolist()))

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tippetop.contact.automaton import Automaton
 from tippetop.contact.block import in_blocks
 from tippetop.contact.mode import Segment, Transition
 from tippetop.contact.trajectory import Trajectory
@@ -14,7 +15,6 @@ from tippetop.integrators import TOLERANCES, default_name, has_llvm, make_integr
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Top
 from tippetop.results.metrics import Ends
 from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import Tally
@@ -42,9 +42,9 @@ def follow_each(launches: Launches, tolerance: float, settled: float | None = No
     ends = Ends.unknown(len(launches))
     for i in range(len(launches)):
         try:
-            rules, state = launches.rules(i), single(launches.state, i)
-            start, end = rules.launch(state), float(launches.end[i])
-            found, _ = follow((rules.top, state, 0.0), start, end, tolerance, settled)
+            automaton, state = launches.automaton(i), single(launches.state, i)
+            start, end = automaton.launch(state), float(launches.end[i])
+            found, _ = follow((automaton, state, 0.0), start, end, tolerance, settled)
         except (MemoryError, Unavailable):
             raise
         except Exception as error:  # noqa: BLE001 - whatever was raised, the others go on
@@ -60,23 +60,24 @@ def note_failure(error: Exception) -> None:
 
 
 def follow(
-    begin: tuple[Top, State, float],
+    begin: tuple[Automaton, State, float],
     start: Transition,
     end: float,
     tolerance: float,
     settled: float | None = None,
     launched: State | None = None,
 ) -> tuple[Ends, Tally]:
-    """What a launch comes to: followed from a top, a state, a time and what follows, or until it
+    """Return what a launch comes to, followed from a state, a time and what follows, or until it
     settles.
 
     `launched` is the state at launch, where that is another.
     """
-    top, state, time = begin
+    automaton, state, time = begin
+    top = automaton.top
     analytic = not has_choices(top)
     least = TOLERANCES[default_name(analytic)]
     method = make_integrator(None, max(tolerance, least), analytic=analytic)
-    trajectory = Trajectory(start, end, method, time=time)
+    trajectory = Trajectory(automaton, start, end, method, time=time)
     tally = Tally(top, launched or state)
     segments, recorder = (
         trajectory.segments(),
@@ -104,5 +105,7 @@ def until_settled(
         last = segment.mode.state(terms[count, :, 0].tolist())
         trajectory.end_at(float(knots[count]), last)
         solution = DenseSolution(knots[: count + 1], terms[:count])
-        yield replace(segment, solution=solution, end_state=last, transition=None, steps=count)
+        yield replace(
+            segment, solution=solution, end_state=last, mode_end=None, transition=None, steps=count
+        )
         return

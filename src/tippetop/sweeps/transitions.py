@@ -10,7 +10,7 @@ import numpy as np
 
 from tippetop.contact.closed import BRANCH, LIFT_OFF
 from tippetop.contact.flight import TOUCHING, Flight
-from tippetop.contact.mode import EventKind, Mode, Outcome, Transition
+from tippetop.contact.mode import EventKind, Mode, ModeEnd, Outcome, Transition
 from tippetop.contact.sliding import Sliding, sliding_motion
 from tippetop.contact.surfaces import lies_flat
 from tippetop.integrators.base import Array
@@ -48,7 +48,7 @@ class Crossings:
         alone = launches.unresisted
         for i in np.flatnonzero(alone).tolist():
             here = single(state, i)
-            self._follow_alone(int(lanes[i]), 0.0, here, launches.rules(i).launch(here))
+            self._follow_alone(int(lanes[i]), 0.0, here, launches.automaton(i).launch(here))
         plain = slips(state, launches.top, far=True) & rolls(state, launches.top)
         plain &= ~np.asarray(lies_flat(launches.top, state.axis))
         if launches.liftoff != "ignore":
@@ -57,7 +57,7 @@ class Crossings:
             plain &= gap(state, launches.top) <= TOUCHING
             plain &= np.abs(gap_rate(state, launches.top)) <= TOUCHING
         others = np.flatnonzero(~plain & ~alone)
-        transitions = [launches.rules(i).launch(single(state, i)) for i in others.tolist()]
+        transitions = [launches.automaton(i).launch(single(state, i)) for i in others.tolist()]
         self._enter(lanes[others], np.zeros(len(others)), picked(state, others), transitions)
 
     def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
@@ -70,12 +70,16 @@ class Crossings:
         ending = ~(other | free)
         if ending.any():
             cells, state = self.slots.cell[lanes[ending]], self.slots.whole(lanes[ending])
-            modes = [self.slots.launches.sliding(int(cell)) for cell in cells]
+            launches = self.slots.launches
+            ends = [
+                ModeEnd.by_guard(str(name), single(state, i))
+                for i, name in enumerate(names[ending])
+            ]
             transitions = [
-                mode.follow(str(name), float(moment), single(state, i))
-                for i, (mode, name, moment) in enumerate(
-                    zip(modes, names[ending], time[ending], strict=True)
+                launches.automaton(int(cell)).follow(
+                    launches.sliding(int(cell)), end, float(moment)
                 )
+                for cell, end, moment in zip(cells, ends, time[ending], strict=True)
             ]
             self._enter(lanes[ending], time[ending], state, transitions)
         if other.any():
@@ -142,7 +146,7 @@ class Crossings:
         slots.ends.struck[cells[sliding]] += np.broadcast_to(taken, sliding.shape)[sliding]
         others = np.flatnonzero(~sliding)
         transitions = [
-            launches.rules(int(cells[i])).touchdown(float(time[i]), single(state, i))
+            launches.automaton(int(cells[i])).touchdown(float(time[i]), single(state, i))
             for i in others.tolist()
         ]
         return self._enter(
@@ -202,7 +206,9 @@ class Crossings:
         state, time = self.slots.whole(lanes), self.slots.time(lanes)
         for i, lane in enumerate(lanes.tolist()):
             here = single(state, i)
-            mode = self.slots.launches.rules(int(self.slots.cell[lane])).going_on(here, slips=True)
+            mode = self.slots.launches.automaton(int(self.slots.cell[lane])).mode_for(
+                here, slips=True
+            )
             self._follow_alone(lane, float(time[i]), here, Transition((), mode, here))
 
     def _follow_alone(self, lane: int, time: float, state: State, transition: Transition) -> None:
@@ -213,7 +219,7 @@ class Crossings:
             self.slots.cell[[lane]],
             np.array([lane]),
         )
-        begin = slots.launches.rules(int(slots.cell[lane])).top, state, time
+        begin = slots.launches.automaton(int(slots.cell[lane])), state, time
         launched = single(slots.launches.state, int(slots.cell[lane]))
         found, tally = follow(
             begin, transition, float(slots.end[lane]), self.tolerance, launched=launched

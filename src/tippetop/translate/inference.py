@@ -72,6 +72,7 @@ RETURNS_OF_METHODS = {
     "join": STR,
     "lower": STR,
     "removeprefix": STR,
+    "split": Type("list", (STR,)),
     "startswith": BOOL,
     "tolist": Type("list"),
 }

@@ -100,6 +100,7 @@ METHODS: dict[str, tuple[str, int, int]] = {
     "model_dump": ("{0}.model_dump({1})", 0, 0),
     "pop": ("py.pop({0}, {1})", 0, 1),
     "removeprefix": ("py.removeprefix({0}, {1})", 1, 1),
+    "split": ("{0}.split({1})", 1, 1),
     "startswith": ("{0}.startsWith({1})", 1, 1),
     "sum": ("{0}.sum()", 0, 0),
     "tolist": ("py.list({0})", 0, 0),

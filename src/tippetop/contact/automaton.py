@@ -1,0 +1,634 @@
+"""The automaton of contact modes: it decides which mode follows where one ends.
+
+A mode says what ended it (`ModeEnd`); the automaton says what follows (`Transition`). No other file
+names next modes. Read `Automaton.follow` first: one branch for every kind of mode. What comes to
+rest normally on the table goes through `Automaton.resting`, and from there to the resolver of one
+contact (`Automaton.settled`) or of two (`Automaton.settled_on_two`).
+"""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+from tippetop.contact.closed import (
+    BRANCH,
+    LIFT_OFF,
+    LIMIT_BRANCH,
+    ROLLING,
+    ROLLING_STOPPING,
+    SLIP,
+    STOPPING,
+    ClosedMode,
+)
+from tippetop.contact.closing import JAMMED, LANDED, OVERTAKEN, REOPENING
+from tippetop.contact.collision import collision
+from tippetop.contact.double import BRANCHING, OPENING, OnTwo, on_two
+from tippetop.contact.double_sticking import (
+    SlipBeginningOnTwo,
+    StickingAndSliding,
+    StickingAndSlidingBack,
+    StickingOnTwo,
+)
+from tippetop.contact.flight import TOUCHING, Flight
+from tippetop.contact.loosening import BEGUN, ENDED, UNSEEN, BothLoosening, Loosening
+from tippetop.contact.mode import (
+    COMPLETED,
+    FAILURE,
+    Event,
+    EventKind,
+    IntegratedMode,
+    Mode,
+    ModeEnd,
+    Outcome,
+    Transition,
+    failed,
+)
+from tippetop.contact.passing import Resting
+from tippetop.contact.sliding import NEARING, PARTING, Sliding, SlidingWithoutRolling
+from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
+from tippetop.contact.sticking import Sticking, StickingWithoutRolling
+from tippetop.contact.stopping import Stopping
+from tippetop.contact.surfaces import FACE, TOUCH, lies_flat, number_of
+from tippetop.contact.touching import (
+    SLOWEST_ROCKING,
+    gap_acceleration,
+    other_touching,
+    outermost,
+    stays_closed,
+)
+from tippetop.contact.two_closed import BOTH, SECOND, Before, TwoClosed, rolling_of, time_to_end
+from tippetop.integrators.base import Integrator
+from tippetop.mechanics.beginning import Beginning, settling
+from tippetop.mechanics.branches import off_branch, on_branch, on_other_branch
+from tippetop.mechanics.contact_pair import Tops, slips_of, without_tilting
+from tippetop.mechanics.contacts.contact_point import ContactPoint
+from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.hull import Hull, lowest_surface
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.jamming import past_jamming, stuck_at_once
+from tippetop.mechanics.motion import along_table, contact, on_table, presses
+from tippetop.mechanics.pair_resolver import Resolution
+from tippetop.mechanics.rolling import is_set_valued
+from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import (
+    HORIZON,
+    come_to_rest,
+    inner,
+    is_near,
+    is_slipping,
+    slip_of,
+)
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.touchdown import Start
+from tippetop.mechanics.unsolved import Unsolved
+from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.wrench import Slip, Wrench
+
+REST = 1e-13
+"""Velocities and accelerations, in natural units, that are rounding in a body at rest."""
+
+MOST_IN_TURNS = 200
+"""Impacts at one instant, now of one surface and now of another, after which a run is given up."""
+
+
+@dataclass(frozen=True)
+class Automaton:
+    """The rules of what follows each mode, for a body and a treatment of lift-off."""
+
+    top: Top
+    """The top in natural units; of several surfaces one is active."""
+    liftoff: str
+    """Where the table would have to pull: "ignore" (it pulls), "stop" (the run ends) or "fly"."""
+    restitution: float
+    """Ratio of the normal impulses of restitution and compression."""
+
+    @property
+    def pulls(self) -> bool:
+        """Whether the table may pull, so that contact does not end."""
+        return self.liftoff == "ignore"
+
+    def on(self, surface: int) -> Self:
+        """Return the automaton of the top with another of its surfaces active."""
+        return self._of(self.top.each[surface])
+
+    def _of(self, top: Top) -> Self:
+        return replace(self, top=top)
+
+    def event(self, kind: EventKind, time: float, impulse: float = 0.0, lost: float = 0.0) -> Event:
+        """Return an event of the surface that is active."""
+        return Event(kind, time, impulse, lost, number_of(self.top))
+
+    # Launch, and the one decision of what follows a mode.
+
+    def launch(self, state: State) -> Transition:
+        """Return the first mode: flight, what follows an impact, or contact."""
+        here = self
+        if isinstance(self.top.surface, Hull):
+            lowest = lowest_surface(self.top.surface, state.axis[2])
+            here = self._of(self.top._replace(surface=lowest))
+        if self.liftoff != "fly":
+            return here.resting(0.0, state)
+        if gap(state, here.top) > TOUCHING:
+            return Transition((), here._flight(Start.AIRBORNE), state)
+        rate = gap_rate(state, here.top)
+        if rate > TOUCHING:
+            return Transition((), here._flight(Start.REBOUND), state)
+        if rate < -TOUCHING:
+            return here.touchdown(0.0, state)
+        return here.resting(0.0, state)
+
+    def follow(
+        self, mode: Mode, end: ModeEnd, time: float, integrator: Integrator | None = None
+    ) -> Transition:
+        """Return what follows the end of a mode; the integrator may follow an impact, too."""
+        if end.cause == COMPLETED:
+            return Transition((), Outcome.COMPLETED, end.state)
+        top = off_branch(mode.top)
+        here = self if top == self.top else self._of(top)
+        if end.cause == FAILURE and not isinstance(mode, Sliding):
+            return Transition((), Outcome.FAILED, end.state, end.detail)
+        if end.cause == FACE:
+            return Transition((), Outcome.LYING_FLAT, end.state)
+        if isinstance(mode, Flight):
+            return here._after_flight(end, time, integrator)
+        if end.cause == TOUCH:
+            return here.touch(end.contact, time, end.state)
+        if isinstance(mode, Resting):
+            return Transition((), Outcome.AT_REST, end.state)
+        if isinstance(mode, Loosening):
+            return here._after_onset(mode, end, time)
+        if isinstance(mode, Stopping):
+            return here._after_clock(mode, end, time)
+        if isinstance(mode, OnTwo):
+            return here._after_two(mode, end, time)
+        assert isinstance(mode, ClosedMode), f"nothing follows {mode.name}"
+        return here._after_one(mode, end, time)
+
+    def _after_flight(self, end: ModeEnd, time: float, integrator: Integrator | None) -> Transition:
+        """Return what follows where a surface lands."""
+        if end.contact == number_of(self.top):
+            return self.touchdown(time, end.state, integrator)
+        return self.touch(end.contact, time, end.state, integrator)
+
+    def _after_one(self, mode: ClosedMode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows on one contact that slips or sticks."""
+        state, slips = end.state, not mode.sticks
+        if end.cause == FAILURE:
+            # Friction that turns may have jammed the contact: no step is short enough then.
+            failure = Transition((), Outcome.FAILED, state, end.detail)
+            return self.jammed(time, state) or failure
+        if end.cause == LIFT_OFF:
+            return self.lift_off(time, state)
+        if end.cause in (NEARING, PARTING):
+            return Transition((), self.mode_for(state, slips=True), state)
+        if end.cause in (STOPPING, ROLLING_STOPPING):
+            return self._follow_to_end(state, slips=slips)
+        if end.cause in (BRANCH, LIMIT_BRANCH):
+            return Transition((), replace(mode, top=on_other_branch(mode.top)), state)
+        assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
+        wrench = mode.found(mode.numbers(state))[2]
+        if wrench.force[2] <= 0.0 and not self.pulls:
+            return self.lift_off(time, state)
+        begins = Vanishing(end.cause == SLIP, held=mode.held if end.cause == SLIP else mode.sticks)
+        return self._begin(time, state, begins, wrench)
+
+    def _after_onset(self, mode: Loosening, end: ModeEnd, time: float) -> Transition:
+        """Return what follows the first moments of slip, or of rolling, or slip that has ended."""
+        if end.cause == ENDED:
+            settled = self.settled(time, end.state, new=(True, False))
+            return self._beside_others(time, settled)
+        try:
+            return Transition((), self.mode_for(end.state, slips=not mode.stuck), end.state)
+        except ArithmeticError:
+            return Transition((), Outcome.FAILED, end.state, UNSEEN)
+
+    def _after_clock(self, mode: Stopping, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where a velocity has ended, or is no longer about to."""
+        state, ending = end.state, mode.ending
+        if end.cause == LANDED:
+            new = ending.slip, not ending.slip
+            settled = self.settled(time, state, new, held=ending.held)
+            return self._beside_others(time, settled)
+        if end.cause == JAMMED:
+            return self.jammed(time, state) or self.inconsistent(time, state, ())
+        if end.cause == LIFT_OFF:
+            return self.lift_off(time, state)
+        if end.cause == REOPENING:
+            stuck = not ending.slip and ending.held
+            return Transition((), self.mode_for(state, slips=not stuck), state)
+        if end.cause == OVERTAKEN:
+            other = replace(mode, ending=Vanishing(not ending.slip), begin=())
+            return Transition((), other, state)
+        if end.cause in (BRANCH, LIMIT_BRANCH):
+            top, begin = on_other_branch(mode.top), (*end.numbers[:-1], 0.0)
+            return Transition((), replace(mode, top=top, begin=begin), state)
+        assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
+        return self._begin(time, state, Vanishing(slip=end.cause == SLIP))
+
+    def _after_two(self, mode: OnTwo, end: ModeEnd, time: float) -> Transition:
+        """Return what follows on two contacts."""
+        state, rolls = end.state, mode.rolls
+        if isinstance(mode, SlipBeginningOnTwo) and end.cause == BEGUN:
+            return Transition((), on_two(state, mode.tops, rolls), state)
+        if end.cause == OPENING:
+            opens, stays = (mode.tops, mode.tops[::-1])[end.contact]
+            event = Event(EventKind.OPENING, time, surface=number_of(opens))
+            state = state._replace(momentum=mode.stilled(state.axis, state.momentum))
+            slips = mode.slips_on(1 - end.contact)
+            after = self.on(number_of(stays)).mode_for(state, slips=slips)
+            return Transition((event,), after, state)
+        if end.cause == BRANCHING:
+            tops = list(mode.tops)
+            tops[end.contact] = on_other_branch(tops[end.contact])
+            return Transition((), replace(mode, top=tops[0], other=tops[1]), state)
+        if end.cause == SLIP:
+            return self.slip_on_two(time, state, mode, end.contact)
+        if end.cause == ROLLING_STOPPING:
+            rolls = 0.0
+        elif end.cause == ROLLING:
+            rolls = mode.rolling_direction(state)
+        return self.settled_on_two(time, state, mode.tops, Before.of(mode), rolls)
+
+    # One contact.
+
+    def mode_for(self, state: State, *, slips: bool) -> Mode:
+        """Return the mode of one contact that slips or sticks.
+
+        Where the end of slip, or of rolling, is near already, that is followed in its clock.
+        """
+        top = on_present_branch(self.top, state, slips)
+        ending, left = soonest_end(self.top, state, slips)
+        if ending is not None and left <= HORIZON:
+            return Stopping(top, ending, self.pulls)
+        rolls = rolls_freely(self.top, state)
+        if slips:
+            near = is_set_valued(top.friction) and bool(is_near(along_table(state), top))
+            return (Sliding if rolls else SlidingWithoutRolling)(top, near, self.pulls)
+        return (Sticking if rolls else StickingWithoutRolling)(top)
+
+    def _follow_to_end(self, state: State, *, slips: bool) -> Transition:
+        """Return the clock of what ends first; where a guard was touched by rounding, nothing
+        does.
+        """
+        ending, _ = soonest_end(self.top, state, slips)
+        if ending is None:
+            return Transition((), self.mode_for(state, slips=slips), state)
+        top = on_present_branch(self.top, state, slips)
+        return Transition((), Stopping(top, ending, self.pulls), state)
+
+    def _begin(
+        self, time: float, state: State, begins: Vanishing, wrench: Wrench | None = None
+    ) -> Transition:
+        """Return the mode in which slip, or rolling, begins from the limit of what can be held."""
+        event = self.event(EventKind.SLIP if begins.slip else EventKind.ROLL, time)
+        return Transition((event,), Loosening(self.top, begins, self.pulls, 2, wrench), state)
+
+    def settled(
+        self,
+        time: float,
+        state: State,
+        new: tuple[bool, bool],
+        *,
+        held: bool = False,
+        events: tuple[Event, ...] = (),
+    ) -> Transition:
+        """Hold what has ended, slip or rolling (new) or what was held already, if the table can; or
+        let it begin again.
+
+        What is tried first is to hold everything, then to let slip begin, rolling, and both.
+        """
+        ended = (new[0] or (held and new[1]), new[1] or (held and new[0]))
+        state = on_table(come_to_rest(along_table(state), self.top, *ended), self.top)
+        point = ContactPoint.of(state.axis, state.momentum, self.top)
+        slip = None if ended[0] else slip_of(*along_table(state), self.top)
+        rolling = None if ended[1] else point.turning[:2]
+        try:
+            resolved, begins = settling(point, slip, rolling)
+        except ArithmeticError as error:
+            return failed("The force that holds the contact", error, state, events)
+        events = (*events, *self._changes(time, new, begins))
+        return self._settle(time, state, resolved, begins, ended, events)
+
+    def _settle(
+        self,
+        time: float,
+        state: State,
+        resolved: Beginning,
+        begins: tuple[bool, bool],
+        ended: tuple[bool, bool],
+        events: tuple[Event, ...],
+    ) -> Transition:
+        """Return the mode of a contact of which is resolved what is held and what begins."""
+        if resolved.wrench.force[2] <= 0.0 and not self.pulls:
+            return self._let_go(time, state, events)
+        if all(begins):
+            return Transition(events, BothLoosening(self.top, pulls=self.pulls), state)
+        if any(begins):
+            ending = Vanishing(begins[0], held=ended[1] if begins[0] else ended[0])
+            return Transition(events, Loosening(self.top, ending, self.pulls, 1), state)
+        mode = self.mode_for(state, slips=not ended[0])
+        at, turning = resolved.acceleration
+        if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
+            return Transition(events, Resting(self.top, mode), state)
+        return Transition(events, mode, state)
+
+    def _changes(
+        self, time: float, new: tuple[bool, bool], begins: tuple[bool, bool]
+    ) -> tuple[Event, ...]:
+        """Return the events of slip, or rolling, that has newly ended and is held, or begins."""
+        events = []
+        for ended, starts, stop, start in zip(
+            new,
+            begins,
+            (EventKind.STICK, EventKind.HALT),
+            (EventKind.SLIP, EventKind.ROLL),
+            strict=True,
+        ):
+            if ended and not starts:
+                events.append(self.event(stop, time))
+            elif starts and not ended:
+                events.append(self.event(start, time))
+        return tuple(events)
+
+    def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
+        """Go on from contact without normal velocity, on one surface or on all that stay closed.
+
+        Where another surface stays, the tilt does, and all do that touch: the body rests on the
+        outermost two. One that sinks faster than rocking that has ended strikes.
+        """
+        beside = other_touching(self.top, state)
+        closed, told = False, events
+        if any(lies_flat(other, state.axis) for other in beside):
+            return Transition(events, Outcome.LYING_FLAT, state)
+        for other in beside:
+            if gap_rate(state, other) < -SLOWEST_ROCKING:
+                if sum(event.kind is EventKind.IMPACT for event in events) >= MOST_IN_TURNS:
+                    detail = "surfaces strike in turns for ever"
+                    return Transition(events, Outcome.FAILED, state, detail)
+                return self._of(other)._collide(time, state, told, 0.0)
+            if stays_closed(self.top, other, state):
+                closed = True
+            else:
+                told = (*told, Event(EventKind.OPENING, time, surface=number_of(other)))
+        if not closed:
+            return self.resting_alone(time, state, told)
+        tops = outermost((self.top, *beside), state.axis)
+        before = Before((), bool(rolling_of(state, self.top)))
+        rolls = rolling_of(without_tilting(state, self.top), self.top)
+        here = self._of(tops[0])
+        return here.settled_on_two(time, state, tops, before, rolls, events, arrived=True)
+
+    def resting_alone(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """Go on on the active surface, whatever else touches: slide, stick, leave or lie flat.
+
+        Where no normal force is consistent with the friction (Painleve's paradox), an impact
+        without approach takes as much slip away as it needs to: Darboux's and Keller's way out.
+        """
+        if lies_flat(self.top, state.axis):
+            return Transition(events, Outcome.LYING_FLAT, state)
+        sliding = along_table(state)
+        stuck = is_set_valued(self.top.friction) and not is_slipping(*sliding, self.top)
+        held = not rolls_freely(self.top, state)
+        if stuck or held:
+            return self.settled(time, state, (stuck, held), events=events)
+        touch = contact(sliding.axis, sliding.momentum, sliding.velocity, self.top)
+        if touch.delassus <= 0 and not self.pulls:
+            return self.inconsistent(time, state, events)
+        if touch.free_acceleration < 0 or self.pulls:
+            return Transition(events, self.mode_for(state, slips=True), state)
+        return self._let_go(time, state, events)
+
+    # Leaving the table, and impacts.
+
+    def lift_off(self, time: float, state: State) -> Transition:
+        """Leave the table, unless the normal force changed its sign by way of infinity.
+
+        Then it is decided anew how contact goes on: Painleve's paradox begins, or the motion is so
+        stiff that errors of an explicit method look like that.
+        """
+        if presses(state.axis, state.momentum, self.top):
+            return self.resting(time, state)
+        return self._leave(time, state, (), Start.LIFT_OFF)
+
+    def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """Leave a table that would have to pull from now on, not from zero force."""
+        return self._leave(time, state, events, Start.RELEASE)
+
+    def _leave(
+        self, time: float, state: State, events: tuple[Event, ...], start: Start
+    ) -> Transition:
+        """End the run, or fly."""
+        then = self._flight(start) if self.liftoff == "fly" else Outcome.LIFTED_OFF
+        return Transition((*events, self.event(EventKind.LIFT_OFF, time)), then, state)
+
+    def _flight(self, start: Start) -> Flight:
+        return Flight(self.top, start)
+
+    def touchdown(
+        self, time: float, state: State, integrator: Integrator | None = None
+    ) -> Transition:
+        """Collide, unless with a face, and go on as the impact leaves the top."""
+        told = (self.event(EventKind.TOUCHDOWN, time),)
+        if lies_flat(self.top, state.axis):
+            return Transition(told, Outcome.LYING_FLAT, state)
+        return self._collide(time, state, told, self.restitution, integrator)
+
+    def touch(
+        self, surface: int, time: float, state: State, integrator: Integrator | None = None
+    ) -> Transition:
+        """Collide with another surface, and go on as the impact leaves the top.
+
+        Where more come to the table at once, the outermost strikes: what lies between sinks more
+        slowly.
+        """
+        striking = self.on(surface)
+        faster = [
+            other
+            for other in other_touching(self.top, state)[:1]
+            if gap_rate(state, other) < gap_rate(state, striking.top)
+        ]
+        return (self._of(faster[0]) if faster else striking).touchdown(time, state, integrator)
+
+    def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """Collide without approach where no contact force is consistent with the friction.
+
+        Unless an impact has just left it so: then rounding decides, not friction.
+        """
+        struck = sum(event.kind is EventKind.IMPACT for event in events)
+        if self.liftoff == "fly" and struck <= 1:
+            return self._collide(time, state, events, 0.0)
+        detail = "no contact force is consistent with the friction"
+        return Transition(events, Outcome.FAILED, state, detail)
+
+    def _collide(
+        self,
+        time: float,
+        state: State,
+        events: tuple[Event, ...],
+        restitution: float,
+        integrator: Integrator | None = None,
+    ) -> Transition:
+        try:
+            struck, rebounds = collision(state, restitution, self.top, integrator)
+        except ArithmeticError as error:
+            return failed("The impulse of the impact", error, state, events)
+        impulse, lost = float(struck.impulse), float(struck.energy_lost)
+        hit = replace(self.event(EventKind.IMPACT, time, impulse, lost), steps=struck.steps)
+        if not struck.impulse:
+            # Nothing but rounding kept the contact from being a resting one.
+            return self._untouched(time, struck.state, events)
+        if rebounds:
+            return Transition((*events, hit), self._flight(Start.REBOUND), struck.state)
+        return self.resting(time, struck.state, (*events, hit))
+
+    def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+        """Go on where an impact had no impulse."""
+        if isinstance(self.top.surface, Hull):
+            return self.resting(time, state, events)
+        slip = slip_of(*along_table(state), self.top)
+        slips = not is_set_valued(self.top.friction) or inner(slip, slip) > 0.0
+        return Transition(events, self.mode_for(state, slips=slips), state)
+
+    def jammed(self, time: float, state: State) -> Transition | None:
+        """Return what follows where friction that turns made the normal force grow beyond all
+        bounds, if it did.
+        """
+        try:
+            past = past_jamming(state, self.top)
+        except ArithmeticError as error:
+            what = "What follows where friction jams the contact"
+            return failed(what, error, state) if isinstance(error, Unsolved) else None
+        if past is None:
+            return None
+        beyond, *taken = past
+        found = self.inconsistent(time, beyond, ())
+        if not found.events and isinstance(found.then, Mode):
+            # Slip is so little that by rounding nothing strikes, and slipping on it would jam at
+            # once.
+            found = self.settled(time, stuck_at_once(beyond, self.top), (True, False))
+        return add_prior_impulse(found, state, *taken)
+
+    # Two contacts.
+
+    def _beside_others(self, time: float, found: Transition) -> Transition:
+        """Return what follows on one contact, unless it presses another surface that touches onto
+        the table: then both are resolved.
+        """
+        mode, state = found.then, found.state
+        if not isinstance(self.top.surface, Hull) or not isinstance(mode, IntegratedMode):
+            return found
+        reaction = mode.reaction(mode.numbers(state))
+        wrench = Wrench(reaction.force, reaction.torque)
+        for other in other_touching(self.top, state):
+            closes = stays_closed(self.top, other, state)
+            if closes and gap_acceleration(self.top, other, state, wrench) < 0.0:
+                # The resolver of both reports what sticks.
+                halts = [event for event in found.events if event.kind is EventKind.HALT]
+                return self.resting(time, state, tuple(halts))
+        return found
+
+    def settled_on_two(
+        self,
+        time: float,
+        state: State,
+        tops: Tops,
+        before: Before,
+        rolls: float,
+        events: tuple[Event, ...] = (),
+        *,
+        arrived: bool = False,
+    ) -> Transition:
+        """Return what two contacts do, where the body rolls as signed, or not (0)."""
+        here = TwoClosed.of(state, tops, rolls)
+        try:
+            resolved = here.resolved()
+            consistent = here.consistent(resolved)
+        except ArithmeticError as error:
+            return failed("The forces on two surfaces that touch", error, state, events)
+        if len(consistent) != 1:
+            detail = "not exactly one set of forces is consistent with two surfaces that touch"
+            return Transition(events, Outcome.FAILED, state, detail)
+        if consistent == [BOTH]:
+            if arrived:
+                lost = float(energy(state, tops[0]) - energy(here.state, tops[0]))
+                events = (*events, self.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost))
+            ended = time + time_to_end(state, here)
+            # Rolling that begins now began when the slip ended that held it up.
+            turned = ended if resolved.rolls != rolls else time
+            events = (*events, *here.changes((ended, turned), resolved, before))
+            return replace(self._mode_on_two(here, resolved), events=events)
+        numbers = [number_of(top) for top in here.tops]
+        opens, stays = numbers if consistent == [SECOND] else numbers[::-1]
+        events = (*events, Event(EventKind.OPENING, time, surface=opens))
+        return self.on(stays).resting_alone(time, here.state, events)
+
+    def slip_on_two(self, time: float, state: State, mode: OnTwo, contact: int) -> Transition:
+        """Return the mode in which a contact of two begins to slip at the limit of what the table
+        can, or both do (-1).
+        """
+        alone = isinstance(mode, StickingAndSliding)
+        here = TwoClosed.of(state, mode.tops, mode.rolls, (True, not alone))
+        try:
+            resolved = here.slipping(None if contact < 0 else contact)
+        except ArithmeticError as error:
+            what = "The direction in which slip, or rolling, begins on two surfaces"
+            return failed(what, error, state)
+        events = here.changes((time, time), resolved, Before.of(mode))
+        return replace(self._slip_begins(here, resolved, 2), events=events)
+
+    def _mode_on_two(self, here: TwoClosed, resolved: Resolution) -> Transition:
+        """Return the mode in which both contacts go on."""
+        if resolved.rolls != here.rolls:
+            return self._mode_on_two(here.where_rolling_begins(resolved.rolls), resolved)
+        if resolved.begins is not None:
+            return self._slip_begins(here, resolved, 1)
+        if not any(resolved.sticks):
+            return Transition((), on_two(here.state, here.tops, here.rolls), here.state)
+        if all(resolved.sticks):
+            mode = StickingOnTwo(here.tops[0], here.tops[1], here.rolls, here.slowest_rolling)
+            still = rests(here.state, *resolved.motion.rates.turning)
+            return Transition((), Resting(here.tops[0], mode) if still else mode, here.state)
+        return Transition((), self._turning(here.tops, here.xi[2], here.rolls), here.state)
+
+    def _turning(self, tops: Tops, zeta: float, rolls: float) -> StickingAndSliding:
+        """Return the mode in which the first contact sticks, and the second slips so."""
+        form = StickingAndSliding if zeta >= 0.0 else StickingAndSlidingBack
+        return form(tops[0], tops[1], rolls)
+
+    def _slip_begins(self, here: TwoClosed, resolved: Resolution, growing: int) -> Transition:
+        """Return the mode in which slip begins on two contacts, with some power of time."""
+        begins: Slip = resolved.begins or ()
+        if any(resolved.sticks):
+            tops = here.tops if resolved.sticks[0] else here.tops[::-1]
+            sign = begins[2] if resolved.sticks[0] else -begins[2]
+            turning = self._turning(tops, sign, here.rolls)
+            momentum = here.momentum_of_first_slip(begins)
+            return Transition((), turning, turning.state((*here.state.axis, *momentum)))
+        begin = (*here.state.axis, *here.state.momentum, 0.0, 0.0, here.xi[2])
+        slips = slips_of(here.pair, begins)
+        one, other = (on_branch(top, slip) for top, slip in zip(here.tops, slips, strict=True))
+        way = begins if all(here.ended) else begins[:2]
+        mode = SlipBeginningOnTwo(one, other, here.rolls, begin, way, growing)
+        return Transition((), mode, mode.state(begin))
+
+
+def add_prior_impulse(found: Transition, before: State, impulse: float, lost: float) -> Transition:
+    """Return what follows an impact that had begun with some normal impulse, which took energy.
+
+    A run that ends without one ends in the state before.
+    """
+    if not found.events and isinstance(found.then, Outcome):
+        return replace(found, state=before)
+    hit = [
+        replace(event, impulse=event.impulse + impulse, energy_lost=event.energy_lost + lost)
+        for event in found.events[:1]
+        if event.kind is EventKind.IMPACT
+    ]
+    return replace(found, events=(*hit, *found.events[len(hit) :]))
+
+
+def rests(state: State, *rates: Scalar) -> bool:
+    """Return whether a body in contact neither moves nor begins to, by the rates of its
+    velocities.
+    """
+    return bool(max(map(abs, (*rates, *state.momentum, *state.velocity))) <= REST)

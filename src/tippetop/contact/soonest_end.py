@@ -1,0 +1,50 @@
+"""Which velocity of one contact ends first at present rates, slip or rolling, and how soon."""
+
+from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
+from tippetop.mechanics.contacts.contact_point import ContactPoint
+from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.rolling import contact_motion, is_set_valued
+from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import inner, is_rolling, slip_of
+from tippetop.mechanics.top import Top
+
+
+def rolls_freely(top: Top, state: State) -> bool:
+    """Return whether nothing holds rolling."""
+    return not top.resists_rolling or bool(is_rolling(state.axis, state.momentum, top))
+
+
+def on_present_branch(top: Top, state: State, slips: bool) -> Top:
+    """Return the top with the branch of its law that holds at present."""
+    if not is_branched(top.friction):
+        return top
+    if slips:
+        return on_branch(top, slip_of(*along_table(state), top))
+    point = ContactPoint.of(state.axis, state.momentum, top)
+    rolling = point.turning[:2] if rolls_freely(top, state) else None
+    return on_limit_branch(top, contact_motion(point, None, rolling)[0])
+
+
+def soonest_end(top: Top, state: State, slips: bool) -> tuple[Vanishing | None, float]:
+    """Return which velocity ends first at present rates, and the time left.
+
+    None, and infinity, where all grow or none can end.
+    """
+    rolls, ends = rolls_freely(top, state), slips and is_set_valued(top.friction)
+    possible = [Vanishing(slip=True, held=not rolls)] if ends else []
+    possible += [Vanishing(slip=False, held=not slips)] if rolls and top.resists_rolling else []
+    if not possible:
+        return None, float("inf")
+    sliding, branched = along_table(state), on_present_branch(top, state, slips)
+    point = ContactPoint.of(state.axis, state.momentum, branched)
+    slip = slip_of(*sliding, branched) if slips else None
+    acceleration = contact_motion(point, slip, point.turning[:2] if rolls else None)[1]
+    soonest, least = None, float("inf")
+    for ending in possible:
+        xi = ending.of(*sliding, branched)
+        change = inner(xi, ending.rate(acceleration, branched))
+        left = inner(xi, xi) / -change if change < 0.0 else float("inf")
+        if left < least:
+            soonest, least = ending, left
+    return soonest, least

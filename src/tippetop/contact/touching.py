@@ -1,0 +1,72 @@
+"""Which surfaces of a body touch the table beside the active one, and whether they stay closed."""
+
+from collections.abc import Sequence
+
+from tippetop.contact.double import SLOWEST_SLIP
+from tippetop.contact.flight import TOUCHING
+from tippetop.mechanics.contact_pair import ContactPair, Tops
+from tippetop.mechanics.contacts.system import free_rates, rates_under
+from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.rolling import contact_motion, is_set_valued
+from tippetop.mechanics.state import State
+from tippetop.mechanics.stick_slip import size, slip_of
+from tippetop.mechanics.surface import support_at
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Vector
+from tippetop.mechanics.wrench import Wrench
+
+SLOWEST_ROCKING = 1e-7
+"""Velocity, in units of sqrt(g R), below which rocking between two surfaces has come to its end.
+
+Infinitely many impacts, now of one and now of the other, bring both to touch at once in a finite
+time. Where a gap falls back with more than g, this is faster as the square root: rebounds stay out
+of reach of rounding.
+"""
+
+
+def other_touching(top: Top, state: State) -> list[Top]:
+    """Return the top with each other surface active that touches, the fastest sinking first."""
+    others = [other for other in top.each if other != top and gap(state, other) <= TOUCHING]
+    return sorted(others, key=lambda other: float(gap_rate(state, other)))
+
+
+def stays_closed(top: Top, other: Top, state: State) -> bool:
+    """Return whether another touching surface stays, or comes back at once.
+
+    It also stays where it does not come out of the table, in which it is by no more than what is
+    taken for touching.
+    """
+    back, depth = 1.0, max(0.0, float(gap(state, top) - gap(state, other)))
+    if _both_slip(top, other, state):
+        point = ContactPair.of(state.axis, state.momentum, (top, other)).first
+        slip = slip_of(*along_table(state), top)
+        wrench = contact_motion(point, slip, point.turning[:2])[0]
+        back = float(abs(gap_acceleration(top, other, state, wrench)))
+    slowest = max(SLOWEST_ROCKING * max(1.0, back) ** 0.5, (2.0 * back * depth) ** 0.5)
+    return bool(gap_rate(state, other) <= slowest)
+
+
+def gap_acceleration(top: Top, other: Top, state: State, wrench: Wrench) -> float:
+    """Return the acceleration of another surface's gap under a wrench at the active one."""
+    pair = ContactPair.of(state.axis, state.momentum, (top, other))
+    return float(rates_under(pair, [(0, wrench)], free_rates(pair)).points[1][2])
+
+
+def _both_slip(top: Top, other: Top, state: State) -> bool:
+    """Return whether both contacts slip faster than where slip on two contacts ends, if it can."""
+    if not is_set_valued(top.friction):
+        return True
+    return all(size(slip_of(*along_table(state), one)) > SLOWEST_SLIP for one in (top, other))
+
+
+def outermost(touching: Sequence[Top], axis: Vector) -> Tops:
+    """Return the two of some tops that touch farthest apart, in their order.
+
+    A surface touches at -h' s along e. What lies between them touches without force: all contact
+    points are in a line, on which a rigid body rests on two. How three would share its weight is
+    not determined by the equations of a rigid body, but where it slides and turns at once.
+    """
+    places = [float(support_at(axis, top.surface)[1]) for top in touching]
+    first, second = sorted((places.index(min(places)), places.index(max(places))))
+    return touching[first], touching[second]
