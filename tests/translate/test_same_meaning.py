@@ -216,8 +216,8 @@ result = [row[-1], row[place], row[-3:-1], row[::-1], row[:-1], row[5:], row[:0]
 """,
     "strings: parts, and what they begin with": """
 result = ["ab" in "cabd", "" in "a", "ac" in "abc", "abc".startswith("ab"), "abc".index("c"),
-    "x".join(["a", "b"]), "abc".removeprefix("ab"), "a, b".split(", "), "aBc".lower(), "ab" * 2, "a" + "b",
-    "a" < "b", "B" < "a", [letter for letter in "hi"]]
+    "x".join(["a", "b"]), "abc".removeprefix("ab"), "a, b".split(", "), "aBc".lower(),
+    "ab" * 2, "a" + "b", "a" < "b", "B" < "a", [letter for letter in "hi"]]
 """,
     "dicts: keys that are no strings, what lacks, and what is looked up": """
 table = {1: "one", 2.5: "more", "1": "text", None: "none", Kind.ROUND: "round"}
