@@ -87,13 +87,65 @@ def test_the_story_asks_first_and_then_shows_and_says_why(lab: Lab) -> None:
     settled(visitor, "problem.launch.spin === 20")
     page.get_by_label("Stay upright").check()
     page.get_by_role("button", name="Spin it").click()
+    page.get_by_role("button", name="Tell me now").wait_for()
+    assert not page.locator(".tt-words").is_visible(), "what happens is seen before it is told"
+    assert "watching" in focused(visitor)
+    page.get_by_role("button", name="Tell me now").click()
     page.get_by_text("You were right.").wait_for()
+    assert "answer" in focused(visitor)
     assert page.locator(".tt-words").is_visible()
     assert "critical spin" in page.locator(".answer").inner_text()
     for _ in range(8):
         page.get_by_role("button", name="Next").click()
     assert "Step 10 of 10" in page.locator(".step").inner_text()
     assert page.get_by_role("button", name="Next").is_disabled()
+
+
+def focused(visitor: Visit) -> str:
+    return str(visitor.ask("() => document.activeElement.className"))
+
+
+def test_an_answer_is_told_once_it_has_been_seen(lab: Lab) -> None:
+    visitor = lab()
+    page = visitor.page
+    page.get_by_role("button", name="Just show me").click()
+    page.get_by_role("button", name="Tell me now").wait_for()
+    visitor.wait("() => !tippetopLab.isAwaited && tippetopLab.player.playing")
+    visitor.pause(1.0)
+    visitor.wait("() => tippetopLab.player.time === 1")
+    assert page.locator(".answer").count() == 0
+    visitor.ask("() => tippetopLab.player.seek(tippetopLab.player.turnsOver + 0.7)")
+    page.locator(".answer").wait_for()
+    assert page.locator(".tt-words").is_visible()
+
+
+def test_what_happens_is_spoken_as_it_happens(lab: Lab) -> None:
+    visitor = lab("launch.spin=155")
+    visitor.ask("""() => {
+      globalThis.heard = [];
+      const line = document.querySelector(".stage > [role=status]");
+      new MutationObserver(() => heard.push(line.textContent)).observe(line, {
+        childList: true, characterData: true, subtree: true });
+      const { player } = tippetopLab;
+      player.speed = 4;
+      player.slow(false);
+      player.seek(4);
+      player.toggle(true);
+    }""")
+    visitor.wait("() => heard.includes('It stands upside down.')")
+    heard = visitor.ask("() => heard")
+    leans = [f"It leans {angle} degrees." for angle in (45, 90, 135)]
+    assert [one for one in heard if one in leans] == leans
+
+
+def test_a_refused_value_of_a_link_is_told_where_it_is_seen(lab: Lab) -> None:
+    for link in ("duration=1e99", "launch.tilt_rate=abc"):
+        visitor = lab()
+        visitor.ask("(hash) => { location.hash = hash; }", link)
+        visitor.page.locator(".refused").first.wait_for()
+        assert visitor.page.locator(".refused").first.is_visible()
+    german = lab("lang=de")
+    assert german.page.locator(".story .step").inner_text() == "Schritt 1 von 10"
 
 
 def test_every_control_is_explained_in_place(lab: Lab) -> None:

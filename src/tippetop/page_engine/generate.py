@@ -29,6 +29,7 @@ ROOTS = (
     "tippetop.lathe.sheet",
     "tippetop.theory.prediction",
     "tippetop.theory.prospects",
+    "tippetop.theory.advice",
     "tippetop.mechanics.view",
     "tippetop.mechanics.quadratures",
     "tippetop.mechanics.outline",

@@ -17,6 +17,17 @@ export function prospects(body, gravity, tilt) {
   const whole = new m.Body(body);
   return plain(m.prospects(whole, whole.shapes, gravity, tilt));
 }
+/** The least change of each size alone by which a top stands; `bodyWith` makes the body with one size changed. */
+export const advice = (bodyWith, sizes, reach, gravity, tilt) =>
+  m
+    .advice(
+      (name, value) => new m.Body(bodyWith(name, value)),
+      sizes.map(({ name, value, low, high }) => new m.Size(name, value, low, high)),
+      reach,
+      gravity,
+      tilt,
+    )
+    .map(plain);
 /** What is implausible about a launch: kinds, and texts for the gaps in their sentences. */
 export const doubts = (problem) =>
   m

@@ -11,7 +11,8 @@ import { Keep } from "./keep.jsx";
 import { MapPanel } from "./map.jsx";
 import { Own } from "./own.jsx";
 import { Plots, QUANTITIES, USUAL } from "./plots.js";
-import { Story, veiled } from "./story.jsx";
+import { Speaker } from "./speaker.jsx";
+import { Story, veilOf } from "./story.jsx";
 
 const PANELS = {
   story: Story,
@@ -51,9 +52,10 @@ export function App({ lab }) {
         {t("page.skip")}
       </a>
       <Header lab={lab} onHelp={() => turn(true)} />
-      <main class={veiled(lab.state) ? "veiled" : ""}>
+      <main class={veilOf(lab.state)}>
         <section class="stage" aria-label={t("page.stage")}>
           <Stage lab={lab} key={language} dark={isDark(theme)} />
+          <Speaker lab={lab} />
         </section>
         <section class="panel" aria-label={t("page.panel")} id="panel" tabIndex={-1}>
           <Tabs lab={lab} />
@@ -222,6 +224,7 @@ function PlotSection({ lab, dark }) {
       },
       time: () => lab.player?.time ?? 0,
       playing: () => lab.player?.playing ?? false,
+      isTold: () => !veilOf(lab.state),
     });
     lab.addEventListener("time", () => lab.plots.move());
   }, []);
@@ -231,7 +234,7 @@ function PlotSection({ lab, dark }) {
     lab.say();
     lab.addEventListener("run", fill);
     return () => lab.removeEventListener("run", fill);
-  }, [names.join(), units, dark, document.documentElement.lang]);
+  }, [names.join(), units, dark, document.documentElement.lang, veilOf(lab.state)]);
   return (
     <section class="plots" aria-label={t("plots.title")}>
       <PlotsBar lab={lab} names={names} />

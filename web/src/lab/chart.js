@@ -7,9 +7,11 @@ import { digits, shown } from "./units.js";
 const STOPS = ["#00224e", "#3c4e6c", "#7c7b78", "#bbae6c", "#fee838"].map((colour) =>
   [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16)),
 );
-// Colours of launches that end at no tilt, of a dot on those that leave the table, and of the marked one's frame.
+// Colours of launches that end at no tilt, of a dot on those that leave the table, of a bar on those that rose and fell
+// back, and of the marked one's frame.
 const FAILED = "#8f5fc4";
 const FLYING = "#e03c31";
+const BACK = "#37d3c0";
 const MARK = "#ff3d7f";
 
 // The highest spin of a map, rad/s.
@@ -161,6 +163,10 @@ export class Chart {
         pen.fillStyle = cell ? colourOf(cell.answer.tilt) : empty;
         // A bit wider than a cell, so that nothing shines through between two.
         pen.fillRect(x, y, across + 0.6, up + 0.6);
+        if (cell?.answer.fellBack) {
+          pen.fillStyle = BACK;
+          pen.fillRect(x, y + 0.72 * up, across + 0.6, 0.28 * up);
+        }
         if (!cell?.answer.flights) continue;
         pen.fillStyle = FLYING;
         pen.fillRect(x + 0.35 * across, y + 0.3 * up, 0.3 * across, 0.4 * up);

@@ -3,7 +3,7 @@
 import { ALL, kindOf, scaleOf } from "./dials.js";
 import { part, t } from "./i18n.js";
 import { differences } from "./setup.js";
-import { digits, shown, unitOf } from "./units.js";
+import { cleared, digits, shown, unitOf } from "./units.js";
 
 const METRICS = {
   turns_over: "s",
@@ -104,7 +104,9 @@ function Table({ ghost, track, units }) {
 function Row({ name, before, now, units }) {
   const { name: unit, size } = unitOf(METRICS[name], units);
   const missing = name === "turns_over" ? t("compare.never") : "–";
-  const text = (value, otherwise) => (Number.isFinite(value) ? digits(value / size, 4) : otherwise);
+  const text = (value, otherwise) =>
+    Number.isFinite(value) ? digits(cleared(value) / size, 4) : otherwise;
+  const difference = cleared(now - before, Math.max(Math.abs(now), Math.abs(before)));
   return (
     <tr data-metric={name}>
       <th scope="row">
@@ -113,7 +115,7 @@ function Row({ name, before, now, units }) {
       </th>
       <td>{text(before, missing)}</td>
       <td>{text(now, missing)}</td>
-      <td>{text(now - before, "–")}</td>
+      <td>{text(difference, "–")}</td>
     </tr>
   );
 }

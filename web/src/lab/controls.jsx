@@ -36,20 +36,24 @@ export function Launch({ lab }) {
       <Prospect lab={lab} marks={marks} />
       <Friction lab={lab} />
       <Units lab={lab} />
-      <details>
-        <summary>{t("controls.more")}</summary>
+      <Section lab={lab} name="more" dials={TABLE}>
         <Liftoff lab={lab} />
-        <Dials lab={lab} dials={TABLE} />
-      </details>
-      <details>
-        <summary>{t("controls.top")}</summary>
-        <Dials lab={lab} dials={tops} />
-      </details>
-      <details>
-        <summary>{t("controls.letGo")}</summary>
-        <Dials lab={lab} dials={START} />
-      </details>
+      </Section>
+      <Section lab={lab} name="top" dials={tops} />
+      <Section lab={lab} name="letGo" dials={START} />
     </div>
+  );
+}
+
+// Controls to be unfolded, which are where one of them is refused.
+function Section({ lab, name, dials, children }) {
+  const isRefused = dials.some(({ field }) => field === lab.state.trouble?.field);
+  return (
+    <details open={isRefused || undefined}>
+      <summary>{t(`controls.${name}`)}</summary>
+      {children}
+      <Dials lab={lab} dials={dials} />
+    </details>
   );
 }
 
@@ -112,8 +116,8 @@ function Prospect({ lab, marks }) {
 function marksOf(prospect) {
   const { upright, inverted } = prospect?.critical ?? {};
   const marks = [
-    { name: "ω₁", what: "upright", value: upright },
-    { name: "ω₂", what: "inverted", value: inverted },
+    { name: "ω_c1", what: "upright", value: upright },
+    { name: "ω_c2", what: "inverted", value: inverted },
   ];
   return marks.filter(({ value }) => Number.isFinite(value) && value < HIGHEST_MARK);
 }

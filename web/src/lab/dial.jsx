@@ -117,7 +117,10 @@ function Slider({ dial, lab, value, id, marks }) {
       {marks.length > 0 && (
         <div class="dial-marks" aria-hidden="true">
           {marks.map(({ name, value: at }) => (
-            <span style={`left:${share(at)}%`}>{name}</span>
+            <span style={`left:${share(at)}%`}>
+              {name[0]}
+              <sub>{name.slice(2)}</sub>
+            </span>
           ))}
         </div>
       )}

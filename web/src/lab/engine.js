@@ -105,6 +105,13 @@ export class Engine {
     return this.asides.ask("body", { body, gravity, tilt });
   }
 
+  // What to change in a top so that it stands at spins up to a reach, rad/s; what was asked before is given up.
+  async advice(top, reach, { gravity, launch: { tilt } }) {
+    this.adviser?.end(null);
+    this.adviser ??= new Helper();
+    return this.adviser.ask("advice", { top, reach, gravity, tilt });
+  }
+
   // What a workpiece, points or a drawing is.
   brought(job) {
     return this.asides.ask("brought", job);

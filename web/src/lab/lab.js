@@ -16,6 +16,13 @@ const PATIENCE = 250;
 const SHARE = 300;
 export const MOST_PINS = 3;
 
+// Bring the stage into view where it is not.
+function showStage() {
+  const stage = document.querySelector(".stage");
+  const { top, bottom } = stage.getBoundingClientRect();
+  if (top < 0 || bottom > innerHeight) stage.scrollIntoView({ block: "start" });
+}
+
 export class Lab extends EventTarget {
   constructor() {
     super();
@@ -67,6 +74,7 @@ export class Lab extends EventTarget {
   // Launch something else and play it.
   go(setup, { play = true, ...others } = {}) {
     this.set({ setup, trouble: null, ...others });
+    if (play) showStage();
     this.keep(true);
     this.request(play);
   }
@@ -89,6 +97,7 @@ export class Lab extends EventTarget {
   // Follow the launch that is set: quickly while a slider moves.
   async request(play, quick = false) {
     const { setup } = this.state;
+    this.isAwaited = true;
     this.latest += 1;
     const request = this.latest;
     const isLatest = () => request === this.latest;
@@ -111,6 +120,7 @@ export class Lab extends EventTarget {
       clearTimeout(late);
       if (isLatest()) this.refuse(refusal(error, this.state));
     } finally {
+      if (isLatest()) this.isAwaited = false;
       if (isLatest() && this.state.busy !== null) this.set({ busy: null });
     }
   }
@@ -214,7 +224,7 @@ export class Lab extends EventTarget {
     return {
       time: player.playing ? 0 : player.time,
       camera: scene?.eye.held ? scene.eye.place : null,
-      shown: usual ? [] : on,
+      shown: usual ? null : on,
     };
   }
 
@@ -259,7 +269,7 @@ export class Lab extends EventTarget {
   // Put the player where a link says.
   look({ view, timed }) {
     const { player } = this;
-    if (view.shown.length) {
+    if (view.shown) {
       for (const name of ["axis", "momentum", "friction", "trace", "glass"])
         player.show({ [name]: view.shown.includes(name) });
     }

@@ -8,6 +8,10 @@ const LONGEST_VALUE = 100_000;
 const FORBIDDEN = ["__proto__", "prototype", "constructor"];
 const TABLES = /^(body|friction|launch|contact)\./;
 const PLAIN = ["gravity", "rolling_resistance", "duration"];
+// What the player shows where all that can be shown is off.
+const NO_ARROWS = "none";
+
+const isOfLaunch = (field) => TABLES.test(field) || PLAIN.includes(field);
 
 // A launch as a query: what is not as in the first launch. Laws and shapes are named with all they have.
 export function launchQuery(setup) {
@@ -29,7 +33,7 @@ export function launchQuery(setup) {
 export function readLaunch(query) {
   const changes = {};
   for (const [field, text] of query) {
-    if (!(TABLES.test(field) || PLAIN.includes(field)) || text.length > LONGEST_VALUE) continue;
+    if (!isOfLaunch(field) || text.length > LONGEST_VALUE) continue;
     if (field.split(".").some((name) => FORBIDDEN.includes(name))) continue;
     changes[field] = parsed(text);
   }
@@ -53,15 +57,16 @@ export function writeLink({ setup, pins, units, view, tab, step, plots, lang, th
   const query = launchQuery(setup);
   if (view.time > 0.0005) query.set("t", view.time.toFixed(4));
   if (view.camera) query.set("camera", view.camera.map((v) => v.toFixed(3)).join(" "));
-  if (view.shown?.length) query.set("show", view.shown.join(" "));
+  if (view.shown) query.set("show", view.shown.join(" ") || NO_ARROWS);
   if (units.spin !== FIRST_UNITS.spin || units.angle !== FIRST_UNITS.angle)
     query.set("units", `${units.spin} ${units.angle}`);
   if (tab !== "story") query.set("tab", tab);
-  if (step) query.set("step", step);
   if (plots) query.set("plots", plots.join(" "));
   if (lang) query.set("lang", lang);
   if (theme !== "auto") query.set("theme", theme);
   for (const pin of pins) query.append("pin", launchQuery(pin).toString());
+  // What is shown opens the launch's controls, so that a story that shows something says where it is.
+  if (step || (tab === "story" && [...query.keys()].some(isShown))) query.set("step", step);
   return query.toString();
 }
 
@@ -84,13 +89,18 @@ export function readLink(text) {
     view: {
       time: Math.max(Number(query.get("t")) || 0, 0),
       camera: right ? camera : null,
-      shown: words("show") ?? [],
+      shown: words("show")?.filter((word) => word !== NO_ARROWS) ?? null,
     },
-    tab: query.get("tab") ?? (query.size && !query.has("step") ? "launch" : "story"),
+    tab: query.get("tab") ?? (isOfStory(query) ? "story" : "launch"),
     step: Math.max(Math.trunc(Number(query.get("step")) || 0), 0),
-    plots: words("plots"),
+    plots: words("plots") ?? null,
     lang: query.get("lang"),
     theme: ["light", "dark"].includes(query.get("theme")) ? query.get("theme") : "auto",
     timed: query.has("t"),
   };
 }
+
+// Whether a link without a tab is one to the story: it names a step, or says nothing of a launch.
+const isOfStory = (query) => query.has("step") || ![...query.keys()].some(isShown);
+const isShown = (name) =>
+  isOfLaunch(name) || ["t", "pin", "camera", "show", "plots"].includes(name);

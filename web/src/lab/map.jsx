@@ -92,6 +92,9 @@ export function MapPanel({ lab }) {
         <span>
           <b /> {t("map.leaves")}
         </span>
+        <span>
+          <b class="back" /> {t("map.back")}
+        </span>
       </div>
       <p class="hint tip" aria-live="polite">
         {tip}
@@ -136,10 +139,11 @@ function wordsOf(plan, { row, column, answer }, units) {
     const message = answer.error?.message ?? t(`outcomes.${answer.outcome.name}`);
     return t("map.failed", { ...gaps, message });
   }
-  const { tilt, flights } = answer;
-  return t(flights ? "map.cellJumps" : "map.cell", {
-    ...gaps,
-    tilt: shown(tilt, "angle", units, 3),
-    flights,
-  });
+  const { tilt, highest, fellBack, flights } = answer;
+  const end = { ...gaps, tilt: shown(tilt, "angle", units, 3), flights };
+  const text = t(flights ? "map.cellJumps" : "map.cell", end);
+  if (!fellBack) return text;
+  const from = Number.isFinite(highest) ? highest : Math.PI / 2;
+  const key = Number.isFinite(highest) ? "map.cellBack" : "map.cellBackOver";
+  return `${text}, ${t(key, { highest: shown(from, "angle", units, 3) })}`;
 }

@@ -5,16 +5,14 @@ import { useEffect, useState } from "preact/hooks";
 import { Bring, Brought, dropping } from "./brought.jsx";
 import { t } from "./i18n.js";
 import { changed } from "./setup.js";
-import { bodyOf, FIRST, MATERIALS, massesOf, possible, sectionOf } from "./turning.js";
+import { bodyOf, FIRST, MATERIALS, massesOf, possible, SIZES, sectionOf } from "./turning.js";
 import { digits, shown } from "./units.js";
 
-const DIALS = {
-  radius: [0.008, 0.04, 0.0005],
-  face: [0.2, 0.9, 0.01],
-  hollow: [0, 0.95, 0.01],
-  stem: [0.02, 0.07, 0.0005],
-  knob: [0.0015, 0.012, 0.0005],
-};
+// How long after a change advice is asked for, ms; the spins within reach, rad/s, and how far beyond the least one a top
+// is spun.
+const QUIET = 400;
+const REACH = 240;
+const BEYOND = 1.1;
 const IN_MM = ["radius", "stem", "knob"];
 // Millimetres to the metre, and the room around the drawing, m.
 const MM = 1e3;
@@ -59,15 +57,17 @@ function Shaped({ lab }) {
   const { mass, alpha, ratio } = massesOf(top);
   const body = bodyOf(top);
   const ahead = useProspects(lab, body);
+  const least = ahead?.stem?.launch;
   const spin = () => {
     const launch = { body, rolling_resistance: 0, "contact.liftoff": "fly", duration: 10 };
+    if (least <= REACH) launch["launch.spin"] = Math.round(BEYOND * least);
     lab.go(changed(lab.state.setup, launch));
   };
   return (
     <>
       <p>{t("own.intro")}</p>
       <Section top={top} onDrag={(stem) => set({ stem })} />
-      {Object.keys(DIALS).map((name) => (
+      {Object.keys(SIZES).map((name) => (
         <Size name={name} value={top[name]} onChange={(value) => set({ [name]: value })} />
       ))}
       <Material value={top.material} onChange={(material) => set({ material })} />
@@ -83,6 +83,9 @@ function Shaped({ lab }) {
       <p class="own-verdict" role="status">
         {sentence(ahead, units)}
       </p>
+      {ahead !== undefined && !(least <= REACH) && (
+        <Advice lab={lab} top={top} units={units} set={set} />
+      )}
       <button type="button" class="strong" disabled={alpha <= 0} onClick={spin}>
         {t("own.spin")}
       </button>
@@ -92,12 +95,11 @@ function Shaped({ lab }) {
 
 // A slider for one of the sizes of the shape.
 function Size({ name, value, onChange }) {
-  const [low, high, step] = DIALS[name];
+  const [low, high, step] = SIZES[name];
   return (
     <label class="own-dial">
       <span>
-        {t(`own.${name}`)}{" "}
-        <b>{IN_MM.includes(name) ? `${digits(value * MM, 3)} mm` : digits(value, 2)}</b>
+        {t(`own.${name}`)} <b>{sizeText(name, value)}</b>
       </span>
       <input
         type="range"
@@ -109,6 +111,45 @@ function Size({ name, value, onChange }) {
         onInput={(event) => onChange(Number(event.target.value))}
       />
     </label>
+  );
+}
+
+const sizeText = (name, value) =>
+  IN_MM.includes(name) ? `${digits(value * MM, 3)} mm` : digits(value, 2);
+
+// What to change in a top that does not stand at any spin within reach: each a button that does it.
+function Advice({ lab, top, units, set }) {
+  const [found, say] = useState(null);
+  const { problem } = lab.state.setup;
+  useEffect(() => {
+    say(null);
+    let isWanted = true;
+    const ask = () =>
+      lab.engine.advice(top, REACH / BEYOND, problem).then(
+        (answer) => isWanted && say(answer),
+        () => {},
+      );
+    const waiting = setTimeout(ask, QUIET);
+    return () => {
+      isWanted = false;
+      clearTimeout(waiting);
+    };
+  }, [JSON.stringify(top), problem.gravity, problem.launch.tilt]);
+  if (!found) return null;
+  if (!found.length) return <p class="hint">{t("own.noAdvice")}</p>;
+  return (
+    <div class="advice" role="group" aria-label={t("own.advice")}>
+      <p>{t("own.advice")}</p>
+      {found.map(({ name, value, spin }) => (
+        <button type="button" data-advice={name} onClick={() => set({ [name]: value })}>
+          {t("own.advise", {
+            name: t(`own.${name}`),
+            value: sizeText(name, value),
+            spin: shown(spin, "spin", units, 3),
+          })}
+        </button>
+      ))}
+    </div>
   );
 }
 
@@ -189,7 +230,7 @@ function pathOf(points) {
 
 // The end of the stem, to be dragged or moved by keys.
 function Grip({ top, onDrag }) {
-  const [shortest, longest, step] = DIALS.stem;
+  const [shortest, longest, step] = SIZES.stem;
   const setStem = (stem) => onDrag(Math.min(Math.max(stem, shortest), longest));
   const drag = (event) => {
     if (!event.buttons) return;

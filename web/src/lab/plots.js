@@ -70,11 +70,12 @@ const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 const brief = (value) => digits(value, 4).replace(/[.,]0+e/, "e");
 
 export class Plots {
-  constructor(host, { seek, time, playing }) {
+  constructor(host, { seek, time, playing, isTold }) {
     this.host = host;
     this.seek = seek;
     this.time = time;
     this.playing = playing;
+    this.isTold = isTold;
     this.charts = [];
     this.ghosts = [];
     this.window = null;
@@ -160,12 +161,11 @@ export class Plots {
     this.host.append(figure);
     const chart = new uPlot(this.options(name, width, label), null, figure);
     chart.root.setAttribute("role", "img");
-    chart.root.setAttribute("aria-label", `${title} ${label}`);
     const cursor = document.createElement("i");
     cursor.className = "plot-now";
     chart.over.append(cursor);
     this.seekByPointer(chart);
-    return { name, chart, cursor, value };
+    return { name, chart, cursor, value, title: `${title} ${label}` };
   }
 
   options(name, width, label) {
@@ -244,12 +244,18 @@ export class Plots {
   fill() {
     if (!this.charts.length) return;
     const count = this.colours.ghosts.length;
-    for (const { name, chart } of this.charts) {
+    const isTold = this.isTold();
+    for (const { name, chart, title } of this.charts) {
       const curves = Array.from({ length: count }, (_, k) => {
         const ghost = this.ghosts[k];
         return ghost ? this.curve(ghost, name) : NO_CURVE;
       });
-      chart.setData(joined([...curves, this.curve(this.track, name)]));
+      const curve = this.curve(this.track, name);
+      chart.setData(joined([...curves, curve]));
+      chart.root.setAttribute(
+        "aria-label",
+        [title, ...(isTold ? [inWords(curve)] : [])].join(". "),
+      );
     }
     this.move();
   }
@@ -340,6 +346,23 @@ export class Plots {
     this.charts = [];
     this.host.replaceChildren();
   }
+}
+
+// A curve in words: where it begins and ends, and how low and high it goes.
+function inWords([times, values]) {
+  const known = values.flatMap((value, k) => (value === null ? [] : [k]));
+  if (!known.length) return "";
+  const best = (isBetter) => known.reduce((a, b) => (isBetter(values[b], values[a]) ? b : a));
+  const text = (k) => ({ value: digits(values[k], 3), time: digits(times[k], 3) });
+  const [low, high] = [text(best((b, a) => b < a)), text(best((b, a) => b > a))];
+  return t("plots.words", {
+    start: text(known[0]).value,
+    end: text(known.at(-1)).value,
+    low: low.value,
+    lowTime: low.time,
+    high: high.value,
+    highTime: high.time,
+  });
 }
 
 function columnsFor(width) {

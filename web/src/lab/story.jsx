@@ -1,14 +1,30 @@
 // The guided story: each step sets a launch, asks for a prediction, shows what happens and says why.
 
+import { useEffect, useRef } from "preact/hooks";
+
+import { SPAN } from "../player/climax.js";
+import { stillness } from "../player/player.js";
 import { part, t } from "./i18n.js";
 import { PRESETS, preset } from "./presets.js";
 import { changed } from "./setup.js";
 
-// Of each step: its launch, the arrows and curves it shows, the preset whose figure in the report shows it too, and
-// what the visitor may go on to.
+// How long nothing in particular is watched before the answer is told, and the most of anything, s.
+const WATCHED = 4;
+const LONGEST_WATCHED = 8;
+
+// When what a step asks for is to be seen in a run, s; NaN where it does not happen.
+const MOMENTS = {
+  flip: ({ turns_over }) => (turns_over ?? NaN) + SPAN,
+  flight: ({ flights: [first] }) => (first?.[0] ?? NaN) + SPAN,
+  arrival: ({ metrics: { arrives } }) => arrives ?? NaN,
+};
+
+// Of each step: its launch, what is to be seen in it, the arrows and curves it shows, the preset whose figure in the
+// report shows it too, and what the visitor may go on to.
 const STEPS = [
   {
     from: "turns",
+    watch: "flip",
     setup: preset("turns"),
     show: ["trace", "glass", "axis"],
     plots: ["theta", "height", "omega3"],
@@ -20,12 +36,14 @@ const STEPS = [
   },
   {
     from: "half",
+    watch: "arrival",
     setup: preset("half"),
     show: ["trace", "glass", "axis"],
     plots: ["theta", "slip", "phi_dot"],
   },
   {
     from: "turns",
+    watch: "flip",
     setup: preset("turns"),
     show: ["trace", "glass", "momentum"],
     plots: ["theta", "omega3", "energy", "jellett_error"],
@@ -43,11 +61,13 @@ const STEPS = [
   },
   {
     from: "jumps",
+    watch: "flight",
     setup: changed(preset("jumps"), { duration: 9 }),
     show: ["trace", "glass", "friction"],
     plots: ["theta", "normal_force", "height"],
   },
   {
+    watch: "flip",
     setup: preset("stem"),
     show: ["trace", "glass", "axis"],
     plots: ["theta", "height", "normal_force"],
@@ -59,14 +79,32 @@ const STEPS = [
     plots: ["theta", "slip", "energy"],
     extra: "drill",
   },
-  { setup: preset("turns"), show: ["trace", "glass"], plots: ["theta", "omega3"], extra: "own" },
+  {
+    watch: "flip",
+    setup: preset("turns"),
+    show: ["trace", "glass"],
+    plots: ["theta", "omega3"],
+    extra: "own",
+  },
 ];
 
 export function Story({ lab }) {
   const { step, guess } = lab.state;
   const number = Math.min(step, STEPS.length - 1);
   const words = part("story.steps")[number];
-  const told = guess?.step === number;
+  const isGuessed = guess?.step === number;
+  const isSeen = isGuessed && guess.seen;
+  const tellNow = () => lab.set({ guess: { ...lab.state.guess, seen: true } });
+  useEffect(() => {
+    if (!isGuessed || isSeen) return undefined;
+    const look = () => {
+      const { player, track } = lab;
+      if (lab.isAwaited || !(player.time >= momentIn(number, track))) return;
+      tellNow();
+    };
+    lab.addEventListener("time", look);
+    return () => lab.removeEventListener("time", look);
+  }, [isGuessed, isSeen, number]);
   const go = (next) => {
     setStep(lab, next, { step: next, guess: null });
   };
@@ -83,10 +121,11 @@ export function Story({ lab }) {
       <Question
         key={number}
         words={words}
-        told={told ? guess : null}
+        guess={isGuessed ? guess : null}
         onGuess={(answer) => spin(lab, number, answer)}
       />
-      {told && <Why lab={lab} number={number} words={words} guess={guess} />}
+      {isGuessed && !isSeen && <Watching onTell={tellNow} />}
+      {isSeen && <Why lab={lab} number={number} words={words} guess={guess} />}
       <nav class="story-nav" aria-label={t("page.story")}>
         <button type="button" disabled={number === 0} onClick={() => go(number - 1)}>
           {t("story.before")}
@@ -104,7 +143,40 @@ export function Story({ lab }) {
   );
 }
 
-function Question({ words, told, onGuess }) {
+// When the answer of a step is told, s.
+function momentIn(number, track) {
+  const moment = MOMENTS[STEPS[number].watch]?.(track.header);
+  const time = Number.isFinite(moment) ? Math.min(moment, LONGEST_WATCHED) : WATCHED;
+  return stillness() ? 0 : Math.min(time, track.duration);
+}
+
+// An element that takes the focus when it appears.
+function useFocus() {
+  const element = useRef();
+  useEffect(() => element.current.focus(), []);
+  return element;
+}
+
+// What is there while the visitor watches, and no answer has been told.
+function Watching({ onTell }) {
+  const element = useFocus();
+  return (
+    <div
+      class="watching row"
+      ref={element}
+      tabIndex={-1}
+      role="group"
+      aria-label={t("story.watch")}
+    >
+      <p>{t("story.watch")}</p>
+      <button type="button" onClick={onTell}>
+        {t("story.tell")}
+      </button>
+    </div>
+  );
+}
+
+function Question({ words, guess, onGuess }) {
   const answer = (event) => {
     event.preventDefault();
     const chosen = new FormData(event.target).get("guess");
@@ -112,22 +184,22 @@ function Question({ words, told, onGuess }) {
   };
   return (
     <form class="question" onSubmit={answer}>
-      <fieldset disabled={Boolean(told)}>
+      <fieldset disabled={Boolean(guess)}>
         <legend>{words.question}</legend>
         {words.answers.map((text, k) => (
-          <label class={told && k === words.right ? "right" : ""}>
+          <label class={guess?.seen && k === words.right ? "right" : ""}>
             <input
               type="radio"
               name="guess"
               value={k}
               required
-              checked={told?.answer === k || undefined}
+              checked={guess?.answer === k || undefined}
             />{" "}
             {text}
           </label>
         ))}
       </fieldset>
-      {!told && (
+      {!guess && (
         <div class="row">
           <button type="submit" class="strong">
             {t("story.go")}
@@ -144,8 +216,9 @@ function Question({ words, told, onGuess }) {
 function Why({ lab, number, words, guess }) {
   const { extra, from } = STEPS[number];
   const { figure } = PRESETS.find(({ key }) => key === from) ?? {};
+  const element = useFocus();
   return (
-    <div class="answer" role="status">
+    <div class="answer" ref={element} tabIndex={-1} role="status">
       {guess.answer !== null && (
         <p class={`verdict ${guess.answer === words.right ? "right" : ""}`}>
           {t(guess.answer === words.right ? "story.right" : "story.wrong")}
@@ -184,6 +257,7 @@ function setStep(lab, number, others, play = false) {
   for (const name of ["axis", "momentum", "friction", "trace", "glass"])
     player.show({ [name]: show.includes(name) });
   player.look("orbit");
+  player.slow(!stillness());
   player.toggle(false);
   player.seek(0);
   lab.go(setup, { play, plots, ...others });
@@ -191,10 +265,12 @@ function setStep(lab, number, others, play = false) {
 
 // Show what happens in a step.
 function spin(lab, number, answer) {
-  setStep(lab, number, { guess: { step: number, answer } }, true);
+  setStep(lab, number, { guess: { step: number, answer, seen: false } }, true);
 }
 
-// Whether what happens is not to be seen yet, as it is still to be guessed.
-export function veiled({ tab, step, guess }) {
-  return tab === "story" && guess?.step !== step;
+// What is not to be seen yet: all that happens while it is still to be guessed, then what has not been watched.
+export function veilOf({ tab, step, guess }) {
+  if (tab !== "story") return "";
+  if (guess?.step !== step) return "veiled";
+  return guess.seen ? "" : "watched";
 }

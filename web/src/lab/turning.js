@@ -6,11 +6,20 @@ export const MATERIALS = { beech: 720, plastic: 1050, cork: 240, aluminium: 2700
 
 export const FIRST = {
   radius: 0.02,
-  face: 0.55,
-  hollow: 0.6,
-  stem: 0.032,
-  knob: 0.0035,
+  face: 0.7,
+  hollow: 0.5,
+  stem: 0.025,
+  knob: 0.005,
   material: "beech",
+};
+
+// Bounds and step of each size.
+export const SIZES = {
+  radius: [0.008, 0.04, 0.0005],
+  face: [0.2, 0.9, 0.01],
+  hollow: [0, 0.95, 0.01],
+  stem: [0.02, 0.07, 0.0005],
+  knob: [0.0015, 0.012, 0.0005],
 };
 
 // Thickness of the wall around the hollow, in radii of the ball.

@@ -3,6 +3,8 @@
 import { decimal, t } from "./i18n.js";
 
 const DEGREE = Math.PI / 180;
+// Below this values are zero but for rounding, in SI or relative.
+const ROUNDING = 1e-12;
 
 const SPINS = { "rad/s": 1, "turns/s": 2 * Math.PI, rpm: (2 * Math.PI) / 60 };
 const ANGLES = { rad: 1, deg: DEGREE };
@@ -35,7 +37,12 @@ export function digits(value, count = 4) {
 
 export function shown(value, kind, units, count = 4) {
   const unit = unitOf(kind, units);
-  return withUnit(digits(value / unit.size, count), unit);
+  return withUnit(digits(cleared(value) / unit.size, count), unit);
+}
+
+/** A value, or zero where it is zero but for the rounding of values of some size, in SI. */
+export function cleared(value, size = 1) {
+  return Math.abs(value) < ROUNDING * Math.min(size, 1) ? 0 : value;
 }
 
 export function withUnit(text, { name }) {

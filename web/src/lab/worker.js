@@ -1,6 +1,7 @@
 // What the page's workers do: runs, their numbers, what a body is good for, and single launches of a map.
 
 import {
+  advice,
   doubts,
   fromDrawing,
   fromPoints,
@@ -12,9 +13,11 @@ import {
   turned,
   weighed,
 } from "engine";
+import { RISE } from "engine-tables";
 
 import { numbers } from "../run/numbers.js";
 import { buffersOf, pack } from "../run/pack.js";
+import { bodyOf, possible, SIZES } from "./turning.js";
 
 // How exactly a launch is followed while a slider moves, and how finely it is then sampled; of a map, how exactly.
 const QUICK = { tolerance: 1e-7, samples: 320 };
@@ -26,6 +29,7 @@ const JOBS = {
   body: answerBody,
   brought: answerBrought,
   solid: answerSolid,
+  advice: answerAdvice,
   numbers,
 };
 
@@ -50,12 +54,10 @@ function answerRun({ id, problem, duration, quick }) {
 
 function answerCell({ problem, duration }) {
   const { metrics, outcome } = simulate(problem, { duration, tolerance: COARSE });
-  return {
-    tilt: metrics.final_theta,
-    flights: metrics.flights,
-    turnsOver: metrics.turns_over,
-    outcome,
-  };
+  const { final_theta: tilt, highest_tilt: highest, turns_over: turnsOver, flights } = metrics;
+  const isBack = Number.isFinite(turnsOver) && tilt < Math.PI / 2;
+  const fellBack = isBack || highest - Math.max(tilt, problem.launch.tilt ?? 0) > RISE;
+  return { tilt, highest, fellBack, flights, turnsOver, outcome };
 }
 
 function answerBody({ body, gravity, tilt }) {
@@ -84,6 +86,22 @@ function answerSolid({ body }) {
   const size = Math.sqrt(body.I1 / body.mass);
   const differences = [center / size, (density * I1) / body.I1 - 1, (density * I3) / body.I3 - 1];
   return differences.every((one) => Math.abs(one) <= SAME_SOLID) ? density : null;
+}
+
+// What to change in a top of sliders, each to the next of its steps that does.
+function answerAdvice({ top, reach, gravity, tilt }) {
+  const bodyWith = (name, value) => bodyOf(possible({ ...top, [name]: value }));
+  const sizes = Object.entries(SIZES).map(([name, [low, high]]) => ({
+    name,
+    value: top[name],
+    low,
+    high,
+  }));
+  return advice(bodyWith, sizes, reach, gravity, tilt).map(({ name, value, spin }) => {
+    const [low, , step] = SIZES[name];
+    const round = value > top[name] ? Math.ceil : Math.floor;
+    return { name, value: low + step * round((value - low) / step), spin };
+  });
 }
 
 self.onmessage = ({ data }) => {

@@ -106,7 +106,7 @@ export class Player extends EventTarget {
       },
       view: () => this.look(value),
       climax: () => {
-        this.climax = checked;
+        this.slow(checked);
       },
       loop: () => {
         this.loop = checked;
@@ -218,6 +218,13 @@ export class Player extends EventTarget {
   look(view) {
     this.scene?.eye.look(view);
     this.find("[data-do=view]").value = view;
+    this.dirty = true;
+  }
+
+  // Whether time slows down, and the camera sinks, as the top turns over.
+  slow(on) {
+    this.climax = on;
+    this.find("[data-do=climax]").checked = on;
     this.dirty = true;
   }
 

@@ -1,0 +1,71 @@
+"""Every state of the page is in its link: what is reopened is what was shown."""
+
+from bundled import found_in_the_page
+
+REOPENED = """
+import { readLink, writeLink } from "./link.js";
+import { PRESETS } from "./presets.js";
+import { changed } from "./setup.js";
+import { bodyOf, FIRST } from "./turning.js";
+
+let seed = 50;
+const random = () => {
+  seed = (seed * 48271) % 2147483647;
+  return seed / 2147483647;
+};
+const one = (choices) => choices[Math.floor(random() * choices.length)];
+const some = (choices) => choices.filter(() => random() < 0.5);
+const number = (low, high) => Number((low + random() * (high - low)).toPrecision(6));
+
+const CHANGES = [
+  () => ({ "launch.spin": number(-200, 250) }),
+  () => ({ "launch.tilt": number(0, 3.1), "launch.precession": number(-9, 9) }),
+  () => ({ "launch.tilt_rate": number(-9, 9), "launch.gap": number(0, 1e-4) }),
+  () => ({ "launch.velocity": [number(-1, 1), number(-1, 1), 0] }),
+  () => ({ "friction.mu": number(0.01, 3) }),
+  () => ({ "friction.kind": one(["viscous", "coulomb", "contensou", "regularized_coulomb"]) }),
+  () => ({ "contact.liftoff": one(["fly", "stop", "ignore"]) }),
+  () => ({ "contact.restitution": number(0, 1) }),
+  () => ({ gravity: number(1, 20), rolling_resistance: number(0, 1e-4) }),
+  () => ({ duration: number(1, 60) }),
+  () => ({ body: bodyOf({ ...FIRST, hollow: number(0.2, 0.8), stem: number(0.025, 0.05) }) }),
+];
+const launch = () =>
+  some(CHANGES).reduce((setup, change) => changed(setup, change()), one(PRESETS).setup);
+
+const state = () => ({
+  setup: random() < 0.3 ? PRESETS[0].setup : launch(),
+  pins: random() < 0.7 ? [] : [launch(), launch()].slice(0, one([1, 2])),
+  units: { spin: one(["rad/s", "turns/s", "rpm"]), angle: one(["rad", "deg"]) },
+  view: {
+    time: random() < 0.5 ? 0 : Math.round(1e5 * random()) / 1e4,
+    camera: random() < 0.7 ? null : [number(0.3, 1), number(0.3, 1), number(2, 5)].map(
+      (v) => Number(v.toFixed(3))),
+    shown: random() < 0.5 ? null : some(["axis", "momentum", "friction", "trace", "glass"]),
+  },
+  tab: one(["story", "story", "launch", "own", "compare", "map", "keep"]),
+  step: one([0, 0, 1, 4, 9]),
+  plots: random() < 0.5 ? null : some(["theta", "omega3", "slip", "energy"]),
+  lang: one([null, "en", "de"]),
+  theme: one(["auto", "light", "dark"]),
+});
+
+const sorted = (value) => {
+  if (value === null || typeof value !== "object") return value;
+  if (Array.isArray(value)) return value.map(sorted);
+  return Object.fromEntries(Object.keys(value).sort().map((key) => [key, sorted(value[key])]));
+};
+export const found = Array.from({ length: 200 }, () => {
+  const asked = state();
+  const { timed, ...reopened } = readLink(writeLink(asked));
+  return [JSON.stringify(sorted(asked)), JSON.stringify(sorted(reopened)), writeLink(asked)];
+});
+"""
+
+
+def test_two_hundred_states_are_reopened_as_they_were() -> None:
+    found = found_in_the_page(REOPENED)
+    assert len(found) == 200
+    assert len({asked for asked, _, _ in found}) == 200
+    for asked, reopened, link in found:
+        assert reopened == asked, link
