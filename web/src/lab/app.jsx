@@ -147,7 +147,7 @@ function Stage({ lab, dark }) {
     const player = createPlayer(host.current, {
       theme: dark ? "dark" : "light",
       words: part("player"),
-      open: innerWidth > 900,
+      open: innerWidth > 1700,
     });
     lab.player = player;
     player.addEventListener("time", () => lab.dispatchEvent(new Event("time")));

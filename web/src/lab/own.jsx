@@ -8,11 +8,11 @@ import { changed } from "./setup.js";
 import { bodyOf, FIRST, MATERIALS, massesOf, possible, SIZES, sectionOf } from "./turning.js";
 import { digits, shown } from "./units.js";
 
-// How long after a change advice is asked for, ms; the spins within reach, rad/s, and how far beyond the least one a top
-// is spun.
+// How long after a change advice is asked for, ms; the least spins that a hand reaches, rad/s, and how far beyond its own
+// a top is spun: ball and stem lose as much while both touch.
 const QUIET = 400;
-const REACH = 240;
-const BEYOND = 1.1;
+const REACH = 200;
+const BEYOND = 1.25;
 const IN_MM = ["radius", "stem", "knob"];
 // Millimetres to the metre, and the room around the drawing, m.
 const MM = 1e3;
@@ -59,7 +59,7 @@ function Shaped({ lab }) {
   const ahead = useProspects(lab, body);
   const least = ahead?.stem?.launch;
   const spin = () => {
-    const launch = { body, rolling_resistance: 0, "contact.liftoff": "fly", duration: 10 };
+    const launch = { body, rolling_resistance: 0, "contact.liftoff": "fly", duration: 15 };
     if (least <= REACH) launch["launch.spin"] = Math.round(BEYOND * least);
     lab.go(changed(lab.state.setup, launch));
   };
@@ -125,7 +125,7 @@ function Advice({ lab, top, units, set }) {
     say(null);
     let isWanted = true;
     const ask = () =>
-      lab.engine.advice(top, REACH / BEYOND, problem).then(
+      lab.engine.advice(top, REACH, problem).then(
         (answer) => isWanted && say(answer),
         () => {},
       );

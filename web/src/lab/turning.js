@@ -7,7 +7,7 @@ export const MATERIALS = { beech: 720, plastic: 1050, cork: 240, aluminium: 2700
 export const FIRST = {
   radius: 0.02,
   face: 0.7,
-  hollow: 0.5,
+  hollow: 0.8,
   stem: 0.025,
   knob: 0.005,
   material: "beech",
