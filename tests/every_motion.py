@@ -6,11 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tippetop.contact.closed import ContactMode, sliding_motion
 from tippetop.contact.closing import closing_motion
 from tippetop.contact.double import SlidingOnTwo
 from tippetop.contact.double_sticking import StickingAndSlidingBack, StickingOnTwo
-from tippetop.contact.sliding import sliding_motion
-from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzBranch, HertzDrillingLaw, HertzSlidingLaw
@@ -88,8 +87,9 @@ def sliding_motions(top):
 def sticking_motions(top):
     """Every motion of a top in which it sticks."""
     kind, numbers, rolls = top.kind, top.numbers, top.resists_rolling
-    for form in (Sticking, StickingWithoutRolling)[: 1 + rolls]:
-        yield form.name, form(top).motion, numbers
+    for held in (False, True)[: 1 + rolls]:
+        mode = ContactMode(top, sticks=True, holds_rolling=held)
+        yield mode.status, mode.motion, numbers
     if rolls:
         yield (
             "sticking closing",

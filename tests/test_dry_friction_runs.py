@@ -11,9 +11,8 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.closed import STOPPING
+from tippetop.contact.closed import STOPPING, ContactMode
 from tippetop.contact.mode import ModeEnd
-from tippetop.contact.sliding import Sliding
 from tippetop.contact.stopping import Stopping
 from tippetop.integrators import has_taylor, make_integrator
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -222,7 +221,7 @@ def test_a_sweep_changes_between_the_branches_of_hertz_as_a_run_does(liftoff):
             )
 
 
-@pytest.mark.parametrize(("slip", "mode"), [(1e-3, Sliding), (-1e-3, Stopping)])
+@pytest.mark.parametrize(("slip", "mode"), [(1e-3, ContactMode), (-1e-3, Stopping)])
 def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> None:
     """What falls over rolls the way it falls: slip against that ends, slip along it goes on."""
     launch = tt.Launch(tilt=1.0, spin=0.0, slip=(slip, 0.0))
@@ -230,7 +229,7 @@ def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> N
         body=tt.presets.REPORT, friction=tt.CoulombFriction(mu=0.01), launch=launch
     )
     top = natural(problem.top)
-    automaton, slides = Automaton(top, "ignore", 0.0), Sliding(top, pulls=True)
+    automaton, slides = Automaton(top, "ignore", 0.0), ContactMode(top, pulls=True)
     start = natural_state(problem.start(), natural_units(problem.top))
     end = ModeEnd(STOPPING, start)
     assert type(automaton.follow(slides, end, 0.0).then) is mode

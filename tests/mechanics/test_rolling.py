@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from strategies import numbers, slides
-from tippetop.contact.sliding import Sliding
+from tippetop.contact.closed import ContactMode
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzDrillingLaw
@@ -221,5 +221,5 @@ def test_slip_is_watched_by_how_fast_it_falls_along_the_motion(slide, law):
 
     falls = float(derivative(square, 0.0))
     scale = float(square(0.0)) + abs(falls) + scale_of(top, ContactPoint.of(*state[:2], top)) ** 2
-    found = Sliding(top).slip_left(state.pack())
+    found = ContactMode(top).slip_left(state.pack())
     assert found == pytest.approx(float(square(0.0)) + 0.5 * HORIZON * falls, abs=1e-11 * scale)

@@ -11,11 +11,10 @@ from scipy.integrate import solve_ivp
 from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.closed import SLIP, split
+from tippetop.contact.closed import SLIP, ContactMode, split
 from tippetop.contact.growth import growth
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
-from tippetop.contact.sticking import Sticking
 from tippetop.contact.stopping import Stopping
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import has_taylor, make_integrator
@@ -202,7 +201,7 @@ def swinging(top):
 
 def stuck_reserve(axis, momentum, top):
     """Positive while the table can hold the contact, and the body rolls as it does."""
-    [slip] = [guard for guard in Sticking(top).motion.guards if guard.name == SLIP]
+    [slip] = [guard for guard in ContactMode(top, sticks=True).motion.guards if guard.name == SLIP]
     return slip.value((*axis, *momentum), top.numbers)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sweep_cases import lively, problem_of, same, thrown, truth
 
-from tippetop.contact.sliding import sliding_motion
+from tippetop.contact.closed import sliding_motion
 from tippetop.integrators import has_llvm, has_taylor
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.series import horner

@@ -13,11 +13,13 @@ from tippetop.contact.closed import (
     BRANCH,
     LIFT_OFF,
     LIMIT_BRANCH,
+    NEARING,
+    PARTING,
     ROLLING,
     ROLLING_STOPPING,
     SLIP,
     STOPPING,
-    ClosedMode,
+    ContactMode,
 )
 from tippetop.contact.closing import JAMMED, LANDED, OVERTAKEN, REOPENING
 from tippetop.contact.collision import collision
@@ -43,9 +45,7 @@ from tippetop.contact.mode import (
     failed,
 )
 from tippetop.contact.passing import Resting
-from tippetop.contact.sliding import NEARING, PARTING, Sliding, SlidingWithoutRolling
 from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
-from tippetop.contact.sticking import Sticking, StickingWithoutRolling
 from tippetop.contact.stopping import Stopping
 from tippetop.contact.surfaces import FACE, TOUCH, lies_flat, number_of
 from tippetop.contact.touching import (
@@ -145,7 +145,7 @@ class Automaton:
             return Transition((), Outcome.COMPLETED, end.state)
         top = off_branch(mode.top)
         here = self if top == self.top else self._of(top)
-        if end.cause == FAILURE and not isinstance(mode, Sliding):
+        if end.cause == FAILURE and not _may_jam(mode):
             return Transition((), Outcome.FAILED, end.state, end.detail)
         if end.cause == FACE:
             return Transition((), Outcome.LYING_FLAT, end.state)
@@ -161,7 +161,7 @@ class Automaton:
             return here._after_clock(mode, end, time)
         if isinstance(mode, OnTwo):
             return here._after_two(mode, end, time)
-        assert isinstance(mode, ClosedMode), f"nothing follows {mode.name}"
+        assert isinstance(mode, ContactMode), f"nothing follows {mode.name}"
         return here._after_one(mode, end, time)
 
     def _after_flight(self, end: ModeEnd, time: float, integrator: Integrator | None) -> Transition:
@@ -170,7 +170,7 @@ class Automaton:
             return self.touchdown(time, end.state, integrator)
         return self.touch(end.contact, time, end.state, integrator)
 
-    def _after_one(self, mode: ClosedMode, end: ModeEnd, time: float) -> Transition:
+    def _after_one(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
         """Return what follows on one contact that slips or sticks."""
         state, slips = end.state, not mode.sticks
         if end.cause == FAILURE:
@@ -189,7 +189,9 @@ class Automaton:
         wrench = mode.found(mode.numbers(state))[2]
         if wrench.force[2] <= 0.0 and not self.pulls:
             return self.lift_off(time, state)
-        begins = Vanishing(end.cause == SLIP, held=mode.held if end.cause == SLIP else mode.sticks)
+        begins = Vanishing(
+            end.cause == SLIP, held=mode.holds_rolling if end.cause == SLIP else mode.sticks
+        )
         return self._begin(time, state, begins, wrench)
 
     def _after_onset(self, mode: Loosening, end: ModeEnd, time: float) -> Transition:
@@ -263,8 +265,8 @@ class Automaton:
         rolls = rolls_freely(self.top, state)
         if slips:
             near = is_set_valued(top.friction) and bool(is_near(along_table(state), top))
-            return (Sliding if rolls else SlidingWithoutRolling)(top, near, self.pulls)
-        return (Sticking if rolls else StickingWithoutRolling)(top)
+            return ContactMode(top, False, not rolls, near, self.pulls)
+        return ContactMode(top, True, not rolls)
 
     def _follow_to_end(self, state: State, *, slips: bool) -> Transition:
         """Return the clock of what ends first; where a guard was touched by rounding, nothing
@@ -610,6 +612,11 @@ class Automaton:
         way = begins if all(here.ended) else begins[:2]
         mode = SlipBeginningOnTwo(one, other, here.rolls, begin, way, growing)
         return Transition((), mode, mode.state(begin))
+
+
+def _may_jam(mode: Mode) -> bool:
+    """Return whether the integrator of a mode may fail because friction jams the contact."""
+    return isinstance(mode, ContactMode) and mode.slides_freely
 
 
 def add_prior_impulse(found: Transition, before: State, impulse: float, lost: float) -> Transition:

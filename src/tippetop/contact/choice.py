@@ -1,9 +1,9 @@
 """Which automaton follows a top, and what is told of one that ends as it begins."""
 
 from tippetop.contact.automaton import Automaton
+from tippetop.contact.closed import ContactMode
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Mode
-from tippetop.contact.sliding import Sliding
 from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
@@ -28,7 +28,7 @@ def as_begun(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
     It slides, but where the table would have to pull: then it lets go.
     """
     lowest = top._replace(surface=lowest_surface(top.surface, state.axis[2]))
-    sliding, numbers = Sliding(lowest, pulls=True), along_table(state).pack()
+    sliding, numbers = ContactMode(lowest, pulls=True), along_table(state).pack()
     try:
         presses = sliding.reaction(numbers).force[2] > 0.0
     except (

@@ -1,6 +1,4 @@
-"""Modes in which one contact is closed: what all have in common, whether it slips or sticks, and
-rolls.
-"""
+"""The mode of one closed contact, by its status, and what all stated modes have in common."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
@@ -11,16 +9,29 @@ from typing import Any, ClassVar, Self, TypeAlias
 from tippetop.contact.mode import IntegratedMode, Reaction
 from tippetop.contact.surfaces import surface_guards
 from tippetop.integrators.base import Guard, Motion
-from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
-from tippetop.mechanics.motion import along_table, axis_rate, on_table
+from tippetop.mechanics.branches import has_limit_branches, limit_guard
+from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint, flat
+from tippetop.mechanics.motion import along_table, axis_rate, on_table, sliding_rates
 from tippetop.mechanics.rolling import (
     contact_motion,
+    is_set_valued,
     rolling_reserve,
+    slip_length,
+    slip_reserve,
     velocity_without_slip,
     without_rolling,
 )
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import remaining, scaled, slip_of
+from tippetop.mechanics.stick_slip import (
+    branch_guard,
+    nearing_guard,
+    parting_guard,
+    remaining,
+    rolling_stopping_guard,
+    scaled,
+    slip_of,
+    slip_part,
+)
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 from tippetop.mechanics.wrench import Slip, Wrench
@@ -33,6 +44,10 @@ LIFT_OFF, STOPPING, SLIP, BRANCH, LIMIT_BRANCH = (
     "limit branch",
 )
 ROLLING, ROLLING_STOPPING = "rolling", "rolling stopping"
+NEARING, PARTING = "nearing", "parting"
+
+SLIPS, STICKS = "sliding", "sticking"
+"""Status of a contact in the names of modes."""
 
 GuardValue: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
 """Name of a guard, and its value from a mode and the numbers of that."""
@@ -45,9 +60,14 @@ class StatedMode(IntegratedMode):
     """
 
     size: ClassVar[int] = 8
-    """How many numbers the mode has."""
+    """How many numbers the mode has, unless `count` says otherwise."""
     further: ClassVar[int] = 0
     """How many parameters, beside the numbers of its tops."""
+
+    @property
+    def count(self) -> int:
+        """How many numbers the mode has."""
+        return self.size
 
     @property
     def lasting(self) -> bool:
@@ -98,16 +118,43 @@ def motion_of(form: Any, kinds: tuple[Kind, ...]) -> Motion:
     example = form.with_tops([kind.example for kind in kinds], (0.0,) * form.further)
     guards = tuple(guard(name, value) for name, value in example.guard_values())
     count = sum(kind.numbers for kind in kinds) + form.further
-    return Motion(rates, form.size, count, guards, form.lasting)
+    return Motion(rates, form.count, count, guards, form.lasting)
 
 
 @dataclass(frozen=True)
-class ClosedMode(StatedMode):
-    """One contact is closed."""
+class ContactMode(StatedMode):
+    """One contact is closed: it slips or sticks, and rolling goes on or is held."""
 
-    sticks: ClassVar[bool] = False
-    held: ClassVar[bool] = False
-    """Whether slip is held, and whether rolling is."""
+    sticks: bool = False
+    """Whether it sticks, and does not drill where the law resists that; else it slips."""
+    holds_rolling: bool = False
+    """Whether rolling resistance holds the top, which turns about the vertical, or not at all."""
+    near: bool = False
+    """Whether slip is so small that it may be about to end, which then is guarded."""
+    pulls: bool = False
+    """Whether the table may pull; else slip ends where it would have to."""
+
+    name: ClassVar[str] = "contact"
+
+    @property
+    def status(self) -> str:
+        """Name of the motion in a result, without the surfaces that touch."""
+        return (STICKS if self.sticks else SLIPS) + ("_without_rolling" * self.holds_rolling)
+
+    @property
+    def slides_freely(self) -> bool:
+        """Whether it slips, and nothing holds rolling."""
+        return not self.sticks and not self.holds_rolling
+
+    @property
+    def lasting(self) -> bool:
+        """Whether runs may spend most of their steps in it."""
+        return self.slides_freely and not self.near
+
+    @property
+    def count(self) -> int:
+        """How many numbers the mode has: axis, angular momentum, and velocity if it slips."""
+        return 6 if self.sticks else 8
 
     def found(self, y: Row) -> tuple[ContactPoint, Slip | None, Wrench, Acceleration]:
         """The contact point, its slip, what the table does, and the acceleration, from the
@@ -115,22 +162,25 @@ class ClosedMode(StatedMode):
         """
         point = ContactPoint.of(*split(y), self.top)
         slip = None if self.sticks else slip_of(*split(y), (y[6], y[7]), self.top)[:2]
-        return point, slip, *contact_motion(point, slip, None if self.held else point.turning[:2])
+        rolling = None if self.holds_rolling else point.turning[:2]
+        return point, slip, *contact_motion(point, slip, rolling)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """Axis, angular momentum, and velocity if it slips."""
-        return along_table(state).pack()[: self.size]
+        return along_table(state).pack()[: self.count]
 
     def state(self, y: Row) -> State:
         """The state, with its height and sinking; what is held is zero."""
         axis, momentum = split(y)
-        if self.held:
+        if self.holds_rolling:
             momentum = without_rolling(axis, momentum, self.top)
         velocity = velocity_without_slip(axis, momentum, self.top) if self.sticks else (y[6], y[7])
         return on_table(SlidingState(axis, momentum, velocity), self.top)
 
     def rates(self, y: Row) -> tuple[Scalar, ...]:
         """Rates of axis and angular momentum, and of the velocity if it slips."""
+        if self.slides_freely:
+            return sliding_rates(SlidingState.unpack(y), self.top).pack()
         point, slip, wrench, _ = self.found(y)
         drawn = () if slip is None else scaled(1.0 / self.top.mass, wrench.force[:2])
         return (*axis_rate(*split(y), self.top), *point.moment(wrench), *drawn)
@@ -144,13 +194,47 @@ class ClosedMode(StatedMode):
         return Reaction(wrench.force, wrench.torque, power)
 
     def guard_values(self) -> list[GuardValue]:
-        """The guards of rolling, and of what the body's shape makes happen."""
-        found = list[GuardValue]()
-        if self.held:
-            found.append((ROLLING, lambda mode, y: mode.rolling_reserve(y)))
+        """The guards of what holds the contact, or of slip; of rolling; and of the body's shape."""
+        guards = self._sticking_guards() if self.sticks else self._slip_guards()
+        if self.holds_rolling:
+            guards.append((ROLLING, lambda mode, y: mode.rolling_reserve(y)))
         elif self.top.resists_rolling:
-            found.append((ROLLING_STOPPING, lambda mode, y: mode.rolling_left(y)))
-        return found + [(name, _of_top(value)) for name, value in surface_guards(self.top)]
+            guards.append((ROLLING_STOPPING, lambda mode, y: mode.rolling_left(y)))
+        return guards + [(name, _of_top(value)) for name, value in surface_guards(self.top)]
+
+    def _sticking_guards(self) -> list[GuardValue]:
+        guards: list[GuardValue] = [
+            (SLIP, lambda mode, y: slip_reserve(mode.top, mode.found(y)[2]))
+        ]
+        if has_limit_branches(self.top.friction):
+            guards.append((LIMIT_BRANCH, lambda mode, y: limit_guard(mode.top, mode.found(y)[2])))
+        return guards
+
+    def _slip_guards(self) -> list[GuardValue]:
+        law, guards = self.top.friction, list[GuardValue]()
+        if not self.pulls:
+            guards.append((LIFT_OFF, lambda mode, y: mode.found(y)[2].force[2]))
+        if is_set_valued(law) and self.near:
+            guards.append((STOPPING, lambda mode, y: mode.slip_left(y)))
+            guards.append(
+                (PARTING, lambda mode, y: parting_guard(SlidingState.unpack(y), mode.top))
+            )
+        elif is_set_valued(law):
+            guards.append(
+                (NEARING, lambda mode, y: nearing_guard(SlidingState.unpack(y), mode.top))
+            )
+        if hasattr(law, "branch_guard"):
+            guards.append((BRANCH, lambda mode, y: mode.on_branch(y)))
+        return guards
+
+    def on_branch(self, y: Row) -> Scalar:
+        """Positive as long as the branch of the law holds."""
+        return branch_guard(slip_of(*SlidingState.unpack(y), self.top), self.top)
+
+    def slip_left(self, y: Row) -> Scalar:
+        """Positive while slip goes on for a while."""
+        change = slip_part(flat(self.found(y)[3]), slip_length(self.top.friction))
+        return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
 
     def rolling_reserve(self, y: Row) -> Scalar:
         """Positive while the table can exert the couple that holds rolling."""
@@ -159,8 +243,21 @@ class ClosedMode(StatedMode):
 
     def rolling_left(self, y: Row) -> Scalar:
         """Positive while rolling goes on for a while."""
+        if self.slides_freely:
+            rates = SlidingState.unpack(self.rates(y))
+            return rolling_stopping_guard(SlidingState.unpack(y), rates, self.top)
         point, _, _, acceleration = self.found(y)
         return remaining(point.turning[:2], acceleration.turning[:2])
+
+
+def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
+    """Return the equations of motion of a sliding top of a kind, whose rolling may be held.
+
+    If `guarded`, the first guard is of lift-off. Where slip can end, another tells whether it may
+    be soon.
+    """
+    nothing: Any = None
+    return motion_of(ContactMode(nothing, holds_rolling=held, pulls=not guarded), (kind,))
 
 
 def _of_top(value: Callable[[Top, Vector], Scalar]) -> Callable[[Any, Row], Scalar]:

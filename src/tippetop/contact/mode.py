@@ -247,7 +247,7 @@ class Mode(ABC):
     """The top in natural units."""
 
     name: ClassVar[str]
-    """Its name in a result."""
+    """Its name in a result, unless `status` says more."""
     touching: ClassVar[bool] = True
     """Whether the top is in contact with the table."""
 
@@ -259,17 +259,22 @@ class Mode(ABC):
         return (self.top,)
 
     @property
+    def status(self) -> str:
+        """Name of the motion in a result, without the surfaces that touch."""
+        return self.name
+
+    @property
     def form(self) -> str:
         """Modes of the same form and tops read the same from their numbers."""
-        return self.name
+        return self.status
 
     @property
     def label(self) -> str:
         """Its name, with the numbers of the surfaces that touch if the body has several."""
         if not self.touching or not isinstance(self.top.surface, Hull):
-            return self.name
+            return self.status
         touching = sorted(getattr(top.surface, "active", 0) for top in self.tops)
-        return f"{self.name}_on_{'_and_'.join(map(str, touching))}"
+        return f"{self.status}_on_{'_and_'.join(map(str, touching))}"
 
     @abstractmethod
     def segments(

@@ -4,10 +4,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from tippetop.contact.closed import ClosedMode, split
+from tippetop.contact.closed import ContactMode, split
 from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment
-from tippetop.contact.sliding import Sliding, SlidingWithoutRolling
-from tippetop.contact.sticking import Sticking
 from tippetop.contact.surfaces import passes_flat, stays_open
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
@@ -50,11 +48,10 @@ class Passing(Mode):
     name: ClassVar[str] = "passing"
 
     @property
-    def told(self) -> ClosedMode:
+    def told(self) -> ContactMode:
         """The mode as which it is told."""
-        if self.ending.slip:
-            return (SlidingWithoutRolling if self.ending.held else Sliding)(self.top)
-        return Sticking(self.top) if self.ending.held else Sliding(self.top)
+        slip, held = self.ending
+        return ContactMode(self.top, not slip and held, slip and held)
 
     @property
     def label(self) -> str:

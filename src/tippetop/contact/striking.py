@@ -8,8 +8,7 @@ knows.
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 
-from tippetop.contact.closed import BRANCH
-from tippetop.contact.sliding import NEARING
+from tippetop.contact.closed import BRANCH, NEARING
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.integrators.dense import as_array
 from tippetop.mechanics.branches import is_branched, on_branch, on_other_branch

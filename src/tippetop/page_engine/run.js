@@ -95,7 +95,7 @@ class Run {
   include(segment) {
     const { solution, mode, transition } = segment;
     this.steps += segment.steps;
-    this.rolls = mode.name === "sticking" && mode.top.torque_free;
+    this.rolls = mode.status === "sticking" && mode.top.torque_free;
     if (!mode.touching) this.flightRecord.take(segment);
     if (solution.count) this.includeSteps(mode, solution);
     const lost = transition?.energy_lost ?? 0;

@@ -6,10 +6,10 @@ import numpy as np
 
 from tippetop.contact.block import NODES, WEIGHTS, Block
 from tippetop.contact.choice import as_begun
+from tippetop.contact.closed import SLIPS
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Mode, Outcome
 from tippetop.contact.readings import TOLD, Instants, instants, read
-from tippetop.contact.sliding import Sliding
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of, powers
@@ -52,7 +52,7 @@ class Recorder:
     ) -> None:
         self.top, self.times = top, times
         self._parts: list[Array] = []
-        self.modes = [Sliding.name, Flight.name]
+        self.modes = [SLIPS, Flight.name]
         self._taken = 0
         self._last: tuple[Block, tuple[Array, Array, Array, Array]] | None = None
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0

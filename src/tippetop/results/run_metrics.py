@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from tippetop.contact.block import WEIGHTS, Block, ModeSteps
+from tippetop.contact.closed import STICKS
 from tippetop.contact.flights import Flights
 from tippetop.contact.mode import Event, Outcome
 from tippetop.contact.readings import Rates
@@ -63,7 +64,7 @@ class Tally:
                 self.flights.take(segment)
         for segment in block.segments[-1:]:
             mode = segment.mode
-            self._rolls = mode.name == "sticking" and mode.top.torque_free
+            self._rolls = mode.status == STICKS and mode.top.torque_free
         for group in block.groups:
             self._see(group, block.starts[group.which])
             if not group.mode.touching:

@@ -7,8 +7,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from tippetop.contact.closed import sliding_motion
 from tippetop.contact.mode import Outcome
-from tippetop.contact.sliding import sliding_motion
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import contact, on_table

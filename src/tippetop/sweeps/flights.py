@@ -7,11 +7,11 @@ polynomials that are exact to rounding there. What vanishes at the start of a fl
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from tippetop.contact.sliding import Sliding
+from tippetop.contact.closed import ContactMode
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.flight import fly
@@ -220,7 +220,6 @@ def slips(state: State, top: Top, *, far: bool = False) -> Flags:
     if not is_set_valued(top.friction):
         return count
     y = along_table(state)
-    nothing: Any = None
-    lasting = Sliding(top, nothing).slip_left(y.pack()) > 0.0
+    lasting = ContactMode(top).slip_left(y.pack()) > 0.0
     found: Flags = count & is_slipping(*y, top) & lasting
     return found & ~is_near(y, top) if far else found

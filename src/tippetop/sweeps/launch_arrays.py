@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.sliding import Sliding
+from tippetop.contact.closed import ContactMode
 from tippetop.integrators.base import Array
 from tippetop.mechanics.branches import is_branched, off_branch, on_numbered_branch
 from tippetop.mechanics.motion import along_table
@@ -74,9 +74,9 @@ class Launches:
             return own
         return Automaton(top, self.liftoff, float(self.restitution[launch]))
 
-    def sliding(self, launch: int) -> Sliding:
+    def sliding(self, launch: int) -> ContactMode:
         """The mode of one launch that slides."""
-        return Sliding(self._top(launch), pulls=self.liftoff == "ignore")
+        return ContactMode(self._top(launch), pulls=self.liftoff == "ignore")
 
     def _top(self, launch: int) -> Top:
         return self.kind.top(tuple(self.numbers[:, launch].tolist()))

@@ -8,10 +8,9 @@ to its end.
 
 import numpy as np
 
-from tippetop.contact.closed import BRANCH, LIFT_OFF
+from tippetop.contact.closed import BRANCH, LIFT_OFF, ContactMode, sliding_motion
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import EventKind, Mode, ModeEnd, Outcome, Transition
-from tippetop.contact.sliding import Sliding, sliding_motion
 from tippetop.contact.surfaces import lies_flat
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight import gap, gap_rate
@@ -241,4 +240,4 @@ class Crossings:
 
 def is_plain(mode: Mode) -> bool:
     """Whether lanes slide as in this mode."""
-    return type(mode) is Sliding and not mode.near
+    return isinstance(mode, ContactMode) and mode.slides_freely and not mode.near
