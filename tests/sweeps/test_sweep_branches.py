@@ -3,7 +3,7 @@
 import numpy as np
 
 from tippetop.integrators.polynomials import Polynomials
-from tippetop.sweeps.polynomial_minima import first_fall
+from tippetop.integrators.polynomial_minima import first_fall
 from tippetop.sweeps.taylor_step import LOOKS
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
 

@@ -20,7 +20,7 @@ NAMES = [*TOLERANCES, "rk4"]
 
 def has_taylor() -> bool:
     """Whether heyoka, which compiles Taylor's method, is installed."""
-    return find_spec("heyoka") is not None
+    return has_llvm()
 
 
 def has_numba() -> bool:
@@ -110,7 +110,7 @@ def make_integrator(
 def _adaptive(name: str, tolerance: float) -> Integrator:
     """An integrator that chooses its steps; they are imported when asked for, which is slow."""
     for needing, package, there in (
-        ("taylor", "heyoka", has_taylor),
+        ("taylor", "llvmlite", has_taylor),
         ("compiled", "numba", has_numba),
     ):
         if name == needing and not there():

@@ -23,20 +23,20 @@ def machine_code(
     functions: Mapping[str, Recorded], abreast: int = 1, effort: int = EFFORT
 ) -> "dict[str, Compiled]":
     """Compile what was recorded, for so many launches an instruction, or take it from the cache."""
-    engine = _loaded(llvm_source(functions, abreast), effort)
+    engine = loaded(llvm_source(functions, abreast), effort)
     return {name: Compiled(engine, name, bool(one.more)) for name, one in functions.items()}
 
 
 def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
     """The same of what is made again and again; see `llvm_source`. It takes arrays of `ctypes`."""
-    engine = _loaded(llvm_source({"made": function}, abreast, again=True))
+    engine = loaded(llvm_source({"made": function}, abreast, again=True))
     kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3, ctypes.c_double, ctypes.c_int64)
     found: Any = kind(engine.get_function_address("made"))
     found.engine = engine
     return cast(Callable[..., int], found)
 
 
-def _loaded(source: str, effort: int = EFFORT) -> llvm.ExecutionEngine:
+def loaded(source: str, effort: int = EFFORT) -> llvm.ExecutionEngine:
     """The machine code of a source, compiled or taken from the cache."""
     made = (source, llvmlite.__version__, effort)
     content = heard(lambda: kept_content(made, lambda: _compiled(source, effort)))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.integrators.dense import Array, powers
+from tippetop.integrators.dormand_prince import EARLIEST, RISEN
 from tippetop.mechanics.vectors import Row, Scalar
 
 Choice: TypeAlias = Callable[[Any, Any, Any], Any]
@@ -111,14 +112,14 @@ class Polynomials:
         unit[0] += shift
         return Polynomials.of_unit(unit, self.span.take(which))
 
-    def first_fall(self, from_above: bool = False) -> Array:
+    def first_fall(self, from_above: bool = False, after_rise: bool = False) -> Array:
         """First times at which the polynomials fall to zero from above, nan where they do not,
         shape (n,).
 
         Where no look finds a polynomial at or below zero, but its second derivative could take it
         there between two looks, its least value there is found first. A polynomial that starts at
         or below zero and does not rise falls at 0, unless it has to come `from_above`: then it may
-        start at zero, not below.
+        start at zero, not below. `after_rise`, it falls no sooner than it has been positive.
         """
         values = self.values
         falls = (values[1:] <= 0.0) & (values[:-1] > 0.0)
@@ -144,7 +145,13 @@ class Polynomials:
         if len(which):
             zeros[which] = of_each(_zero, self.unit[:, which], low[which], high[which])
         starts = (values[0] == 0.0) if from_above else (values[0] <= 0.0)
-        zeros[starts & (values[1] <= 0.0)] = 0.0
+        at_once = starts & (values[1] <= 0.0)
+        if after_rise:
+            for lane in np.flatnonzero(at_once):
+                early = _early_fall(self.unit[:, lane].tolist())
+                zeros[lane] = zeros[lane] if early is None else early
+        else:
+            zeros[at_once] = 0.0
         return zeros * self.span
 
     def refined_least(self) -> tuple[Array, Array]:
@@ -252,6 +259,18 @@ def _zero(
         if not some(moving):
             break
     return place
+
+
+def _early_fall(terms: Row) -> float | None:
+    """Return where a polynomial falls to zero that starts there, rises, and falls before the first
+    look; None if it does not.
+    """
+    part = EARLIEST
+    while part < 1.0 / LOOKS:
+        if _horner(terms, part)[0] > RISEN and _horner(terms, 2.0 * part)[0] <= 0.0:
+            return float(_zero(terms, part, 2.0 * part, _chosen, bool))
+        part *= 2.0
+    return None
 
 
 def _chosen(flag: bool, yes: float, no: float) -> float:

@@ -1,68 +1,112 @@
-"""Taylor's method of high order, compiled by heyoka once for all values of the parameters."""
+"""Taylor's method of high order: steps taken, and looked through for guards, in compiled code."""
 
+import ctypes
 import math
-import pickle
-import threading
-from array import array
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from inspect import getsource
-from io import BytesIO
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, NamedTuple
 
-import heyoka as hy
 import numpy as np
 
-from tippetop.graph.hoisting import hoisted, played
-from tippetop.graph.recording import recordable
+from tippetop.graph.llvm import llvm_source
+from tippetop.graph.llvm_series import room_size, series_source, with_choices
+from tippetop.graph.recording import Recorded, record, recordable
+from tippetop.graph.taylor_coefficients import NodeArithmetic
 from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Expansion, Motion
 from tippetop.integrators.dense import DenseSolution
-from tippetop.integrators.sealed_folders import kept_content
-from tippetop.support.interrupts import heard
+from tippetop.integrators.machine_code import loaded
+from tippetop.integrators.polynomial_minima import looked_at, may_fall
+from tippetop.integrators.polynomials import Polynomials
+from tippetop.integrators.scipy_methods import SciPy
+from tippetop.mechanics.series import horner
+from tippetop.mechanics.vectors import Scalar
+
+LONG = 4096
+"""Steps in an arc at most."""
+
+PROBES_PER_STEP = 12
+"""Intervals of a step at whose ends compiled code looks at the guards."""
 
 RESOLVED = 1e6
 """Step, in roundings of time, below which only a solution that blows up is followed: these matter
 in it.
 """
 
-LONG = 4096
-"""Steps in an arc at most."""
-
 LEFT_OUT = 100.0
-"""What the last terms of a step's series may add to a number, in tolerances of that number or of 1,
-the larger: else the step is cut. The compiler compares them with the largest number or guard alone:
-beside huge slip or friction the axis would go astray.
-"""
-
-SAFETY, SHORT = 0.9, 16
-"""How long a step that is cut may be, of what that allows; and how many steps at most, none longer
-than that, are taken next.
+"""What the last terms of a step may add to a number, in tolerances of that number or of 1, the
+larger; beside huge slip or friction, to which they are compared too, the axis would go astray.
 """
 
 GUARDED = 2.0**-5
-"""Weight of guards beside the numbers of the motion where the compiler chooses steps by the largest
-of all. A guard's zero needs fewer digits than they do, since the state there is theirs: by itself a
-guard would cost steps.
+"""Weight of the last terms of guards beside those of the state. A guard's zero needs fewer digits,
+since the state there is the state's own polynomial: by itself a guard would cost steps.
 """
 
-EFFORT, FEW = 3, 0
-"""How hard the compiler tries, of 3; and where code is to run a few times: a tenth of the time
-compiles it, and it runs for twice as long.
+BEYOND = 8.0
+"""How far beyond a change of branch of a law a step goes, in roundings of time: then the next step
+is on the other branch. It is followed that far on the wrong one.
 """
 
-Numbers: TypeAlias = Callable[[tuple[float, ...]], Sequence[float]]
-"""From the parameters of a motion to those of what is compiled."""
+POLISHES, NEAR = 2, 1e-3
+"""Newton's improvements of the time at which a guard falls, and how far they may go, as a part of
+the step: further they do where a guard hardly falls.
+"""
 
-# For the whole process: what it says of guards on the terminal, its makers understand; and what is
-# compiled is kept by this package, whole or not at all.
-hy.set_logger_level_critical()
-hy.llvm_state.set_diskcache_enabled(False)
+EFFORT = 2
+"""How hard the compiler tries, of 3: less makes code that runs for longer, and no sooner."""
+
+CACHE_LINE = 64
+"""Bytes that are loaded together."""
+
+NODES = NodeArithmetic()
+
+DRIVER = """\
+declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
+define i64 @follow(ptr %jet, ptr %y, ptr %p, ptr %room, ptr %raw, ptr %rows, i64 %most)
+alignstack(64) {{
+entry:
+  %clock = getelementptr double, ptr %raw, i64 {clock}
+  %watch = getelementptr double, ptr %raw, i64 {watch}
+  br label %step
+step:
+  %steps = phi i64 [ 0, %entry ], [ %next, %advance ]
+  %begin = mul i64 %steps, {width}
+  %row = getelementptr double, ptr %rows, i64 %begin
+  call void %jet(ptr %y, ptr %p, ptr %room, ptr %raw)
+  call void @step(ptr %raw, ptr %p, ptr %row, i64 1)
+  %taken_place = getelementptr double, ptr %row, i64 {taken}
+  %taken = load double, ptr %taken_place
+  %moves = fcmp ogt double %taken, 0.0
+  br i1 %moves, label %advance, label %stop
+advance:
+  %state = getelementptr double, ptr %row, i64 {state}
+  call void @llvm.memcpy.p0.p0.i64(ptr %y, ptr %state, i64 {state_bytes}, i1 false)
+  %time = getelementptr double, ptr %row, i64 {time}
+  call void @llvm.memcpy.p0.p0.i64(ptr %clock, ptr %time, i64 16, i1 false)
+  store double 1.0, ptr %watch
+  %next = add i64 %steps, 1
+  %place = getelementptr double, ptr %row, i64 {goes_on}
+  %goes_on = load double, ptr %place
+  %left = fcmp ogt double %goes_on, 0.0
+  %room_left = icmp ult i64 %next, %most
+  %again = and i1 %left, %room_left
+  br i1 %again, label %step, label %end
+end:
+  ret i64 %next
+stop:
+  ret i64 %steps
+}}
+"""
+"""The loop over steps. A step that is not taken leaves its row after those of the others."""
 
 
 @dataclass(frozen=True)
 class Taylor:
-    """Adaptive Taylor series, accurate to rounding at its default tolerance."""
+    """Adaptive Taylor series, accurate to rounding at its default tolerance.
+
+    A motion that cannot be recorded (see `tippetop.graph.recording`) is left to SciPy.
+    """
 
     tolerance: float = TOLERANCES["taylor"]
     """Relative and absolute error per step, at least 2.2e-16."""
@@ -73,223 +117,369 @@ class Taylor:
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        compiled = _compiled(motion, self.tolerance)
-        while start[0] < end:
-            solution, state, outcome, taken = compiled.arc(
-                parameters, start, end, LEFT_OUT * self.tolerance
+        stepper = _stepper(motion, order_for(self.tolerance), self.tolerance)
+        if stepper is None:
+            yield from SciPy("dop853", TOLERANCES["dop853"]).integrate(
+                motion, parameters, start, end
             )
-            steps = len(solution.terms)
-            # Rounding of time may swallow all steps before numbers have grown beyond all bounds.
-            stuck = outcome == hy.taylor_outcome.step_limit and not solution.end > start[0]
-            if stuck or outcome == hy.taylor_outcome.err_nf_state:
+            return
+        run = Run(stepper, parameters, start, end)
+        while run.time < end:
+            begin = run.time
+            steps, guard, failure = run.advance(LONG)
+            if failure is None and guard is None and not run.time > begin:
+                failure = NO_STEP  # rounding of time swallows all steps
+            solution = run.solution(begin, steps)
+            if failure is not None:
                 solution = _before_blow_up(solution)
-                state = solution(solution.knots[-1:])[0] if len(solution.terms) else start[1]
-                yield Arc(solution, state, None, NO_STEP if stuck else NOT_FINITE, steps, taken)
+                state = solution(solution.knots[-1:])[0] if len(solution.terms) else run.begun
+                yield Arc(solution, state, None, failure, steps, run.expansions)
                 return
-            guard = None
-            if outcome not in (hy.taylor_outcome.step_limit, hy.taylor_outcome.time_limit):
-                guard = motion.guards[-int(outcome) - 1].name
-            yield Arc(solution, state, guard, None, steps, taken)
+            name = None if guard is None else motion.guards[guard].name
+            yield Arc(solution, run.state, name, None, steps, run.expansions)
             if guard is not None:
                 return
-            start = solution.end, state
 
     def expansion(
         self, motion: Motion, parameters: Sequence[float], degree: int, count: int
     ) -> Expansion:
-        """The coefficients of the first numbers of a motion's solutions in powers of time,
-        compiled.
+        """Return a function that expands the first numbers of a motion's solution about a state."""
+        recorded = _recorded(motion)
+        if recorded is None:
+            raise TypeError("the motion cannot be recorded")
+        jet, numbers = Jet(recorded, degree), np.array(parameters, dtype=float)
+        room, out = jet.room(), np.zeros(jet.coefficients)
+
+        def expand(state: Sequence[float]) -> Array:
+            jet(np.array(state, dtype=float), numbers, room, out)
+            return out[: count * (degree + 1)].reshape(count, degree + 1).copy()
+
+        return expand
+
+
+def order_for(tolerance: float) -> int:
+    """Return the degree of the polynomials for a tolerance (Jorba and Zou 2005)."""
+    return max(2, math.ceil(1.0 - 0.5 * math.log(tolerance)))
+
+
+class Jet:
+    """The compiled function that expands a motion's solution and guards to some order."""
+
+    def __init__(self, recorded: Recorded, order: int) -> None:
+        self._engine = loaded(series_source(recorded, order), EFFORT)
+        self.address = self._engine.get_function_address("jet")
+        self._function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(self.address)
+        self._room = room_size(recorded, order)
+        guards = len(recorded.outputs) - recorded.size
+        self.coefficients = recorded.size * (order + 1) + guards * order
+
+    def room(self) -> Array:
+        """Return the room the function needs, which no other call uses meanwhile."""
+        return aligned_zeros(self._room)
+
+    def __call__(self, y: Array, p: Array, room: Array, out: Array) -> None:
+        """Put the coefficients of state and guards into `out`."""
+        self._function(*[numbers.ctypes.data for numbers in (y, p, room, out)])
+
+
+class Layout(NamedTuple):
+    """Where numbers lie in what a step takes, `raw`, and makes, a row."""
+
+    size: int
+    guards: int
+    order: int
+
+    @property
+    def terms(self) -> int:
+        """How many coefficients the state has: these are the first of both."""
+        return self.size * (self.order + 1)
+
+    @property
+    def clock(self) -> int:
+        """Place in `raw`, after the guards' coefficients, of the time and of what rounding has
+        taken from it, of the end, and of whether guards are looked at.
         """
-        compiled = _compiled(motion, math.exp(3.0 - 2.0 * degree), FEW)
-        numbers = np.array(compiled.numbers(tuple(parameters)))
-        return lambda start: compiled.expanded(start, numbers, count)
+        return self.terms + self.guards * self.order
 
+    @property
+    def raw(self) -> int:
+        """How many numbers a step takes."""
+        return self.clock + 4
 
-class _Compiled:
-    """An integrator, the parameters it takes by those of the motion, and a lock that it is used
-    under.
-    """
-
-    def __init__(self, integrator: Any, numbers: Numbers) -> None:
-        self.integrator, self.numbers, self.lock = integrator, numbers, threading.Lock()
-        self._room = BytesIO()
-        self._coefficients, self._state, self._parameters = (
-            integrator.tc,
-            integrator.state,
-            integrator.pars,
-        )
-
-    def arc(
-        self, parameters: Sequence[float], start: tuple[float, Array], end: float, accuracy: float
-    ) -> tuple[DenseSolution, Array, Any, int]:
-        """An arc whose steps leave out no more of any number, its end, what ended it, and steps
-        taken.
+    @property
+    def time(self) -> int:
+        """Place in a row, after the next state, of the next time and of what rounding took; then
+        come the length of the step if it is taken, whether there is another, and the length.
         """
-        (time, state), parts, left, longest, most = (
-            start,
-            list[DenseSolution](),
-            LONG,
-            math.inf,
-            LONG,
-        )
-        taken = 0
-        run, outcome, numbers = (
-            self.integrator,
-            hy.taylor_outcome.step_limit,
-            self.numbers(tuple(parameters)),
-        )
-        with self.lock:
-            # Those that appear in no equation, beyond the last that does, it has no room for.
-            run.pars[:] = numbers[: len(run.pars)]
-            while left and outcome == hy.taylor_outcome.step_limit:
-                run.time = time
-                run.state[:] = state
-                if run.with_events:
-                    run.reset_cooldowns()
-                solution, outcome = self._advance(end, longest, min(left, most))
-                taken += len(solution.terms)
-                cut = _cut(solution, accuracy)
-                if cut is None:
-                    state = np.array(run.state)
-                    # What follows a step that is cut is lost: more are taken as long as none is.
-                    longest, most = math.inf, 1 if longest < math.inf else 2 * most
-                else:
-                    solution, outcome = cut, hy.taylor_outcome.step_limit
-                    state = cut.terms[-1].sum(axis=1)
-                    longest, most = float(cut.knots[-1] - cut.knots[-2]), SHORT
-                parts.append(solution)
-                time, left = solution.end, left - len(solution.terms)
-        return DenseSolution.joined(parts), state, outcome, taken
+        return self.terms + self.size
 
-    def _advance(self, end: float, longest: float, most: int) -> tuple[DenseSolution, Any]:
-        """Take so many steps at most, none longer: for half the price of heyoka's continuous
-        output.
+    @property
+    def row(self) -> int:
+        """How many numbers a step makes."""
+        return self.time + 5
+
+
+class Stepper:
+    """Compiled steps of one motion at one tolerance."""
+
+    def __init__(self, motion: Motion, recorded: Recorded, order: int, tolerance: float) -> None:
+        self.jet = Jet(recorded, order)
+        self.guards, self.order = len(motion.guards), order
+        self.layout = Layout(recorded.size, len(recorded.outputs) - recorded.size, order)
+        self._engine = _step_code(self.layout, min(LEFT_OUT, 1.0 / tolerance))
+        kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 6, ctypes.c_int64)
+        self.follow: Callable[..., int] = kind(self._engine.get_function_address("follow"))
+        # Rooms that nobody uses at present: threads take one each.
+        self.rooms = list[Array]()
+
+    def room(self) -> Array:
+        """Return room for an arc's rows."""
+        return self.rooms.pop() if self.rooms else np.empty((LONG + 1) * self.layout.row)
+
+
+class Run:
+    """A motion under way: its state, and the steps of the arc that is being made."""
+
+    def __init__(
+        self, stepper: Stepper, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> None:
+        self.stepper, self.layout = stepper, stepper.layout
+        self.parameters = np.array([*parameters, 0.0], dtype=float)
+        self._state = np.array(start[1], dtype=float)
+        self._raw, self._room = np.zeros(self.layout.raw), stepper.jet.room()
+        self._clock = self._raw[self.layout.clock :]
+        self._clock[:] = start[0], 0.0, end, 1.0
+        self._rows = np.empty((0, self.layout.row))
+        self._knots, self._terms = np.empty(0), np.empty(0)
+        self.begun, self.expansions = self.state, 0
+
+    @property
+    def time(self) -> float:
+        """Where it is."""
+        return float(self._clock[0])
+
+    @property
+    def state(self) -> Array:
+        """The state there."""
+        return self._state.copy()
+
+    def advance(self, most: int) -> tuple[int, int | None, str | None]:
+        """Take so many steps at most; return how many, the guard that ends the last, and why there
+        are no more.
         """
-        size, knots = self._coefficients.size, array("d", [self.integrator.time])
-        # Bytes are copied in a third of the time that arrays need, and quicker where others were
-        # before. Whoever interrupts this may still look at them: then there is new room.
-        room, self._room = self._room, BytesIO()
-        room.seek(0)
-        step, keep, note = self._coefficients.reshape(-1).data, room.write, knots.append
+        stepper, layout = self.stepper, self.layout
+        room = stepper.room()
+        rows, steps, self.begun, self.expansions = room.reshape(-1, layout.row), 0, self.state, 0
+        address = [part.ctypes.data for part in (self._state, self.parameters, self._room, self._raw)]
+        guard = failure = None
+        while steps < most and self.time < self._clock[2]:
+            taken = stepper.follow(
+                stepper.jet.address, *address, rows[steps:].ctypes.data, most - steps
+            )
+            steps, self.expansions = steps + taken, self.expansions + taken
+            if steps == most or self.time >= self._clock[2]:
+                break
+            self.expansions += 1
+            span = float(rows[steps, -1])
+            if not span > 0.0:
+                failure = NOT_FINITE
+                break
+            fall = self._first_fall(span)
+            if fall is None:
+                self._clock[3] = 0.0  # The step is taken again, whatever the guards.
+                continue
+            number, fall_time = fall
+            guard = number if number < stepper.guards else None
+            if guard is None:
+                fall_time += BEYOND * float(np.spacing(abs(self.time) + fall_time))
+            else:
+                fall_time = self._polished(rows[steps], span, guard, fall_time)
+            self._end_at(rows[steps], span, fall_time)
+            steps += 1
+            if guard is not None:
+                break
+        self._knots, self._terms = rows[:steps, layout.time].copy(), rows[:steps, : layout.terms].copy()
+        stepper.rooms.append(room)
+        return steps, guard, failure
 
-        def take(run: Any) -> bool:
-            keep(step)
-            note(run.time)
-            return True
+    def solution(self, begin: float, steps: int) -> DenseSolution:
+        """Return the steps that were taken last, from the time at which they began."""
+        shape = steps, self.layout.size, self.layout.order + 1
+        return DenseSolution(np.append(begin, self._knots), self._terms.reshape(shape))
 
-        outcome, *_ = self.integrator.propagate_until(
-            end, max_steps=most, max_delta_t=longest, write_tc=True, callback=take
-        )
-        if outcome == hy.taylor_outcome.time_limit:
-            knots[-1] = end
-        terms = np.frombuffer(room.getbuffer(), count=(len(knots) - 1) * size)
-        solution = DenseSolution.in_time(knots, terms.reshape(-1, *self._coefficients.shape))
-        self._room = room
-        return solution, outcome
+    def _first_fall(self, span: float) -> tuple[int, float] | None:
+        """Return which guard, or margin of a choice, falls first in the step looked at, and when."""
+        layout, guards = self.layout, self.stepper.guards
+        terms = self._raw[layout.terms : layout.clock].reshape(layout.guards, layout.order).T
+        spans = np.full(layout.guards, span)
+        falls = Polynomials(terms, spans).first_fall(after_rise=True)
+        if layout.guards > guards:
+            # A margin may be zero at first, and then falls at once.
+            margins = Polynomials(terms[:, guards:], spans[guards:])
+            falls[guards:] = margins.first_fall()
+        if np.isnan(falls).all():
+            return None
+        first = int(np.nanargmin(falls))
+        return first, float(falls[first])
 
-    def expanded(self, start: Sequence[float], parameters: Array, count: int) -> Array:
-        """Coefficients of the first numbers of the solution about its start."""
-        with self.lock:
-            self._state[:], self._parameters[:] = start, parameters[: len(self._parameters)]
-            self.integrator.step(write_tc=True)
-            found: Array = self._coefficients[:count].copy()
-        return found
+    def _polished(self, row: Array, span: float, guard: int, fall: float) -> float:
+        """Return when a guard falls along the polynomials of the state, by Newton's method.
 
+        The guard's own polynomial differs from it by what both leave out.
+        """
+        place = self.layout.terms + guard * self.layout.order
+        for _ in range(POLISHES):
+            state = np.cumsum(self._at(row, fall / span), axis=1)[:, -1].copy()
+            self.stepper.jet(state, self.parameters, self._room, self._raw)
+            value, slope = self._raw[place : place + 2].tolist()
+            move = -value / slope if slope < 0.0 else math.nan
+            if not (abs(move) <= NEAR * span and 0.0 < fall + move <= span):
+                break
+            fall += move
+        return fall
 
-@lru_cache(maxsize=32)
-def _compiled(motion: Motion, tolerance: float, effort: int = EFFORT) -> _Compiled:
-    """Compile the equations and the guards, or fetch them from the cache across processes."""
-    state = [hy.make_vars(f"y{i}") for i in range(motion.size)]
-    values, numbers = _expressions(motion, state)
-    rates = [hy.expression(rate) for rate in values[: motion.size]]
-    guards = [GUARDED * guard for guard in values[motion.size :]]
+    def _at(self, row: Array, part: float) -> Array:
+        """Return the terms of a step up to a part of it, the last of them first."""
+        layout = self.layout
+        terms = row[: layout.terms].reshape(layout.size, layout.order + 1)
+        return (terms * part ** np.arange(layout.order + 1))[:, ::-1]
 
-    def make() -> Any:
-        falling = hy.event_direction.negative
-        return hy.taylor_adaptive(
-            list(zip(state, rates, strict=True)),
-            [0.0] * motion.size,
-            tol=tolerance,
-            t_events=[hy.t_event(guard, direction=falling) for guard in guards],
-            compact_mode=not motion.lasting,
-            opt_level=effort,
-        )
-
-    # Of two installations of one version, each compiles for itself.
-    made = (
-        pickle.dumps((rates, guards, tolerance, motion.lasting, effort)),
-        getsource(make),
-        hy.__version__,
-        hy.__file__,
-    )
-    content = heard(lambda: kept_content(made, lambda: pickle.dumps(make())))
-    try:
-        return _Compiled(pickle.loads(content), numbers)
-    except Exception:  # noqa: BLE001 - whatever is wrong with what was kept, it can be made anew
-        return _Compiled(make(), numbers)
+    def _end_at(self, row: Array, span: float, fall: float) -> None:
+        """End a step sooner."""
+        layout, (time, lost, end) = self.layout, self._clock[:3]
+        terms = self._at(row, fall / span)
+        self._state[:] = np.cumsum(terms, axis=1)[:, -1]
+        row[: layout.terms] = terms[:, ::-1].ravel()
+        row[layout.time] = min(time + (lost + fall), end)
+        self._clock[:2] = row[layout.time], 0.0
+        self._clock[3] = 1.0
 
 
-def _expressions(motion: Motion, state: Sequence[Any]) -> tuple[Sequence[Any], Numbers]:
-    """The rates and guards in heyoka's terms, and the parameters in them by those of the motion.
+@lru_cache(maxsize=64)
+def _stepper(motion: Motion, order: int, tolerance: float) -> Stepper | None:
+    """Return the compiled steps of a motion; None where it cannot be recorded."""
+    recorded = _recorded(motion)
+    return None if recorded is None else Stepper(motion, recorded, order, tolerance)
 
-    To heyoka, what is made of parameters alone is a series like any other, expanded in every step:
-    so it is made once and is a parameter.
-    """
 
-    def values(y: Sequence[Any], p: Sequence[Any]) -> list[Any]:
+@lru_cache(maxsize=64)
+def _recorded(motion: Motion) -> Recorded | None:
+    """Return rates, guards and margins of choices of a motion; None where it cannot be recorded."""
+
+    def values(y: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
         return [*motion.rates(y, p), *[guard.value(y, p) for guard in motion.guards]]
 
     recorded = recordable(values, motion.size, motion.parameters)
-    if recorded is None:
-        return values(state, [hy.par[i] for i in range(motion.parameters)]), tuple
-    own, rest = hoisted(recorded)
-
-    @lru_cache(maxsize=16)
-    def numbers(parameters: tuple[float, ...]) -> Sequence[float]:
-        with np.errstate(all="ignore"):  # what is infinite, heyoka tells
-            return [*parameters, *played(own, (), list(np.array(parameters)))]
-
-    return played(rest, state, [hy.par[i] for i in range(rest.parameters)]), numbers
+    return None if recorded is None else with_choices(recorded)
 
 
-def _cut(solution: DenseSolution, accuracy: float) -> DenseSolution | None:
-    """A solution up to its first step that leaves out more of some number, and as much of that as
-    does not.
+@lru_cache(maxsize=64)
+def _step_code(layout: Layout, left_out: float) -> Any:
+    """Compile the function that makes a step of coefficients, and the loop over steps.
 
-    None if there is none but those in which rounding of time matters; to less than these, none is
-    cut. A step that is cut needs not be repeated: a shorter one has the same series.
+    It knows nothing of what moves, so that it serves all motions with as many numbers and guards.
     """
-    last = np.maximum(np.abs(solution.terms[:, :, -1]), np.abs(solution.terms[:, :, -2]))
-    if last.max(initial=0.0) <= accuracy:
-        return None
-    spans, degree, shortest = (
-        np.diff(solution.knots),
-        solution.terms.shape[2] - 1,
-        _resolved(solution.knots),
+    recorded = record(lambda raw, _: step(layout, left_out, raw), layout.raw, 0)
+    driver = DRIVER.format(
+        clock=layout.clock,
+        watch=layout.clock + 3,
+        width=layout.row,
+        state=layout.terms,
+        state_bytes=8 * layout.size,
+        time=layout.time,
+        taken=layout.time + 2,
+        goes_on=layout.time + 3,
     )
-    with np.errstate(all="ignore"):  # where nothing is left out, or numbers grow beyond all bounds
-        excess = (last / (accuracy * np.maximum(np.abs(solution.terms[:, :, 0]), 1.0))).max(axis=1)
-        allowed = np.maximum(SAFETY * spans * excess ** (-1.0 / (degree - 1)), shortest)
-    bad = np.flatnonzero((excess > 1.0) & (spans > shortest))
-    if not len(bad):
-        return None
-    step = int(bad[0])
-    begin, end = solution.knots[step : step + 2]
-    knots, terms = solution.knots[: step + 2].copy(), solution.terms[: step + 1].copy()
-    knots[-1] = begin + allowed[step]
-    terms[-1] *= ((knots[-1] - begin) / (end - begin)) ** np.arange(degree + 1)
-    return DenseSolution(knots, terms)
+    return loaded(llvm_source({"step": recorded}, 1) + driver, EFFORT)
 
 
-def _resolved(knots: Array) -> Array:
-    """The shortest steps in which rounding of time does not matter, by their ends."""
-    return RESOLVED * np.spacing(np.maximum(np.abs(knots[:-1]), np.abs(knots[1:])))
+def step(layout: Layout, left_out: float, raw: Sequence[Scalar]) -> list[Scalar]:
+    """Return a step: coefficients in powers of its part, and what follows (see `Layout`)."""
+    count, plain = layout.order + 1, NODES
+    state = [raw[k : k + count] for k in range(0, layout.terms, count)]
+    guards = [raw[k : k + count - 1] for k in range(layout.terms, layout.clock, count - 1)]
+    time, lost, end, watch = raw[layout.clock :]
+    left = (end - time) - lost
+    span = plain.least(step_length(state, guards, left_out), left)
+    doubt: Scalar = 0.0
+    for terms in guards:
+        probes = looked_at(terms, span, PROBES_PER_STEP)
+        doubt = doubt + may_fall(terms, probes, span, plain)
+    taken = plain.choose(doubt * watch, 0.0, span)
+    scaled, power = [[terms[0] for terms in state]], span
+    for k in range(1, count):
+        scaled.append([terms[k] * power for terms in state])
+        power = power * span
+    after = [horner(terms, span) for terms in state]
+    # What rounding takes from the time is given back (Knuth's sum of two numbers).
+    sum_ = time + span
+    moved = sum_ - time
+    lost = lost + ((time - (sum_ - moved)) + (span - moved))
+    goes_on = plain.below(span, left)
+    later = sum_ + lost
+    lost = lost - (later - sum_)
+    return [
+        *[scaled[k][i] for i in range(layout.size) for k in range(count)],
+        *after,
+        plain.choose(goes_on, later, end),
+        lost,
+        taken,
+        goes_on,
+        span,
+    ]
+
+
+def step_length(
+    state: Sequence[Sequence[Scalar]], guards: Sequence[Sequence[Scalar]], left_out: float
+) -> Scalar:
+    """Return the step in which the last two terms of no polynomial are more than may be left out.
+
+    They are compared with the largest number, at least 1, but with no more than `left_out` times
+    the number itself. It is 0 where coefficients are no numbers.
+    """
+    plain, order = NODES, len(state[0]) - 1
+    largest: Scalar = 1.0
+    for terms in state:
+        largest = _larger(plain.size(terms[0]), largest)
+    weights = []
+    for terms in state:
+        own = left_out * _larger(plain.size(terms[0]), 1.0)
+        weights.append(1.0 / plain.least(own, largest))
+    guard_weights = [GUARDED / _larger(plain.size(terms[0]), 1.0) for terms in guards]
+
+    def radius(k: int) -> Scalar:
+        ratio: Scalar = 0.0
+        for terms, weight in zip(state, weights, strict=True):
+            ratio = _larger(plain.size(terms[k]) * weight, ratio)
+        for terms, weight in zip(guards, guard_weights, strict=True):
+            if k < order:
+                ratio = _larger(plain.size(terms[k]) * weight, ratio)
+        return (1.0 / ratio) ** (1.0 / k)
+
+    found = math.exp(-2.0 - 0.7 / (order - 1)) * plain.least(radius(order - 1), radius(order))
+    total = plain.total([plain.size(terms[k]) for terms in state for k in (order - 1, order)])
+    return plain.choose(plain.below(total, math.inf), found, 0.0)
+
+
+def _larger(a: Any, b: Any) -> Any:
+    """The larger of two; the second where the first is not a number."""
+    return NODES.choose(NODES.below(b, a), a, b)
+
+
+def aligned_zeros(count: int) -> Array:
+    """Return so many zeros that begin where a line of the processor's cache does."""
+    every = CACHE_LINE // 8
+    room = np.zeros(count + every)
+    first = (-room.ctypes.data // 8) % every
+    return room[first : first + count]
 
 
 def _before_blow_up(solution: DenseSolution) -> DenseSolution:
-    """A solution that ended in numbers that are none, without its last steps, too short to be
-    told.
+    """Return a solution that ends in numbers that are none without the steps in which rounding of
+    time matters.
     """
-    fine = np.flatnonzero(np.diff(solution.knots) > _resolved(solution.knots))
+    spans, ends = np.diff(solution.knots), np.abs(solution.knots)
+    resolved = RESOLVED * np.spacing(np.maximum(ends[:-1], ends[1:]))
+    fine = np.flatnonzero(spans > resolved)
     steps = fine[-1] + 1 if len(fine) else 0
     return DenseSolution(solution.knots[: steps + 1], solution.terms[:steps])

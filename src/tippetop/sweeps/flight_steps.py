@@ -23,7 +23,7 @@ from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.touchdown import Start
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import axis_sine
-from tippetop.sweeps.polynomial_minima import first_fall, least_value, looked_at
+from tippetop.integrators.polynomial_minima import first_fall, least_value, looked_at
 from tippetop.sweeps.taylor_step import CLOSER_LOOKS, LOOKS, extremes, met, step_size
 from tippetop.sweeps.taylor_stepper import NODES, compiled, padded
 

@@ -24,7 +24,7 @@ from tippetop.graph.taylor_coefficients import SharedSeries
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.vectors import Scalar
-from tippetop.sweeps.polynomial_minima import (
+from tippetop.integrators.polynomial_minima import (
     TINY,
     first_fall,
     least_value,
