@@ -1,10 +1,9 @@
 """Measure what is promised of speed and memory; print tables, and keep the figures as JSON.
 
-A measurement is `simulate` (a run against the bare integration inside it), `compilers` (the same
-run by heyoka, by numba and by SciPy at the same error), `page` (the page's engine in Node against
-Python's), `sweep` (the sweep's engine against other programs at the same error), `scale` (what
-sweeps cost by size, workers and flights) or `friction` (what friction of a patch costs beside
-viscous friction).
+A measurement is `simulate` (a run against the bare integration inside it, by heyoka), `page` (the
+page's engine in Node against Python's), `sweep` (the sweep's engine against other programs at the
+same error), `scale` (what sweeps cost by size, workers and flights) or `friction` (what friction of
+a patch costs beside viscous friction).
 """
 
 import argparse
@@ -16,7 +15,6 @@ from rich.console import Console
 from rich.markdown import Markdown
 
 from benchmarks import (
-    bench_compilers,
     bench_friction,
     bench_page,
     bench_simulate,
@@ -25,7 +23,7 @@ from benchmarks import (
 )
 from benchmarks.surroundings import machine
 
-MEASUREMENTS = ("simulate", "compilers", "page", "sweep", "scale", "friction")
+MEASUREMENTS = ("simulate", "page", "sweep", "scale", "friction")
 
 
 def main() -> None:
@@ -53,9 +51,6 @@ def main() -> None:
         if name == "simulate":
             found = bench_simulate.measure(options.quick, options.profile)
             table = bench_simulate.tables(found)
-        elif name == "compilers":
-            found = bench_compilers.measure(options.quick)
-            table = bench_compilers.tables(found)
         elif name == "page":
             found = bench_page.measure(options.quick)
             table = bench_page.tables(found)

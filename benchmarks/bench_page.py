@@ -1,8 +1,8 @@
-"""The page's engine in Node beside Python's, by the same method: single runs, and a map.
+"""The page's engine in Node beside Python's, each by its own method: single runs, and a map.
 
 Single runs are the report's at 155 rad/s, and one at 175 rad/s with its flights, each at the
-loosest tolerance at which the axis ends within 1e-8 of where Taylor's method puts it. Python's are
-compiled by numba, at the same tolerance, without samples. Of runs repeated in one process the least
+loosest tolerance at which the axis ends within 1e-8 of where Taylor's method puts it, which takes
+Python's, too, at the same tolerance and without samples. Of runs repeated in one process the least
 time counts: the first ones are the compilers'; how long the very first takes is told, too. The map
 is of 64 spins by 32 coefficients of friction, for 20 s each, shared by two workers, at the loosest
 tolerance at which n_z, which tells how a top stands, ends within 1e-5 in a launch of every cell of
@@ -101,11 +101,11 @@ def resolving(problems: list[tt.Problem], error: float, first: int = 0) -> tuple
 
 
 def in_python(problem: tt.Problem, tolerance: float, rounds: int) -> float:
-    """The least time of a run by the compiled method, ms."""
+    """The least time of a run by Taylor's method, ms."""
     times = []
     for _ in range(rounds):
         begin = time.perf_counter()
-        tt.simulate(problem, DURATION, samples=2, integrator="compiled", tolerance=tolerance)
+        tt.simulate(problem, DURATION, samples=2, integrator="taylor", tolerance=tolerance)
         times.append(1e3 * (time.perf_counter() - begin))
     return min(times)
 

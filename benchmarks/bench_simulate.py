@@ -1,8 +1,8 @@
 """Times of a run, of the bare integration inside it, of an import and of the command line.
 
 The run is the report's top at 155 rad/s over 20 s with every variable of the result at 2001
-samples. Beside it stands the bare integration of the eight numbers that drive the motion, by the
-same method at the same tolerance. The two are timed in turns, so that whatever else the machine
+samples. Beside it stands the bare integration of the eight numbers that drive the motion, by heyoka
+at the same tolerance. The two are timed in turns, so that whatever else the machine
 does touches both.
 """
 

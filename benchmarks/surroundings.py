@@ -15,7 +15,7 @@ import psutil
 COMMAND_LINE = "-m", "tippetop"
 """Given to `python`, this is `tippetop`."""
 
-IMPORTS, USUAL = "import heyoka, xarray", 0.5
+IMPORTS, USUAL = "import numpy, xarray", 0.4
 """By how long this takes in a new process, machines are compared; and that, s, for which times are
 wanted.
 """

@@ -4,10 +4,6 @@ contact go.
 
 import math
 
-import pytest
-
-pytest.importorskip("heyoka")
-
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.mode import EventKind, Outcome
 from tippetop.contact.trajectory import Trajectory

@@ -216,7 +216,7 @@ def in_python(fields: dict[str, Any], duration: float) -> Any:
             tt.Problem(**fields),
             duration,
             samples=SAMPLES,
-            integrator="compiled",
+            integrator="taylor",
             tolerance=TOLERANCE,
         )
     except tt.InvalidInput as refusal:

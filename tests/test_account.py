@@ -34,7 +34,7 @@ SLOW = {
 @cache
 def followed(name: str) -> xr.Dataset:
     problem, duration = LAUNCHES[name]
-    return tt.simulate(problem, duration, samples=101, integrator="compiled", tolerance=TOLERANCE)
+    return tt.simulate(problem, duration, samples=101, integrator="taylor", tolerance=TOLERANCE)
 
 
 def named(account: Account, name: str) -> dict[str, float]:

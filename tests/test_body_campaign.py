@@ -74,7 +74,7 @@ last impacts are slow.
 @pytest.mark.parametrize("seed", seeds(check=2, sample=20, claim=300, always=CLOSE_CALLS))
 def test_random_bodies_keep_what_every_one_must(seed: int) -> None:
     problem = problem_of(np.random.default_rng(seed))
-    run = tt.simulate(problem, 0.3, samples=201, integrator="compiled", tolerance=3e-14)
+    run = tt.simulate(problem, 0.3, samples=201, integrator="taylor", tolerance=3e-14)
     assert run.attrs["outcome"] in NAMED, problem.to_json()
     assert float(run["energy_error"]) < 1e-10
     assert float(run["gap"].min()) > -1e-12 * SIZE
@@ -99,7 +99,7 @@ def test_slip_that_begins_goes_no_further_than_to_the_touch_of_another_surface()
         tilt=1.7461111547956063, spin=-16.118, tilt_rate=-6.18886, precession=10.0157
     )
     problem = tt.Problem(body=body, friction=tt.CoulombFriction(mu=0.4682), launch=launch)
-    run = tt.simulate(problem, 0.03, samples=301, integrator="compiled", tolerance=3e-14)
+    run = tt.simulate(problem, 0.03, samples=301, integrator="taylor", tolerance=3e-14)
     assert "touchdown" in run["event_kind"].values
     assert float(run["gap"].min()) > -1e-11 * SIZE
     assert float(run["energy_error"]) < 1e-12
@@ -112,7 +112,7 @@ def test_a_ring_falls_as_deep_as_it_reaches_though_its_centre_be_below_the_table
     )
     launch = tt.Launch(tilt=2.4, spin=20.0, gap=0.02)
     problem = tt.Problem(body=ring, friction=tt.ViscousFriction(mu=0.3), launch=launch)
-    run = tt.simulate(problem, 0.1, samples=11, integrator="compiled", tolerance=3e-14)
+    run = tt.simulate(problem, 0.1, samples=11, integrator="taylor", tolerance=3e-14)
     assert problem.start().height < 0.0
     assert str(run["event_kind"].values[0]) == "touchdown"
     assert float(run["event_time"][0]) == pytest.approx(np.sqrt(2.0 * 0.02 / 9.8), rel=1e-14)

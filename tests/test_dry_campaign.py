@@ -7,7 +7,6 @@ import pytest
 
 import tippetop as tt
 from campaigns import seed_ranges
-from tippetop.integrators import has_taylor
 
 DURATION = 1.0
 LAWS: dict[str, dict[str, Any]] = {
@@ -66,7 +65,6 @@ def ordinary(law: dict[str, Any], random: np.random.Generator) -> tt.Problem:
     return tt.Problem(body=body, friction=friction, launch=launch, contact={"liftoff": liftoff})
 
 
-@pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
 @pytest.mark.parametrize("law", RESISTED)
 @pytest.mark.parametrize("seeds", seed_ranges(check=8, sample=24, claim=150, size=63))
 def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_couple(
@@ -107,7 +105,6 @@ def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_
     assert few or held_for > 0 or law == "ellipsoidal", "some of them should come to be held"
 
 
-@pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("seeds", seed_ranges(check=8, sample=32, claim=300, size=67))
 def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(

@@ -14,7 +14,7 @@ from tippetop.contact.automaton import Automaton
 from tippetop.contact.closed import STOPPING, ContactMode
 from tippetop.contact.mode import ModeEnd
 from tippetop.contact.stopping import Stopping
-from tippetop.integrators import has_taylor, make_integrator
+from tippetop.integrators import make_integrator
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
@@ -23,10 +23,7 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_state, natural_units
 
-INTEGRATORS = [
-    pytest.param("taylor", marks=pytest.mark.skipif(not has_taylor(), reason="no heyoka")),
-    "dop853",
-]
+INTEGRATORS = ["taylor", "dop853"]
 LAWS = {
     "coulomb": {"kind": "coulomb", "mu": 0.3},
     "ellipsoidal": {
@@ -72,8 +69,6 @@ def test_a_top_that_rolls_sticks_for_ever_and_loses_nothing(integrator):
 
 @pytest.mark.parametrize("law", LAWS)
 def test_two_integrators_agree(law):
-    if not has_taylor():
-        pytest.skip("heyoka is not installed")
     problem = dry(law, slip=[0.3, 0.0])
     runs = [tt.simulate(problem, 0.4, integrator=name) for name in ("taylor", "dop853")]
     assert last(runs[0]) == pytest.approx(last(runs[1]), abs=1e-9)

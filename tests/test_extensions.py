@@ -328,13 +328,7 @@ def test_the_law_with_a_choice_is_the_one_defined() -> None:
     expected = 0.2 * np.minimum(slip / 0.05, 1.0) * normal
     np.testing.assert_allclose(force, expected, rtol=1e-9, atol=1e-14)
     assert slip.min() < 0.05 < slip.max()
-    assert run.attrs["integrator"] != "taylor"
-
-
-def test_power_series_do_not_follow_a_law_with_a_choice() -> None:
-    with pytest.raises(InvalidInput, match="does not see past the choices") as caught:
-        tt.simulate(PROBLEMS["law with a choice"], DURATION, integrator="taylor")
-    assert caught.value.field == "integrator"
+    assert float(run["energy_error"]) < 1e-13, "steps end where another branch of the law begins"
 
 
 class Choosing(RampLaw):

@@ -15,7 +15,6 @@ import grimp
 import pytest
 
 import tippetop
-from tippetop.integrators import has_taylor
 
 SOURCE = Path(tippetop.__file__).parent
 ROOT = Path(__file__).parents[1]
@@ -80,7 +79,6 @@ def test_every_path_in_the_guide_exists() -> None:
     assert [path for path in named if not any((at / path).exists() for at in (ROOT, SOURCE))] == []
 
 
-@pytest.mark.skipif(not has_taylor(), reason="another method is the best where heyoka is not")
 def test_a_launch_goes_the_way_that_the_guide_tells() -> None:
     told = re.findall(r"^\d+\. `src/tippetop/([\w/]+\.py)`, `([\w.]+)`", GUIDE, re.MULTILINE)
     done = subprocess.run(

@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 import tippetop as tt
 from tippetop.contact import readings
-from tippetop.integrators import has_llvm
 from tippetop.mechanics.motion import along_table, angular_velocity, contact, sliding_rates
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.state import SlidingState
@@ -163,7 +162,6 @@ def test_what_an_impact_at_launch_takes_is_work_of_the_table():
     assert math.isclose(float(run.energy_lost), -float(run.work[-1]), rel_tol=1e-10)
 
 
-@pytest.mark.skipif(not has_llvm(), reason="nothing is compiled without llvmlite")
 @pytest.mark.parametrize(
     ("friction", "shape"),
     [

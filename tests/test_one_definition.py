@@ -10,13 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 import tippetop as tt
-from tippetop import integrators
 from tippetop.cli.commands import app
-from tippetop.integrators import has_numba, has_taylor
 from tippetop.problem.presets import report_problem
 from tippetop.results.catalogue import METRICS, NEAR_FINAL
-from tippetop.sweeps import Axis, Product, Sweep
-from tippetop.sweeps.ensemble import follow_cells
 
 SAME = sorted(set(METRICS) - {"steps", "jellett_error", "final_phi_dot"})
 """What is the same for every executor: events, extremes and losses; not how many steps, or their
@@ -58,7 +54,6 @@ def test_the_command_line_says_what_python_says(problem, run):
     assert there["events"] == here["events"]
 
 
-@pytest.mark.skipif(not has_taylor(), reason="sweeps and runs then use methods of different orders")
 def test_a_sweep_says_what_a_run_says(problem, run):
     found = tt.sweep(
         problem,
@@ -75,20 +70,6 @@ def test_a_sweep_says_what_a_run_says(problem, run):
     assert found["turns_over"].attrs == run["turns_over"].attrs
 
 
-@pytest.mark.skipif(not has_numba(), reason="numba is not installed")
-def test_a_sweep_without_heyoka_says_what_a_run_says(monkeypatch):
-    monkeypatch.setattr(integrators, "has_taylor", lambda: False)
-    problem, grid = report_problem(175.0), Product((Axis.of("launch.spin", [175.0]),))
-    found = follow_cells(Sweep(problem, grid, 8.0, EXACT), np.arange(1))
-    run = tt.simulate(problem, 8.0, samples=11, integrator="compiled")
-    assert run.sizes["flight"] > 0
-    for name in SAME:
-        assert float(found[name][0]) == pytest.approx(
-            float(run[name]), abs=1e-9, rel=1e-9, nan_ok=True
-        ), name
-
-
-@pytest.mark.skipif(not has_taylor(), reason="sweeps and runs then use methods of different orders")
 @pytest.mark.parametrize("tilt", [1.1, 1.44])
 def test_extremes_agree_where_many_dips_come_close(tilt):
     """Of dips that nearly tie, looks alone would take the wrong one."""

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.striking import impact_of_patch
-from tippetop.integrators import has_taylor, make_integrator
+from tippetop.integrators import make_integrator
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
@@ -25,9 +25,6 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
-
-if not has_taylor():
-    pytest.skip("heyoka is not installed", allow_module_level=True)
 
 TAYLOR = make_integrator("taylor")
 

@@ -6,10 +6,9 @@ import sys
 import pytest
 
 import tippetop as tt
-from tippetop.integrators import has_taylor
 
 NEVER_NEEDED = {"matplotlib", "h5py", "scipy", "sympy", "dask"}
-HEAVY = sorted({"xarray", "heyoka", "numpy", "pydantic", "pandas"} | NEVER_NEEDED)
+HEAVY = sorted({"xarray", "llvmlite", "numpy", "pydantic", "pandas"} | NEVER_NEEDED)
 
 
 def in_new_process(code):
@@ -44,7 +43,7 @@ def test_looking_at_the_names_loads_no_library():
 
 def test_stating_a_problem_loads_no_library_that_only_running_it_needs():
     code = "import tippetop as tt; tt.Problem; tt.InvalidInput; tt.presets.REPORT"
-    assert set(loaded_after(code)) & {"matplotlib", "xarray", "heyoka", "h5py", "scipy"} == set()
+    assert set(loaded_after(code)) & {"matplotlib", "xarray", "llvmlite", "h5py", "scipy"} == set()
 
 
 def test_simulating_loads_neither_matplotlib_nor_the_laboratory():
@@ -54,7 +53,6 @@ def test_simulating_loads_neither_matplotlib_nor_the_laboratory():
     )
 
 
-@pytest.mark.skipif(not has_taylor(), reason="heyoka is not installed")
 def test_the_usual_run_at_the_command_line_loads_only_what_it_needs():
     code = """
 import contextlib, io, sys

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.integrators import has_taylor
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.surface import RingSurface, SphereSurface, contact_vector, gap_guard
 
@@ -48,7 +47,6 @@ def test_a_ring_that_never_touches_changes_nothing(tilt: float, friction: str) -
         assert np.allclose(with_ring[name], without[name], rtol=0.0, atol=1e-9 * scale), name
 
 
-@pytest.mark.skipif(not has_taylor(), reason="steps of other methods were never that short")
 def test_a_ring_that_does_not_touch_never_limits_a_step() -> None:
     """The tilt decays to nothing, and planar rocking passes through the vertical."""
     ring = tt.Ring(radius=0.017, center=0.018)

@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 import tippetop as tt
 from campaigns import examples
 from strategies import numbers
-from tippetop.integrators import has_numba, has_taylor, make_integrator
+from tippetop.integrators import make_integrator
 from tippetop.problem.presets import REPORT, report_problem
 from tippetop.results.catalogue import SAMPLED
 
@@ -27,7 +27,7 @@ few_and_slow = settings(
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
 )
-EXACT_INTEGRATORS = ["taylor", "dop853"] if has_taylor() else ["dop853"]
+EXACT_INTEGRATORS = ["taylor", "dop853"]
 
 
 def report(spin=155.0, liftoff="ignore", mu=0.3, **launch):
@@ -163,7 +163,6 @@ def test_spin_of_50_ends_in_the_steady_state_of_constant_tilt():
 # ----------------------------------------------------------------------------
 
 
-@pytest.mark.skipif(not has_taylor(), reason="200 long runs take minutes without heyoka")
 @settings(few_and_slow, max_examples=examples(check=40, claim=2000))
 @given(tippe_tops())
 def test_jellett_and_energy_hold_for_every_tippe_top(problem):
@@ -193,7 +192,6 @@ def test_jellett_and_energy_hold_for_every_tippe_top(problem):
         assert float(run.normal_force.min()) >= -1e-12 * problem.body.mass * problem.gravity
 
 
-@pytest.mark.skipif(not has_taylor(), reason="the steps of others are chosen by every number")
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-12, None])
 def test_huge_slip_leads_no_axis_astray(tolerance):
     """Coulomb's friction is the same however fast the top slips, and so is what it does to the
@@ -327,7 +325,6 @@ SHORTLY_BEFORE = 5.2
 
 OWN_TOLERANCE = {
     "taylor": 2.3e-16,
-    "compiled": 1e-13,
     "dop853": 1e-12,
     "rk45": 1e-10,
     "radau": 1e-9,
@@ -372,10 +369,6 @@ def launch_shortly_before_lift_off():
 
 @pytest.mark.parametrize("integrator", [*OWN_TOLERANCE, "rk4"])
 def test_every_integrator_locates_lift_off_to_its_own_tolerance(integrator):
-    if integrator == "taylor" and not has_taylor():
-        pytest.skip("heyoka is not installed")
-    if integrator == "compiled" and not has_numba():
-        pytest.skip("numba is not installed")
     step = STEP if integrator == "rk4" else None
     run = tt.simulate(
         launch_shortly_before_lift_off(), 0.2, samples=2, integrator=integrator, step=step
@@ -960,7 +953,6 @@ def test_motion_that_becomes_singular_is_a_failed_run_and_no_exception(integrato
     np.testing.assert_allclose(start.energy, start.energy[0] + start.work, rtol=1e-9)
 
 
-@pytest.mark.skipif(not has_taylor(), reason="heyoka is not installed")
 def test_steps_that_rounding_of_time_swallows_are_no_more_than_a_few_thousand():
     run = tt.simulate(runaway(), 5.0, samples=11, integrator="taylor", tolerance=1e-9)
     assert run.attrs["outcome"] == "failed"

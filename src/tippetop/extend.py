@@ -44,9 +44,8 @@ from tippetop.support.validation import Quantity as Quantity
 def where(condition: Any, a: Scalar, b: Scalar) -> Scalar:
     """Return the first number where a condition holds, else the second.
 
-    The condition is a comparison by < or >. A law that chooses is followed by an integrator that
-    bounds its error by shorter steps where the choice changes, not by Taylor series, which do not
-    see past it.
+    The condition is a comparison by < or >. Taylor's method ends a step where the choice changes;
+    other integrators take shorter steps there.
 
     Examples
     --------

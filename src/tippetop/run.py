@@ -11,7 +11,7 @@ from tippetop import __version__
 from tippetop.contact.choice import automaton_of
 from tippetop.contact.mode import Event, Outcome, Segment
 from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
-from tippetop.graph.own_parts import has_choices
+from tippetop.graph.own_parts import require_recordable
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import NOT_FINITE
 from tippetop.mechanics.invariants import energy
@@ -112,9 +112,9 @@ def simulate(
     dense
         Whether to return the solution, which has the state at any time, beside the run.
     integrator
-        "taylor", "collocation", "compiled", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4";
-        None for the best installed, which collocation relieves where friction is stiff; or an
-        object of one's own, which follows motions as `tippetop.integrators.base.Integrator` does.
+        "taylor", "collocation", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for
+        "taylor", which "collocation" relieves where friction is stiff; or an object of one's own,
+        which follows motions as `tippetop.integrators.base.Integrator` does.
     tolerance
         Relative error per step; None for the integrator's own default. Only with an integrator by
         name.
@@ -171,7 +171,8 @@ def simulate(
     grid = sample_times(duration, samples, times)
     top = natural(problem.top)
     search = EventSearch(events, until, units)
-    method = integrator_of(integrator, tolerance, step, units, not has_choices(problem.top))
+    require_recordable(problem.top)
+    method = integrator_of(integrator, tolerance, step, units)
     warn_if_implausible(problem)
     state = natural_state(problem.start(), units)
     automaton = automaton_of(problem.contact, top, units)
@@ -231,11 +232,10 @@ def integrator_of(
     tolerance: float | None,
     step: float | None,
     units: Units,
-    analytic: bool,
 ) -> Integrator:
-    """The integrator asked for, with its step in natural units, for motions `analytic` or not."""
+    """The integrator asked for, with its step in natural units, or the default."""
     if integrator is None or isinstance(integrator, str):
-        return make_integrator(integrator, tolerance, step, units.time, analytic)
+        return make_integrator(integrator, tolerance, step, units.time)
     for setting, value in {"tolerance": tolerance, "step": step}.items():
         if value is not None:
             raise InvalidInput(

@@ -5,9 +5,6 @@ import pytest
 
 from tippetop.graph.llvm import ABREAST
 from tippetop.graph.recording import record
-from tippetop.integrators import has_llvm
-
-pytestmark = pytest.mark.skipif(not has_llvm(), reason="LLVM compiles it")
 
 EDGES = [
     0.0,

@@ -19,7 +19,6 @@ from tippetop.graph.hoisting import hoisted, played
 from tippetop.graph.javascript import javascript_source
 from tippetop.graph.recording import record
 from tippetop.graph.taylor_coefficients import NodeArithmetic
-from tippetop.integrators import has_llvm
 from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.euler import published_rates
 from tippetop.mechanics.series import Series, horner, solved, unknown
@@ -129,7 +128,6 @@ def by_llvm(recorded, rows, parameters, abreast=8):
     return out[:, : len(rows)].T
 
 
-@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 @pytest.mark.parametrize(
     ("shape", "abreast"),
     among([(shape, abreast) for abreast in (1, llvm.ABREAST) for shape in SURFACES], check=2),
@@ -145,7 +143,6 @@ def test_machine_code_computes_what_the_mechanics_does(shape, abreast, monkeypat
             assert_same(found.tolist(), by_floats(function, rows, case.parameters))
 
 
-@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 def test_every_launch_has_its_own_choice_and_its_own_numbers():
     plain = NodeArithmetic()
 
@@ -167,7 +164,6 @@ def test_every_launch_has_its_own_choice_and_its_own_numbers():
     assert by_llvm(record(function, 1, 1), np.empty((0, 1)), (0.5,)).shape == (0, 4)
 
 
-@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 def test_what_is_rarely_needed_is_there_for_those_who_need_it():
     plain = NodeArithmetic()
 
@@ -195,7 +191,6 @@ def test_what_is_rarely_needed_is_there_for_those_who_need_it():
         by_llvm(record(twice, 1, 0), places[:, None], ())
 
 
-@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 def test_series_of_nodes_solve_what_they_are_given():
     def exponential(y, p):
         series = Series(unknown, NodeArithmetic())
@@ -260,7 +255,6 @@ class Elementary:
         return x.graph.node("cos", (x,))
 
 
-@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 def test_elementary_functions_and_selections_are_printed():
     def function(y, p):
         rates = published_rates(y, REPORT, Elementary())
@@ -297,7 +291,4 @@ def test_elementary_functions_and_selections_are_printed():
 def test_nothing_is_computed_twice_or_for_nothing(function, count):
     found = record(lambda y, p: (function(y[0]),), 1, 0)
     assert operations(found) == count
-    if has_llvm():
-        assert by_llvm(found, np.array([[0.7]]), ())[0, 0] == pytest.approx(
-            function(0.7), abs=1e-15
-        )
+    assert by_llvm(found, np.array([[0.7]]), ())[0, 0] == pytest.approx(function(0.7), abs=1e-15)

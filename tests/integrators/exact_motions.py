@@ -7,9 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from page_method import PageMethod
 from scipy.optimize import brentq
 
-from tippetop.integrators import Arc, Integrator, Motion, has_numba, has_taylor, make_integrator
+from tippetop.integrators import Arc, Integrator, Motion, make_integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.vectors import cross
 
@@ -40,17 +41,20 @@ def _adaptive(name, tolerance):
 STEP = 0.01
 EPS = float(np.finfo(float).eps)
 DEFAULTS = [
-    *([_adaptive("taylor", EPS)] if has_taylor() else []),
+    _adaptive("taylor", EPS),
     _adaptive("collocation", 1e-13),
-    *([_adaptive("compiled", 1e-13)] if has_numba() else []),
     _adaptive("dop853", 1e-12),
     _adaptive("rk45", 1e-10),
     _adaptive("radau", 1e-9),
     _adaptive("bdf", 1e-9),
     _adaptive("lsoda", 1e-11),
     Method("rk4", make_integrator("rk4", step=STEP), step=STEP),
+    Method("page-1e-13", PageMethod(), 1e-13),
 ]
-LOOSE = [_adaptive(method.label.split("-")[0], 1e-6) for method in DEFAULTS if method.tolerance]
+LOOSE = [
+    *[_adaptive(method.integrator.name, 1e-6) for method in DEFAULTS[:-2]],
+    Method("page-1e-06", PageMethod(1e-6), 1e-6),
+]
 
 
 def whole(arcs):

@@ -26,16 +26,12 @@ from tippetop.integrators import (
     NAMES,
     Guard,
     Motion,
-    has_numba,
-    has_taylor,
     make_integrator,
     sampling,
     stepping,
+    taylor,
 )
 from tippetop.support.errors import InvalidInput
-
-if has_taylor():
-    from tippetop.integrators import taylor
 
 every_method = pytest.mark.parametrize("method", DEFAULTS, ids=lambda method: method.label)
 every_method_also_loose = pytest.mark.parametrize(
@@ -44,9 +40,7 @@ every_method_also_loose = pytest.mark.parametrize(
 
 
 def test_every_integrator_is_tested():
-    missing = {"taylor": not has_taylor(), "compiled": not has_numba()}
-    names = [name for name in NAMES if not missing.get(name)]
-    assert [method.integrator.name for method in DEFAULTS] == names
+    assert [method.integrator.name for method in DEFAULTS] == [*NAMES, "page"]
 
 
 # --- exact solutions
@@ -163,8 +157,8 @@ def test_steps_join(method):
 
 
 CUTS = {
-    "taylor": (taylor, {"LONG": 4}) if has_taylor() else None,
-    "compiled": (stepping, {"FEW": 4, "MANY": 7}),
+    "taylor": (taylor, {"LONG": 4}),
+    "page": (stepping, {"FEW": 4, "MANY": 7}),
 }
 """What decides into how many arcs a solution is cut, and smaller numbers of it."""
 

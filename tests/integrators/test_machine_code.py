@@ -4,11 +4,6 @@ import numpy as np
 import pytest
 
 from tippetop.graph.recording import record
-from tippetop.integrators import has_llvm
-
-if not has_llvm():
-    pytest.skip("llvmlite is not installed", allow_module_level=True)
-
 from tippetop.integrators import machine_code
 from tippetop.integrators.sealed_folders import CONTENT, VARIABLE
 

@@ -7,13 +7,11 @@ import pytest
 from exact_motions import whole
 
 import tippetop as tt
-from tippetop.integrators import Motion, default_name, has_taylor, make_integrator
+from tippetop.integrators import Motion, make_integrator
 from tippetop.integrators.base import Guard
 from tippetop.integrators.collocation import STAGES, Collocation, Step, solved
 from tippetop.integrators.rates import RightHandSide
 from tippetop.integrators.relief import PATIENCE, Relieved, is_stiff
-
-NEEDS_TAYLOR = pytest.mark.skipif(not has_taylor(), reason="Taylor's method is relieved")
 
 
 def following(y, numbers):
@@ -123,7 +121,6 @@ class Recorded:
         return self.method.integrate(motion, parameters, start, end)
 
 
-@NEEDS_TAYLOR
 def test_the_explicit_method_follows_what_is_not_stiff_however_fast():
     quick = Motion(lambda y, n: (n[0] * y[1], -n[0] * y[0]), 2, 1)
     explicit = Recorded()
@@ -134,7 +131,6 @@ def test_the_explicit_method_follows_what_is_not_stiff_however_fast():
     assert arcs[-1].end_state == pytest.approx([np.cos(2e4), -np.sin(2e4)], abs=1e-9)
 
 
-@NEEDS_TAYLOR
 def test_the_implicit_method_relieves_what_is_stiff_and_not_the_rest():
     """Van der Pol's oscillator creeps, stiffly, and leaps, within 1e-5 of the time."""
 
@@ -173,7 +169,7 @@ def test_a_root_of_a_negative_number_is_no_rate():
 
 
 def test_the_best_method_is_relieved_and_one_by_name_is_not():
-    assert make_integrator() == Relieved(make_integrator(default_name()))
+    assert make_integrator() == Relieved(make_integrator("taylor"))
 
 
 def test_what_polynomials_say_beyond_a_step_is_what_they_say_within_it():
@@ -202,7 +198,6 @@ def rolling():
     return run
 
 
-@NEEDS_TAYLOR
 @pytest.mark.parametrize("mu", [1e5, 1e6])
 def test_strong_friction_ends_within_the_budget_and_is_nearly_rolling(mu, rolling):
     run = tt.simulate(stiff(mu), 1.0, samples=101)
@@ -219,7 +214,6 @@ def test_strong_friction_ends_within_the_budget_and_is_nearly_rolling(mu, rollin
     assert (twice["theta"] - rolling["theta"]).values == pytest.approx(away / 2.0, abs=1e-3 / mu)
 
 
-@NEEDS_TAYLOR
 def test_strong_friction_is_the_same_by_taylor_alone():
     problem = stiff(1e4)
     alone = tt.simulate(problem, 0.5, samples=101, integrator="taylor")
@@ -231,7 +225,6 @@ def test_strong_friction_is_the_same_by_taylor_alone():
         assert usual[name].values == pytest.approx(alone[name].values, abs=1e-10 * size), name
 
 
-@NEEDS_TAYLOR
 def test_a_sweep_follows_stiff_launches_as_runs_are():
     values = [0.3, 1e6]
     swept = tt.sweep(stiff(0.3), {"friction.mu": values}, duration=1.0)
@@ -244,7 +237,6 @@ def test_a_sweep_follows_stiff_launches_as_runs_are():
             ), name
 
 
-@NEEDS_TAYLOR
 def test_drilling_that_dies_on_a_small_patch_is_followed():
     friction = tt.ContensouFriction(mu=0.3, patch_radius=1e-7, pressure="ellipsoidal")
     problem = tt.presets.report_problem(tilt=0.3, spin=20.0).replace({"friction": friction})

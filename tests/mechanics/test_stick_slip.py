@@ -17,7 +17,7 @@ from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.stopping import Stopping
 from tippetop.contact.trajectory import Trajectory
-from tippetop.integrators import has_taylor, make_integrator
+from tippetop.integrators import make_integrator
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -305,7 +305,6 @@ def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, 
     assert defect(time) / defect(0.5 * time) > 0.8 * 2.0**order
 
 
-@pytest.mark.skipif(not has_taylor(), reason="the other integrators are not exact to rounding")
 @pytest.mark.parametrize("mode", [Stopping, Loosening], ids=["clock", "phase"])
 def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
     """Beyond the end of the clock too: the slip goes to zero in a straight line, and what goes with
@@ -334,7 +333,6 @@ def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
     np.testing.assert_allclose(numbers[-1, :6], (*last.axis, *last.momentum), rtol=0, atol=1e-15)
 
 
-@pytest.mark.skipif(not has_taylor(), reason="no other integrator expands its solutions")
 @pytest.mark.parametrize("power", [1, 2])
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_driven_motion_gives_the_same_beginning(family, power):

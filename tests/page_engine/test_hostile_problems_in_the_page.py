@@ -30,7 +30,7 @@ def named(fields: dict[str, Any]) -> str:
                 samples=2,
                 step_limit=STEPS,
                 phase_limit=MODES,
-                integrator="compiled",
+                integrator="taylor",
                 tolerance=TOLERANCE,
             )
         except tt.InvalidInput as refusal:

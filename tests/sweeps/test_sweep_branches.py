@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from tippetop.integrators.polynomials import Polynomials
 from tippetop.integrators.polynomial_minima import first_fall
+from tippetop.integrators.polynomials import Polynomials
 from tippetop.sweeps.taylor_step import LOOKS
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
 

@@ -1,16 +1,12 @@
 """The engine against single runs, against itself, and against what must hold."""
 
 import math
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-from sweep_cases import lively, problem_of, same, thrown, truth
+from sweep_cases import lively, problem_of, same, truth
 
 from tippetop.contact.closed import sliding_motion
-from tippetop.integrators import has_llvm, has_taylor
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.series import horner
 from tippetop.problem.bodies import Body
@@ -176,7 +172,6 @@ def test_a_cell_does_not_depend_on_lanes_waits_and_windows(monkeypatch):
         assert values == pytest.approx(usual[name], rel=1e-11, abs=1e-12, nan_ok=True), name
 
 
-@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 def test_arrays_make_the_steps_that_are_compiled():
     sweep = lively("ignore", 4, 4)
     cells = cells_of(sweep.problem, sweep.grid.values(np.arange(16)))
@@ -201,7 +196,6 @@ def test_arrays_make_the_steps_that_are_compiled():
     assert np.all(one[layout.taken] > 0)
 
 
-@pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 @pytest.mark.parametrize("field", ["launch.spin", "launch.slip.0"])
 def test_a_step_of_a_fast_top_leaves_little_out_of_its_axis(field):
     """Beside polynomials of far higher degree over the same step."""
@@ -382,30 +376,6 @@ def test_only_eccentric_spheres_are_known_to_settle():
     assert Sweep(egg, grid).settled is None
     with pytest.raises(InvalidInput, match="sphere"):
         Sweep(egg, grid, settled=1e-3)
-
-
-NO_HEYOKA = """
-import sys
-sys.modules["heyoka"] = None
-import numpy as np
-sys.path.insert(0, {folder!r})
-from sweep_cases import thrown
-from tippetop.sweeps.ensemble import follow_cells
-found = follow_cells(thrown(1e-12), np.arange(4))
-np.savez({out!r}, **found)
-"""
-
-
-@pytest.mark.skipif(not has_taylor(), reason="heyoka is what is compared with")
-def test_a_sweep_is_the_same_without_heyoka(tmp_path):
-    code = NO_HEYOKA.format(folder=str(Path(__file__).parent), out=str(tmp_path / "found"))
-    subprocess.run([sys.executable, "-c", code], check=True)
-    without = np.load(tmp_path / "found.npz")
-    found = follow_cells(thrown(1e-12), np.arange(4))
-    assert found["flights"].sum() > 0
-    for name in set(found) - {"steps"}:
-        values = found[name]
-        assert without[name] == pytest.approx(values, rel=1e-9, abs=1e-10, nan_ok=True), name
 
 
 def test_bad_cells_are_labelled_and_harm_no_other():

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tippetop.integrators import has_llvm, make_integrator
+from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Guard, Motion
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.problem.frictions import ContensouFriction
@@ -18,7 +18,6 @@ from tippetop.sweeps.polynomial_arcs import Arcs, arcs
 from tippetop.sweeps.taylor_stepper import stepper
 from tippetop.sweeps.tip_extremes import DOWN, FORCE, UP, TipMotion
 
-pytestmark = pytest.mark.skipif(not has_llvm(), reason="llvmlite is not installed")
 COUNT = 2000
 
 

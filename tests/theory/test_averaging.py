@@ -8,7 +8,6 @@ from full_runs import full_run, sphere_problem, tilts_of
 from scipy.integrate import solve_ivp
 
 from tippetop import presets
-from tippetop.integrators import has_taylor
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import natural_units
 from tippetop.support.errors import InvalidInput
@@ -96,7 +95,6 @@ def test_no_time_is_told_where_the_slow_flow_does_not_hold():
         assert math.isnan(time_to_end(REPORT.replace(change), math.pi, 0.01)), change
 
 
-@pytest.mark.skipif(not has_taylor(), reason="long runs need the Taylor integrator")
 def test_full_runs_approach_the_limit_quadratically():
     limit = flip_time_limit(REPORT)
     excess = [
@@ -109,7 +107,6 @@ def test_full_runs_approach_the_limit_quadratically():
 
 
 @pytest.mark.parametrize("problem", LAUNCHES)
-@pytest.mark.skipif(not has_taylor(), reason="long runs need the Taylor integrator")
 def test_the_tilt_of_a_full_run_with_little_friction_is_in_the_envelope_of_the_flow(problem):
     mu = 0.001
     flow = averaged_flow(problem)
@@ -123,7 +120,6 @@ def test_the_tilt_of_a_full_run_with_little_friction_is_in_the_envelope_of_the_f
 
 
 @pytest.mark.parametrize("mu", [0.3, 0.03, 0.003])
-@pytest.mark.skipif(not has_taylor(), reason="long runs need the Taylor integrator")
 def test_the_tilt_as_a_function_of_mu_t_comes_closer_as_mu_falls(mu):
     flow = averaged_flow(REPORT)
     mu_times = np.linspace(0.6, 2.4, 50)
@@ -243,7 +239,6 @@ def test_a_wide_nutation_that_reaches_the_end_counts():
 
 
 @pytest.mark.parametrize(("spin", "tilt"), [(25.0, 0.1), (50.0, 1.0), (100.0, 1.0)])
-@pytest.mark.skipif(not has_taylor(), reason="long runs need the Taylor integrator")
 def test_a_nutation_that_passes_the_end_on_its_way_counts(spin, tilt):
     problem, mu = presets.report_problem(spin=spin, tilt=tilt), 0.0005
     limit, end = flip_time_limit(problem), predict(problem).final.tilt

@@ -6,10 +6,11 @@ powers run over vectors of `WIDTH` coefficients. The code grows with the number 
 with the square of the order, so that it compiles in a fraction of a second.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import count
 from math import ceil
 from struct import pack
+from typing import TypeAlias
 
 from tippetop.graph import graph
 from tippetop.graph.recording import Recorded, needed
@@ -17,10 +18,13 @@ from tippetop.graph.recording import Recorded, needed
 WIDTH = 8
 """Coefficients a vector."""
 
-LINEAR = (graph.SUM, graph.DIFFERENCE, graph.NEGATIVE)
+PLAIN, DERIVATIVE = "plain", "derivative"
+"""Which coefficients a row has: a node's, or those times their orders."""
 
-CONVOLVED = (graph.QUOTIENT, graph.ROOT, graph.POWER)
-"""Operations whose coefficients depend on earlier ones of the result itself."""
+Row: TypeAlias = tuple[str, int]
+"""Which coefficients, and the place of the node."""
+
+LINEAR = (graph.SUM, graph.DIFFERENCE, graph.NEGATIVE)
 
 ZERO = "0.0"
 
@@ -68,19 +72,18 @@ def series_source(recorded: Recorded, order: int) -> str:
 def with_choices(recorded: Recorded) -> Recorded:
     """Return a recorded function that returns the margins of its choices, too.
 
-    A margin is the distance of a number from where `<` or `abs` choose otherwise: the coefficients
-    are those of another function beyond its zero.
+    A margin is positive as long as `<` or `abs` choose as they do where the coefficients begin:
+    beyond its zero these are those of another function.
     """
     moving = _moving(recorded)
     margins = dict[int, graph.Node]()
     for node in recorded.nodes:
-        a, b = (*node.operands, None, None)[:2]
+        a, b = _two_of(node)
         found = None
-        if node.name == graph.SIZE and a is not None and a.place in moving:
+        if node.name == graph.SIZE and a.place in moving:
             found = node
-        elif node.name == graph.LESS and a is not None and b is not None:
-            if not moving.isdisjoint((a.place, b.place)):
-                found = abs(node.graph.taken(b - a))
+        elif node.name == graph.LESS and not moving.isdisjoint([a.place, b.place]):
+            found = node.graph.select(node, b - a, a - b)
         if found is not None:
             margins[found.place] = found
     if not margins:
@@ -99,15 +102,18 @@ def room_size(recorded: Recorded, order: int) -> int:
 class _SeriesPrinter:
     """Prints the function `jet` of one motion.
 
-    A row of `room` has the coefficients of one node that is convolved, after `WIDTH` zeros. Its
-    coefficient 0 is left zero there, and added apart: so the sum over all of a vector, of one row
-    forwards and another backwards, is that over the orders 1 to k - 1 alone.
+    A row of `room` has the coefficients of one node that is convolved, after as many zeros.
+    Coefficient 0 is zero there, and what it adds is added apart: so the sum of all products, of one
+    row forwards and another backwards from k, is that of those of the orders 1 to k - 1. What is
+    beyond k is left there from the last call, and multiplied by the zeros.
     """
 
     def __init__(self, recorded: Recorded, order: int) -> None:
         self.recorded, self.order = recorded, order
         self.guards = len(recorded.outputs) - recorded.size
-        self.row_length = WIDTH * (1 + max(1, ceil((order - 1) / WIDTH)))
+        self.vectors = ceil((order - 1) / WIDTH)
+        self.zeros = WIDTH * self.vectors
+        self.row_length = 2 * self.zeros
         self.text = list[str]()
         self._names = count()
         self.moving = _moving(recorded)
@@ -118,18 +124,15 @@ class _SeriesPrinter:
         for output in recorded.outputs:
             self.uses[output.place] = self.uses.get(output.place, 0) + 2
         self.deferred = self._deferred()
-        self.rows, self.derivatives = dict[object, int](), set[int]()
+        self.rows = dict[Row, int]()
         for node in recorded.nodes:
-            for convolved in self._convolved(node):
-                self.rows.setdefault(convolved.place, len(self.rows))
-            if node.name == graph.POWER and node.place in self.moving:
-                base = node.operands[0].place
-                self.derivatives.add(base)
-                self.rows.setdefault(("derivative", base), len(self.rows))
+            for row in self._convolved(node):
+                self.rows.setdefault(row, len(self.rows))
         # What is printed of a node so far: its value, and its coefficient in the current order.
         self.first = dict[int, str]()
         self.term = dict[int, str]()
         self.inverse = dict[tuple[str, int], str]()
+        self.chunks = dict[tuple[str, Row, int], str]()
 
     def _deferred(self) -> set[int]:
         """Return the sums and products that are added up where they are used, and nowhere else."""
@@ -154,20 +157,21 @@ class _SeriesPrinter:
     def _both_move(self, node: graph.Node) -> bool:
         return all(operand.place in self.moving for operand in node.operands)
 
-    def _convolved(self, node: graph.Node) -> tuple[graph.Node, ...]:
-        """Return the nodes of whose coefficients a node's coefficient is a convolution."""
+    def _convolved(self, node: graph.Node) -> list[Row]:
+        """Return the rows of which a node's coefficient is a convolution."""
         if node.place not in self.moving:
-            return ()
+            return []
         match node.name:
             case graph.PRODUCT if self._both_move(node):
-                return node.operands
+                return [(PLAIN, operand.place) for operand in node.operands]
             case graph.QUOTIENT if node.operands[1].place in self.moving:
-                return node.operands[1], node
+                return [(PLAIN, node.operands[1].place), (PLAIN, node.place)]
             case graph.ROOT:
-                return (node,)
+                return [(PLAIN, node.place)]
             case graph.POWER:
-                return node.operands[0], node
-        return ()
+                base = node.operands[0].place
+                return [(PLAIN, base), (DERIVATIVE, base), (PLAIN, node.place)]
+        return []
 
     def lines(self) -> list[str]:
         """Return the lines of the function."""
@@ -177,10 +181,7 @@ class _SeriesPrinter:
             "entry:",
         ]
         self._print_values()
-        before = "entry"
-        for vectors, (begin, end) in enumerate(_phases(self.order), start=1):
-            self._print_orders(vectors, begin, end, before)
-            before = f"after{vectors}"
+        self._print_orders()
         self.text += ["ret void", "}"]
         return self.text
 
@@ -226,7 +227,9 @@ class _SeriesPrinter:
                 self._print_inverse(node)
         for i in range(self.recorded.size):
             self._store(self._load("%y", i), "%out", i * (self.order + 1))
-            self._store(self.first[self.recorded.outputs[i].place], "%out", i * (self.order + 1) + 1)
+            self._store(
+                self.first[self.recorded.outputs[i].place], "%out", i * (self.order + 1) + 1
+            )
         for i in range(self.guards):
             guard = self.recorded.outputs[self.recorded.size + i]
             self._store(self.first[guard.place], "%out", self._guard_place(i))
@@ -270,96 +273,96 @@ class _SeriesPrinter:
 
     # --- coefficients of the orders from 1 on
 
-    def _print_orders(self, vectors: int, begin: int, end: int, before: str) -> None:
-        """Print the loop over the orders in which convolutions run over so many vectors."""
-        recorded, label = self.recorded, f"orders{vectors}"
+    def _print_orders(self) -> None:
+        """Print the loop over the orders."""
+        recorded = self.recorded
         self.text += [
-            f"  br label %{label}",
-            f"{label}:",
-            f"  %k{vectors} = phi i64 [ {begin}, %{before} ], [ %next{vectors}, %{label} ]",
+            "  br label %orders",
+            "orders:",
+            "  %k = phi i64 [ 1, %entry ], [ %next, %orders ]",
         ]
-        self.k, self.vectors = f"%k{vectors}", vectors
-        self.order_number = self._new(f"uitofp i64 {self.k} to double")
-        self.term, self.chunks = {}, dict[tuple[str, object, int], str]()
+        self.order_number = self._new("uitofp i64 %k to double")
         for node in recorded.nodes:
             if node.place in self.moving and node.place not in self.deferred:
                 self.term[node.place] = self._coefficient(node)
-        for place, row in self.rows.items():
-            term = (
-                self._product(self.order_number, self.term[place[1]])
-                if isinstance(place, tuple)
-                else self.term[place]  # type: ignore[index]
+        for (name, place), row in self.rows.items():
+            term = self.term[place]
+            if name == DERIVATIVE:
+                term = self._product(self.order_number, term)
+            self._store(
+                term, "%room", self._new(f"add i64 %k, {row * self.row_length + self.zeros}")
             )
-            index = self._new(f"add i64 {self.k}, {row * self.row_length + WIDTH}")
-            self._store(term, "%room", index)
-        self.text.append(f"  %next{vectors} = add i64 {self.k}, 1")
-        next_number = self._new(f"uitofp i64 %next{vectors} to double")
-        part = self._new(f"fdiv double 1.0, {next_number}")
-        for i in range(recorded.size):
-            term = self._term(recorded.outputs[i])
-            index = self._new(f"add i64 %next{vectors}, {i * (self.order + 1)}")
-            self._store(ZERO if term is None else self._product(part, term), "%out", index)
-        for i in range(self.guards):
-            index = self._new(f"add i64 {self.k}, {self._guard_place(i)}")
-            self._store(self._term(recorded.outputs[recorded.size + i]) or ZERO, "%out", index)
+        self.text.append("  %next = add i64 %k, 1")
+        part = self._new(f"fdiv double 1.0, {self._new('uitofp i64 %next to double')}")
+        for i, output in enumerate(recorded.outputs):
+            term = self.term.get(output.place, ZERO)
+            if i < recorded.size:
+                index = self._new(f"add i64 %next, {i * (self.order + 1)}")
+                self._store(self._product(part, term), "%out", index)
+            else:
+                index = self._new(f"add i64 %k, {self._guard_place(i - recorded.size)}")
+                self._store(term, "%out", index)
         self.text += [
-            f"  %go{vectors} = icmp ult i64 %next{vectors}, {end}",
-            f"  br i1 %go{vectors}, label %{label}, label %after{vectors}",
-            f"after{vectors}:",
+            f"  %go_on = icmp ult i64 %next, {self.order}",
+            "  br i1 %go_on, label %orders, label %done",
+            "done:",
         ]
 
-    def _term(self, node: graph.Node) -> str | None:
-        """Return the coefficient of a node in the current order; None where that is zero."""
-        return self.term.get(node.place)
-
     def _coefficient(self, node: graph.Node) -> str:
-        a, b = (*node.operands, None, None)[:2]
+        a, b = _two_of(node)
         match node.name:
             case graph.STATE:
-                index = self._new(f"add i64 {self.k}, {int(node.value) * (self.order + 1)}")
+                index = self._new(f"add i64 %k, {int(node.value) * (self.order + 1)}")
                 return self._load("%out", index)
             case graph.SUM | graph.DIFFERENCE | graph.NEGATIVE:
                 return self._combined(self._leaves(node))
             case graph.PRODUCT if self._both_move(node):
                 return self._combined([(1.0, node)])
             case graph.PRODUCT:
-                assert a is not None and b is not None
                 moved, fixed = (a, b) if a.place in self.moving else (b, a)
                 return self._product(self.first[fixed.place], self.term[moved.place])
             case graph.QUOTIENT:
-                assert a is not None and b is not None
-                convolved = [(-1.0, b.place, node.place)] if b.place in self.moving else []
+                convolved = (
+                    [(-1.0, (PLAIN, b.place), (PLAIN, node.place))]
+                    if b.place in self.moving
+                    else []
+                )
                 ends = [(-1.0, self.term[b.place], self.first[node.place])] if convolved else []
                 above = self._combined(self._leaves_of(a), convolved, ends)
                 return self._product(above, self.inverse["1.0", b.place])
             case graph.ROOT:
-                assert a is not None
-                above = self._combined(self._leaves_of(a), [(-1.0, node.place, node.place)])
+                above = self._combined(
+                    self._leaves_of(a), [(-1.0, (PLAIN, node.place), (PLAIN, node.place))]
+                )
                 return self._product(above, self.inverse["0.5", node.place])
-            case graph.POWER if b is not None and b.place not in self.moving:
-                assert a is not None
+            case graph.POWER if b.place not in self.moving:
                 return self._power(node, a, b)
             case graph.SELECT:
                 flag = self._new(f"fcmp une double {self.first[node.operands[0].place]}, {ZERO}")
-                one, other = (self._term(operand) or ZERO for operand in node.operands[1:])
+                one, other = (self.term.get(operand.place, ZERO) for operand in node.operands[1:])
                 return self._new(f"select i1 {flag}, double {one}, double {other}")
             case graph.SIZE:
-                assert a is not None
                 flag = self._new(f"fcmp ult double {self.first[a.place]}, {ZERO}")
                 negative = self._new(f"fneg double {self.term[a.place]}")
-                return self._new(f"select i1 {flag}, double {negative}, double {self.term[a.place]}")
+                return self._new(
+                    f"select i1 {flag}, double {negative}, double {self.term[a.place]}"
+                )
         raise graph.NotRecordable(f"{node.name} has no rule for Taylor coefficients")
 
     def _power(self, node: graph.Node, base: graph.Node, exponent: graph.Node) -> str:
         """Return the coefficient of a power: k a_0 p_k = sum of ((e + 1) j - k) a_j p_(k-j)."""
         term, first = self.term[base.place], self.first[node.place]
-        plain = self._combined([], [(1.0, base.place, node.place)], [(1.0, term, first)])
+        power = (PLAIN, node.place)
+        plain = self._combined([], [(1.0, (PLAIN, base.place), power)], [(1.0, term, first)])
         scaled = self._product(self.order_number, term)
-        derivative = ("derivative", base.place)
-        weighted = self._combined([], [(1.0, derivative, node.place)], [(1.0, scaled, first)])
+        derivative = (DERIVATIVE, base.place)
+        weighted = self._combined([], [(1.0, derivative, power)], [(1.0, scaled, first)])
         factor = self._new(f"fadd double {self.first[exponent.place]}, 1.0")
         total = self._sum(
-            [(1.0, self._product(factor, weighted)), (-1.0, self._product(self.order_number, plain))]
+            [
+                (1.0, self._product(factor, weighted)),
+                (-1.0, self._product(self.order_number, plain)),
+            ]
         )
         inverse = self._new(f"fdiv double {self.inverse['1.0', base.place]}, {self.order_number}")
         assert total is not None
@@ -384,7 +387,7 @@ class _SeriesPrinter:
     def _combined(
         self,
         leaves: Iterable[tuple[float, graph.Node]],
-        convolved: Iterable[tuple[float, object, object]] = (),
+        convolved: Iterable[tuple[float, Row, Row]] = (),
         ends: Iterable[tuple[float, str, str]] = (),
     ) -> str:
         """Return the sum of nodes, deferred products among them, of convolutions, and of products
@@ -393,13 +396,13 @@ class _SeriesPrinter:
         convolved, ends, terms = list(convolved), list(ends), list[tuple[float, str]]()
         for sign, leaf in leaves:
             if leaf.name == graph.PRODUCT and leaf.place not in self.term and self._both_move(leaf):
-                a, b = (operand.place for operand in leaf.operands)
-                convolved.append((sign, a, b))
-                ends.append((sign, self.first[a], self.term[b]))
-                ends.append((sign, self.term[a], self.first[b]))
+                x, y = (operand.place for operand in leaf.operands)
+                convolved.append((sign, (PLAIN, x), (PLAIN, y)))
+                ends.append((sign, self.first[x], self.term[y]))
+                ends.append((sign, self.term[x], self.first[y]))
             else:
                 terms.append((sign, self.term[leaf.place]))
-        terms += [(sign, self._product(x, y)) for sign, x, y in ends]
+        terms += [(sign, self._product(one, other)) for sign, one, other in ends]
         vector = None
         for sign, a, b in sorted(convolved, key=lambda one: -one[0]):
             for chunk in range(self.vectors):
@@ -413,9 +416,7 @@ class _SeriesPrinter:
         found = self._sum(terms)
         return ZERO if found is None else found
 
-    def _accumulated(
-        self, vector: str | None, sign: float, a: object, b: object, chunk: int
-    ) -> str:
+    def _accumulated(self, vector: str | None, sign: float, a: Row, b: Row, chunk: int) -> str:
         """Return a vector plus, or minus, products of a part of two rows, one of them backwards."""
         forwards, backwards = self._chunk("forwards", a, chunk), self._chunk("backwards", b, chunk)
         product = self._new(f"fmul contract <{WIDTH} x double> {forwards}, {backwards}")
@@ -424,16 +425,16 @@ class _SeriesPrinter:
         operation = "fadd" if sign > 0.0 else "fsub"
         return self._new(f"{operation} contract <{WIDTH} x double> {vector}, {product}")
 
-    def _chunk(self, direction: str, place: object, chunk: int) -> str:
+    def _chunk(self, direction: str, row: Row, chunk: int) -> str:
         """Return a vector of coefficients j, or k - j, of a node for the j of a chunk."""
-        key = direction, place, chunk
+        key = direction, row, chunk
         if key not in self.chunks:
-            begin = self.rows[place] * self.row_length + WIDTH
+            begin = self.rows[row] * self.row_length + self.zeros
             if direction == "forwards":
                 where = self._place("%room", begin + WIDTH * chunk)
                 self.chunks[key] = self._new(f"load <{WIDTH} x double>, ptr {where}, align 8")
             else:
-                index = self._new(f"add i64 {self.k}, {begin - WIDTH * chunk - (WIDTH - 1)}")
+                index = self._new(f"add i64 %k, {begin - WIDTH * chunk - (WIDTH - 1)}")
                 where = self._place("%room", index)
                 loaded = self._new(f"load <{WIDTH} x double>, ptr {where}, align 8")
                 order = ", ".join(f"i32 {lane}" for lane in reversed(range(WIDTH)))
@@ -442,6 +443,12 @@ class _SeriesPrinter:
                     f" <{WIDTH} x i32> <{order}>"
                 )
         return self.chunks[key]
+
+
+def _two_of(node: graph.Node) -> tuple[graph.Node, graph.Node]:
+    """Return the first two operands of a node, which stands for those that it has not."""
+    first, second, *_ = (*node.operands, node, node)
+    return first, second
 
 
 def _moving(recorded: Recorded) -> set[int]:
@@ -454,14 +461,6 @@ def _moving(recorded: Recorded) -> set[int]:
         ):
             moving.add(node.place)
     return moving
-
-
-def _phases(order: int) -> Iterator[tuple[int, int]]:
-    """Yield the orders, from one to before another, in which convolutions run over 1, 2, ...
-    vectors.
-    """
-    for begin in range(1, order, WIDTH):
-        yield begin, min(begin + WIDTH, order)
 
 
 def _written(number: float) -> str:

@@ -19,7 +19,14 @@ HINT = (
 PACKAGE = __name__.partition(".")[0]
 
 CHOICES = (LESS, SELECT, SIZE)
-"""Operations that are not analytic: power series do not see past them."""
+"""Operations that are not analytic: the steps of many launches at once do not see past them."""
+
+
+def require_recordable(top: Top) -> None:
+    """Refuse, with `InvalidInput`, a user's law or surface that asks of its arguments what only
+    numbers have.
+    """
+    has_choices(top)
 
 
 def has_choices(top: Top) -> bool:

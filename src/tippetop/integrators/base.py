@@ -28,7 +28,6 @@ a row.
 TOLERANCES = {
     "taylor": 2.0**-52,
     "collocation": 1e-13,
-    "compiled": 1e-13,
     "dop853": 1e-12,
     "rk45": 1e-10,
     "radau": 1e-9,

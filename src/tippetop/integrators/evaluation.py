@@ -10,8 +10,8 @@ import numpy as np
 
 from tippetop.graph.llvm import ABREAST
 from tippetop.graph.recording import recordable
-from tippetop.integrators import has_llvm
 from tippetop.integrators.base import Array, Rows
+from tippetop.integrators.machine_code import machine_code
 
 Evaluation: TypeAlias = Callable[[Array, Sequence[Any]], Array]
 """From n states, shape (size, ...), and parameters, each of a shape that becomes theirs, to numbers
@@ -22,10 +22,6 @@ of each, shape (numbers, ...).
 @lru_cache(maxsize=64)
 def compiled_evaluation(function: Rows, size: int, parameters: int) -> Evaluation | None:
     """Compile a function of so many numbers and parameters; None where that cannot be."""
-    if not has_llvm():
-        return None
-    from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - optional
-
     recorded = recordable(function, size, parameters)
     if recorded is None:
         return None

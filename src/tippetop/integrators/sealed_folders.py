@@ -9,7 +9,6 @@ import shutil
 import tempfile
 import zlib
 from collections.abc import Callable
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TypeVar
 
@@ -30,8 +29,8 @@ PREFIX, MOST, LARGEST = "code-", 1024, 2**27
 made: then those go that were not used for longest.
 """
 
-SEALED = re.compile(r"(code|numba)-[0-9a-f]{32}")
-"""Names of folders that are whole, of this version and of earlier ones."""
+SEALED = re.compile(rf"{PREFIX}[0-9a-f]{{32}}")
+"""Names of folders that are whole."""
 
 MAKING = re.compile(rf"{PREFIX}[0-9a-f]{{32}}-([0-9]{{1,9}})-[a-z0-9_]{{8}}")
 """Names of those that are not yet whole: with the number of the process that makes them."""
@@ -56,7 +55,7 @@ def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
         folder it compiles only.
     """
     place = os.environ.get(VARIABLE) or users_folder()
-    if place != "off" and find_spec("llvmlite") is not None:
+    if place != "off":
         with contextlib.suppress(OSError):
             folder = Path(place) / (PREFIX + _digest(repr((made, *_processor())).encode())[:32])
             if folder.exists() and not _is_own(folder):
@@ -94,7 +93,7 @@ def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
 
 def _processor() -> tuple[str, ...]:
     """What code is compiled for."""
-    import llvmlite.binding as llvm  # noqa: PLC0415 - optional
+    import llvmlite.binding as llvm  # noqa: PLC0415 - slow to import
 
     return (
         llvm.get_process_triple(),

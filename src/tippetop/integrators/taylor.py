@@ -53,8 +53,8 @@ POLISHES, NEAR = 2, 1e-3
 the step: further they do where a guard hardly falls.
 """
 
-EFFORT = 2
-"""How hard the compiler tries, of 3: less makes code that runs for longer, and no sooner."""
+EFFORT = 1
+"""How hard the compiler tries, of 3: more takes as long, and its code runs no faster."""
 
 CACHE_LINE = 64
 """Bytes that are loaded together."""
@@ -66,6 +66,7 @@ declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
 define i64 @follow(ptr %jet, ptr %y, ptr %p, ptr %room, ptr %raw, ptr %rows, i64 %most)
 alignstack(64) {{
 entry:
+  %doubt = alloca double
   %clock = getelementptr double, ptr %raw, i64 {clock}
   %watch = getelementptr double, ptr %raw, i64 {watch}
   br label %step
@@ -75,12 +76,28 @@ step:
   %row = getelementptr double, ptr %rows, i64 %begin
   call void %jet(ptr %y, ptr %p, ptr %room, ptr %raw)
   call void @step(ptr %raw, ptr %p, ptr %row, i64 1)
-  %taken_place = getelementptr double, ptr %row, i64 {taken}
-  %taken = load double, ptr %taken_place
-  %moves = fcmp ogt double %taken, 0.0
-  br i1 %moves, label %advance, label %stop
+  %span_place = getelementptr double, ptr %row, i64 {span}
+  %span = load double, ptr %span_place
+  %watches = load double, ptr %watch
+  %moves = fcmp ogt double %span, 0.0
+  br i1 %moves, label %guards, label %stop
+guards:
+  %guard = phi i64 [ 0, %step ], [ %next_guard, %look ]
+  %guard_left = icmp ult i64 %guard, {guards}
+  %watched = fcmp ogt double %watches, 0.0
+  %looks = and i1 %guard_left, %watched
+  br i1 %looks, label %look, label %advance
+look:
+  %guard_row = mul i64 %guard, {order}
+  %guard_begin = add i64 %guard_row, {terms}
+  %guard_terms = getelementptr double, ptr %raw, i64 %guard_begin
+  call void @look(ptr %guard_terms, ptr %span_place, ptr %doubt, i64 1)
+  %doubted = load double, ptr %doubt
+  %falls = fcmp ogt double %doubted, 0.0
+  %next_guard = add i64 %guard, 1
+  br i1 %falls, label %stop, label %guards
 advance:
-  %state = getelementptr double, ptr %row, i64 {state}
+  %state = getelementptr double, ptr %row, i64 {terms}
   call void @llvm.memcpy.p0.p0.i64(ptr %y, ptr %state, i64 {state_bytes}, i1 false)
   %time = getelementptr double, ptr %row, i64 {time}
   call void @llvm.memcpy.p0.p0.i64(ptr %clock, ptr %time, i64 16, i1 false)
@@ -209,14 +226,14 @@ class Layout(NamedTuple):
     @property
     def time(self) -> int:
         """Place in a row, after the next state, of the next time and of what rounding took; then
-        come the length of the step if it is taken, whether there is another, and the length.
+        come whether there is another step, and the length of this one.
         """
         return self.terms + self.size
 
     @property
     def row(self) -> int:
         """How many numbers a step makes."""
-        return self.time + 5
+        return self.time + 4
 
 
 class Stepper:
@@ -270,7 +287,9 @@ class Run:
         stepper, layout = self.stepper, self.layout
         room = stepper.room()
         rows, steps, self.begun, self.expansions = room.reshape(-1, layout.row), 0, self.state, 0
-        address = [part.ctypes.data for part in (self._state, self.parameters, self._room, self._raw)]
+        address = [
+            part.ctypes.data for part in (self._state, self.parameters, self._room, self._raw)
+        ]
         guard = failure = None
         while steps < most and self.time < self._clock[2]:
             taken = stepper.follow(
@@ -298,7 +317,10 @@ class Run:
             steps += 1
             if guard is not None:
                 break
-        self._knots, self._terms = rows[:steps, layout.time].copy(), rows[:steps, : layout.terms].copy()
+        self._knots, self._terms = (
+            rows[:steps, layout.time].copy(),
+            rows[:steps, : layout.terms].copy(),
+        )
         stepper.rooms.append(room)
         return steps, guard, failure
 
@@ -308,7 +330,7 @@ class Run:
         return DenseSolution(np.append(begin, self._knots), self._terms.reshape(shape))
 
     def _first_fall(self, span: float) -> tuple[int, float] | None:
-        """Return which guard, or margin of a choice, falls first in the step looked at, and when."""
+        """Return which guard, or margin of a choice, falls first in a step, and when."""
         layout, guards = self.layout, self.stepper.guards
         terms = self._raw[layout.terms : layout.clock].reshape(layout.guards, layout.order).T
         spans = np.full(layout.guards, span)
@@ -375,55 +397,59 @@ def _recorded(motion: Motion) -> Recorded | None:
 
 @lru_cache(maxsize=64)
 def _step_code(layout: Layout, left_out: float) -> Any:
-    """Compile the function that makes a step of coefficients, and the loop over steps.
+    """Compile the functions that make a step of coefficients and look at a guard, and the loop over
+    steps.
 
-    It knows nothing of what moves, so that it serves all motions with as many numbers and guards.
+    They know nothing of what moves, so that they serve all motions with as many numbers and guards.
     """
-    recorded = record(lambda raw, _: step(layout, left_out, raw), layout.raw, 0)
+    step = record(lambda raw, _: step_of(layout, left_out, raw), layout.clock + 4, 0)
+    look = record(doubt_about, layout.order, 1)
     driver = DRIVER.format(
         clock=layout.clock,
         watch=layout.clock + 3,
         width=layout.row,
-        state=layout.terms,
+        guards=layout.guards,
+        order=layout.order,
+        terms=layout.terms,
         state_bytes=8 * layout.size,
         time=layout.time,
-        taken=layout.time + 2,
-        goes_on=layout.time + 3,
+        goes_on=layout.time + 2,
+        span=layout.time + 3,
     )
-    return loaded(llvm_source({"step": recorded}, 1) + driver, EFFORT)
+    return loaded(llvm_source({"step": step, "look": look}, 1) + driver, EFFORT)
 
 
-def step(layout: Layout, left_out: float, raw: Sequence[Scalar]) -> list[Scalar]:
+def doubt_about(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar]:
+    """Return whether a guard may fall in a step of some length."""
+    probes = looked_at(terms, spans[0], PROBES_PER_STEP)
+    return [may_fall(terms, probes, spans[0], NODES)]
+
+
+def step_of(layout: Layout, left_out: float, raw: Sequence[Scalar]) -> list[Scalar]:
     """Return a step: coefficients in powers of its part, and what follows (see `Layout`)."""
     count, plain = layout.order + 1, NODES
     state = [raw[k : k + count] for k in range(0, layout.terms, count)]
     guards = [raw[k : k + count - 1] for k in range(layout.terms, layout.clock, count - 1)]
-    time, lost, end, watch = raw[layout.clock :]
+    time, lost, end = raw[layout.clock : layout.clock + 3]
     left = (end - time) - lost
     span = plain.least(step_length(state, guards, left_out), left)
-    doubt: Scalar = 0.0
-    for terms in guards:
-        probes = looked_at(terms, span, PROBES_PER_STEP)
-        doubt = doubt + may_fall(terms, probes, span, plain)
-    taken = plain.choose(doubt * watch, 0.0, span)
     scaled, power = [[terms[0] for terms in state]], span
     for k in range(1, count):
         scaled.append([terms[k] * power for terms in state])
         power = power * span
     after = [horner(terms, span) for terms in state]
     # What rounding takes from the time is given back (Knuth's sum of two numbers).
-    sum_ = time + span
-    moved = sum_ - time
-    lost = lost + ((time - (sum_ - moved)) + (span - moved))
+    reached = time + span
+    moved = reached - time
+    lost = lost + ((time - (reached - moved)) + (span - moved))
     goes_on = plain.below(span, left)
-    later = sum_ + lost
-    lost = lost - (later - sum_)
+    later = reached + lost
+    lost = lost - (later - reached)
     return [
         *[scaled[k][i] for i in range(layout.size) for k in range(count)],
         *after,
         plain.choose(goes_on, later, end),
         lost,
-        taken,
         goes_on,
         span,
     ]

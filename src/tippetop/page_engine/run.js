@@ -45,7 +45,7 @@ export function simulate(
   problem,
   { duration, tolerance = 1e-10, step_limit, phase_limit, onProgress } = {},
 ) {
-  m.require_tolerance(tolerance, "compiled");
+  m.require_tolerance(tolerance, "dop853");
   const seconds = inUnits("duration", duration, "s");
   const run = new Run(new m.Problem(problem), seconds, tolerance, [phase_limit, step_limit]);
   for (const segment of run.trajectory.segments()) {

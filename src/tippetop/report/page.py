@@ -15,7 +15,7 @@ from typing import Any
 import jinja2
 from PIL import Image
 
-from tippetop.integrators import default_name
+from tippetop.integrators import DEFAULT
 from tippetop.report import quoted
 from tippetop.report.claim import RULE, Judgement, Value, Verdict, count_verdicts, in_words
 from tippetop.report.gallery import PLATES, Plate
@@ -102,7 +102,7 @@ def render(
         quick=quick,
         partial=partial,
         version=version("tippetop"),
-        integrator=default_name(),
+        integrator=DEFAULT,
     )
 
 

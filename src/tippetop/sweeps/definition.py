@@ -10,7 +10,7 @@ from typing import Annotated, Any, Self, TypeAlias
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from tippetop.graph.own_parts import has_choices
+from tippetop.graph.own_parts import require_recordable
 from tippetop.problem.problem import Problem
 from tippetop.support.errors import MISSING, Described, InvalidInput
 from tippetop.support.files import made_of, read_text
@@ -87,7 +87,7 @@ class Sweep(Part):
             given = Described(" and ".join(chosen)) if chosen else MISSING
             fault = "are given together" if chosen else ""
             raise InvalidInput(", ".join(GRIDS), given, "one of them", fault)
-        has_choices(self.problem.top)
+        require_recordable(self.problem.top)
         if self.settled is not None:
             require_jellett(self.problem.top)
         with _only_refusals():

@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tippetop.integrators.base import Array
+from tippetop.integrators.polynomial_minima import first_fall, least_value, looked_at
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import Arithmetic, horner
 from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.launch_arrays import Indices
-from tippetop.integrators.polynomial_minima import first_fall, least_value, looked_at
 from tippetop.sweeps.taylor_step import CLOSER_LOOKS, LANES, LOOKS, Jet, extremes, met, step_size
 from tippetop.sweeps.taylor_stepper import NODES, compiled, padded
 

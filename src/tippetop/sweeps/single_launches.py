@@ -11,7 +11,7 @@ from tippetop.contact.block import in_blocks
 from tippetop.contact.mode import Segment, Transition
 from tippetop.contact.trajectory import Trajectory
 from tippetop.graph.own_parts import has_choices
-from tippetop.integrators import TOLERANCES, default_name, has_llvm, make_integrator
+from tippetop.integrators import DEFAULT, TOLERANCES, make_integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.state import State
@@ -26,12 +26,12 @@ _LOG = logging.getLogger(__name__)
 
 
 def is_alone(launches: Launches) -> bool:
-    """Whether there are no batches, which LLVM compiles, or they know nothing of their bodies or
-    rules, or their laws choose by the numbers, which Taylor's method does not see.
+    """Return whether steps of many launches at once do not serve: they know nothing of bodies of
+    several surfaces and of users' rules, and do not see where a law chooses by the numbers.
     """
     example = launches.kind.example
     known = launches.own is None and not isinstance(example.surface, Hull)
-    return not (has_llvm() and known) or has_choices(example)
+    return not known or has_choices(example)
 
 
 def follow_each(launches: Launches, tolerance: float, settled: float | None = None) -> Ends:
@@ -74,9 +74,7 @@ def follow(
     """
     automaton, state, time = begin
     top = automaton.top
-    analytic = not has_choices(top)
-    least = TOLERANCES[default_name(analytic)]
-    method = make_integrator(None, max(tolerance, least), analytic=analytic)
+    method = make_integrator(None, max(tolerance, TOLERANCES[DEFAULT]))
     trajectory = Trajectory(automaton, start, end, method, time=time)
     tally = Tally(top, launched or state)
     segments, recorder = (

@@ -22,8 +22,6 @@ from typing import Any, NamedTuple
 from tippetop.contact.closed import BRANCH
 from tippetop.graph.taylor_coefficients import SharedSeries
 from tippetop.integrators.base import Motion
-from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
-from tippetop.mechanics.vectors import Scalar
 from tippetop.integrators.polynomial_minima import (
     TINY,
     first_fall,
@@ -32,6 +30,8 @@ from tippetop.integrators.polynomial_minima import (
     lower_bound,
     may_fall,
 )
+from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
+from tippetop.mechanics.vectors import Scalar
 
 LOOKS, CLOSER_LOOKS = 12, 32
 """Intervals of a step at whose ends n_z and guards are looked at, and of what may be longer than a

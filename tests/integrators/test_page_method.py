@@ -1,33 +1,26 @@
-"""The method that numba compiles takes SciPy's steps, on every motion, and is compiled once."""
+"""The page's method takes SciPy's steps, on every motion."""
 
 import itertools
 import math
-import os
-import sys
 
 import numpy as np
 import pytest
 from exact_motions import KEPLER, whole
-
-from children import ended, started
-from every_motion import CASES, states
-from tippetop.integrators import Guard, Motion, dormand_prince, has_numba, make_integrator, stepping
-from tippetop.problem.presets import report_problem
-
-if not has_numba():
-    pytest.skip("numba is not installed", allow_module_level=True)
+from page_method import PageMethod
 
 import tippetop as tt
-from tippetop.integrators.sealed_folders import MAKING, SEAL, VARIABLE, kept
+from every_motion import CASES, states
+from tippetop.integrators import Guard, Motion, dormand_prince, make_integrator, stepping
+from tippetop.problem.presets import report_problem
 
 TOLERANCE = 1e-9
 
 
 def both(motion, parameters, start, end):
-    """The same by SciPy's method and by the compiled one."""
+    """The same by SciPy's method and by the page's."""
     return (
-        whole(make_integrator(name, TOLERANCE).integrate(motion, parameters, (0.0, start), end))
-        for name in ("dop853", "compiled")
+        whole(one.integrate(motion, parameters, (0.0, start), end))
+        for one in (make_integrator("dop853", TOLERANCE), PageMethod(TOLERANCE))
     )
 
 
@@ -59,15 +52,11 @@ def test_motions_of_tops_end_where_scipys_do(name):
 
 
 def test_rounding_does_not_gather():
-    """A thousand times around."""
+    """A hundred times around."""
     motion = Motion(lambda y, p: (y[1], -p[0] * y[0]), size=2, parameters=1)
-    arc = whole(
-        make_integrator("compiled", 3e-14).integrate(
-            motion, (1.0,), (0.0, np.array([1.0, 0.0])), 6e3
-        )
-    )
+    arc = whole(PageMethod(3e-14).integrate(motion, (1.0,), (0.0, np.array([1.0, 0.0])), 600.0))
     assert abs(math.hypot(*arc.end_state) - 1.0) < 1e-11
-    assert arc.steps > 5000
+    assert arc.steps > 500
 
 
 def pendulums(count):
@@ -91,11 +80,11 @@ def test_states_of_any_size_and_every_one_of_several_guards(count):
     """
     motion, frequencies = pendulums(count), 1.0 + np.arange(count)
     for last, side, level in itertools.product(
-        range(count), (1.0, -1.0), np.linspace(-0.9, 0.9, 9)
+        range(count), (1.0, -1.0), np.linspace(-0.9, 0.9, 4)
     ):
         levels = np.where(np.arange(count) == last, level, -1.5)
         start = np.repeat([side, 0.0], count)
-        arc = whole(make_integrator("compiled").integrate(motion, levels, (0.0, start), 9.0))
+        arc = whole(PageMethod().integrate(motion, levels, (0.0, start), 9.0))
         # What begins below its level has to rise above it first.
         phase = math.acos(level) if side > level else 2.0 * math.pi - math.acos(-level)
         assert arc.guard == motion.guards[last].name
@@ -116,7 +105,7 @@ def test_no_fall_is_looked_for_where_every_guard_is_far_from_zero(count, monkeyp
     monkeypatch.setattr(stepping, "first_fall", refused)
     motion, levels = pendulums(count), [-30.0 * 100.0**i for i in range(count)]
     start = np.repeat([1.0, 0.0], count)
-    arc = whole(make_integrator("compiled").integrate(motion, levels, (0.0, start), 9.0))
+    arc = whole(PageMethod().integrate(motion, levels, (0.0, start), 9.0))
     assert arc.guard is None
     assert arc.solution.end == 9.0
 
@@ -187,7 +176,7 @@ def test_a_trial_is_a_single_step(monkeypatch):
 
     monkeypatch.setattr(stepping.Stepping, "landed", seen)
     problem = report_problem(175.0).replace({"contact.liftoff": "fly"})
-    run = tt.simulate(problem, 8.0, samples=2, integrator="compiled", tolerance=1e-10)
+    run = tt.simulate(problem, 8.0, samples=2, integrator=PageMethod(1e-8))
     assert run.sizes["event"] > 10
     assert len(trials) > 20
     assert set(trials) == {2 + 12 + 3}, (
@@ -195,94 +184,15 @@ def test_a_trial_is_a_single_step(monkeypatch):
     )
 
 
-def test_what_cannot_be_recorded_is_left_to_scipy():
-    def rates(y, p):
-        return (y[1], -math.sin(float(y[0])))
-
-    motion = Motion(rates, size=2, parameters=0)
-    scipys, own = both(motion, (), np.array([1.0, 0.0]), 3.0)
-    np.testing.assert_array_equal(own.solution.terms, scipys.solution.terms)
-
-
-RUN = """
-import numpy as np
-from tippetop.integrators import make_integrator, Motion
-motion = Motion(lambda y, p: (y[1], -p[0] ** 2 * y[0]), size=2, parameters=1)
-*_, arc = make_integrator("compiled").integrate(motion, (np.pi,), (0.0, np.array([1.0, 0.0])), 1.0)
-assert abs(arc.end_state[0] + 1.0) < 1e-12, arc
-"""
-
-
-def compiling(folder):
-    environment = {**os.environ, VARIABLE: str(folder)}
-    return started([sys.executable, "-W", "error", "-c", RUN], env=environment)
-
-
-def compile_in(folder):
-    with compiling(folder) as process:
-        assert ended(process) == ("", "", 0)
-
-
-def contents(folder):
-    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
-
-
-@pytest.mark.slow
-def test_processes_share_what_they_compile_and_damage_is_thrown_away(tmp_path):
-    with compiling(tmp_path) as one, compiling(tmp_path) as another:
-        assert ended(one) == ended(another) == ("", "", 0)
-    whole_ones = contents(tmp_path)
-    assert len(list(tmp_path.glob(f"*/{SEAL}"))) == 3, (
-        "the loop, the motion, and its guards at all looks"
-    )
-    assert not any(MAKING.fullmatch(path.name) for path in tmp_path.iterdir())
-    compile_in(tmp_path)
-    assert contents(tmp_path) == whole_ones, "nothing was compiled again"
-    code = [path for path in whole_ones if path.suffix == ".nbc"]
-    for path in code:
-        content = bytearray(whole_ones[path])
-        content[len(content) // 2] ^= 0x40
-        path.write_bytes(content)
-    damaged = contents(tmp_path)
-    compile_in(tmp_path)
-    repaired = contents(tmp_path)
-    assert code
-    assert all(repaired[path] != damaged[path] for path in code)
-
-
-def test_what_was_left_of_compiling_is_removed_by_the_next_who_compiles(tmp_path, monkeypatch):
-    """A compiler that is interrupted, or killed, cannot clean up; one that is at work is left
-    alone.
-    """
-    monkeypatch.setenv(VARIABLE, str(tmp_path))
-    code = "code-" + 32 * "0"
-    ended_long_ago, at_work = (
-        tmp_path / f"{code}-{2**22 + 1}-a1_45678",
-        tmp_path / f"{code}-{os.getpid()}-b1_45678",
-    )
-    for folder in (ended_long_ago, at_work):
-        folder.mkdir()
-        (folder / "part").write_bytes(b"half")
-    assert MAKING.fullmatch(kept("whole", lambda folder: folder.name))
-    assert len(list(tmp_path.iterdir())) == 2
-    assert at_work.exists()
-
-
-def test_a_cache_that_cannot_be_written_is_done_without(tmp_path):
-    (tmp_path / "file").write_text("no folder")
-    compile_in(tmp_path / "file")
-
-
 def test_the_reports_run_is_that_of_the_other_integrators():
-    runs = [
-        tt.simulate(report_problem(), 2.0, samples=21, integrator=name)
-        for name in ("compiled", "dop853")
-    ]
-    np.testing.assert_allclose(runs[0].theta, runs[1].theta, rtol=0, atol=1e-9)
-    assert runs[0].attrs["integrator"] == "compiled"
+    own, scipys = (
+        tt.simulate(report_problem(), 0.3, samples=21, integrator=one)
+        for one in (PageMethod(), "dop853")
+    )
+    np.testing.assert_allclose(own.theta, scipys.theta, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", ["compiled", "taylor", "collocation", "dop853"])
+@pytest.mark.parametrize("name", ["page", "taylor", "collocation", "dop853"])
 @pytest.mark.parametrize("kind", [tuple, np.array])
 def test_whole_numbers_are_numbers(name, kind):
     """A motion of a user's own may be given parameters, and a start, in integers."""
@@ -290,7 +200,8 @@ def test_whole_numbers_are_numbers(name, kind):
     motion = Motion(
         lambda y, p: (y[1], -p[0] + 0.0 * y[0]), size=2, parameters=2, guards=(touches,)
     )
-    *_, arc = make_integrator(name).integrate(motion, kind([2, 0]), (0, np.array([4, 0])), 7)
+    method = PageMethod() if name == "page" else make_integrator(name)
+    *_, arc = method.integrate(motion, kind([2, 0]), (0, np.array([4, 0])), 7)
     assert arc.guard == "touches"
     assert arc.solution.end == pytest.approx(2.0, rel=1e-12)
     assert arc.end_state == pytest.approx([0.0, -4.0], abs=1e-11)

@@ -1,0 +1,116 @@
+"""Taylor coefficients by compiled code against power series of plain numbers."""
+
+import numpy as np
+import pytest
+
+from every_motion import CASES, states
+from tippetop.extend import abs as absolute
+from tippetop.extend import where
+from tippetop.graph.llvm_series import with_choices
+from tippetop.graph.recording import record
+from tippetop.integrators.base import Guard, Motion
+from tippetop.integrators.taylor import Jet, Taylor
+from tippetop.mechanics.series import PLAIN, Series, solved, unknown
+
+ORDER, ROUNDINGS = 20, 1e3
+
+
+def recorded(motion):
+    """Rates and guards of a motion as a graph."""
+
+    def values(y, p):
+        return [*motion.rates(y, p), *[guard.value(y, p) for guard in motion.guards]]
+
+    return record(values, motion.size, motion.parameters)
+
+
+def compiled(motion, order=ORDER):
+    """A function that expands a motion in compiled code: state, and guards."""
+    jet = Jet(with_choices(recorded(motion)), order)
+    room, out = jet.room(), np.zeros(jet.coefficients)
+
+    def expand(state, parameters):
+        jet(np.array(state), np.array([*parameters, 0.0]), room, out)
+        parts = np.split(out, [motion.size * (order + 1)])
+        return parts[0].reshape(-1, order + 1).copy(), parts[1].reshape(-1, order).copy()
+
+    return expand
+
+
+def by_series(motion, state, parameters, order=ORDER):
+    """The same by series of floats."""
+    y = solved(
+        [Series(unknown, PLAIN) for _ in state], list(state), lambda y: motion.rates(y, parameters)
+    )
+    guards = [guard.value(y, parameters).up_to(order - 1)[:order] for guard in motion.guards]
+    return np.array([one.up_to(order)[: order + 1] for one in y]), np.array(guards)
+
+
+def assert_same(found, expected, beside):
+    """Every coefficient is the same beside the largest of its order, or no farther off than where
+    the state is another by roundings.
+
+    What grows faster than the solution inside of it multiplies roundings from order to order.
+    """
+    for ours, theirs, others in zip(found, expected, beside, strict=True):
+        largest = np.maximum(np.abs(theirs).max(axis=0, initial=0.0), 1e-280)
+        grown = np.abs(others - theirs).max(axis=0, initial=0.0) / largest
+        off = np.abs(ours - theirs).max(axis=0, initial=0.0) / largest
+        assert (off <= 1e-12 + ROUNDINGS * grown).all(), (off, grown)
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_coefficients_of_every_motion_are_those_of_power_series(part):
+    random, compared = np.random.default_rng(part), 0
+    for case in random.permutation(np.array(CASES, dtype=object))[:5]:
+        _, motion, parameters = case
+        expand = compiled(motion)
+        for state in states(motion, 2):
+            try:
+                expected, beside = (
+                    by_series(motion, (factor * state).tolist(), parameters)
+                    for factor in (1.0, 1.0 + 1e-15)
+                )
+            except (TypeError, ArithmeticError):  # a choice, or a root of a negative number
+                continue
+            if all(np.isfinite(one).all() for one in expected):
+                assert_same(expand(state, parameters), expected, beside)
+                compared += 1
+    assert compared > 0
+
+
+@pytest.mark.parametrize("order", [2, 7, 9, 10, 17, 25])
+def test_every_operation_has_its_rule_at_every_order(order):
+    def rates(y, p):
+        a, b = y[0], y[1]
+        return (
+            a * b - b / a + p[0] * a,
+            (a * a + b * b) ** 0.5 + 1.0 / b,
+            (a + 2.0) ** 0.3 - (b + 3.0) ** -1.7 + p[0] ** 1.5,
+        )
+
+    guards = (Guard("mixed", lambda y, p: y[0] ** 3 - y[1] * y[2] / p[0] + 1.0),)
+    motion = Motion(rates, size=3, parameters=1, guards=guards)
+    expand = compiled(motion, order)
+    for state in np.random.default_rng(1).uniform(0.5, 1.5, (5, 3)):
+        # What is left from one state does not show in the next.
+        expected, beside = (
+            by_series(motion, (factor * state).tolist(), (0.7,), order)
+            for factor in (1.0, 1.0 + 1e-15)
+        )
+        assert_same(expand(state, (0.7,)), expected, beside)
+
+
+def test_where_a_law_has_another_branch_a_step_ends():
+    """A ball on a spring that pulls harder than it pushes: half a period of each."""
+    stiff, soft = 9.0, 1.0
+
+    def rates(y, p):
+        return y[1], -where(y[0] > 0.0, stiff * y[0], soft * y[0]) - 0.0 * absolute(y[1])
+
+    motion = Motion(rates, size=2, parameters=0)
+    period = np.pi / stiff**0.5 + np.pi / soft**0.5
+    *_, arc = Taylor().integrate(motion, (), (0.0, np.array([0.0, 1.0])), 25.0 * period)
+    np.testing.assert_allclose(arc.end_state, [0.0, 1.0], rtol=0, atol=1e-11)
+    for time in np.pi / stiff**0.5 + period * np.arange(25):
+        assert np.abs(arc.solution.knots - time).min() < 1e-11
