@@ -9,7 +9,7 @@ from tippetop.extend import where
 from tippetop.graph.llvm_series import with_choices
 from tippetop.graph.recording import record
 from tippetop.integrators.base import Guard, Motion
-from tippetop.integrators.taylor import Jet, Taylor
+from tippetop.integrators.taylor import SeriesExpansion, Taylor
 from tippetop.mechanics.series import PLAIN, Series, solved, unknown
 
 ORDER, ROUNDINGS = 20, 1e3
@@ -26,7 +26,7 @@ def recorded(motion):
 
 def compiled(motion, order=ORDER):
     """A function that expands a motion in compiled code: state, and guards."""
-    jet = Jet(with_choices(recorded(motion)), order)
+    jet = SeriesExpansion(with_choices(recorded(motion)), order)
     room, out = jet.room(), np.zeros(jet.coefficients)
 
     def expand(state, parameters):

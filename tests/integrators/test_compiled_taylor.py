@@ -26,12 +26,12 @@ def compilations(monkeypatch):
     """The orders of all that is compiled from here on."""
     made = []
 
-    class Counted(taylor.Jet):
+    class Counted(taylor.SeriesExpansion):
         def __init__(self, recorded, order):
             made.append(order)
             super().__init__(recorded, order)
 
-    monkeypatch.setattr(taylor, "Jet", Counted)
+    monkeypatch.setattr(taylor, "SeriesExpansion", Counted)
     monkeypatch.setenv(VARIABLE, "off")
     return made
 

@@ -253,7 +253,7 @@ def test_durations_and_limits_are_refused_the_same() -> None:
     sentences = list[str]()
     for change in changes:
         with pytest.raises(tt.InvalidInput) as refusal:
-            tt.simulate(problem, integrator="taylor", **{"duration": DURATION, **change})
+            tt.simulate(problem, integrator="dop853", **{"duration": DURATION, **change})
         sentences.append(str(refusal.value))
     question = asked(0, DURATION) | {"problem": json.loads(problem.to_json())}
     assert [

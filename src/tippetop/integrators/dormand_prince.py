@@ -1,4 +1,4 @@
-"""Steps of Dormand and Prince's method of order 8(5,3), in Python that numba compiles.
+"""Steps of Dormand and Prince's method of order 8(5,3), in Python that the page translates.
 
 Hairer, Norsett and Wanner 1993, Solving Ordinary Differential Equations I, section II.10: order,
 error estimate, step sizes and dense output are as in SciPy's DOP853. Sums are compensated: what

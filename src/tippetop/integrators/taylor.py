@@ -18,7 +18,6 @@ from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.machine_code import loaded
 from tippetop.integrators.polynomial_minima import looked_at, may_fall
 from tippetop.integrators.polynomials import Polynomials
-from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar
 
@@ -136,6 +135,8 @@ class Taylor:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         stepper = _stepper(motion, order_for(self.tolerance), self.tolerance)
         if stepper is None:
+            from tippetop.integrators.scipy_methods import SciPy  # noqa: PLC0415 - slow to import
+
             yield from SciPy("dop853", TOLERANCES["dop853"]).integrate(
                 motion, parameters, start, end
             )
@@ -164,7 +165,7 @@ class Taylor:
         recorded = _recorded(motion)
         if recorded is None:
             raise TypeError("the motion cannot be recorded")
-        jet, numbers = Jet(recorded, degree), np.array(parameters, dtype=float)
+        jet, numbers = SeriesExpansion(recorded, degree), np.array(parameters, dtype=float)
         room, out = jet.room(), np.zeros(jet.coefficients)
 
         def expand(state: Sequence[float]) -> Array:
@@ -179,7 +180,7 @@ def order_for(tolerance: float) -> int:
     return max(2, math.ceil(1.0 - 0.5 * math.log(tolerance)))
 
 
-class Jet:
+class SeriesExpansion:
     """The compiled function that expands a motion's solution and guards to some order."""
 
     def __init__(self, recorded: Recorded, order: int) -> None:
@@ -199,7 +200,7 @@ class Jet:
         self._function(*[numbers.ctypes.data for numbers in (y, p, room, out)])
 
 
-class Layout(NamedTuple):
+class StepLayout(NamedTuple):
     """Where numbers lie in what a step takes, `raw`, and makes, a row."""
 
     size: int
@@ -236,13 +237,13 @@ class Layout(NamedTuple):
         return self.time + 4
 
 
-class Stepper:
+class CompiledSteps:
     """Compiled steps of one motion at one tolerance."""
 
     def __init__(self, motion: Motion, recorded: Recorded, order: int, tolerance: float) -> None:
-        self.jet = Jet(recorded, order)
+        self.jet = SeriesExpansion(recorded, order)
         self.guards, self.order = len(motion.guards), order
-        self.layout = Layout(recorded.size, len(recorded.outputs) - recorded.size, order)
+        self.layout = StepLayout(recorded.size, len(recorded.outputs) - recorded.size, order)
         self._engine = _step_code(self.layout, min(LEFT_OUT, 1.0 / tolerance))
         kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 6, ctypes.c_int64)
         self.follow: Callable[..., int] = kind(self._engine.get_function_address("follow"))
@@ -258,7 +259,11 @@ class Run:
     """A motion under way: its state, and the steps of the arc that is being made."""
 
     def __init__(
-        self, stepper: Stepper, parameters: Sequence[float], start: tuple[float, Array], end: float
+        self,
+        stepper: CompiledSteps,
+        parameters: Sequence[float],
+        start: tuple[float, Array],
+        end: float,
     ) -> None:
         self.stepper, self.layout = stepper, stepper.layout
         self.parameters = np.array([*parameters, 0.0], dtype=float)
@@ -378,10 +383,10 @@ class Run:
 
 
 @lru_cache(maxsize=64)
-def _stepper(motion: Motion, order: int, tolerance: float) -> Stepper | None:
+def _stepper(motion: Motion, order: int, tolerance: float) -> CompiledSteps | None:
     """Return the compiled steps of a motion; None where it cannot be recorded."""
     recorded = _recorded(motion)
-    return None if recorded is None else Stepper(motion, recorded, order, tolerance)
+    return None if recorded is None else CompiledSteps(motion, recorded, order, tolerance)
 
 
 @lru_cache(maxsize=64)
@@ -396,7 +401,7 @@ def _recorded(motion: Motion) -> Recorded | None:
 
 
 @lru_cache(maxsize=64)
-def _step_code(layout: Layout, left_out: float) -> Any:
+def _step_code(layout: StepLayout, left_out: float) -> Any:
     """Compile the functions that make a step of coefficients and look at a guard, and the loop over
     steps.
 
@@ -425,8 +430,8 @@ def doubt_about(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar
     return [may_fall(terms, probes, spans[0], NODES)]
 
 
-def step_of(layout: Layout, left_out: float, raw: Sequence[Scalar]) -> list[Scalar]:
-    """Return a step: coefficients in powers of its part, and what follows (see `Layout`)."""
+def step_of(layout: StepLayout, left_out: float, raw: Sequence[Scalar]) -> list[Scalar]:
+    """Return a step: coefficients in powers of its part, and what follows (see `StepLayout`)."""
     count, plain = layout.order + 1, NODES
     state = [raw[k : k + count] for k in range(0, layout.terms, count)]
     guards = [raw[k : k + count - 1] for k in range(layout.terms, layout.clock, count - 1)]
