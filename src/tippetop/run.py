@@ -194,7 +194,7 @@ def simulate(
     early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
     found = recorder.finish(trajectory.time, trajectory.state, early)
     ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
-    peak_tilt, peak_time = tally.peak(float(state.axis[2]))
+    peak_tilt, peak_time = tally.peak
     begin = State.unpack([np.float64(number) for number in state.pack()])
     end_time = duration if trajectory.time == trajectory.end else trajectory.time * units.time
     scalars = metrics(ends, begin, top, units) | {

@@ -127,7 +127,10 @@ def test_a_dip_between_an_end_and_the_next_look_is_found():
 def test_the_least_values_of_lots_are_found_whatever_their_degrees():
     dip = Polynomials(np.array([[0.3], [-1.0], [1.0]]), ones())
     lines = Polynomials(np.array([[1.0, 2.0], [-0.5, 1.0]]), np.ones(2))
-    assert least_of_each([lines, dip], [], [lines]) == [pytest.approx(0.05, rel=1e-12), np.inf, 0.5]
+    first, none, last = least_of_each([lines, dip], [], [lines])
+    assert first == pytest.approx((0.05, 2, 0.5), rel=1e-12)
+    assert none.value == np.inf
+    assert last == (0.5, 0, 1.0)
 
 
 # --- sag

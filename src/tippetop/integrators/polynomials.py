@@ -4,7 +4,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -194,20 +194,41 @@ def times(matrix: Array, columns: Array) -> Array:
     return np.concatenate(parts, axis=-1)
 
 
-def least_of_each(*lots: Sequence["Polynomials"]) -> list[float]:
-    """The least values of several lots of polynomials; inf of a lot without any."""
+class Least(NamedTuple):
+    """The least value of a lot of polynomials, and where it is taken."""
+
+    value: float
+    """The value; inf of a lot without any."""
+    row: int = -1
+    """Number of the polynomial, counted over the lot."""
+    time: float = np.nan
+    """Time since the begin of that polynomial."""
+
+
+def least_of_each(*lots: Sequence["Polynomials"]) -> list[Least]:
+    """Return the least values of several lots of polynomials."""
     every = [one for lot in lots for one in lot]
-    owner = np.repeat(np.arange(len(lots)), [sum(len(one.span) for one in lot) for lot in lots])
+    counts = [sum(len(one.span) for one in lot) for lot in lots]
+    owner = np.repeat(np.arange(len(lots)), counts)
     unit, first = np.zeros((max((len(one.unit) for one in every), default=2), len(owner))), 0
     for one in every:
         unit[: len(one.unit), first : first + len(one.span)] = one.unit
         first += len(one.span)
-    joined = Polynomials.of_unit(unit, np.ones(len(owner)))
+    spans = np.concatenate([one.span for one in every]) if every else np.empty(0)
+    joined = Polynomials.of_unit(unit, spans)
     least = np.full(len(lots), np.inf)
     np.fmin.at(least, owner, joined.lowest)
     lower = np.flatnonzero(joined.floor <= least[owner])
-    np.fmin.at(least, owner[lower], joined.some(lower).refined_least()[1])
-    return least.tolist()
+    times, values = joined.some(lower).refined_least()
+    found = list[Least]()
+    for lot, begin in enumerate(np.cumsum([0, *counts[:-1]])):
+        which = np.flatnonzero(owner[lower] == lot)
+        if not len(which):
+            found.append(Least(float(least[lot])))
+            continue
+        best = which[np.argmin(values[which])]
+        found.append(Least(float(values[best]), int(lower[best] - begin), float(times[best])))
+    return found
 
 
 def of_each(find: Callable[..., Any], unit: Array, *given: Array) -> Array:

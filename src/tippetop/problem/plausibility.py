@@ -20,7 +20,7 @@ centre is c from the centre of mass, all three are m (R^2 - c^2).
 import math
 from typing import NamedTuple, TypeAlias
 
-from tippetop.mechanics.hull import acting, each_surface, lowest_surface
+from tippetop.mechanics.hull import Hull, acting, each_surface, lowest_surface
 from tippetop.mechanics.surface import Surface
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.problem import Problem
@@ -179,7 +179,11 @@ def outside_of(surface: Surface) -> Outside:
 
 
 def _measured(surface: Surface) -> Outside:
-    """Return how far a body reaches, from the corners of the polygon in its meridian."""
+    """Return how far a body reaches, from the corners of the polygon in its meridian; of a sphere
+    exactly.
+    """
+    if surface.spherical and not isinstance(surface, Hull):
+        return _measured_sphere(surface)
     corners = [
         _corner(one, min(max(math.pi * k / (CORNERS - 1), POLE), math.pi - POLE))
         for one in each_surface(surface)
@@ -197,6 +201,24 @@ def _measured(surface: Surface) -> Outside:
         _largest_mean(squares),
         below * above if below >= 0.0 and above >= 0.0 else math.inf,
         max([square for _, square in squares]),
+        _top_heaviness(surface),
+    )
+
+
+def _measured_sphere(surface: Surface) -> Outside:
+    """Return how far a sphere reaches."""
+    center = -surface.slope(1.0)
+    radius = surface.height(1.0) + center
+    mean = radius**2 - center**2
+    mean = mean if mean >= 0.0 else math.inf
+    return Outside(
+        radius,
+        radius - center,
+        radius + center,
+        mean,
+        mean,
+        mean,
+        (radius + abs(center)) ** 2,
         _top_heaviness(surface),
     )
 

@@ -18,19 +18,18 @@ def derive(samples: Samples, orientation: Array, top: Top, units: Units) -> dict
     The samples and the top are in natural units; the orientations are quaternions, shape (k, 4).
     """
     instants, state = samples.instants, samples.instants.state
-    vectors = np.array([instants.force, state.velocity, state.momentum])
-    vectors *= np.array([units.force, units.speed, units.angular_momentum]).reshape(-1, 1, 1)
-    force, velocity, momentum = in_body_frame(vectors, orientation, state.axis)
+    frame = body_frame(orientation, state.axis)
+    in_body = in_frame(frame, scale(units.angular_momentum, state.momentum))
     omega = angular_velocity(state.axis, state.momentum, top)
     moments = np.array([top.transverse_inertia, top.transverse_inertia, top.axial_inertia])
     turning = cross(state.momentum, state.axis)
     half = 0.5 * units.energy
     return {
         "angular_velocity": np.stack(scale(1.0 / units.time, omega), -1),
-        "contact_force_body": force,
-        "velocity_body": velocity,
-        "angular_momentum_body": momentum,
-        "angular_velocity_body": momentum / (units.inertia * moments),
+        "contact_force_body": in_frame(frame, scale(units.force, instants.force)),
+        "velocity_body": in_frame(frame, scale(units.speed, state.velocity)),
+        "angular_momentum_body": in_body,
+        "angular_velocity_body": in_body / (units.inertia * moments),
         "energy_height": top.mass * top.gravity * units.energy * state.height,
         "energy_translation": half * top.mass * dot(state.velocity, state.velocity),
         "energy_spin": half * top.axial_inertia * instants.spin**2,
@@ -38,16 +37,17 @@ def derive(samples: Samples, orientation: Array, top: Top, units: Units) -> dict
     }
 
 
-def in_body_frame(vectors: Array, orientation: Array, axis: Vector) -> Array:
-    """Return the components of vectors, shape (n, 3, k), in the body frame, shape (n, k, 3).
+def body_frame(orientation: Array, axis: Vector) -> tuple[Vector, Vector, Vector]:
+    """Return the unit vectors of the body frame, each component of shape (k,).
 
     The orientations are quaternions, shape (k, 4), that turn the body frame to the table's; the
     axis is the third unit vector of the body frame.
     """
     w, x, y, z = np.ascontiguousarray(orientation.T)
     first = (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y))
-    rows: Vector = (vectors[:, 0], vectors[:, 1], vectors[:, 2])
-    components = np.empty((len(vectors), len(w), 3))
-    for place, unit in enumerate((first, cross(axis, first), axis)):
-        components[..., place] = dot(unit, rows)
-    return components
+    return first, cross(axis, first), axis
+
+
+def in_frame(frame: tuple[Vector, Vector, Vector], vector: Vector) -> Array:
+    """Return the components of a vector along the unit vectors of a frame, shape (k, 3)."""
+    return np.stack([dot(unit, vector) for unit in frame], -1)

@@ -14,7 +14,7 @@ from tippetop.contact.mode import Event, Outcome
 from tippetop.contact.readings import Rates
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import chebyshev
-from tippetop.integrators.polynomials import Polynomials, least_of_each
+from tippetop.integrators.polynomials import Least, Polynomials, least_of_each
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
@@ -52,6 +52,8 @@ class Tally:
         self._drilled = self._rolled = 0.0
         self.steps = self.evaluations = 0
         self.methods = dict[str, Integrator]()
+        self.peak = self._tilt_at(float(start.axis[2])), 0.0
+        """Largest tilt on the way, rad, and when it was first reached; known after `ends`."""
 
     def take(self, block: Block) -> None:
         """Take in the steps of a block."""
@@ -113,7 +115,8 @@ class Tally:
     def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
         """Return all that was accumulated, given how and where the launch ended."""
         last = State.unpack([np.float64(number) for number in state.pack()])
-        least = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
+        leasts = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
+        self._take_peak(leasts[1])
         settled = settled_tilt_of_one(outcome, state, self._start, self._top)
         return Ends.of_one(
             last,
@@ -123,23 +126,21 @@ class Tally:
             self.flights,
             self.steps,
             (self._drilled, self._rolled),
-            least,
+            [least.value for least in leasts],
             (self._turned, settled, self.arrival(*settled_band(settled))),
             float(self._rolls),
         )
 
-    def peak(self, launched: float) -> tuple[float, float]:
-        """Return the largest tilt on the way, rad, and when it was first reached; `launched` is n_z
-        at launch.
-        """
-        least, when = launched, 0.0
-        for tips, begin in zip(self._lowest, self._lowest_begin, strict=True):
-            place, value = tips.refined_least()
-            lower = np.flatnonzero(value < least)  # none where a step is no number
-            if lower.size:
-                which = lower[np.argmin(value[lower])]
-                least, when = float(value[which]), float(begin[which] + place[which])
-        return math.atan2(math.sqrt(max(1.0 - least**2, 0.0)), least), when
+    def _take_peak(self, least: Least) -> None:
+        """Take in the least n_z on the way, which the launch may be below already."""
+        if least.value < self._start.axis[2]:
+            begin = np.concatenate(self._lowest_begin)[least.row]
+            self.peak = self._tilt_at(least.value), float(begin + least.time)
+
+    @staticmethod
+    def _tilt_at(cosine: float) -> float:
+        """Return the tilt, rad, at some n_z."""
+        return math.atan2(math.sqrt(max(1.0 - cosine**2, 0.0)), cosine)
 
     def arrival(self, low: Scalar, high: Scalar) -> float:
         """First time at which n_z is between `low` and `high`; nan if it never is."""
