@@ -6,7 +6,7 @@ from matplotlib.colors import to_rgb
 
 import tippetop as tt
 from tippetop.export.geometry import lathe
-from tippetop.figures.looks import size, toy_parts
+from tippetop.figures.appearance import size, toy_parts
 from tippetop.figures.meridian import own_profile
 from tippetop.figures.toy import FAR, Toy
 from tippetop.mechanics.hull import outer_height

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from tippetop.figures.looks import ToyPart
+from tippetop.figures.appearance import ToyPart
 
 Array = NDArray[np.float64]
 
@@ -26,8 +26,8 @@ class Mesh(NamedTuple):
 
 
 def lathe(part: ToyPart, unit: float, segments: int = SEGMENTS) -> Mesh:
-    """The triangles of a part of a toy whose size is `unit` (m), with edges where its colours
-    meet.
+    """Return the triangles of a part of a toy whose size is `unit` (m), with edges where its
+    colours meet.
     """
     sectors, columns = len(part.colours), len(part.profile)
     steps = segments // sectors
@@ -54,6 +54,6 @@ def lathe(part: ToyPart, unit: float, segments: int = SEGMENTS) -> Mesh:
 
 
 def _linear(colours: tuple[str, ...]) -> Array:
-    """Linear RGB of sRGB colours, shape (k, 3)."""
+    """Return linear RGB of sRGB colours, shape (k, 3)."""
     values = np.array([to_rgb(colour) for colour in colours])
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)

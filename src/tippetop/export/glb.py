@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tippetop import __version__
 from tippetop.export.geometry import Mesh, lathe
 from tippetop.export.poses import poses_at
-from tippetop.figures.looks import SCENES, ToyPart, size, toy_parts
+from tippetop.figures.appearance import SCENES, ToyPart, size, toy_parts
 from tippetop.problem.bodies import Body
 from tippetop.problem.problem import Problem
 from tippetop.results.dataset import require_run
@@ -57,7 +57,7 @@ def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
 
 
 def glb_bytes(run: xr.Dataset) -> bytes:
-    """The animated model of a run."""
+    """Return the animated model of a run."""
     problem = Problem.from_json(run.attrs["problem"])
     times = key_times(run, problem.body)
     poses = poses_at(run, times)
@@ -96,8 +96,8 @@ def glb_bytes(run: xr.Dataset) -> bytes:
 
 
 def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
-    """Times of the animation's keys, s: so dense that the body turns little between them; one if it
-    is still.
+    """Return times of the animation's keys, s: so dense that the body turns little between them;
+    one if it is still.
 
     Raises `InvalidInput` if the run would need too many keys.
     """
@@ -180,7 +180,7 @@ class _Gltf:
         return int(self.json["materials"].index(material))
 
     def bytes(self) -> bytes:
-        """The document as a .glb file."""
+        """Return the document as a .glb file."""
         self.json["buffers"] = [{"byteLength": len(self.buffer)}]
         text = json.dumps(self.json, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from tippetop.figures.looks import SCENES
+from tippetop.figures.appearance import SCENES
 from tippetop.figures.toy import FAR, Toy
 
 Array = NDArray[np.floating[Any]]
@@ -37,8 +37,8 @@ class View(NamedTuple):
     """Width and height of the picture."""
 
     def rays(self, area: Area, fine: int) -> Array:
-        """Unit directions of rays through some pixels, `fine` across each, shape (rows, columns,
-        3).
+        """Return the unit directions of rays through some pixels, `fine` across each, shape (rows,
+        columns, 3).
         """
         left, right, top, bottom = area
         width, height = self.pixels
@@ -52,14 +52,14 @@ class View(NamedTuple):
         )
 
     def project(self, points: Array) -> tuple[Array, Array]:
-        """Columns and rows, in pixels, of points in space of shape (k, 3)."""
+        """Return columns and rows, in pixels, of points in space of shape (k, 3)."""
         width, height = self.pixels
         offset = points - self.eye
         depth = np.maximum(offset @ self.ahead, 1e-6) * self.spread * 2 / width
         return width / 2 + offset @ self.right / depth, height / 2 - offset @ self.up / depth
 
     def area(self, about: Array, reach: Array) -> Area:
-        """The pixels that a box in space may cover."""
+        """Return the pixels that a box in space may cover."""
         width, height = self.pixels
         corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
         columns, rows = self.project(about + corners * reach)
@@ -69,7 +69,7 @@ class View(NamedTuple):
 
 
 def view_of(target: Array, offset: Array, pixels: tuple[int, int], spread: float = 0.42) -> View:
-    """A camera at an offset from what it looks at."""
+    """Return a camera at an offset from what it looks at."""
     ahead = -offset / np.linalg.norm(offset)
     right = np.cross(ahead, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
@@ -79,7 +79,7 @@ def view_of(target: Array, offset: Array, pixels: tuple[int, int], spread: float
 def picture(
     toy: Toy, view: View, position: Array, frame: Array, path: Array, cell: float
 ) -> NDArray[np.uint8]:
-    """The picture of a moment, shape (height, width, 3).
+    """Return the picture of a moment, shape (height, width, 3).
 
     The toy's centre of mass is at `position`, and its axes are the columns of `frame`, shape (3,
     3). The path of the contact point so far, shape (k, 2), is as `fine_path` makes it; `cell` is
@@ -128,7 +128,8 @@ def _table(eye: Array, rays: Array, cell: float) -> Array:
 
 
 def fine_path(trace: Array, touching: NDArray[np.bool_]) -> tuple[Array, NDArray[np.intp]]:
-    """Points near enough to look like a line, and how many there are up to every corner of a path.
+    """Return points near enough to look like a line, and how many there are up to every corner of a
+    path.
 
     There are none between corners of which one is not `touching` the table.
     """

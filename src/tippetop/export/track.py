@@ -14,7 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tippetop.export.poses import contact_path
-from tippetop.figures.looks import SCENES, size, toy_parts
+from tippetop.figures.appearance import SCENES, size, toy_parts
 from tippetop.problem.problem import Problem
 from tippetop.results.description import describe
 
@@ -26,7 +26,7 @@ SHADINGS = 200
 
 
 def pack_run(run: xr.Dataset) -> bytes:
-    """The block of bytes of a run, or of a part of one."""
+    """Return the block of bytes of a run, or of a part of one."""
     problem, (begin, end) = Problem.from_json(run.attrs["problem"]), _ends(run)
     columns, turns_over, account = _columns(run), float(run["turns_over"]), describe(run)
     header = {
@@ -57,7 +57,7 @@ def pack_run(run: xr.Dataset) -> bytes:
 
 
 def unpack_header(block: bytes) -> dict[str, Any]:
-    """The header of a block of bytes."""
+    """Return the header of a block of bytes."""
     (length,) = struct.unpack("<I", block[4:8])
     header: dict[str, Any] = json.loads(block[8 : 8 + length])
     return header

@@ -1,5 +1,7 @@
-"""Figures: results in, matplotlib figures out; nothing here solves anything.
+"""Figures: results in, matplotlib figures out. Nothing is computed here.
 
-Those of the report take the datasets of its experiments, which say themselves what their variables
-are.
+`style` has the palette and the context that every figure is made in; `drawing` and `annotation`
+have what several figures share. `overview`, `maps` and `section` are the public figures (`tt.plot`,
+`tt.phase_map`, `tt.section`). `appearance` and `toy` describe and render the toy. The other modules
+draw the figures of the report, each from a dataset of `report.experiments`.
 """

@@ -1,4 +1,4 @@
-"""What is written on figures: notes beside points, letters of panels, ticks, legends and insets."""
+"""Annotation of figures: panels, notes beside points, letters, ticks, legends and insets."""
 
 from collections.abc import Callable, Iterable
 from functools import wraps
@@ -18,7 +18,7 @@ Box = tuple[float, float, float, float]
 
 
 def plain_ticks(axis: Axis, ticks: Iterable[float]) -> None:
-    """Put ticks on a logarithmic axis, and label them with plain numbers."""
+    """Put ticks on a logarithmic axis, labelled with plain numbers."""
     axis.set_major_locator(FixedLocator(list(ticks)))
     axis.set_major_formatter(ScalarFormatter())
     axis.set_minor_formatter(NullFormatter())
@@ -26,7 +26,7 @@ def plain_ticks(axis: Axis, ticks: Iterable[float]) -> None:
 
 TILT, FRICTION = r"tilt $\theta$ (rad)", r"friction $\mu$ (s/m)"
 SPIN = r"spin at launch $\omega_0$ (rad/s)"
-"""What axes are called."""
+"""Labels of axes of tilt, friction and spin."""
 
 CRITICAL = (r"$\omega_{c1}$", r"$\omega_{c2}$")
 """The symbols of the two critical spins."""
@@ -35,9 +35,7 @@ CRITICAL = (r"$\omega_{c1}$", r"$\omega_{c2}$")
 def panels(
     height: float, rows: int = 1, columns: int = 1, *, lettered: bool = True, **options: Any
 ) -> tuple[Figure, Any]:
-    """Return a figure of this height, inches, with its panel, or an array of panels marked with
-    letters.
-    """
+    """Return a figure of a height in inches, and its panel or its array of lettered panels."""
     figure = Figure(figsize=(WIDTH, height))
     made = figure.subplots(rows, columns, **options)
     if lettered and rows * columns > 1:
@@ -45,55 +43,70 @@ def panels(
     return figure, made
 
 
-Told = ParamSpec("Told")
+Arguments = ParamSpec("Arguments")
 
 
 class Drawing(Protocol):
-    """Makes what draws into two panels, or into one or an array of them, a figure of what it is
-    told.
+    """Decorator of functions that draw into one or two panels, or into an array of them.
+
+    It replaces such a function by one that takes the remaining arguments and returns the figure.
     """
 
     @overload
     def __call__(
-        self, draw: Callable[Concatenate[Axes, Axes, Told], None], /
-    ) -> Callable[Told, Figure]: ...
+        self, draw: Callable[Concatenate[Axes, Axes, Arguments], None], /
+    ) -> Callable[Arguments, Figure]: ...
 
     @overload
     def __call__(
-        self, draw: Callable[Concatenate[Axes, Told], None], /
-    ) -> Callable[Told, Figure]: ...
+        self, draw: Callable[Concatenate[Axes, Arguments], None], /
+    ) -> Callable[Arguments, Figure]: ...
 
 
 def drawn(height: float, rows: int = 1, columns: int = 1, **options: Any) -> Drawing:
-    """Let what draws into the `panels` of a figure return the figure, in the house style.
+    """Return a decorator by which a function that draws into panels returns their figure.
 
-    It is given the panels, those of several rows and columns as an array, before what is to be
-    drawn.
+    The decorated function makes a figure with `panels`, in the house style, draws into it and
+    returns it. Its first parameters are the panels, each annotated with `Axes`; with several rows
+    and several columns the first parameter is the array of all panels. The other parameters are
+    those of the function that is returned.
+
+    Raises
+    ------
+    TypeError
+        If the number of parameters annotated with `Axes` is not the number of panels.
     """
-    whole = rows > 1 and columns > 1
+    as_array = rows > 1 and columns > 1
 
     def drawing(draw: Callable[..., None]) -> Callable[..., Figure]:
         @wraps(draw)
-        def figure_of(*told: Any, **others: Any) -> Figure:
+        def make_figure(*arguments: Any, **keywords: Any) -> Figure:
             with house_style():
                 figure, made = panels(height, rows, columns, **options)
-                draw(*([made] if whole else np.ravel(made)), *told, **others)
+                axes = [made] if as_array else np.ravel(made)
+                draw(*axes, *arguments, **keywords)
             return figure
 
-        own = signature(draw)
-        taken, told = sum(one.annotation is Axes for one in own.parameters.values()), rows * columns
-        if taken != (0 if whole else told):
-            raise TypeError(f"{draw.__name__} draws into {taken} panels, and the figure has {told}")
-        rest = list(own.parameters.values())[taken or 1 :]
-        figure_of.__annotations__ = {one.name: one.annotation for one in rest} | {"return": Figure}
-        vars(figure_of)["__signature__"] = own.replace(parameters=rest, return_annotation=Figure)
-        return figure_of
+        parameters = list(signature(draw).parameters.values())
+        drawn_into = sum(parameter.annotation is Axes for parameter in parameters)
+        count = rows * columns
+        if drawn_into != (0 if as_array else count):
+            raise TypeError(
+                f"{draw.__name__} draws into {drawn_into} panels, and the figure has {count}"
+            )
+        arguments = parameters[1:] if as_array else parameters[count:]
+        annotations = {parameter.name: parameter.annotation for parameter in arguments}
+        make_figure.__annotations__ = annotations | {"return": Figure}
+        vars(make_figure)["__signature__"] = signature(draw).replace(
+            parameters=arguments, return_annotation=Figure
+        )
+        return make_figure
 
     return drawing
 
 
 def tilt_axis(axes: Axes, low: float = -0.06, high: float = np.pi + 0.1, label: str = TILT) -> None:
-    """Make the upright axis of a panel one of tilts, with ticks at parts of pi."""
+    """Make the vertical axis of a panel an axis of tilts, with ticks at quarters of pi."""
     axes.set_ylabel(label)
     pi_ticks(axes.yaxis)
     axes.set_ylim(low, high)
@@ -116,11 +129,11 @@ def letters(panels: Iterable[Axes]) -> None:
 
 
 ALONG_X, ALONG_Y = ("data", "axes fraction"), ("axes fraction", "data")
-"""Coordinates of notes that belong to a value of one axis and to a height or width of the panel."""
+"""Coordinates of notes at a value of one axis and at a share of the panel's height or width."""
 
 
 LEADER = {"arrowstyle": "-", "lw": 0.8, "shrinkA": 2, "shrinkB": 5}
-"""The thin line from a note to what it is about, but for its colour."""
+"""Style of the thin line from a note to its point, without its colour."""
 
 
 def note(
@@ -133,9 +146,10 @@ def note(
     halo: bool = False,
     **options: Any,
 ) -> None:
-    """Write a note beside a point, on the side to which the offset, in points, leads.
+    """Write a note beside a point.
 
-    A halo keeps it legible over lines.
+    The note is aligned so that it lies on the side of the point to which `offset` (points) leads. A
+    halo keeps it legible over lines.
     """
     side = {-1: "right", 0: "center", 1: "left"}[int(np.sign(offset[0]))]
     height = {-1: "top", 0: "center", 1: "bottom"}[int(np.sign(offset[1]))]
@@ -152,7 +166,7 @@ def note(
 
 
 def legend_above(axes: Axes, columns: int) -> None:
-    """Put the legend on top of a panel, outside of it."""
+    """Place the legend above a panel."""
     axes.legend(
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
@@ -163,7 +177,7 @@ def legend_above(axes: Axes, columns: int) -> None:
 
 
 def inset(axes: Axes, box: Box) -> Axes:
-    """Return a panel within a panel, in the box (left, bottom, width, height) in parts of it."""
+    """Return an inset panel; `box` is (left, bottom, width, height) in shares of the panel."""
     panel = axes.inset_axes(box)
     panel.tick_params(labelsize=7.5, length=2, pad=2)
     panel.grid(visible=False)
@@ -172,9 +186,7 @@ def inset(axes: Axes, box: Box) -> Axes:
 
 
 def source(axes: Axes, panel: Axes) -> None:
-    """Show where an inset is taken from: by a frame like its own, without lines across the
-    panel.
-    """
+    """Frame the region that an inset enlarges, without lines across the panel."""
     (left, right), (low, high) = panel.get_xlim(), panel.get_ylim()
     axes.indicate_inset(
         (left, low, right - left, high - low), edgecolor=INK, alpha=0.8, lw=0.8, zorder=6

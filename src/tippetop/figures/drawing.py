@@ -1,5 +1,4 @@
-"""Shared primitives of the schematic drawings: a blank canvas, arrows, arcs, dimensions, labels,
-shading.
+"""Primitives of schematic drawings: canvas, arrows, arcs, dimensions, labels, shading.
 
 Points are rows of arrays in data units. A canvas has equal axes and no frame, so a data unit is a
 length.
@@ -24,8 +23,7 @@ Array = NDArray[np.float64]
 def canvas(xlim: tuple[float, float], ylim: tuple[float, float]) -> tuple[Figure, Axes]:
     """Return a figure of full width filled by frameless equal axes with exactly these limits."""
     height = WIDTH * (ylim[1] - ylim[0]) / (xlim[1] - xlim[0])
-    # An engine that does nothing: with none at all, saving falls back on the style's constrained
-    # layout.
+    # Without a layout engine, saving would fall back on the constrained layout of the style.
     figure = Figure(figsize=(WIDTH, height), layout=PlaceHolderLayoutEngine(True, False))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=xlim, ylim=ylim, aspect="equal")
@@ -34,26 +32,27 @@ def canvas(xlim: tuple[float, float], ylim: tuple[float, float]) -> tuple[Figure
 
 
 def unit(vector: ArrayLike) -> Array:
-    """Return the vector divided by its length."""
+    """Return the unit vector in the direction of a vector."""
     array = np.asarray(vector, dtype=np.float64)
     return array / float(np.linalg.norm(array))
 
 
 def projection(azimuth: float, elevation: float) -> Array:
-    """Return the matrix whose product with points in rows is their place in a parallel projection.
+    """Return the matrix of a parallel projection, shape (3, 2).
 
-    Its columns point to the right and upwards in the picture, z up; the angles are those of the
-    eye.
+    Points in rows times the matrix are their places in the picture. The columns of the matrix point
+    to the right and upwards in the picture; z is up. `azimuth` and `elevation` (rad) are the
+    direction to the eye.
     """
     ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
     return np.array([[-sa, -se * ca], [ca, -se * sa], [0.0, ce]])
 
 
 def arc(first: ArrayLike, towards: ArrayLike, angle: float, start: float = 0.0) -> Array:
-    """Return points of the unit circle about the origin, from `start` to `angle` radians.
+    """Return points of the unit circle about the origin between two angles, shape (121, 2 or 3).
 
-    The circle lies in the plane of the two vectors, of two or three components, and is measured
-    from `first` towards the other.
+    The circle lies in the plane of the vectors `first` and `towards`, of two or three components.
+    The angles `start` and `angle`, rad, are measured from `first` towards the other vector.
     """
     u = unit(first)
     along = np.asarray(towards, dtype=float)
@@ -86,10 +85,10 @@ def arrow(
     head: float = 0.11,
     z: float = 4,
 ) -> None:
-    """Draw an arrow along a polyline, its tip exactly on the last point; `head` is the length of
-    its head.
+    """Draw an arrow along a polyline, its tip on the last point.
 
-    On an arc the head lies along the chord it covers, so it does not seem to leave the curve.
+    `head` is the length of the arrow's head in data units. On an arc the head lies along the chord
+    that it covers, so that it does not seem to leave the curve.
     """
     path = np.asarray(points, dtype=float)
     tip = path[-1]
@@ -168,7 +167,7 @@ def filled(
     alpha: float = 1.0,
     z: float = 1,
 ) -> PathPatch:
-    """Draw a filled path; the alpha is that of the face only."""
+    """Draw a filled path and return its patch; `alpha` is the opacity of the face only."""
     color = (*to_rgb(face), alpha) if face != "none" else "none"
     patch = PathPatch(path, fc=color, ec=edge, lw=width, zorder=z, joinstyle="round")
     axes.add_patch(patch)
@@ -178,8 +177,10 @@ def filled(
 def picture(
     axes: Axes, rgba: Array, extent: Sequence[float], z: float = 1, clip: PathPatch | None = None
 ) -> None:
-    """Place an image on the canvas: rows from the bottom up, `extent` as (left, right, bottom,
-    top).
+    """Place an image on the canvas.
+
+    Rows of `rgba` go from the bottom up; `extent` is (left, right, bottom, top) in data units. Only
+    what lies within the patch `clip` is shown.
     """
     left, right, bottom, top = extent
     image = axes.imshow(

@@ -1,6 +1,4 @@
-"""Dry friction: the friction that rolling needs, steps against the exact motion, smoothing, and
-patches.
-"""
+"""Figures of dry friction: what rolling needs, time-stepping, regularisation, contact patches."""
 
 import numpy as np
 import xarray as xr
@@ -12,8 +10,8 @@ from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, FAINT, INK,
 
 @mark.drawn(5.6, 2, 1, height_ratios=[1.25, 1])
 def rolling_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
-    """Return the friction that rolling needs over the spin, and tilts with more and with less than
-    that.
+    """Draw the least friction for rolling against spin, and the tilt above and below that
+    friction.
     """
     for tilt, row in zip(data["tilt"], data["friction_needed"], strict=True):
         main = float(tilt) == data.attrs["tilt_rad"]
@@ -39,7 +37,7 @@ def rolling_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(4.4)
 def cohen_figure(axes: Axes, data: xr.Dataset) -> None:
-    """Return the tilt of Cohen's top by steps of several lengths, and exactly."""
+    """Draw the tilt of Cohen's top by time-stepping with several steps, and exactly."""
     colors = (REPORT, *(CYCLE[k] for k in (3, 4, 2, 6, 5)))
     for step, tilt, color in zip(data["step"], data["theta_stepped"], colors, strict=False):
         axes.plot(data["time"], tilt, color=color, lw=1.1, label=f"{1e3 * float(step):g} ms")
@@ -51,7 +49,7 @@ def cohen_figure(axes: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(3.8)
 def smoothed_figure(axes: Axes, data: xr.Dataset) -> None:
-    """Return the time of turning over on smoothed Coulomb friction against the smoothing."""
+    """Draw the time of turning over on regularised Coulomb friction against the velocity scale."""
     eps, time = data["eps"].values, data["turning_time"].values
     axes.loglog(eps, time, "o-", color=CONVERGED)
     line = time[-1] * eps[-1] / eps
@@ -64,8 +62,8 @@ def smoothed_figure(axes: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(4.2)
 def patch_figure(axes: Axes, data: xr.Dataset) -> None:
-    """Return the map of the time of turning over, over patch radius and spin; grey where it does
-    not.
+    """Draw the time of turning over against patch radius and spin; grey where the top does not
+    turn.
     """
     axes.set_facecolor(FAINT)
     axes.grid(visible=False)
@@ -83,8 +81,8 @@ def patch_figure(axes: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(5.2, 2, 1, sharex=True, height_ratios=[1.4, 1])
 def viscous_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
-    """Return times of turning over against the viscous coefficient, of patches that have it and of
-    itself.
+    """Draw times of turning over on patches and on viscous friction of the same small-slip
+    coefficient.
     """
     coefficient = data["coefficient"].values
     above.loglog(coefficient, data["viscous_time"], "--", color=INK, label="viscous")

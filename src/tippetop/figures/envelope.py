@@ -1,5 +1,5 @@
-"""Fast oscillations on a long axis: drawn as the band between their turning points, not as a solid
-blob.
+"""Envelope of a fast oscillation: the band between its turning points, drawn in place of the
+curve.
 """
 
 import numpy as np
@@ -9,21 +9,22 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 _ACROSS = 150
-"""How many oscillations an axis can show side by side."""
+"""Number of oscillations that can be told apart side by side along an axis."""
 _POINTS = 600
 
 
 def envelope(
     times: ArrayLike, values: ArrayLike, across: int = _ACROSS
 ) -> tuple[Array, Array, Array]:
-    """The band that an oscillation fills.
+    """Return the lower and the upper edge of an oscillation at evenly spaced times.
 
-    Where turning points follow each other too closely to be seen apart, the band lies between the
-    curves through the upper and through the lower ones; elsewhere it is the curve itself.
+    Where turning points follow each other too closely to be told apart, the edges are the curves
+    through the lower and through the upper turning points. Elsewhere both edges are the curve
+    itself.
 
-    Times and values of the oscillation are of shape (n,), increasing in time; values that are not
-    finite are left out. So many oscillations can be seen side by side `across` the axis. Returned
-    are times at equal distances, and the lower and upper edge of the band there, shape (m,).
+    Times and values have shape (n,), times increase, and values that are not finite are left out.
+    `across` is the number of oscillations that can be told apart along the axis. The times and both
+    edges are returned, each of shape (m,).
     """
     t, y = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
     t, y = t[np.isfinite(y)], y[np.isfinite(y)]
@@ -35,8 +36,8 @@ def envelope(
     apart = np.append(seen, seen[-1:]) | np.append(seen[:1], seen)
     edges = []
     for sense in (-1.0, 1.0):
-        own = turns[slope[turns - 1] == sense]
-        knots = np.union1d(np.flatnonzero(apart), own if len(own) else ends)
+        same_side = turns[slope[turns - 1] == sense]
+        knots = np.union1d(np.flatnonzero(apart), same_side if len(same_side) else ends)
         edges.append(np.interp(grid, t[knots], y[knots]))
     return grid, np.minimum(*edges), np.maximum(*edges)
 
@@ -50,9 +51,7 @@ def band(
     label: str = "",
     across: int = _ACROSS,
 ) -> None:
-    """Draw an oscillation as a line where one sees it, and as a pale band between two lines where
-    not.
-    """
+    """Draw an oscillation as a line, and as a pale band where it is too fast to be told apart."""
     grid, low, high = envelope(times, values, across)
     inside = high - low > 1e-3 * (high.max() - low.min())
     axes.fill_between(grid, low, high, where=inside, color=color, alpha=0.22, lw=0)

@@ -1,4 +1,4 @@
-"""The Euler angles of equation (2.1) (the report's Fig. 2)."""
+"""Drawing of the Euler angles of equation (2.1) (the report's Fig. 2)."""
 
 from collections.abc import Sequence
 
@@ -37,9 +37,7 @@ def euler_angles_drawing() -> Figure:
 
 
 def _discs(axes: Axes, view: Array, space: Array, body: Array, nodes: Array) -> None:
-    """Draw the planes xy and XY as discs, the half of the tilted one that lies below the other
-    first.
-    """
+    """Draw the planes xy and XY as discs; the half of XY below xy is drawn first."""
     across = np.cross(body[2], nodes)
     for start, order in ((np.pi, 0.2), (0.0, 1.2)):
         half = draw.arc(nodes, across, start + np.pi, start) @ view

@@ -1,4 +1,4 @@
-"""Launches that leave the table: where that begins, and what becomes of them."""
+"""Figures of launches that leave the table: the onset of lift-off, and the flights after it."""
 
 from typing import Any
 
@@ -14,15 +14,15 @@ from tippetop.figures.style import ACCENT, CYCLE, DASHED, FAINT, INK, MUTED, REP
 
 
 def continue_unilateral(
-    axes: Axes, run: xr.Dataset, name: str, scale: float = 1.0, *, whole: bool = False
+    axes: Axes, run: xr.Dataset, name: str, scale: float = 1.0, *, as_band: bool = False
 ) -> None:
-    """Draw how a variable goes on from lift-off when the table only pushes.
+    """Draw a variable after lift-off on a table that only pushes.
 
-    `run` has the variable with the suffix _flight over time, and lift_off_time. If `whole`, the
-    axis is too long for its oscillations to be seen, and they are drawn as a band.
+    `run` has the variable with the suffix `_flight` over time, and `lift_off_time`. With `as_band`,
+    oscillations are drawn as a band, for an axis on which they are too fast to be seen.
     """
     after = scale * run[f"{name}_flight"].sel(time=slice(float(run["lift_off_time"]), None))
-    if whole:
+    if as_band:
         band(axes, after["time"], after, UNILATERAL, 1.1, "table only pushes")
     else:
         axes.plot(
@@ -32,8 +32,7 @@ def continue_unilateral(
 
 @mark.drawn(3.9)
 def onset_figure(axes: Axes, sweep: xr.Dataset, over: str, reported: float) -> None:
-    """Return the least spin that leaves the table against "mu" or "tilt", with the launches of the
-    scan.
+    """Draw the least spin that leaves the table against "mu" or "tilt", with the launches scanned.
 
     `reported` is the spin of the report's abnormal point, rad/s.
     """
@@ -71,8 +70,8 @@ def onset_figure(axes: Axes, sweep: xr.Dataset, over: str, reported: float) -> N
         )
     name = rf"report: $\omega_a$ = {reported:g}"
     axes.axhline(reported, color=REPORT, lw=1.1, ls=DASHED, label=name)
-    own = 0.3 if over == "mu" else 0.1
-    axes.plot(own, reported, "s", color=REPORT, ms=6, mec=INK, mew=0.6, zorder=5)
+    reported_at = 0.3 if over == "mu" else 0.1
+    axes.plot(reported_at, reported, "s", color=REPORT, ms=6, mec=INK, mew=0.6, zorder=5)
     axes.set(ylabel=mark.SPIN, ylim=(40, 1.03 * float(sweep["spin"][-1])))
     if over == "mu":
         axes.set(xscale="log", xlabel=mark.FRICTION)
@@ -84,7 +83,7 @@ def onset_figure(axes: Axes, sweep: xr.Dataset, over: str, reported: float) -> N
 
 @mark.drawn(5.2, 2, 2, sharex=True)
 def flights_figure(panels: Any, sweep: xr.Dataset) -> None:
-    """Return how launches go on after lift-off, against the spin."""
+    """Draw airborne time, turning over, number of flights and final tilt against the spin."""
     share, turning, count, tilt = panels.flat
     for restitution, color, marker in zip(
         sweep["restitution"].values, (UNILATERAL, CYCLE[5]), ("o", "s"), strict=False
@@ -99,7 +98,7 @@ def flights_figure(panels: Any, sweep: xr.Dataset) -> None:
         flying = runs.sel(spin=runs["flights"] > 0)
         count.plot(flying["spin"], flying["flights"], **hollow)
         tilt.plot(spins, runs["final_theta_flight"], **hollow)
-    _words(share, sweep)
+    _label_shares(share, sweep)
     share.set(ylabel="airborne share (%)", ylim=(0, 100))
     turning.set(ylabel=r"$\theta$ first passes π/2 (s)", ylim=(0, None))
     turning.legend(loc="upper left")
@@ -109,8 +108,8 @@ def flights_figure(panels: Any, sweep: xr.Dataset) -> None:
         axes.set_xlabel(mark.SPIN)
 
 
-def _words(axes: Axes, sweep: xr.Dataset) -> None:
-    """Say at the last point of either curve of what it is the share."""
+def _label_shares(axes: Axes, sweep: xr.Dataset) -> None:
+    """Label each curve of the airborne share at its last point."""
     last = sweep.isel(restitution=0).dropna("spin", subset=["airborne_time"]).isel(spin=-1)
     air, end = float(last["airborne_time"]), float(last["last_touchdown"])
     for text, share, offset in (

@@ -1,4 +1,4 @@
-"""Maps of a sweep: what became of every launch, over one or two of its numbers."""
+"""Maps of a sweep: a variable of every launch over one, two or more of the swept fields."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -24,7 +24,7 @@ from tippetop.results.flags import encoded
 from tippetop.support.errors import InvalidInput
 
 MAPPED = ("outcome", "final_theta", "turns_over", "flights")
-"""The maps that are drawn of every sweep."""
+"""Variables of which maps are drawn for every sweep."""
 
 SHORT = {
     "friction.mu": "friction coefficient μ",
@@ -35,25 +35,25 @@ SHORT = {
     "launch.spin": "axial spin at launch",
     "gravity": "gravity",
 }
-"""What some fields are called, in few words; others on axes by what they are, elsewhere by their
-name.
+"""Short names of fields for the labels of axes; other fields are labelled by their `long_name`, and
+in titles by their path.
 """
 
-NOTHING = {
+MISSING_MEANS = {
     "turns_over": ["not within the run"],
     "arrives": ["not settled"],
     "highest_tilt": ["may still rise"],
     "flights": ["none"],
     "first_lift_off": ["not within the run"],
 }
-"""What it means where some variables have no value: grey in maps, and no point of a curve."""
+"""Meaning of a missing value, by variable; it is grey in maps and no point of a curve."""
 
 UNFINISHED = {
     Ending.LIFTED_OFF: "left the table before the end",
     Ending.FAILED: "failed",
     Ending.INACCURATE: "inaccurate",
 }
-"""Launches whose last tilt is not their end, or not to be trusted, and how maps of it name them."""
+"""Endings after which the last tilt is not where the launch ends, and their names in maps."""
 
 STILL_MOVING = (
     Ending.MOVING_UPRIGHT,
@@ -61,44 +61,46 @@ STILL_MOVING = (
     Ending.MOVING_TILTED,
     Ending.ROLLING,
 )
-"""Launches that had not settled when they ended: a dot in maps of where they were then."""
+"""Endings of launches that had not settled; maps of the last tilt mark them by dots."""
 
 UPRIGHT, INVERTED, TILTED = "#0B5FA5", "#E07B00", "#109B60"
 FLAGS = (
     *(UPRIGHT, INVERTED, TILTED, "#9E1F54", "#4A2410", "#C9CFD6", "#05305A", "#8A6D1A"),
     *("#9CC3E6", "#F6C48A", "#9CDDBD", "#C58BE0", "#EACF36", INK),
 )
-"""Colours of the variables of flags, in their order. Settled ends of launches are strong, the same
-places of moving ones pale, and those that fell back have a colour that no place has.
+"""Colours of the values of a flag variable, in order.
+
+Settled ends are strong colours, the same places of moving launches pale ones, and launches that
+fell back have a colour that no place has.
 """
 
 DOT = 1.6
 """Size of the dots of moving launches, points: smaller than the cells of most maps."""
 
 MOST_PANELS = 9
-"""Maps that are drawn side by side."""
+"""Largest number of maps side by side."""
 
 WIDEST = 1e300
-"""How far the ends of an axis may be apart, in its unit: farther ones overflow where ticks are
-looked for.
+"""Largest distance between the ends of an axis, in its unit: the search for ticks overflows beyond
+it.
 """
 
 MOST_STEP = 1.05
-"""Ratio of neighbouring steps of an axis from which on it counts as geometric."""
+"""Ratio of the largest to the smallest step above which an axis with even ratios is geometric."""
 
 
 @house_style()
 def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
-    """Draw a variable of a sweep: over axes as colours, over one axis as a curve, of draws as
-    points.
+    """Draw a variable of a sweep: as colours over two axes, as a curve over one, as points over
+    draws.
 
-    Of three axes the third goes from panel to panel, over at most `MOST_PANELS` of its values; of
-    more than three, those after the third stay at the middle one of their values.
+    With three axes there is a panel for each of at most `MOST_PANELS` values of the third. With
+    more, the axes after the third stay at the middle of their values.
 
     Raises
     ------
     InvalidInput
-        If values of an axis are too far apart to be drawn.
+        If the values of an axis are too far apart to be drawn.
     """
     sweep = encoded(sweep)
     values = sweep[variable]
@@ -112,19 +114,19 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
     elif values.ndim == 1:
         _curve(axes, sweep, variable)
     else:
-        shade = _shade(sweep, variable, _shown(sweep, variable))
+        shade = _shade(sweep, variable, _values(sweep, variable))
         image = _colours(axes, sweep, variable, shade)
         _bar(figure, [axes], image, sweep, variable)
     return figure
 
 
 def require_drawable(coordinates: Mapping[str, np.ndarray[Any, Any]]) -> None:
-    """Refuse to draw over what reaches too far.
+    """Raise `InvalidInput` if an axis is too long to be drawn.
 
     Raises
     ------
     InvalidInput
-        If cells at these values, along an axis or drawn, reach farther than `WIDEST`.
+        If the cells at the values of a coordinate reach farther than `WIDEST`.
     """
     for name, values in coordinates.items():
         if not np.issubdtype(values.dtype, np.number):
@@ -139,7 +141,7 @@ def require_drawable(coordinates: Mapping[str, np.ndarray[Any, Any]]) -> None:
 
 
 def _panels(sweep: xr.Dataset, variable: str) -> Figure:
-    """Maps side by side, one for each of some values of the third axis."""
+    """Return a figure of maps side by side, one for each of some values of the third axis."""
     third, *others = (str(name) for name in sweep[variable].dims[2:])
     sweep = sweep.isel({name: sweep.sizes[name] // 2 for name in others})
     places = np.unique(np.linspace(0, sweep.sizes[third] - 1, MOST_PANELS).round().astype(int))
@@ -150,7 +152,7 @@ def _panels(sweep: xr.Dataset, variable: str) -> Figure:
     )
     title = "; ".join([_title(sweep, variable), *(_value(sweep, name) for name in others)])
     figure.suptitle(title, x=0.01, ha="left", weight="bold", size="medium")
-    shade = _shade(sweep, variable, _shown(sweep, variable))
+    shade = _shade(sweep, variable, _values(sweep, variable))
     for place, axes in enumerate(grid.flat):
         if place >= len(places):
             axes.set_visible(False)
@@ -167,15 +169,15 @@ def _panels(sweep: xr.Dataset, variable: str) -> Figure:
 
 
 def _value(sweep: xr.Dataset, name: str) -> str:
-    """Where a sweep was cut."""
+    """Return the text of the value at which a sweep is cut, with the name of its field."""
     path = _path(sweep, name)
     return f"{_name(sweep, name) if path in SHORT else path} = {sweep[name].values:.4g}"
 
 
 def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: dict[str, Any]) -> Any:
-    """One cell a rectangle; the first dimension to the right, the second upwards."""
+    """Draw a map of cells, with the first dimension to the right and the second upwards."""
     across, up = (str(name) for name in sweep[variable].dims)
-    values = _shown(sweep, variable).T
+    values = _values(sweep, variable).T
     axes.set_facecolor(FAINT)
     axes.grid(visible=False)
     image = axes.pcolormesh(
@@ -198,7 +200,7 @@ def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: dict[str, Any]
 
 def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
     (across,) = (str(name) for name in sweep[variable].dims)
-    axes.plot(sweep[across].values, _shown(sweep, variable), ".-", color=CONVERGED, linewidth=0.8)
+    axes.plot(sweep[across].values, _values(sweep, variable), ".-", color=CONVERGED, linewidth=0.8)
     _dot_moving(axes, sweep, variable, sweep[across].values, sweep[variable].values)
     axes.set_xlabel(_name(sweep, across))
     if _is_geometric(sweep[across].values):
@@ -210,15 +212,15 @@ def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
 
 def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> None:
     fields = [str(name) for name in sweep.coords if name != "sample"]
-    values = _shown(sweep, variable)
+    values = _values(sweep, variable)
     if len(fields) == 1:
         axes.plot(sweep[fields[0]].values, values, ".", color=CONVERGED)
     else:
         shade = _shade(sweep, variable, values)
         x, y = sweep[fields[0]].values, sweep[fields[1]].values
-        nothing = ~np.isfinite(values)
-        axes.scatter(x[nothing], y[nothing], 8, facecolors="none", edgecolors=MUTED, linewidths=0.4)
-        image = axes.scatter(x[~nothing], y[~nothing], 8, values[~nothing], **shade)
+        missing = ~np.isfinite(values)
+        axes.scatter(x[missing], y[missing], 8, facecolors="none", edgecolors=MUTED, linewidths=0.4)
+        image = axes.scatter(x[~missing], y[~missing], 8, values[~missing], **shade)
         _dot_moving(axes, sweep, variable, x, y)
         axes.set_ylabel(_name(sweep, fields[1]))
         _bar(figure, [axes], image, sweep, variable)
@@ -232,63 +234,66 @@ def _dot_moving(
     x: np.ndarray[Any, Any],
     y: np.ndarray[Any, Any],
 ) -> None:
-    """Dot the launches in a map of last tilts that were still moving; places have its shape."""
+    """Mark launches that were still moving in a map of last tilts; `x` and `y` have its shape."""
     moving = _is_moving(sweep, variable).T
     if moving.any():
         axes.plot(x[moving], y[moving], ".", color="white", markersize=DOT, rasterized=True)
 
 
 def _is_moving(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
-    """Return which launches had not settled at their end, of a variable for which that counts."""
+    """Return which launches had not settled at their end; none if the variable is not the last
+    tilt.
+    """
     return np.isin(sweep["outcome"].values, STILL_MOVING) & (variable == "final_theta")
 
 
 def _path(sweep: xr.Dataset, name: str) -> str:
-    """The field, with dots, that a coordinate holds."""
+    """Return the path, with dots, of the field of a coordinate."""
     return str(sweep[name].attrs.get("path", name))
 
 
 def _name(sweep: xr.Dataset, name: str) -> str:
-    """What the axis of a coordinate is called."""
-    told, path = sweep[name].attrs, _path(sweep, name)
-    return _heading(SHORT.get(path, told.get("long_name", path)), told.get("units", ""))
+    """Return the label of the axis of a coordinate."""
+    attrs, path = sweep[name].attrs, _path(sweep, name)
+    return _heading(SHORT.get(path, attrs.get("long_name", path)), attrs.get("units", ""))
 
 
 def _heading(words: str, units: str) -> str:
-    """A name with its unit, as it begins a line."""
-    unit = (
-        written_unit(units).replace("^2", "²").replace("^3", "³") if units not in ("", "1") else ""
-    )
-    return words[:1].upper() + words[1:] + (f" ({unit})" if unit else "")
+    """Return a name with a capital letter and its unit in brackets."""
+    heading = words[:1].upper() + words[1:]
+    if units in ("", "1"):
+        return heading
+    unit = written_unit(units).replace("^2", "²").replace("^3", "³")
+    return f"{heading} ({unit})"
 
 
 def _title(sweep: xr.Dataset, variable: str) -> str:
-    title, means = _heading(SWEPT[variable].label, SWEPT[variable].units), NOTHING.get(variable, [])
+    title = _heading(SWEPT[variable].label, SWEPT[variable].units)
+    means = MISSING_MEANS.get(variable, [])
     if variable == "final_theta":
-        means = [
-            words
-            for ending, words in UNFINISHED.items()
-            if (sweep["outcome"].values == ending).any()
-        ]
-    single = sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("sample" in sweep.coords)
-    sign = "no point" if single else "grey"
-    title = f"{title}; {sign}: {', '.join(means)}" if means else title
-    return f"{title}; dot: still moving" if _is_moving(sweep, variable).any() else title
+        outcomes = sweep["outcome"].values
+        means = [words for ending, words in UNFINISHED.items() if (outcomes == ending).any()]
+    if means:
+        single = sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("sample" in sweep.coords)
+        title += f"; {'no point' if single else 'grey'}: {', '.join(means)}"
+    if _is_moving(sweep, variable).any():
+        title += "; dot: still moving"
+    return title
 
 
-def _shown(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
-    """The values, not a number where there are none."""
+def _values(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
+    """Return the values of a variable as numbers, nan where they are missing."""
     values = np.asarray(sweep[variable].values, dtype=float)
-    nothing = sweep["status"].values == 0
+    missing = sweep["status"].values == 0
     if variable == "final_theta":
-        nothing = nothing | np.isin(sweep["outcome"].values, list(UNFINISHED))
+        missing = missing | np.isin(sweep["outcome"].values, list(UNFINISHED))
     if np.issubdtype(sweep[variable].dtype, np.integer):
-        nothing = nothing | (values < 0)
-    return np.where(nothing, np.nan, values)
+        missing = missing | (values < 0)
+    return np.where(missing, np.nan, values)
 
 
 def _shade(sweep: xr.Dataset, variable: str, values: np.ndarray[Any, Any]) -> dict[str, Any]:
-    """How the values of a variable become colours: a colormap, and what goes where in it."""
+    """Return the colormap and the norm by which the values of a variable become colours."""
     meanings = sweep[variable].attrs.get("flag_meanings")
     if meanings is not None:
         count = len(meanings.split())
@@ -315,7 +320,7 @@ def _bar(figure: Figure, axes: list[Axes], image: Any, sweep: xr.Dataset, variab
 
 
 def _is_geometric(values: np.ndarray[Any, Any]) -> bool:
-    """Whether the values grow by ratios rather than by steps."""
+    """Return whether the values grow by even ratios rather than by even steps."""
     if len(values) < 3 or np.any(values[0] * values <= 0):
         return False
     steps, ratios = np.diff(values), np.diff(np.log(np.abs(values)))
@@ -324,7 +329,7 @@ def _is_geometric(values: np.ndarray[Any, Any]) -> bool:
 
 
 def _ends(values: np.ndarray[Any, Any]) -> tuple[float, float]:
-    """Where the first and the last cell end."""
+    """Return the outer ends of the first and of the last cell."""
     if len(values) == 1:
         return float(values[0]) - 0.5, float(values[0]) + 0.5
     if _is_geometric(values):

@@ -1,6 +1,4 @@
-"""The outline of a body as it is drawn: its own profile where it has one, else the hull of its
-surfaces.
-"""
+"""Meridian of a body as drawings show it: its stated profile, or else the hull of its surfaces."""
 
 import math
 
@@ -12,20 +10,21 @@ from tippetop.mechanics.outline import Line, is_outline, outline, smoothly_joine
 from tippetop.problem.bodies import Body
 
 ARC_STEP = np.pi / 48
-"""Angle between points on arcs of profiles, rad, at most."""
+"""Largest angle between neighbouring points on arcs of profiles, rad."""
 
 
 def meridian(body: Body) -> list[Line]:
-    """The outline of a body from below, in smooth lines."""
-    shown = own_profile(body)
-    return outline(body.surface) if shown is None else shown
+    """Return the meridian of a body, from its lowest point up, as smooth polylines (m)."""
+    profile = stated_profile(body)
+    return outline(body.surface) if profile is None else profile
 
 
-def own_profile(body: Body) -> list[Line] | None:
-    """The profile that a body has, in smooth lines from below; None if it has none, or not this
-    shape.
+def stated_profile(body: Body) -> list[Line] | None:
+    """Return the meridian of a body's stated profile as smooth polylines (m), from its lowest point
+    up.
 
-    It may have another one by now: the profile is stated beside the surfaces.
+    None is returned if the body states no profile, or if its surfaces are no longer those of the
+    profile: both are fields of a body, and one can be changed without the other.
     """
     if body.profile is None:
         return None
@@ -34,6 +33,7 @@ def own_profile(body: Body) -> list[Line] | None:
 
 
 def _points(edge: Edge) -> Line:
+    """Return the points of an edge, at most `ARC_STEP` apart along arcs."""
     steps = max(1, math.ceil(abs(edge.turn) / ARC_STEP - 1e-9))
     points = edge.points(np.linspace(0.0, 1.0, steps + 1))
     return [(point.real, point.imag) for point in points.tolist()]

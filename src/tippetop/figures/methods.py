@@ -1,4 +1,4 @@
-"""The numerical methods compared: their order, and what a stiff launch costs them."""
+"""Figures of numerical methods: their orders, and their cost for stiff launches."""
 
 import numpy as np
 import xarray as xr
@@ -18,7 +18,7 @@ _LABELS = {
 
 @mark.drawn(3.4)
 def order_figure(axes: Axes, errors: xr.Dataset) -> None:
-    """Return errors against the length of a step, in all and in one step."""
+    """Draw errors against step length, over a fixed time and in one step."""
     series = (
         ("printed_in_all", "(B.1) as printed, time in f", ACCENT, "^-"),
         ("printed_mended_in_all", "(B.1) mended, time in f", UNILATERAL, "v-"),
@@ -37,7 +37,7 @@ def order_figure(axes: Axes, errors: xr.Dataset) -> None:
 
 @mark.drawn(3.7)
 def stiffness_figure(axes: Axes, counts: xr.Dataset) -> None:
-    """Return how often every method evaluates the right-hand side, launch by launch."""
+    """Draw the number of evaluations of the right-hand side by every method, for each launch."""
     methods = [str(name) for name in counts["integrator"].values]
     launches = np.arange(counts.sizes["launch"])
     width = 0.8 / len(methods)

@@ -1,4 +1,6 @@
-"""The model: an eccentric sphere on a table, and what acts on it (the report's Fig. 3)."""
+"""Drawing of the model: an eccentric sphere on a table, and what acts on it (the report's Fig.
+3).
+"""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -6,13 +8,13 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import tippetop.figures.drawing as draw
+from tippetop.figures.appearance import FACE, KNOB, STEM, STEM_TOP
 from tippetop.figures.drawing import Array
-from tippetop.figures.looks import FACE, KNOB, STEM, STEM_TOP
 from tippetop.figures.style import ACCENT, CONVERGED, INK, MUTED, TABLE, house_style
 
 _AXIS = 1.62
 _ECCENTRICITY, _TILT = 0.3, np.radians(50.0)
-"""The report's alpha, and theta, for which the labels stay clear of each other."""
+"""The report's alpha, and a theta at which the labels stay clear of each other."""
 
 
 @house_style()
@@ -32,9 +34,7 @@ def model_drawing() -> Figure:
 
 
 class _Model:
-    """The points and directions of the model in the plane of the page; R = 1 and the table is at
-    height 0.
-    """
+    """Points and directions of the model in the plane of the page; R = 1, the table at height 0."""
 
     def __init__(self, eccentricity: float, tilt: float) -> None:
         self.tilt = tilt

@@ -1,4 +1,4 @@
-"""One run at a glance: the report's four variables, the normal force and the energy."""
+"""Overview of one run (`tt.plot`): four variables of the report, the normal force, the energy."""
 
 from io import BytesIO
 from typing import Any
@@ -12,13 +12,11 @@ from tippetop.figures.style import ACCENT, CONVERGED, DASHED, MUTED, WIDTH, hous
 from tippetop.results.dataset import require_run
 
 TALLEST_PRECESSION = 400.0
-"""Precession beyond which a curve is cut off, rad/s: it peaks without bound where the axis is
-vertical.
-"""
+"""Precession beyond which a curve is cut off, rad/s: it has no bound where the axis is vertical."""
 
 
 class ShownFigure(Figure):
-    """A figure that notebooks show, though it is none of pyplot's."""
+    """Figure that notebooks show although pyplot does not know it."""
 
     @house_style()
     def _repr_png_(self) -> bytes:
@@ -62,9 +60,7 @@ def plot(run: xr.Dataset) -> Figure:
 
 
 def shade_flights(axes: Axes, run: xr.Dataset) -> None:
-    """Shade the time a run spends above the table; a run that stopped at lift-off gets a line
-    there.
-    """
+    """Shade the flights of a run; mark the end of a run that stopped at lift-off by a line."""
     for begin, end in zip(run["flight_start"].values, run["flight_end"].values, strict=True):
         axes.axvspan(begin, end, color=ACCENT, alpha=0.15, linewidth=0.4)
     if run.attrs["outcome"] == "lifted_off":
@@ -72,7 +68,9 @@ def shade_flights(axes: Axes, run: xr.Dataset) -> None:
 
 
 def _cut(axes: Axes, values: np.ndarray[Any, Any]) -> None:
-    """Keep the peaks at the poles from flattening everything else."""
+    """Limit the axis of precession, so that peaks at the poles do not flatten the rest of the
+    curve.
+    """
     finite = values[np.isfinite(values)]
     if len(finite) and np.abs(finite).max() > TALLEST_PRECESSION:
         typical = 1.5 * float(np.quantile(np.abs(finite), 0.98))

@@ -1,4 +1,4 @@
-"""Real tops: a stem that strikes, stems that are stood upon, an egg, a disk and two balls."""
+"""Figures of real tops: a stem that strikes, stems stood upon, an egg, a disk and two balls."""
 
 import numpy as np
 import xarray as xr
@@ -11,7 +11,9 @@ from tippetop.figures.style import ACCENT, CONVERGED, CYCLE, DASHED, INK, MUTED
 
 @mark.drawn(4.2)
 def leine_figure(axes: Axes, data: xr.Dataset) -> None:
-    """Return the tilt of Leine and Glocker's top, with what its stem does."""
+    """Draw the tilt of Leine and Glocker's top, with the times at which its stem touches and
+    leaves.
+    """
     for tilt, color in zip(data["theta"], (CONVERGED, MUTED), strict=False):
         axes.plot(data["time"], tilt, color=color, label=str(tilt["pressure"].values))
     main = data.isel(pressure=0)
@@ -28,8 +30,8 @@ def leine_figure(axes: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(5.4, 2, 1)
 def stepping_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
-    """Return the tilt during the rocking by time-stepping, and how far off it finds what
-    happens.
+    """Draw the tilt in the rocking by time-stepping, and the errors of event times against the
+    step.
     """
     for step, tilt, color in zip(data["step"], data["theta"], CYCLE, strict=False):
         above.plot(data["time"], tilt, color=color, lw=1.2, label=f"{1e3 * float(step):g} ms")
@@ -54,7 +56,7 @@ def stepping_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(4.8, 2, 1, sharex=True)
 def stems_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
-    """Return the final tilt, and Jellett's integral about the tip over what it takes, by the tip's
+    """Draw final tilt and Jellett's integral, over the value needed to stand, against the tip's
     radius.
     """
     radius = 1e3 * data["radius"].values
@@ -68,7 +70,7 @@ def stems_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(4.0)
 def egg_figure(axes: Axes, data: xr.Dataset) -> None:
-    """Return the tilt of eggs that are spun on their sides, with their first lift-offs."""
+    """Draw the tilt of eggs spun on their sides, with their first lift-offs."""
     colors = colormaps["viridis"](np.linspace(0.0, 0.9, data.sizes["rate"]))
     for rate, tilt, lift, color in zip(
         data["rate"], data["theta"], data["lift_off"], colors, strict=True
@@ -84,9 +86,7 @@ def egg_figure(axes: Axes, data: xr.Dataset) -> None:
 
 @mark.drawn(3.8, 1, 2)
 def rolling_figure(left: Axes, right: Axes, data: xr.Dataset) -> None:
-    """Return precessions of a disk and of two balls that roll with their centres at rest, by their
-    tilts.
-    """
+    """Draw precession against tilt of a disk and two balls that roll with their centres at rest."""
     for axes, name in ((left, "disk"), (right, "balls")):
         tilt = data[f"{name}_tilt"]
         axes.plot(tilt, data[f"{name}_precession"], color=CONVERGED, label="closed formula")

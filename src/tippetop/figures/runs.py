@@ -1,4 +1,6 @@
-"""One launch, by the report's method and converged (the report's Figs. 4, 5 and 8 to 16)."""
+"""Figures of one launch, by the report's method and converged (the report's Figs. 4, 5, 8 to
+16).
+"""
 
 from typing import Any
 
@@ -15,7 +17,7 @@ from tippetop.figures.style import ACCENT, CONVERGED, DASHED, INK, MUTED, REPORT
 
 _NAME, _NAME_REPORT = "converged", "report's method"
 _LINES = (("_listing", "time_listing", REPORT, 2.6, 1.8), ("", "time", CONVERGED, 1.0, 0.8))
-"""Of both methods: endings of variables, times, colours, widths of lines, and of the edges of
+"""Both methods' suffix of variables, time, colour, width of lines, and width of the edges of
 bands.
 """
 
@@ -31,15 +33,16 @@ def motion_figure(
     inset: mark.Box = (0.5, 0.13, 0.48, 0.56),
     reported_end: tuple[float, dict[str, float]] | None = None,
 ) -> None:
-    """Return tilt, axial spin, precession and slip of a launch, by both methods.
+    """Draw tilt, axial spin, precession and slip of a launch, by both methods.
 
-    The precession is cut at `precession_limit` rad/s: it has peaks wherever the axis comes near the
-    vertical. `zoom` is a span of time, s, whose tilt is also drawn large, in the box `inset` (left,
-    bottom, width, height in parts of the panel). The reversals of the precession are marked:
-    `quiet_start` and `quiet_end` where they enclose a calm that comes later than 1 s, otherwise
-    `last_reversal`. What the report prints gets squares: when the top has turned over and when the
-    precession reverses, s, and the time of what it takes for the end, s, with theta, omega3 and
-    phi_dot then.
+    The axis of precession ends at `precession_limit` rad/s, since precession peaks wherever the
+    axis comes near the vertical. The span of time `zoom` (s) of the tilt is enlarged in the inset
+    `inset` (left, bottom, width, height in shares of the panel).
+
+    Dots mark reversals of the precession: `quiet_start` and `quiet_end` if a calm begins later than
+    1 s, else `last_reversal`. Squares mark values that the report prints: the time `reported_turn`
+    at which the top has turned over, the times `reported_reversals`, and `reported_end`, the time
+    of its final values with theta, omega3 and phi_dot.
     """
     tilt, spin, turning, slip = panels.flat
     _pair(tilt, run, "theta", legend=True)
@@ -82,12 +85,11 @@ def tilt_figure(
     zoom: tuple[float, float],
     inset: mark.Box = (0.56, 0.14, 0.42, 0.56),
 ) -> None:
-    """Return the tilt of a launch over time by both methods, with the lift-off (`lift_off_time`)
-    marked.
+    """Draw the tilt of a launch against time by both methods, and mark its lift-off.
 
-    Where the top flies, also how it goes on when the table only pushes. `zoom` is a span of time,
-    s, that is also drawn large, in the box `inset` (left, bottom, width, height in parts of the
-    panel).
+    `lift_off_time` is the time of lift-off. If the top flies, the motion on a table that only
+    pushes is drawn as well. The span of time `zoom` (s) is enlarged in the inset `inset` (left,
+    bottom, width, height in shares of the panel).
     """
     _over_time(axes, run)
     _trio(axes, run, "theta")
@@ -98,8 +100,8 @@ def tilt_figure(
 
 @mark.drawn(3.0)
 def upright_figure(axes: Axes, run: xr.Dataset, until: float = 3.0) -> None:
-    """Return the tilt of a launch that stays near the vertical, up to a time, s, on a scale of its
-    own.
+    """Draw the tilt, up to a time (s), of a launch that stays near the vertical, on its own
+    scale.
     """
     _over_time(axes, run)
     start = run.sel(time=slice(None, until), time_listing=slice(None, until))
@@ -112,10 +114,9 @@ def upright_figure(axes: Axes, run: xr.Dataset, until: float = 3.0) -> None:
 
 @mark.drawn(3.0)
 def energy_figure(axes: Axes, run: xr.Dataset, reported: tuple[float, float]) -> None:
-    """Return the energy over time: the report's (4.1) by its method, and the converged one on both
-    tables.
+    """Draw energy against time: the report's (4.1) by its method, and the full energy converged.
 
-    `reported` is the time, s, and the gain, J, that the report names.
+    `reported` is the time, s, and the gain, J, that the report states.
     """
     _over_time(axes, run)
     start = 1e3 * float(run["launch_energy"])
@@ -142,7 +143,7 @@ def energy_figure(axes: Axes, run: xr.Dataset, reported: tuple[float, float]) ->
 
 @mark.drawn(3.0)
 def force_figure(axes: Axes, run: xr.Dataset) -> None:
-    """Return the normal force over time; below zero the table would have to pull."""
+    """Draw the normal force against time; where it is negative, the table would have to pull."""
     _over_time(axes, run)
     low = 1.12 * min(float(run["normal_force"].min()), float(run["normal_force_listing"].min()))
     axes.axhspan(low, 0, color=ACCENT, alpha=0.07, lw=0)
@@ -155,15 +156,15 @@ def force_figure(axes: Axes, run: xr.Dataset) -> None:
 
 @mark.drawn(4.6, 2, 1, height_ratios=[1.3, 1])
 def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: float) -> None:
-    """Return tilt and force to where the report stopped, s, to the lift-off, and from there in
-    flight.
+    """Draw tilt and force up to the report's stop (s), up to lift-off, and in the flight after
+    it.
     """
     stop = float(run["lift_off_time"])
     before = run.sel(time=run["time"] <= stop)
-    other = run.sel(time_listing=run["time_listing"] <= reported_stop)
+    listing = run.sel(time_listing=run["time_listing"] <= reported_stop)
     for axes, name in ((tilt, "theta"), (force, "normal_force")):
         for part, suffix, color, width, edge, label in (
-            (other, "_listing", REPORT, 2.6, 1.8, _NAME_REPORT),
+            (listing, "_listing", REPORT, 2.6, 1.8, _NAME_REPORT),
             (before, "", CONVERGED, 1.3, 1.3, _NAME),
         ):
             times, values = part[f"time{suffix}"], part[f"{name}{suffix}"]
@@ -182,7 +183,7 @@ def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: floa
     for time, color in ((stop, ACCENT), (reported_stop, REPORT)):
         force.axvline(time, color=color, lw=1.0, ls=DASHED)
     end = float(np.interp(stop, run["time"], run["theta"]))
-    last = float(other["theta_listing"][-1])
+    last = float(listing["theta_listing"][-1])
     tilt.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
     tilt.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
     for text, at, offset, color in (
@@ -209,9 +210,7 @@ def _pair(
     legend: bool = False,
     names: tuple[str, str] = (_NAME_REPORT, _NAME),
 ) -> None:
-    """Draw a variable by both methods: the report's below and wide, so that it shows where they
-    differ.
-    """
+    """Draw a variable by both methods: the report's as a wide line below the converged one."""
     for (suffix, time, color, _, edge), label in zip(_LINES, names, strict=True):
         band(axes, run[time], scale * run[f"{name}{suffix}"], color, edge, label)
     if legend:
@@ -226,9 +225,7 @@ def _trio(
     scale: float = 1.0,
     names: tuple[str, str] | None = None,
 ) -> None:
-    """Draw a variable by both methods and, where the top flies, as it goes on when the table only
-    pushes.
-    """
+    """Draw a variable by both methods and, if the top flies, on a table that only pushes."""
     flies = f"{name}_flight" in run
     _pair(
         axes,
@@ -239,7 +236,7 @@ def _trio(
     )
     if flies:
         shade_flights(axes, run)
-        continue_unilateral(axes, run, name, scale=scale, whole=True)
+        continue_unilateral(axes, run, name, scale=scale, as_band=True)
     mark.legend_above(axes, 3)
 
 
@@ -257,7 +254,7 @@ def _precession(axes: Axes, run: xr.Dataset, limit: float) -> None:
 
 
 def _mark_lift_off(axes: Axes, time: float) -> None:
-    """Mark the instant after which the table would have to pull; nothing where there is none."""
+    """Mark the time of lift-off, unless it is nan."""
     if not np.isfinite(time):
         return
     axes.axvline(time, color=ACCENT, lw=1.0, ls=DASHED)
@@ -265,7 +262,7 @@ def _mark_lift_off(axes: Axes, time: float) -> None:
 
 
 def _zoom(axes: Axes, run: xr.Dataset, span: tuple[float, float], box: mark.Box) -> None:
-    """Draw a span of time of the tilt large inside the panel, and show where it is taken from."""
+    """Draw a span of time of the tilt in an inset, and frame that span in the panel."""
     inset = mark.inset(axes, box)
     drawn = []
     for suffix, time, color, width, _ in _LINES:

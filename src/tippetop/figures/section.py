@@ -1,4 +1,6 @@
-"""A turned body cut along its axis: what it is made of, and the surfaces it stands on."""
+"""Section of a turned body along its axis, with its materials and the surfaces that it stands
+on.
+"""
 
 from typing import Any
 
@@ -16,20 +18,21 @@ from tippetop.lathe.workpiece import Workpiece
 
 BODY, WEIGHT, CAVITY = "#E9D8B8", "#9AA5B1", "white"
 ZONES = (CONVERGED, REPORT, CYCLE[2], ACCENT, CYCLE[5])
-"""The colours of the surfaces, in turn."""
+"""Colours of the surfaces, used in turn."""
 
 STEPS = 96
-"""Points on an arc."""
+"""Number of points on an arc."""
 
 MM = 1e3
+"""Millimetres in a metre."""
 
 
 @house_style()
-def section(piece: Workpiece) -> Figure:
+def section(workpiece: Workpiece) -> Figure:
     """Draw the section of a turned body, to scale, with its centre of mass and the surfaces it
     stands on.
     """
-    points = MM * piece.outline.points(STEPS)
+    points = MM * workpiece.outline.points(STEPS)
     reach, low, high = points.real.max(), points.imag.min(), points.imag.max()
     room = 0.12 * max(reach, (high - low) / 2.0)
     tall = (high - low + 2.0 * room) / (2.0 * reach + 2.0 * room)
@@ -38,18 +41,18 @@ def section(piece: Workpiece) -> Figure:
     axes.set(xlabel="Distance from the axis (mm)", ylabel="Height (mm)")
     axes.set_xticks([tick for tick in axes.get_xticks() if abs(tick) <= reach + room])
     axes.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
-    _cut(axes, piece.outline, BODY, 1.2)
-    for inner, insert in zip(piece.insides, piece.inserts, strict=True):
+    _cut(axes, workpiece.outline, BODY, 1.2)
+    for inner, insert in zip(workpiece.insides, workpiece.inserts, strict=True):
         _cut(axes, inner, WEIGHT if insert.density else CAVITY, 0.9)
     draw.line(axes, [(0.0, low - room), (0.0, high + room)], MUTED, 0.8, dashed=True, z=3)
-    _zones(axes, piece)
-    draw.mass_centre(axes, (0.0, MM * piece.mass_properties.center), radius=0.35 * room)
+    _zones(axes, workpiece)
+    draw.mass_centre(axes, (0.0, MM * workpiece.mass_properties.center), radius=0.35 * room)
     figure.legend(loc="outside right upper")
     return figure
 
 
 def _cut(axes: Axes, profile: Profile, face: str, width: float) -> None:
-    """Draw what is cut, on both sides of the axis."""
+    """Fill a profile and its mirror image."""
     points = MM * profile.points(STEPS)
     right = np.stack([points.real, points.imag], axis=-1)
     left = right[::-1] * (-1.0, 1.0)
@@ -57,19 +60,21 @@ def _cut(axes: Axes, profile: Profile, face: str, width: float) -> None:
         draw.filled(axes, draw.outline(part), face, INK, width, z=2)
 
 
-def _zones(axes: Axes, piece: Workpiece) -> None:
-    """Draw each surface where it is touched, and faintly as a whole."""
-    surfaces = list(dict.fromkeys(zone[:3] for zone in piece.hull.zones))
-    for number, zone in enumerate(piece.hull.zones):
+def _zones(axes: Axes, workpiece: Workpiece) -> None:
+    """Draw the part of each surface that comes to touch the table, and its full circle thinly."""
+    surfaces = list(dict.fromkeys(zone[:3] for zone in workpiece.hull.zones))
+    for number, zone in enumerate(workpiece.hull.zones):
         color = ZONES[surfaces.index(zone[:3]) % len(ZONES)]
         tilts = np.linspace(zone.low, zone.high, STEPS)
-        text = f"{_told(zone)},\ntilt {np.degrees(zone.low):.4g}° to {np.degrees(zone.high):.4g}°"
-        touched = _touched(zone, tilts)
+        text = (
+            f"{_described(zone)},\ntilt {np.degrees(zone.low):.4g}° to {np.degrees(zone.high):.4g}°"
+        )
+        contact = _contact_points(zone, tilts)
         for side in (1.0, -1.0):
             label = text if side > 0 else None
             if zone.tube:
                 axes.plot(
-                    side * touched[:, 0], touched[:, 1], color=color, lw=3.0, label=label, zorder=4
+                    side * contact[:, 0], contact[:, 1], color=color, lw=3.0, label=label, zorder=4
                 )
             else:
                 dot: dict[str, Any] = {
@@ -79,22 +84,22 @@ def _zones(axes: Axes, piece: Workpiece) -> None:
                     "markeredgecolor": "white",
                 }
                 axes.plot(
-                    side * touched[:1, 0], touched[:1, 1], color=color, label=label, zorder=5, **dot
+                    side * contact[:1, 0], contact[:1, 1], color=color, label=label, zorder=5, **dot
                 )
         if zone.tube and number == surfaces.index(zone[:3]):
-            whole = _touched(zone, np.linspace(0.0, 2.0 * np.pi, 4 * STEPS))
+            circle = _contact_points(zone, np.linspace(0.0, 2.0 * np.pi, 4 * STEPS))
             for side in (1.0, -1.0) if zone.radius else (1.0,):
-                axes.plot(side * whole[:, 0], whole[:, 1], color=color, lw=0.8, ls=":", zorder=3)
+                axes.plot(side * circle[:, 0], circle[:, 1], color=color, lw=0.8, ls=":", zorder=3)
 
 
-def _touched(zone: Zone, tilts: Array) -> Array:
-    """The points of a surface that are on the table at these tilts, mm."""
+def _contact_points(zone: Zone, tilts: Array) -> Array:
+    """Return the points of a surface that touch the table at these tilts, mm, shape (k, 2)."""
     across = zone.radius + zone.tube * np.sin(tilts)
     return np.asarray(MM * np.stack([across, zone.height - zone.tube * np.cos(tilts)], axis=-1))
 
 
-def _told(zone: Zone) -> str:
-    """A surface in words, in millimetres."""
+def _described(zone: Zone) -> str:
+    """Return the description of a surface, lengths in millimetres."""
     radius, tube = MM * zone.radius, MM * zone.tube
     match zone.name:
         case "sphere":

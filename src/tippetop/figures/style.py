@@ -22,15 +22,15 @@ FAINT = "#DCE1E6"
 TABLE, TABLE_EDGE = "#EEF0F2", "#C9CFD6"
 
 CONVERGED = "#0B5FA5"
-"""The true result: converged, checked."""
+"""Colour of converged results."""
 REPORT = "#E07B00"
-"""The report's own method, with its errors left in."""
+"""Colour of results by the report's own method, with its errors left in."""
 ACCENT = "#9E1F54"
-"""The one thing a figure wants looked at: an event, a force, a threshold."""
+"""Colour of what a figure draws attention to: an event, a force, a threshold."""
 
 CYCLE = (CONVERGED, REPORT, "#109B60", ACCENT, "#66C5F0", "#4A2410", "#EACF36")
 UNILATERAL = CYCLE[2]
-"""What happens on a table that only pushes; the second of two true results."""
+"""Colour of results on a table that only pushes, beside converged ones on a table that pulls."""
 
 SEQUENTIAL = "cividis"
 
@@ -90,17 +90,13 @@ _STYLE: dict[Any, Any] = {
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """Return the context in which every figure of the project is made; it also decorates what makes
-    one.
-    """
+    """Return the context in which every figure is made and saved. It is also a decorator."""
     with mpl.rc_context(_STYLE):
         yield
 
 
 def save(figure: Figure, path: Path | str, **options: Any) -> None:
-    """Write `figure` to `path` in the house style and undated, so that equal figures are equal
-    files.
-    """
+    """Write a figure without a date, in the house style, so that equal figures are equal files."""
     dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
     with house_style():
         figure.savefig(path, **{"metadata": dated.get(Path(path).suffix.lower()), **options})

@@ -1,5 +1,5 @@
-"""Many launches: where they end, how long they take (the report's Figs. 6 and 7), what the windows
-do.
+"""Figures of many launches: final tilts and flip times (the report's Figs. 6, 7), and window
+effects.
 """
 
 from typing import Any
@@ -14,7 +14,7 @@ from tippetop.figures.style import ACCENT, CONVERGED, DASHED, FAINT, INK, MUTED,
 
 @mark.drawn(4.3)
 def final_tilt_figure(axes: Axes, sweep: xr.Dataset, reported: tuple[float, float, float]) -> None:
-    """Return the final tilt against the spin at launch, with the critical points.
+    """Draw the final tilt against the spin at launch, with the critical spins.
 
     `reported` are the report's two critical spins and the spin of its abnormal point, rad/s.
     """
@@ -91,10 +91,10 @@ def _abnormal(axes: Axes, theirs: float, onset: float) -> None:
 
 @mark.drawn(3.9, 1, 2)
 def flip_time_figure(left: Axes, right: Axes, times: xr.Dataset, reported: float) -> None:
-    """Return flip times against friction: the report's range with fits, and three decades of it.
+    """Draw flip times against friction: the report's range with fits, and three decades.
 
     `reported` is the power of mu that the report prints; its line goes through the middle of the
-    points of its method.
+    points of the report's method.
     """
     mu = times["mu"].values
     fine = np.linspace(mu[0], mu[-1], 200)
@@ -117,7 +117,7 @@ def flip_time_figure(left: Axes, right: Axes, times: xr.Dataset, reported: float
 
 
 def _products(axes: Axes, wide: xr.Dataset) -> None:
-    """Draw mu times the flip time: level where the law t ~ 1/mu holds."""
+    """Draw mu times the flip time, which is constant where the law t ~ 1/mu holds."""
     axes.axvspan(0.2, 1.0, color=REPORT, alpha=0.10, lw=0)
     mark.note(
         axes, "the report's\nrange", (0.447, 1.0), (0, -4), REPORT, size=8.5, xycoords=mark.ALONG_X
@@ -141,7 +141,7 @@ def _products(axes: Axes, wide: xr.Dataset) -> None:
 def windows_figure(
     left: Axes, right: Axes, sweep: xr.Dataset, reported: tuple[float, float]
 ) -> None:
-    """Return the two critical spins against the length of the runs they are read from.
+    """Draw the two critical spins against the length of the runs that they are read from.
 
     `reported` are the report's two critical spins, rad/s.
     """

@@ -1,4 +1,4 @@
-"""Steady states: where launches end and why, how fast they get there, and which tops turn over."""
+"""Figures of steady states: stability against spin, growth rates, and which tops turn over."""
 
 from typing import Any
 
@@ -21,31 +21,34 @@ from tippetop.figures.style import (
     house_style,
 )
 
-_LOST = "#C0622B"
+_UNSTABLE = "#C0622B"
 _ROUNDING = 1e-9
+"""Growth rate up to which a state counts as stable, 1/s: rounding of the zero eigenvalues."""
 
 
 @mark.drawn(3.9, 1, 2, sharey=True)
-def bifurcation_figure(own: Axes, other: Axes, states: xr.Dataset) -> None:
-    """Return the steady tilts against the spin, stable and unstable, with the ends of long runs."""
+def bifurcation_figure(first: Axes, second: Axes, states: xr.Dataset) -> None:
+    """Draw stable and unstable steady tilts against spin for two tops, with the ends of long
+    runs.
+    """
     titles = ("the report's top", f"$I_1/I_3$ = {states.attrs['inertia_ratio_jump']:g}: a fold")
-    for axes, suffix, title in zip((own, other), ("", "_jump"), titles, strict=True):
+    for axes, suffix, title in zip((first, second), ("", "_jump"), titles, strict=True):
         right = 1.04 * float(states[f"run_spin{suffix}"].max())
         _branches(axes, states, suffix, right)
         _ends_of_runs(axes, states, suffix)
         axes.set_title(title, weight="normal", color=INK, size=10)
         axes.set(xlabel=mark.SPIN, xlim=(0, right))
         axes.xaxis.set_major_locator(MultipleLocator(20))
-    mark.tilt_axis(own, -0.12, np.pi + 0.12, r"final tilt $\theta$ (rad)")
-    handles, labels = other.get_legend_handles_labels()
-    own.figure.legend(handles, labels, loc="outside lower center", ncols=4, columnspacing=1.4)
+    mark.tilt_axis(first, -0.12, np.pi + 0.12, r"final tilt $\theta$ (rad)")
+    handles, labels = second.get_legend_handles_labels()
+    first.figure.legend(handles, labels, loc="outside lower center", ncols=4, columnspacing=1.4)
 
 
 def _branches(axes: Axes, states: xr.Dataset, suffix: str, right: float) -> None:
     """Draw stable states solid and unstable ones dashed, and mark the critical spins."""
     upright, inverted = (float(limit) for limit in states[f"limits{suffix}"])
     solid: dict[str, Any] = {"color": CONVERGED, "lw": 2.2}
-    dashed: dict[str, Any] = {"color": _LOST, "lw": 1.5, "ls": DASHED}
+    dashed: dict[str, Any] = {"color": _UNSTABLE, "lw": 1.5, "ls": DASHED}
     axes.plot([0, upright], [0, 0], **solid, label="stable")
     axes.plot([upright, right], [0, 0], **dashed, label="unstable")
     axes.plot([inverted, right], [np.pi, np.pi], **solid)
@@ -96,8 +99,8 @@ def _ends_of_runs(axes: Axes, states: xr.Dataset, suffix: str) -> None:
 
 @house_style()
 def growth_figure(critical: xr.Dataset, reported: tuple[float, float]) -> Figure:
-    """Return the growth rates of both vertical spins, and the thresholds that a window makes of
-    them.
+    """Draw the growth rates of both vertical spins, and the thresholds seen in runs of finite
+    length.
 
     `reported` are the report's two critical spins, rad/s.
     """
@@ -137,7 +140,9 @@ def _growth(axes: Axes, critical: xr.Dataset, reported: tuple[float, float]) -> 
 
 
 def _apparent(axes: Axes, critical: xr.Dataset, name: str, symbol: str, theirs: float) -> None:
-    """Draw an apparent threshold against what can be seen, with runs and the report's value."""
+    """Draw an apparent threshold against the least visible tilt, with runs and the report's
+    value.
+    """
     limit = float(critical["critical_launch"].sel(vertical=name))
     visible, seen = critical["visible"].values, critical[f"apparent_{name}"].values
     axes.axhline(limit, color=ACCENT, lw=1.2)
@@ -149,7 +154,7 @@ def _apparent(axes: Axes, critical: xr.Dataset, name: str, symbol: str, theirs: 
     axes.set_xscale("log")
     axes.set_xlim(visible[0] / 1.25, visible[-1] * 1.25)
     mark.plain_ticks(axes.xaxis, list(visible))
-    axes.set_xlabel("least tilt told from none (rad)")
+    axes.set_xlabel("least visible tilt (rad)")
     axes.set_title(
         f"{symbol} (rad/s) seen in {critical.attrs['apparent_window_s']:g} s", weight="normal"
     )
@@ -171,9 +176,7 @@ _REGIONS = {"I": "#E8ECF0", "IIa": "#D5E8F8", "IIb": "#F9E3C4", "III": "#F3DCE6"
 
 @mark.drawn(4.9)
 def groups_figure(axes: Axes, chart: xr.Dataset) -> None:
-    """Return the map of the eccentric spheres by inertia ratio and eccentricity, with some tops on
-    it.
-    """
+    """Draw the groups of eccentric spheres by inertia ratio and eccentricity, with some tops."""
     alpha = chart["alpha"].values
     left, right = chart.attrs["gamma_least"], chart.attrs["gamma_greatest"]
     first, jump, last = (
@@ -200,7 +203,7 @@ def groups_figure(axes: Axes, chart: xr.Dataset) -> None:
 
 
 def _no_precession(axes: Axes, chart: xr.Dataset) -> None:
-    """Hatch where no tilted precession is stable, and say so."""
+    """Hatch and label the region in which no tilted precession is stable."""
     low, high = chart["no_precession_from"], chart["no_precession_to"]
     exists = np.isfinite(low)
     axes.fill_betweenx(
@@ -238,7 +241,7 @@ def _name_regions(axes: Axes) -> None:
 
 
 def _tops(axes: Axes, chart: xr.Dataset) -> None:
-    """Mark the tops, the report's as its two versions."""
+    """Mark the tops; the report's top is marked in its two versions."""
     places = (((-10, 13), "center"), ((10, 13), "center"), ((-9, 0), "right"))
     colors = (CONVERGED, REPORT, ACCENT)
     for k, (offset, side) in enumerate(places):

@@ -1,6 +1,4 @@
-"""The way to the end: runs against the limit of weak friction, and what a run says of its
-nutation.
-"""
+"""Figures of slow inversion: runs against the limit of weak friction, and the nutation of a run."""
 
 from typing import Any
 
@@ -13,13 +11,13 @@ import tippetop.figures.annotation as mark
 from tippetop.figures.style import ACCENT, CONVERGED, DASHED, FAINT, INK, MUTED, REPORT, UNILATERAL
 
 _SPAN = 3.0
-"""Range of energies that every panel of the potential shows above its least value, mJ."""
+"""Energies above the potential's minimum that each panel shows, mJ."""
 
 
 @mark.drawn(5.6, 2, 1, sharex=True, height_ratios=[1.2, 1])
 def collapse_figure(linear: Axes, logarithmic: Axes, flow: xr.Dataset) -> None:
-    """Return the tilt against mu t of runs at several frictions, with the averaged flow, on two
-    scales.
+    """Draw tilts of runs and of the averaged flow against mu t, on a linear and a logarithmic
+    scale.
     """
     limit = float(flow["flip_limit"])
     for axes in (linear, logarithmic):
@@ -34,9 +32,7 @@ def collapse_figure(linear: Axes, logarithmic: Axes, flow: xr.Dataset) -> None:
 
 
 def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
-    """Draw the run with most friction as it is, the others as ranges, and the flow as two
-    bounds.
-    """
+    """Draw the run with most friction as a curve, the other runs and the flow by their ranges."""
     axes.plot(
         flow["mu_time_swing"],
         flow["theta_swing"],
@@ -61,9 +57,7 @@ def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
 
 @mark.drawn(5.6, 2, 1, sharex=True, height_ratios=[1.45, 1])
 def exponent_figure(above: Axes, below: Axes, times: xr.Dataset) -> None:
-    """Return mu times the time to turn over against friction, in several senses, and the local
-    exponent.
-    """
+    """Draw mu times several times of turning over against friction, and the local exponents."""
     mu = times["mu_flip"].values
     limits = (float(times["limit_arrival"]), float(times["limit_crossing"]))
     for limit, color in zip(limits, (CONVERGED, UNILATERAL), strict=True):
@@ -113,8 +107,8 @@ def _exponents(axes: Axes, times: xr.Dataset) -> None:
 
 @mark.drawn(5.0, 2, 1, sharex=True)
 def balance_figure(tilt: Axes, ratio: Axes, run: xr.Dataset) -> None:
-    """Return how near a run is to gyroscopic balance, and its tilt within the envelope of its
-    nutation.
+    """Draw the distance of a run from gyroscopic balance, and its tilt within its nutation's
+    envelope.
     """
     time = run["time_diagnosed"].values
     _within_envelope(tilt, run, 0.9)
@@ -149,8 +143,8 @@ def _within_envelope(axes: Axes, run: xr.Dataset, width: float) -> None:
 
 @mark.drawn(4.9, 2, 3, sharex=True, lettered=False)
 def potential_figure(panels: Any, run: xr.Dataset) -> None:
-    """Return the effective potential of the tilt at several instants of a run, with the energy
-    level.
+    """Draw the effective potential of the tilt and the energy level at several instants of a
+    run.
     """
     tilt = run["well_theta"].values
     for k, axes in enumerate(panels.flat):

@@ -1,6 +1,4 @@
-"""The toy itself, in three stages of turning over (the report's Fig. 1), seen along parallel
-rays.
-"""
+"""Drawing of the toy in three stages of turning over (the report's Fig. 1), along parallel rays."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -51,7 +49,7 @@ def _table(axes: Axes, ends: tuple[float, float], view: Array) -> None:
 
 
 def _stage(axes: Axes, x: float, tilt: float, view: Array) -> None:
-    """Draw one toy: its shadow, its picture, its spin, and how high its centre of mass is."""
+    """Draw one toy with its shadow, its spin and the height of its centre of mass."""
     toy, frame = Toy(REPORT), Rotation.from_euler("ZY", [np.radians(-35), tilt]).as_matrix()
     centre = np.array([x, 0.0, 1.0])
     o, mass = centre @ view, (centre - frame @ toy.middle) @ view
@@ -70,9 +68,7 @@ def _stage(axes: Axes, x: float, tilt: float, view: Array) -> None:
 def _spin(
     axes: Axes, centre: Array, view: Array, height: float = 3.0, radius: float = 0.42
 ) -> None:
-    """Draw the vertical through the sphere's centre and an arrow turning about it, the far part
-    behind it.
-    """
+    """Draw the vertical through the sphere's centre, and an arrow that turns about it."""
     ends = centre * [1, 1, 0] + [[0, 0, centre[2]], [0, 0, height + 0.4]]
     ring = draw.arc([1, 0, 0], [0, 1, 0], np.radians(325), np.radians(25)) * radius + centre * [
         1,
@@ -85,7 +81,7 @@ def _spin(
 
 
 def _picture(toy: Toy, frame: Array, view: Array, pixels: int = 300, oversample: int = 2) -> Array:
-    """Return the toy's picture about the sphere's centre: RGBA, rows from the bottom up."""
+    """Return the picture of the toy about its sphere's centre: RGBA, rows from the bottom up."""
     n = pixels * oversample
     grid = ((np.arange(n) + 0.5) / n * 2 - 1) * _REACH
     across, upward = np.meshgrid(grid, grid)
@@ -102,10 +98,9 @@ def _picture(toy: Toy, frame: Array, view: Array, pixels: int = 300, oversample:
 
 
 def _bled(blocks: Array) -> Array:
-    """Undo the averaging of colour with empty space, and spread the edge's colour one pixel
-    outwards.
+    """Undo the averaging of colours with empty space, and spread the edge's colour by one pixel.
 
-    Without it, a viewer that interpolates the picture draws a dark fringe around it.
+    A viewer that interpolates the picture would otherwise draw a dark fringe around it.
     """
     around = sum(
         (np.roll(blocks, shift, axis) for axis in (0, 1) for shift in (-1, 1)),
@@ -117,7 +112,7 @@ def _bled(blocks: Array) -> Array:
 
 
 def _shadow(offset: float, spread: float, strength: float, pixels: int = 160) -> Array:
-    """Return a soft round shadow (RGBA) on the square of half width 2, darkest `offset` to the
+    """Return a soft round shadow (RGBA) on a square of half width 2, darkest at `offset` to the
     right.
     """
     grid = np.linspace(-2, 2, pixels)

@@ -1,6 +1,7 @@
-"""The toy met by rays, and lit: what pictures of it made without a browser are drawn with.
+"""The toy of a body, intersected with rays and shaded: for pictures that are made without a
+browser.
 
-Lengths are in sizes of the toy; points and directions are in the body's frame, about its centre of
+Lengths are in sizes of the toy. Points and directions are in the body's frame, from its centre of
 mass.
 """
 
@@ -12,26 +13,28 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from tippetop.figures.looks import size, toy_parts
+from tippetop.figures.appearance import size, toy_parts
 from tippetop.problem.bodies import Body
 
 Array = NDArray[np.floating[Any]]
 
 CLOSE = 3e-4
-"""How near to an outline what is drawn for a piece of it must be, in sizes of the toy."""
+"""Largest distance of a quadric from the outline that it stands for, in sizes of the toy."""
 
 LEVEL = 1e-9
-"""Height between two points below which they are on one level, in sizes of the toy."""
+"""Difference of heights below which two points count as level, in sizes of the toy."""
 
 LAP = 1e-5
-"""How far each piece reaches over its ends, in sizes of the toy: no ray passes between two."""
+"""Length by which each quadric reaches over its ends, in sizes of the toy, so that no ray passes
+between two of them.
+"""
 
 FAR = 1e9
-"""How far along a ray that misses it the toy is."""
+"""Distance along a ray that stands for a ray that misses the toy."""
 
 
 class _Quadric(NamedTuple):
-    """Where w (x^2 + y^2) = p + q z + s z^2, between two heights and two distances from the
+    """Quadric w (x^2 + y^2) = p + q z + s z^2 between two heights and two distances from the
     axis.
     """
 
@@ -46,57 +49,63 @@ class _Quadric(NamedTuple):
 
     @property
     def inwards(self) -> "_Quadric":
-        """The same surface seen from its other side."""
+        """The same quadric with normals that point inwards."""
         return self._replace(w=-self.w, p=-self.p, q=-self.q, s=-self.s)
 
     def meet(self, o: Array, d: Array) -> tuple[Array, ...]:
-        """How far along rays its two places are; far where there is none."""
+        """Return the distances along rays to both intersections; `FAR` where there is none."""
         ox, oy, oz = np.moveaxis(o, -1, 0)
         dx, dy, dz = np.moveaxis(d, -1, 0)
         a = self.w * (dx * dx + dy * dy) - self.s * dz * dz
         b = self.w * (ox * dx + oy * dy) - (self.q / 2 + self.s * oz) * dz
         c = self.w * (ox * ox + oy * oy) - self.p - (self.q + self.s * oz) * oz
-        inside = b * b - a * c
+        discriminant = b * b - a * c
         # Either root by the form that loses no digits, and that holds for planes, where a is zero.
-        lesser = -(b + np.copysign(np.sqrt(np.maximum(inside, 0.0)), b))
+        lesser = -(b + np.copysign(np.sqrt(np.maximum(discriminant, 0.0)), b))
         with np.errstate(divide="ignore", invalid="ignore"):
             roots = c / lesser, lesser / a
-            return tuple(self._kept(o, d, np.where(inside < 0, FAR, root)) for root in roots)
+            return tuple(
+                self._within_bounds(o, d, np.where(discriminant < 0, FAR, root)) for root in roots
+            )
 
-    def _kept(self, o: Array, d: Array, distance: Array) -> Array:
+    def _within_bounds(self, o: Array, d: Array, distance: Array) -> Array:
+        """Return the distances, `FAR` for places outside the quadric's bounds or behind the
+        start.
+        """
         z = o[..., 2] + distance * d[..., 2]
-        kept = (distance > 1e-6) & (z >= self.low) & (z <= self.high)
+        inside = (distance > 1e-6) & (z >= self.low) & (z <= self.high)
         if self.w == 0.0:
             away = (o[..., 0] + distance * d[..., 0]) ** 2 + (o[..., 1] + distance * d[..., 1]) ** 2
-            kept &= (away >= self.narrowest**2) & (away <= self.widest**2)
-        return np.where(kept, distance, FAR)
+            inside &= (away >= self.narrowest**2) & (away <= self.widest**2)
+        return np.where(inside, distance, FAR)
 
     def normal(self, point: Array) -> Array:
-        """Vectors along its normals at points of it, outwards."""
+        """Return outward normals (not of unit length) at points of the quadric."""
         outward = self.w * point
         outward[..., 2] = -self.q / 2 - self.s * point[..., 2]
         return outward
 
 
 class Hits(NamedTuple):
-    """Where rays meet the toy."""
+    """First intersections of rays with the toy."""
 
     distances: Array
-    """How far along each ray; far if it misses."""
+    """Distances along the rays; `FAR` for a ray that misses."""
     normals: Array
-    """Unit normals there."""
+    """Unit normals at the intersections."""
     parts: NDArray[np.intp]
-    """Numbers of the solid parts that are met."""
+    """Indices of the solid parts that the rays hit."""
 
     def some(self, which: Any) -> "Hits":
-        """Some of them, as an array is indexed."""
+        """Return the intersections of some of the rays, selected as an array is indexed."""
         return Hits(*(values[which] for values in self))
 
 
 class Toy:
-    """The toy of a body: of a `size`, m, by which it is measured, and a `reach` from its `middle`.
+    """Toy of a body, with the colours and the surfaces of its solid parts.
 
-    That is the point halfway along its axis.
+    `size` (m) is the unit of length. `middle` is the point halfway along the axis, and `reach` is
+    the greatest distance of the toy from it.
     """
 
     def __init__(self, body: Body) -> None:
@@ -113,18 +122,20 @@ class Toy:
         ]
 
     def meet(self, start: Array, direction: Array) -> Hits:
-        """Where rays meet the toy."""
+        """Return the first intersections of rays with the toy."""
         o = start - self.middle.astype(start.dtype)
         shape = o.shape[:-1]
         hits = Hits(np.full(shape, FAR, o.dtype), np.zeros_like(o), np.zeros(shape, np.intp))
         near = np.nonzero(_passes(o, direction, self.reach))
         if len(near[0]):
-            for found, those in zip(hits, self._meet(o[near], direction[near]), strict=True):
-                found[near] = those
+            for values, of_near in zip(hits, self._meet(o[near], direction[near]), strict=True):
+                values[near] = of_near
         return hits
 
     def _meet(self, o: Array, d: Array) -> Hits:
-        """The same for rays that pass through the sphere in which all of the toy is."""
+        """Return the first intersections of rays that pass through the sphere that encloses the
+        toy.
+        """
         nearest, normals = np.full(o.shape[:-1], FAR, o.dtype), np.zeros_like(o)
         parts = np.zeros(o.shape[:-1], np.intp)
         for part, surface in self._surfaces:
@@ -139,7 +150,7 @@ class Toy:
         return Hits(nearest, normals / length, parts)
 
     def paint(self, point: Array, parts: NDArray[np.intp]) -> Array:
-        """The colours of surface points of its parts."""
+        """Return the colours of points on the surfaces of parts, shape (k, 3)."""
         turn = np.arctan2(point[..., 1], point[..., 0]) / (2 * np.pi) % 1.0
         colours = np.zeros_like(point)
         for part, sectors in enumerate(self._sectors):
@@ -148,9 +159,9 @@ class Toy:
         return colours
 
     def lit(self, point: Array, hits: Hits, light: Array, eye: Array, upward: Array) -> Array:
-        """The colours of surface points that were hit, lit by one light and a bright sky.
+        """Return the colours of intersections under one light and a bright sky, shape (k, 3).
 
-        Given are unit vectors to the light, to the eye and upwards.
+        `light`, `eye` and `upward` are unit vectors towards the light, towards the eye and upwards.
         """
         normal = hits.normals
         sun = np.clip(normal @ light, 0, None)
@@ -165,8 +176,10 @@ class Toy:
 
 
 def _turned(curve: NDArray[np.float64]) -> Iterator[_Quadric]:
-    """The surface that a smooth line turns to, with the body on its left: as few quadrics as it
-    takes.
+    """Yield the quadrics of the surface that a smooth line makes as it turns about the axis.
+
+    The body lies to the left of the line. Neighbouring points share a quadric as long as it stays
+    within `CLOSE` of them.
     """
     rises = np.sign(np.where(np.abs(np.diff(curve[:, 1])) < LEVEL, 0.0, np.diff(curve[:, 1])))
     turns = np.flatnonzero(np.diff(rises)) + 1
@@ -184,27 +197,31 @@ def _turned(curve: NDArray[np.float64]) -> Iterator[_Quadric]:
 
 
 def _sloping(curve: NDArray[np.float64], falls: bool) -> Iterator[_Quadric]:
-    """The surface of a line that rises all the way, or falls, and then is seen from inside."""
+    """Yield the quadrics of a line whose height only rises, or only falls.
+
+    A line that falls (`falls`) bounds the body from inside.
+    """
     away, along = curve.T
-    some = [0, len(curve) // 2, -1]
+    middle = len(curve) // 2
     if len(curve) == 2:
         slope = (away[1] - away[0]) / (along[1] - along[0])
         tip = away[0] - slope * along[0]
         s, q, p = slope * slope, 2 * slope * tip, tip * tip
     else:
-        s, q, p = np.polyfit(along[some], away[some] ** 2, 2)
+        through = [0, middle, -1]
+        s, q, p = np.polyfit(along[through], away[through] ** 2, 2)
     off = np.sqrt(np.maximum(p + (q + s * along) * along, 0.0)) - away
     if len(curve) > 3 and np.abs(off).max() > CLOSE:
-        for half in (curve[: some[1] + 1], curve[some[1] :]):
+        for half in (curve[: middle + 1], curve[middle:]):
             yield from _sloping(half, falls)
     else:
         low, high = sorted((float(along[0]), float(along[-1])))
-        found = _Quadric(1.0, float(p), float(q), float(s), low - LAP, high + LAP)
-        yield found.inwards if falls else found
+        quadric = _Quadric(1.0, float(p), float(q), float(s), low - LAP, high + LAP)
+        yield quadric.inwards if falls else quadric
 
 
 def _passes(o: Array, d: Array, reach: float) -> NDArray[np.bool_]:
-    """Whether rays pass through the sphere of this radius."""
+    """Return whether each ray passes through the sphere of a radius about the origin."""
     b = np.einsum("...i,...i", o, d)
     a, c = np.einsum("...i,...i", d, d), np.einsum("...i,...i", o, o)
     return np.asarray(b * b > a * (c - reach * reach))

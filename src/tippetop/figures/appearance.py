@@ -1,10 +1,11 @@
-"""What the toy and its table look like: read by figures, films, models and, as data, by the player.
+"""Appearance of the toy and its table, shared by figures, films, models and the page's player.
 
-Lengths are in sizes of the toy: radii of a tippe top's sphere, or half the height or the width of
-any other body, which is drawn by its outline. Of a tippe top that is known as a sphere only, this
-sphere is whole; the toy is that sphere cut by a flat face, with a stem that reaches just as far as
-the sphere would. What is cut away is drawn as glass: so one sees what touches the table when the
-toy lies on its face.
+Lengths are in sizes of the toy: the radius of a tippe top's sphere, or half the height or the width
+of any other body, which is drawn by its meridian.
+
+A tippe top that states nothing but its sphere is drawn as a sphere cut by a flat face, with a stem
+that reaches as far as the sphere does. The part that is cut away is drawn as glass, so that one
+sees what touches the table when the toy lies on its face.
 """
 
 import json
@@ -15,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.figures.meridian import ARC_STEP, meridian, own_profile
+from tippetop.figures.meridian import ARC_STEP, meridian, stated_profile
 from tippetop.figures.style import ACCENT, CONVERGED, REPORT
 from tippetop.mechanics.outline import extent
 from tippetop.problem.bodies import Body
@@ -24,11 +25,11 @@ from tippetop.problem.shapes import EccentricSphere
 Array = NDArray[np.float64]
 
 FACE = 0.42
-"""Distance from the sphere's centre to the flat face, along the axis."""
+"""Distance from the sphere's centre to the flat face, along the axis, in radii."""
 STEM, KNOB = 0.12, 0.165
-"""Radii of the stem where it leaves the face, and of the ball at its end."""
+"""Radii of the stem at the face, and of the ball at the stem's end."""
 STEM_TOP = 1.0 - KNOB
-"""Distance from the sphere's centre to that ball's."""
+"""Distance from the sphere's centre to the centre of the ball at the stem's end."""
 
 SCENES: Mapping[str, Mapping[str, Any]] = {
     "light": {
@@ -54,7 +55,7 @@ SCENES: Mapping[str, Mapping[str, Any]] = {
         "ambient": 1.4,
     },
 }
-"""The colours around the toy, and how bright it is there, by the theme."""
+"""Colours and brightness of the surroundings of the toy, by theme."""
 
 _PALE, _CREAM, _SAND, _WOOD = "#66C5F0", "#F4E7CF", "#E4D2AE", ("#D9AE78", "#C79A62")
 _BOWL = (CONVERGED, CONVERGED, _PALE) * 2
@@ -62,10 +63,10 @@ _BAND = (_CREAM, _CREAM, _CREAM, _CREAM, REPORT, REPORT)
 
 
 class ToyPart(NamedTuple):
-    """A surface of revolution."""
+    """Surface of revolution of the toy, with its colours."""
 
     name: str
-    """What it is of the toy."""
+    """Name of the part."""
     profile: Array
     """Points (distance from the axis, height along it from the centre of mass), from below, shape
     (k, 2).
@@ -76,45 +77,43 @@ class ToyPart(NamedTuple):
     """1 for solid, less for glass."""
 
     def plain(self) -> dict[str, Any]:
-        """It as plain numbers and words."""
+        """Return the part as plain numbers and texts."""
         return self._replace(profile=self.profile.round(9).tolist())._asdict()
 
 
 BAND = 4
-"""Half the width of the band around an outline without corners, in points of it."""
+"""Half the width of the coloured band around a smooth outline, in points of the outline."""
 
 
 def size(body: Body) -> float:
-    """The length by which the toy is measured when it is drawn, m."""
+    """Return the length (m) that is the unit of a body's toy."""
     ball = _plain_ball(body)
     return ball.radius if ball else extent(meridian(body))
 
 
 def toy_parts(body: Body) -> tuple[ToyPart, ...]:
-    """The parts of the toy for this body: of a tippe top, or the belts of any other body's
-    outline.
+    """Return the parts of a body's toy: the parts of a tippe top, or belts of the body's
+    meridian.
     """
     ball = _plain_ball(body)
     if ball:
         return _tippe_top(ball.eccentricity)
     lines = meridian(body)
-    pieces = [np.array(line) / extent(lines) for line in lines]
-    if len(pieces) == 1:
-        middle, last = len(pieces[0]) // 2, len(pieces[0]) - 1
-        pieces = [
-            pieces[0][i : j + 1] for i, j in pairwise((0, middle - BAND, middle + BAND, last))
-        ]
+    belts = [np.array(line) / extent(lines) for line in lines]
+    if len(belts) == 1:
+        middle, last = len(belts[0]) // 2, len(belts[0]) - 1
+        belts = [belts[0][i : j + 1] for i, j in pairwise((0, middle - BAND, middle + BAND, last))]
     return tuple(
-        ToyPart(f"belt {number}", piece, _BAND if number % 2 else _BOWL)
-        for number, piece in enumerate(pieces)
+        ToyPart(f"belt {number}", belt, _BAND if number % 2 else _BOWL)
+        for number, belt in enumerate(belts)
     )
 
 
 def _plain_ball(body: Body) -> EccentricSphere | None:
-    """The sphere of a body of which nothing else is known."""
+    """Return the sphere of a body that states nothing but its sphere, else None."""
     return (
         body.shape
-        if isinstance(body.shape, EccentricSphere) and own_profile(body) is None
+        if isinstance(body.shape, EccentricSphere) and stated_profile(body) is None
         else None
     )
 
@@ -137,17 +136,15 @@ def _tippe_top(eccentricity: float) -> tuple[ToyPart, ...]:
 
 
 def as_json() -> str:
-    """What the page draws toys from, its `looks.json`: scenes, a tippe top, the colours of belts,
-    rules.
-    """
+    """Return the JSON text from which the page draws toys: scenes, a tippe top, colours, rules."""
     parts = [part.plain() for part in _tippe_top(0.0)]
     rules = {"arc_step": ARC_STEP, "band": BAND}
-    told = {"scenes": SCENES, "tippe_top": parts, "bowl": _BOWL, "band": _BAND, "meridian": rules}
-    return json.dumps(told) + "\n"
+    data = {"scenes": SCENES, "tippe_top": parts, "bowl": _BOWL, "band": _BAND, "meridian": rules}
+    return json.dumps(data) + "\n"
 
 
 def _arc(low: float, high: float, points: int = 16) -> Array:
-    """Points of the unit circle between two latitudes; exactly on the axis at the poles."""
+    """Return points of the unit circle between two latitudes, exactly on the axis at the poles."""
     latitude = np.linspace(low, high, points)
     away = np.where(np.isclose(np.abs(latitude), np.pi / 2), 0.0, np.cos(latitude))
     return np.stack([away, np.sin(latitude)], axis=1)
