@@ -40,7 +40,7 @@ def critical(
 
 
 def _plain(found: "Outlook") -> dict[str, Any]:
-    """The record for programs."""
+    """Return the record for programs."""
     prediction, stays = found.prediction, found.stays
     final = stays.state if stays else prediction and prediction.final
     possible = [stays.state] if stays else prediction and prediction.reachable
@@ -66,7 +66,7 @@ def _plain(found: "Outlook") -> dict[str, Any]:
 
 
 def _plain_spectrum(spectrum: "Spectrum | None") -> dict[str, Any]:
-    """The stability of a steady state for programs: null where nothing is linear."""
+    """Return the stability of a steady state for programs: null where nothing is linear."""
     if spectrum is None:
         return dict.fromkeys(("stable", "growth_rate", "frame_rate", "eigenvalues", "neutral"))
     return {
@@ -92,7 +92,7 @@ FLAT = "This body lies flat when its axis is vertical: it has no vertical spin."
 
 
 def _sentences(found: "Outlook") -> Iterator[Any]:
-    """The record for people."""
+    """Yield the record for people."""
     if found.group is not None and found.creeps:
         yield f"[bold]Group {found.group.value}[/]: {found.group.description}."
     if not found.creeps:
@@ -161,7 +161,7 @@ def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
 
 
 def _critical_rows(found: "Outlook") -> list[tuple[str, str, str]]:
-    """Critical spins and Jellett's integrals, where slip creeps."""
+    """Return critical spins and Jellett's integrals, where slip creeps."""
     jellett = (
         "λ of this launch",
         spelled(found.jellett),
@@ -184,7 +184,7 @@ def _critical_rows(found: "Outlook") -> list[tuple[str, str, str]]:
 
 
 def _threshold(name: str, value: float, unit: str) -> tuple[str, str, str]:
-    """A row for a threshold, which may not exist."""
+    """Return a row for a threshold, which may not exist."""
     return (name, spelled(value), unit) if math.isfinite(value) else (name, "no spin", "")
 
 
@@ -255,7 +255,9 @@ def _state_row(judged: "Judged") -> tuple[str, ...]:
 
 
 def _eigenvalues(judged: "Judged") -> str:
-    """The eigenvalues in a row; of each pair of conjugates, the one above stands for both."""
+    """Return the eigenvalues in a row; of each pair of conjugates, the one above stands for
+    both.
+    """
     assert judged.spectrum is not None
     shown = [value for value in judged.spectrum.eigenvalues.tolist() if value.imag >= 0]
     return ", ".join(f"{v.real:.5g} ± {v.imag:.6g}i" if v.imag else f"{v.real:.5g}" for v in shown)

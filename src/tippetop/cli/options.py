@@ -89,8 +89,8 @@ class Choice(NamedTuple):
     changes: Sequence[str] = ()
 
     def problem(self) -> "tt.Problem":
-        """The problem of the file, or the report's, with what is other; sentences for what cannot
-        be.
+        """Return the problem of the file, or the report's, with what is other; sentences for what
+        cannot be.
         """
         return self.changed(
             tt.presets.report_problem() if self.file is None else tt.Problem.read(self.file)
@@ -116,8 +116,8 @@ class Choice(NamedTuple):
 def of_a_problem(
     command: Callable[Concatenate[Choice, ...], None], file: Any = ProblemFile
 ) -> Callable[..., None]:
-    """The command with the options that say which problem it is for, as its first argument then
-    tells.
+    """Return the command with the options that say which problem it is for, as its first argument
+    then tells.
     """
 
     @wraps(command)
@@ -148,7 +148,9 @@ def write_figure(figure: "Figure", path: Path, force: bool) -> None:
 
 
 def _parsed(change: str) -> tuple[str, Any]:
-    """Field and value of a `--set FIELD=VALUE`: a number or list as in JSON, or else a word."""
+    """Return field and value of a `--set FIELD=VALUE`: a number or list as in JSON, or else a
+    word.
+    """
     field, equals, value = change.partition("=")
     if not equals:
         raise InvalidInput("--set", change, "FIELD=VALUE, such as launch.spin=155")
@@ -156,7 +158,7 @@ def _parsed(change: str) -> tuple[str, Any]:
 
 
 def _value(text: str) -> Any:
-    """The value that a text states: a number or list as in JSON, or else a word."""
+    """Return the value that a text states: a number or list as in JSON, or else a word."""
     try:
         return json.loads(text)
     except (ValueError, RecursionError):

@@ -32,7 +32,7 @@ def problem(
 
 
 def commented_toml(problem: "tt.Problem") -> str:
-    """The problem as TOML, with the unit and the meaning of every number beside it."""
+    """Return the problem as TOML, with the unit and the meaning of every number beside it."""
     table = name = ""
     place = 0
     lines = []

@@ -41,7 +41,7 @@ def reproduce(
 
 
 def _plain(result: "Reproduction") -> dict[str, object]:
-    """The result for programs."""
+    """Return the result for programs."""
     return {
         "folder": str(result.folder),
         "page": str(result.folder / "index.html"),

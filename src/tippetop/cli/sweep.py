@@ -162,7 +162,7 @@ def _chosen_sweep(
     grid: "Product | tt.Draws | None",
     limits: dict[str, float | None],
 ) -> "Sweep":
-    """The sweep that the file, or the store to be resumed, and the options ask for."""
+    """Return the sweep that the file, or the store to be resumed, and the options ask for."""
     from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
 
     file = choice.file
@@ -184,7 +184,7 @@ def _chosen_sweep(
 def _chosen_grid(
     axis: list[str] | None, draw: list[str] | None, count: int | None, seed: int | None
 ) -> "Product | tt.Draws | None":
-    """The grid that the options ask for, if they do."""
+    """Return the grid that the options ask for, if they do."""
     from tippetop.sweeps import Product  # noqa: PLC0415 - slow to import
 
     if axis and draw:
@@ -204,7 +204,7 @@ def _chosen_grid(
 
 
 def _axis(text: str) -> tuple[str, Any]:
-    """An axis of the command line as it stands in a file."""
+    """Return an axis of the command line as it stands in a file."""
     field, equals, values = text.partition("=")
     try:
         match values.split(":"):
@@ -222,7 +222,7 @@ def _axis(text: str) -> tuple[str, Any]:
 
 
 def _range(text: str) -> tuple[str, Any]:
-    """A draw of the command line as it stands in a file."""
+    """Return a draw of the command line as it stands in a file."""
     field, equals, rest = text.partition("=")
     low, _, high = rest.removesuffix(":log").partition(":")
     law = "log-uniform" if rest.endswith(":log") else "uniform"
@@ -251,7 +251,7 @@ def _numbers(texts: list[str]) -> list[float | str]:
 
 
 def _holds_sweep(file: Path) -> bool:
-    """Whether a file is a sweep's rather than a problem's."""
+    """Return whether a file is a sweep's rather than a problem's."""
     from tippetop.support.parsing import parse_toml  # noqa: PLC0415
     from tippetop.sweeps.definition import is_sweep  # noqa: PLC0415 - slow to import
 
@@ -264,7 +264,7 @@ def _holds_sweep(file: Path) -> bool:
 
 
 def _map_files(out: Path, chosen: "Sweep") -> dict[str, Path]:
-    """The maps that are drawn beside a store, if they can be: variables and files."""
+    """Return the maps that are drawn beside a store, if they can be: variables and files."""
     from tippetop.figures.maps import MAPPED, require_drawable  # noqa: PLC0415 - slow to import
     from tippetop.sweeps.grid import field_paths  # noqa: PLC0415
 

@@ -30,14 +30,14 @@ def facts(rows: Iterable[Sequence[str]]) -> "Table":
 
 
 def spelled(value: float, digits: int = 10) -> str:
-    """A number, or that what it is of never comes."""
+    """Return a number, or that what it is of never comes."""
     return f"{value + 0.0:.{digits}g}" if math.isfinite(value) else "never"
 
 
 def listing(
     title: str | None, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Sequence[str]
 ) -> "Table":
-    """Rows of numbers under headings, but for the columns of words."""
+    """Return rows of numbers under headings, but for the columns of words."""
     from rich.table import Table  # noqa: PLC0415
 
     table = Table(title=title, title_justify="left", title_style="bold", box=None)

@@ -20,7 +20,7 @@ LOADER = Path(__file__).with_name("loader.js").read_text(encoding="utf-8")
 
 @cache
 def built(name: str) -> str:
-    """A built file; `Unavailable` if it is not built."""
+    """Return a built file; `Unavailable` if it is not built."""
     try:
         return (BUILT / name).read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -32,10 +32,10 @@ def built(name: str) -> str:
 
 @cache
 def player_packed() -> str:
-    """The player, compressed, as base64; `Unavailable` if it is not built."""
+    """Return the player, compressed, as base64; `Unavailable` if it is not built."""
     return packed(built("player.js").encode())
 
 
 def packed(content: bytes) -> str:
-    """Bytes compressed, as base64: the same for the same bytes."""
+    """Return bytes compressed, as base64: the same for the same bytes."""
     return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")

@@ -100,7 +100,7 @@ def write_movie(
 
 
 def ffmpeg() -> str:
-    """The path of ffmpeg; `Unavailable` if it is not installed."""
+    """Return the path of ffmpeg; `Unavailable` if it is not installed."""
     found = shutil.which("ffmpeg")
     if found is None:
         raise Unavailable(
@@ -131,8 +131,8 @@ def frames(
     pixels: tuple[int, int],
     progress: Callable[[int, int], None] = lambda drawn, count: None,
 ) -> Iterator[Frame]:
-    """The pictures of a film, shape (height, width, 3) each; `InvalidInput` if there would be too
-    many.
+    """Yield the pictures of a film, shape (height, width, 3) each; `InvalidInput` if there would be
+    too many.
     """
     start, end = run["time"].values[[0, -1]].tolist()
     least = (end - start) * fps / MOST_FRAMES

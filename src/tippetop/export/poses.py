@@ -29,7 +29,7 @@ class Poses(NamedTuple):
 
 
 def poses_at(run: xr.Dataset, times: ArrayLike) -> Poses:
-    """The poses of a run at any times within it, s, shape (k,)."""
+    """Return the poses of a run at any times within it, s, shape (k,)."""
     samples, at = run["time"].values, np.asarray(times, dtype=float)
     i = np.clip(np.searchsorted(samples, at, side="right") - 1, 0, max(len(samples) - 2, 0))
     j = np.minimum(i + 1, len(samples) - 1)
@@ -67,8 +67,8 @@ def contact_path(run: xr.Dataset) -> Array:
 
 
 def _cubic(u: Array, h: Array, a: Array, b: Array, rate_a: Array, rate_b: Array) -> Array:
-    """The cubic through two values with the rates at both ends, at a share u of the time h between
-    them.
+    """Return the cubic through two values with the rates at both ends, at a share u of the time h
+    between them.
     """
     v = 1.0 - u
     by_value = v * v * (1 + 2 * u) * a + u * u * (3 - 2 * u) * b
@@ -84,7 +84,7 @@ def _carrying_spin(start: Array, axis: Array, rate: Array) -> Array:
 
 
 def shortest(start: Array, end: Array) -> Rotation:
-    """The shortest rotations from unit vectors to others."""
+    """Return the shortest rotations from unit vectors to others."""
     cosine = np.einsum("ij,ij->i", start, end)
     quaternion = np.concatenate([np.cross(start, end), 1 + cosine[:, None]], axis=1)
     opposite = np.linalg.norm(quaternion, axis=1) < 1e-9

@@ -71,7 +71,8 @@ def write_solid(
 
 
 def solids(piece: Workpiece, facets: int) -> dict[str, Any]:
-    """The body, and then the weights in it, by name, each with the hollows that the others leave.
+    """Return the body, and then the weights in it, by name, each with the hollows that the others
+    leave.
 
     They are meshes of trimesh, in millimetres. Raises `InvalidInput` if an insert touches the
     surface of the body or another insert.
@@ -102,7 +103,7 @@ def solids(piece: Workpiece, facets: int) -> dict[str, Any]:
 
 
 def _line(profile: Profile, facets: int) -> Any:
-    """Points along a profile, mm, shape (k, 2), so many around a circle."""
+    """Return points along a profile, mm, shape (k, 2), so many around a circle."""
     steps = [math.ceil(abs(edge.turn) / math.tau * facets) or 1 for edge in profile.edges]
     points = [edge.points(np.arange(k) / k) for edge, k in zip(profile.edges, steps, strict=True)]
     line = MM * np.append(np.concatenate(points), profile.edges[-1].end)

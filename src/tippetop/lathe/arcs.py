@@ -22,8 +22,8 @@ STRAIGHT = 1e-14
 
 
 def circle_through(points: Array) -> tuple[complex, float] | None:
-    """Return centre and radius of the circle closest to points, in the sense of least squares of
-    its equation; None where they are on a line.
+    """Return the centre and radius of the circle closest to points, in the sense of least squares
+    of its equation; None where they are on a line.
     """
     base = complex(points.mean())
     arms = points - base
@@ -41,7 +41,7 @@ def circle_through(points: Array) -> tuple[complex, float] | None:
 
 
 def circle_on_axis(points: Array) -> tuple[complex, float] | None:
-    """Return centre and radius of the circle closest to points whose centre is on the axis."""
+    """Return the centre and radius of the circle closest to points whose centre is on the axis."""
     base = 1j * points.imag.mean()
     arms = points - base
     columns = [2.0 * arms.imag, np.ones(len(arms))]
@@ -53,8 +53,8 @@ def circle_on_axis(points: Array) -> tuple[complex, float] | None:
 
 
 def ellipse_on_axis(points: Array) -> tuple[float, float, float, float] | None:
-    """Return semi-axes across and along the axis and height of the centre of the ellipse closest
-    to points, and their largest distance from it; None if no ellipse is close.
+    """Return the semi-axes across and along the axis and height of the centre of the ellipse
+    closest to points, and their largest distance from it; None if no ellipse is close.
     """
     base = points.imag.mean()
     size = float(np.abs(points - 1j * base).max())
@@ -107,8 +107,8 @@ def biarc(start: complex, along: complex, end: complex, towards: complex) -> lis
 
 
 def tangents_along(points: Array, within: float) -> Array:
-    """Return unit tangents of the smooth curve through points: those of circles through as many of
-    them around each as are within a distance of one.
+    """Return the unit tangents of the smooth curve through points: those of circles through as many
+    of them around each as are within a distance of one.
     """
     tangents = np.full(len(points), 0j)
     last = len(points) - 1

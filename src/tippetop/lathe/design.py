@@ -30,7 +30,8 @@ def design_insert(
     density: float = 0.0,
     wall: float | None = None,
 ) -> Workpiece:
-    """A turned body with a round cavity or weight more, on its axis, that makes it stand as wanted.
+    """Return a turned body with a round cavity or weight more, on its axis, that makes it stand as
+    wanted.
 
     Parameters
     ----------
@@ -105,8 +106,8 @@ def design_insert(
 
 
 def _room(piece: Workpiece, height: float) -> float:
-    """Distance of a point of the axis from all surfaces, m; 0 outside of the body, and in what is
-    let in.
+    """Return the distance of a point of the axis from all surfaces, m; 0 outside of the body, and
+    in what is let in.
     """
     point, profiles = 1j * height, (piece.outline, *piece.insides)
     away = min(profile.distance(point) for profile in profiles)
@@ -128,8 +129,8 @@ def design_bowl(
     stem: float | None = None,
     wall: float | None = None,
 ) -> Workpiece:
-    """The bowl with a stem inside, of one material, that stands on its sphere as wanted, and on its
-    stem.
+    """Return the bowl with a stem inside, of one material, that stands on its sphere as wanted, and
+    on its stem.
 
     The sphere is cut off just where the stem takes over. The thickness of the bowl and the length
     of the stem, which is round at its end, are found.
@@ -208,7 +209,7 @@ def _wall(radius: float, wall: float | None) -> float:
 
 
 def _positive(field: str, value: Any, units: str = "1") -> float:
-    """A number greater than 0, in an SI unit."""
+    """Return a number greater than 0, in an SI unit."""
     number = _number(field, value, units)
     if number <= 0.0:
         raise InvalidInput(field, value, "a number greater than 0")
@@ -216,7 +217,7 @@ def _positive(field: str, value: Any, units: str = "1") -> float:
 
 
 def _number(field: str, value: Any, units: str = "1") -> float:
-    """A finite number in an SI unit, from one, a text with a unit, or a quantity of pint."""
+    """Return a finite number in an SI unit, from one, a text with a unit, or a quantity of pint."""
     number = number_in(field, value, units)
     if not is_number(number):
         raise InvalidInput(field, value, "a finite number")
@@ -236,8 +237,8 @@ def _found(
     eccentricity: float,
     inertia_ratio: float,
 ) -> Workpiece:
-    """The body with the wanted ratio, among those with the wanted eccentricity: one a size, or
-    none.
+    """Return the body with the wanted ratio, among those with the wanted eccentricity: one a size,
+    or none.
     """
 
     def ratio(size: float) -> float:

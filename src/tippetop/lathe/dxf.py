@@ -43,7 +43,7 @@ def read_dxf(path: FilePath, unit: str | None, name: str) -> Sheet:
 
 
 def _simple(entities: Any) -> Any:
-    """The entities, with polylines and blocks in their parts."""
+    """Yield the entities, with polylines and blocks in their parts."""
     for entity in entities:
         if entity.dxftype() in ("LWPOLYLINE", "POLYLINE", "INSERT"):
             yield from _simple(entity.virtual_entities())
@@ -52,7 +52,7 @@ def _simple(entities: Any) -> Any:
 
 
 def _paths(entity: Any, scale: float, ezdxf: Any) -> list[Path]:
-    """The paths of an entity; none of what is no line, such as texts and dimensions."""
+    """Return the paths of an entity; none of what is no line, such as texts and dimensions."""
 
     def place(point: Any) -> complex:
         return scale * complex(point[0], point[1])

@@ -70,11 +70,11 @@ class Edge(NamedTuple):
         return Edge(self.end, self.start, -self.turn)
 
     def direction(self, share: float) -> complex:
-        """Unit vector along it, after this share of it."""
+        """Return the unit vector along it, after this share of it."""
         return self.chord / abs(self.chord) * cmath.exp(1j * (share - 0.5) * self.turn)
 
     def points(self, share: ArrayLike) -> Points:
-        """Points after these shares of it, from 0 at its start to 1 at its end."""
+        """Return points after these shares of it, from 0 at its start to 1 at its end."""
         t = np.asarray(share)
         half = self.turn / 2.0
         # The chord of a part of an arc: no digits are lost however straight the arc is.
@@ -82,15 +82,15 @@ class Edge(NamedTuple):
         return np.asarray(self.start + self.chord * along * np.exp(1j * (t - 1.0) * half))
 
     def velocities(self, share: ArrayLike) -> Points:
-        """Derivatives of `points` with respect to the share."""
+        """Return the derivatives of `points` with respect to the share."""
         t = np.asarray(share)
         return np.asarray(
             self.chord / np.sinc(self.turn / math.tau) * np.exp(1j * (t - 0.5) * self.turn)
         )
 
     def nodes(self) -> tuple[Points, NDArray[np.float64]]:
-        """Points on it, and what to weigh a polynomial of r and z there with, for its integral over
-        dz.
+        """Return points on it, and what to weigh a polynomial of r and z there with, for its
+        integral over dz.
 
         Of degree 4 at most it is a polynomial along the edge, or a trigonometric one of degree 5
         over an angle of at most pi: Gauss's rule with 20 points is exact for both, but for
@@ -99,7 +99,7 @@ class Edge(NamedTuple):
         return self.points(SHARES), WEIGHTS * self.velocities(SHARES).imag
 
     def share(self, point: complex) -> float:
-        """The share of it after which it comes to a point that is on it, or on its line or
+        """Return the share of it after which it comes to a point that is on it, or on its line or
         circle.
         """
         gone, left = point - self.start, self.end - point
@@ -111,7 +111,7 @@ class Edge(NamedTuple):
         return 1.0 + 2.0 * cmath.phase(gone / self.chord) / self.turn
 
     def distance(self, point: complex) -> float:
-        """Distance of a point from it, m."""
+        """Return the distance of a point from it, m."""
         ends = min(abs(point - self.start), abs(point - self.end))
         if not self.turn:
             away = (point - self.start) / self.chord
@@ -124,7 +124,9 @@ class Edge(NamedTuple):
         return abs(on_circle - point) if 0.0 < share < 1.0 else ends
 
     def angle_seen(self, point: complex) -> float:
-        """Angle by which the direction from a point that is not on it turns along the way, rad."""
+        """Return the angle by which the direction from a point that is not on it turns along the
+        way, rad.
+        """
         seen = cmath.phase((self.end - point) / (self.start - point))
         if not self.turn:
             return seen
@@ -152,8 +154,8 @@ def meetings(one: Edge, other: Edge, within: float) -> list[complex]:
 
 
 def _polished(one: Edge, other: Edge, point: complex) -> complex:
-    """A meeting as found along the edges: seen from the centres of arcs nearly straight it is far
-    off.
+    """Return a meeting as found along the edges: seen from the centres of arcs nearly straight it
+    is far off.
     """
     t, u = one.share(point), other.share(point)
     for _ in range(NEWTON):

@@ -106,7 +106,7 @@ def _add_cavities(content: dict[str, Any], reading: Reading, field: str) -> None
 def _read(
     path: Path, axis: str | None, content: dict[str, Any], field: str, is_in_toml: bool
 ) -> Reading:
-    """The profile in a file; what it is measured in is the workpiece's unit after this.
+    """Return the profile in a file; what it is measured in is the workpiece's unit after this.
 
     The numbers of a drawing are physical lengths, and of a mesh mm, unless a unit is stated; then
     they are in this unit.
@@ -160,13 +160,15 @@ def _scaled(points: list[tuple[float, ...]], scale: float) -> list[tuple[float, 
 
 
 def _are_on_both_sides(points: list[tuple[float, ...]]) -> bool:
-    """Whether points are those of a whole outline, to the left and to the right of the axis."""
+    """Return whether points are those of a whole outline, to the left and to the right of the
+    axis.
+    """
     across = [point[0] for point in points]
     return all(len(point) == 2 for point in points) and min(across, default=0.0) < 0.0 < max(across)
 
 
 def _from_csv(text: str, path: Path) -> list[tuple[float, ...]]:
-    """The points in rows of numbers with commas, semicolons, tabs or spaces between them."""
+    """Return the points in rows of numbers with commas, semicolons, tabs or spaces between them."""
     lines = [line.partition("#")[0].strip() for line in text.splitlines()]
     between = next((mark for mark in ";\t," if any(mark in line for line in lines)), None)
     cells = [[cell.strip(' "') for cell in line.split(between)] for line in lines]
@@ -177,7 +179,7 @@ def _from_csv(text: str, path: Path) -> list[tuple[float, ...]]:
 
 
 def _numbers(number: int, row: list[str], path: Path) -> tuple[float, ...]:
-    """The numbers of a row, which may end in empty cells, but has none between others."""
+    """Return the numbers of a row, which may end in empty cells, but has none between others."""
     cells = list(row)
     while not cells[-1]:
         cells.pop()

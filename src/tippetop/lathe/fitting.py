@@ -138,13 +138,15 @@ def _size(points: Points) -> float:
 
 
 def _point(edge: Edge, flat: float) -> tuple[float, ...]:
-    """The point that states an edge."""
+    """Return the point that states an edge."""
     end = (edge.end.real, edge.end.imag)
     return end if edge.sagitta <= flat else (*end, edge.radius)
 
 
 def _fit_run(points: Array, within: float, rounding: float) -> tuple[list[Edge], float]:
-    """The edges fitted to a run of straight ones, and the largest distance of a point from them."""
+    """Return the edges fitted to a run of straight ones, and the largest distance of a point from
+    them.
+    """
     polyline = Polyline(points, within, rounding)
     pieces = polyline.pieces()
     parts = polyline.edges(pieces)
@@ -161,7 +163,7 @@ class CurvePiece(NamedTuple):
     """A part of a polyline, and what it stands for."""
 
     kind: str
-    """ "line", "arc" or "curve"; or "near arc": an arc unless the line goes on smoothly from it."""
+    """"line", "arc" or "curve"; or "near arc": an arc unless the line goes on smoothly from it."""
     begin: int
     end: int
     """Numbers of its first and its last point."""
@@ -192,7 +194,7 @@ class Polyline:
         self.is_sharp[1:-1] = (np.abs(turns) > COARSEST) & is_long
 
     def pieces(self) -> list[CurvePiece]:
-        """The parts, one after the other."""
+        """Return the parts, one after the other."""
         if self._is_ellipse():
             return [CurvePiece("curve", 0, self.count)]
         first, last = self._arc_at_start(), self._arc_at_end()
@@ -212,7 +214,7 @@ class Polyline:
         return self._with_curves([*pieces, *([last] if last else [])])
 
     def _with_curves(self, pieces: list[CurvePiece]) -> list[CurvePiece]:
-        """The parts, with neighbouring edges of one smooth curve put together."""
+        """Return the parts, with neighbouring edges of one smooth curve put together."""
         found: list[CurvePiece] = []
         for k, stated in enumerate(pieces):
             piece = stated
@@ -232,7 +234,7 @@ class Polyline:
         return [single for piece in found for single in _as_drawn_if_short(piece)]
 
     def _is_ellipse(self) -> bool:
-        """Whether it is half an ellipse from the axis to the axis, and no half circle."""
+        """Return whether it is half an ellipse from the axis to the axis, and no half circle."""
         ends = self.points[[0, -1]]
         if ends.real.any() or self.count < 2 * FEWEST_ON_CURVE or not self.is_soft[1:-1].all():
             return False
@@ -243,11 +245,11 @@ class Polyline:
         return circle is None or not self._are_on(self.points, circle, self.within)
 
     def _arc_at_start(self) -> CurvePiece | None:
-        """The arc around a point of the axis with which it begins, if it does."""
+        """Return the arc around a point of the axis with which it begins, if it does."""
         return self._arc_at_axis(self.points, self.is_sharp)
 
     def _arc_at_end(self) -> CurvePiece | None:
-        """The arc around a point of the axis with which it ends, if it does."""
+        """Return the arc around a point of the axis with which it ends, if it does."""
         piece = self._arc_at_axis(self.points[::-1], self.is_sharp[::-1])
         return piece and piece._replace(begin=self.count - piece.end, end=self.count)
 
@@ -265,7 +267,7 @@ class Polyline:
         return self._longest_arc(circle, 0, FEWEST_ON_ARC // 2, limit, points, is_soft, 0.5)
 
     def _arc_from(self, begin: int, end: int) -> CurvePiece | None:
-        """The longest arc from a point, if there is one."""
+        """Return the longest arc from a point, if there is one."""
 
         def circle(last: int, within: float) -> Circle | None:
             points = self.points[begin : last + 1]
@@ -294,7 +296,7 @@ class Polyline:
         is_soft: np.ndarray,
         share: float,
     ) -> CurvePiece | None:
-        """The longest arc up to a point, if it is one rather than a part of another curve.
+        """Return the longest arc up to a point, if it is one rather than a part of another curve.
 
         It is a share of the arc: half of one that goes on beyond the axis.
         """
@@ -313,7 +315,7 @@ class Polyline:
         return None
 
     def _are_on(self, points: Array, circle: Circle, within: float) -> bool:
-        """Whether points follow each other along a circle, to within a distance."""
+        """Return whether points follow each other along a circle, to within a distance."""
         center, radius = circle
         arms = points - center
         if np.abs(np.abs(arms) - radius).max() > within:
@@ -323,7 +325,7 @@ class Polyline:
         return bool(forward.min() > -2.0 * within / radius and forward.max() <= COARSEST)
 
     def _line_from(self, begin: int, end: int) -> CurvePiece | None:
-        """The longest straight line of several edges from a point, if there is one."""
+        """Return the longest straight line of several edges from a point, if there is one."""
         last = self._straight_to(begin, end, self.close)
         if last - begin < 2:
             return None
@@ -337,7 +339,7 @@ class Polyline:
         return CurvePiece("line", begin, last) if is_abrupt else None
 
     def _straight_to(self, begin: int, end: int, within: float) -> int:
-        """The last point up to which a line is straight, to within a distance."""
+        """Return the last point up to which a line is straight, to within a distance."""
 
         def is_straight(last: int) -> bool:
             chord = self.points[last] - self.points[begin]
@@ -350,7 +352,7 @@ class Polyline:
         return _last_true(is_straight, begin + 1, end)
 
     def edges(self, pieces: list[CurvePiece]) -> list[list[Edge]]:
-        """The edges that state each part."""
+        """Return the edges that state each part."""
         joints = [complex(self.points[piece.begin]) for piece in pieces]
         joints.append(complex(self.points[-1]))
         for k, joint in enumerate(joints):
@@ -385,7 +387,9 @@ class Polyline:
         return found
 
     def _tangent_arcs(self, points: Array, tangents: Array) -> list[Edge]:
-        """Arcs along a curve, each tangent to the one before, as few as the tolerance allows."""
+        """Return arcs along a curve, each tangent to the one before, as few as the tolerance
+        allows.
+        """
         found: list[Edge] = []
         begin, last = 0, len(points) - 1
 
@@ -411,7 +415,7 @@ class Polyline:
 
 
 def _beside_axis(edge: Edge) -> Edge:
-    """The edge, or its chord if it crosses the axis, as an arc along the axis may."""
+    """Return the edge, or its chord if it crosses the axis, as an arc along the axis may."""
     if not edge.turn:
         return edge
     innermost = edge.center - abs(edge.radius)
@@ -421,7 +425,7 @@ def _beside_axis(edge: Edge) -> Edge:
 
 
 def _with_poles(points: Array) -> Array:
-    """The points, with poles of round ends that begin or end with an edge across the axis.
+    """Return the points, with poles of round ends that begin or end with an edge across the axis.
 
     A polygon around a ball may have the middle of an edge on the axis rather than a corner.
     """
@@ -443,19 +447,21 @@ def _with_poles(points: Array) -> Array:
 
 
 def _slope(chord: complex) -> float:
-    """Angle of a chord with the horizontal, between -pi/2 and pi/2, rad."""
+    """Return the angle of a chord with the horizontal, between -pi/2 and pi/2, rad."""
     return math.atan2(chord.imag, abs(chord.real)) if chord else 0.0
 
 
 def _as_drawn_if_short(piece: CurvePiece) -> list[CurvePiece]:
-    """A curve, or its edges as drawn if these are too few for one; other parts as they are."""
+    """Return a curve, or its edges as drawn if these are too few for one; other parts as they
+    are.
+    """
     if piece.kind != "curve" or piece.end - piece.begin >= FEWEST_ON_CURVE:
         return [piece]
     return [CurvePiece("line", k, k + 1) for k in range(piece.begin, piece.end)]
 
 
 def _joint(point: complex, circles: list[Circle], within: float) -> complex:
-    """The place near a point where arcs meet, or where an arc ends."""
+    """Return the place near a point where arcs meet, or where an arc ends."""
     if len(circles) == 2:
         meeting = circles_meet(circles[0], circles[1], point)
         if meeting is not None and abs(meeting - point) <= within:
@@ -470,7 +476,7 @@ def _joint(point: complex, circles: list[Circle], within: float) -> complex:
 
 
 def _tangents(piece: CurvePiece, points: Array, within: float) -> Array:
-    """Unit tangents of a part: at its points if it is a curve, else at its ends."""
+    """Return the unit tangents of a part: at its points if it is a curve, else at its ends."""
     if piece.kind == "curve":
         return tangents_along(points, within)
     chord = points[-1] - points[0]
@@ -482,18 +488,20 @@ def _tangents(piece: CurvePiece, points: Array, within: float) -> Array:
 
 
 def _turn(points: Array, center: complex) -> float:
-    """Angle by which the direction of points from a centre turns, rad."""
+    """Return the angle by which the direction of points from a centre turns, rad."""
     arms = points - center
     return float(np.angle(arms[1:] * arms[:-1].conjugate()).sum())
 
 
 def _across_axis(point: complex) -> complex:
-    """The direction of a smooth line at a point of the axis; none at another point."""
+    """Return the direction of a smooth line at a point of the axis; none at another point."""
     return 0j if point.real else 1.0 + 0j
 
 
 def _common(tangent: complex, neighbour: complex) -> complex:
-    """The unit tangent where two parts meet: the neighbour's, if the line is smooth there."""
+    """Return the unit tangent where two parts meet: the neighbour's, if the line is smooth
+    there.
+    """
     if not neighbour.real and not neighbour.imag:
         return tangent
     along = neighbour if (neighbour * tangent.conjugate()).real > 0.0 else -neighbour
@@ -501,13 +509,13 @@ def _common(tangent: complex, neighbour: complex) -> complex:
 
 
 def _first(holds: np.ndarray, begin: int, otherwise: int) -> int:
-    """The first number from one on for which something holds."""
+    """Return the first number from one on for which something holds."""
     numbers = np.flatnonzero(holds[begin:])
     return begin + int(numbers[0]) if len(numbers) else otherwise
 
 
 def _last_true(holds: Callable[[int], bool], low: int, high: int) -> int:
-    """The last number between two up to which something holds, or the first number.
+    """Return the last number between two up to which something holds, or the first number.
 
     It may fail for some numbers in between, as points that are few and scattered do.
     """

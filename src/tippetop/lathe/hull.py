@@ -50,7 +50,7 @@ class Zone(NamedTuple):
     """Tilts between which the body stands on it, rad."""
 
     def support(self, tilt: float) -> float:
-        """Height above the table of the origin of the profile's coordinates, m."""
+        """Return the height above the table of the origin of the profile's coordinates, m."""
         return self.radius * math.sin(tilt) - self.height * math.cos(tilt) + self.tube
 
     def apart(self, other: "Zone") -> float:
@@ -77,7 +77,7 @@ class ConvexHull(NamedTuple):
     """
 
     def support(self, tilt: float) -> float:
-        """Height above the table of the origin of the profile's coordinates, m."""
+        """Return the height above the table of the origin of the profile's coordinates, m."""
         return max(zone.support(tilt) for zone in self.zones if zone.low <= tilt <= zone.high)
 
     def protrusion(self, zone: Zone) -> tuple[float, float]:
@@ -95,7 +95,7 @@ class ConvexHull(NamedTuple):
         return max(found)
 
     def smooth_parts(self, reach: float) -> list[tuple[float, float]]:
-        """Tilts between which it stands on a smooth curve that is no sphere or ring.
+        """Return tilts between which it stands on a smooth curve that is no sphere or ring.
 
         That is a row of arcs that continue each other, of which some, were they whole, would reach
         out of it by more than a length, m.
@@ -116,8 +116,8 @@ class ConvexHull(NamedTuple):
         ]
 
     def spheroid(self, within: float) -> tuple[float, float, float] | None:
-        """Semi-axes across and along the axis and height of the centre of the spheroid that it is
-        to within a length, m; None if it is none.
+        """Return the semi-axes across and along the axis and height of the centre of the spheroid
+        that it is to within a length, m; None if it is none.
         """
         tilts = np.linspace(0.0, math.pi, 181)
         support = np.array([self.support(tilt) for tilt in tilts.tolist()])
@@ -160,7 +160,7 @@ class ConvexHull(NamedTuple):
 
 
 def hull_of(profile: Profile) -> ConvexHull:
-    """The convex hull of a body of revolution.
+    """Return the convex hull of a body of revolution.
 
     It is followed from tilt 0 to pi: each surface until another is further out, or its arc is at
     its end.
@@ -180,8 +180,8 @@ def hull_of(profile: Profile) -> ConvexHull:
 
 
 def _is_end_of_sphere(zone: Zone, zones: list[Zone]) -> bool:
-    """Whether it only seems to be a tip, because the arc of the sphere beside it is a little off
-    the axis.
+    """Return whether it only seems to be a tip, because the arc of the sphere beside it is a little
+    off the axis.
     """
     ends = (zone.low, zone.high)
     beside = any(
@@ -191,14 +191,16 @@ def _is_end_of_sphere(zone: Zone, zones: list[Zone]) -> bool:
 
 
 def _apart(low: Zone, high: Zone) -> float:
-    """Distance of the two points that are on the table where one surface follows another, m."""
+    """Return the distance of the two points that are on the table where one surface follows
+    another, m.
+    """
     sine, cosine = math.sin(high.low), math.cos(high.low)
     across = high.radius - low.radius + (high.tube - low.tube) * sine
     return math.hypot(across, high.height - low.height - (high.tube - low.tube) * cosine)
 
 
 def _merged(zones: list[Zone], within: float) -> list[Zone]:
-    """The zones, with neighbours that are parts of one surface put together."""
+    """Return the zones, with neighbours that are parts of one surface put together."""
     found: list[Zone] = []
     for zone in zones:
         last = found[-1] if found else None
@@ -236,13 +238,13 @@ class _Pieces:
         ]
 
     def zone(self, number: int, low: float, high: float) -> Zone:
-        """The surface of a piece."""
+        """Return the surface of a piece."""
         radius, height, tube = (float(of[number]) for of in (self.radius, self.height, self.tube))
         on_axis = abs(radius) <= ON_AXIS * min(tube, self.size)
         return Zone(0.0 if on_axis else radius, height, tube, low, high)
 
     def lowest(self) -> int:
-        """The piece on which the body stands at tilt 0, or just above it."""
+        """Return the piece on which the body stands at tilt 0, or just above it."""
         support = np.where(
             (self.low <= 0.0) & (self.high > 0.0), self.tube - self.height, -math.inf
         )
@@ -250,7 +252,7 @@ class _Pieces:
         return int(max(lowest, key=lambda number: (self.radius[number], self.tube[number])))
 
     def after(self, number: int, tilt: float) -> tuple[float, int]:
-        """The tilt up to which the body stands on a piece, and the one after it."""
+        """Return the tilt up to which the body stands on a piece, and the one after it."""
         self.left[number] = tilt
         rises = self._rises(number, tilt)
         if number in self.ends:
@@ -267,7 +269,9 @@ class _Pieces:
         )
 
     def _joined_to(self, number: int) -> list[int]:
-        """The arcs that end at a point; the ends of an arc, and the arcs that go on smoothly."""
+        """Return the arcs that end at a point; the ends of an arc, and the arcs that go on
+        smoothly.
+        """
         if number not in self.ends:
             return [n for n, ends in self.ends.items() if number in ends]
         start, end = self.ends[number]
@@ -278,8 +282,8 @@ class _Pieces:
         return [start, end, *smooth]
 
     def _rises(self, number: int, tilt: float) -> NDArray[np.float64]:
-        """The tilts at which the circles and points come to be further out than one of them, from a
-        tilt on.
+        """Return the tilts at which the circles and points come to be further out than one of them,
+        from a tilt on.
 
         Where arcs meet their own ends, or others that go on smoothly, the two are equally far out,
         and this is not looked for.

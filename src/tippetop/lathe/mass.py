@@ -21,12 +21,14 @@ class MassProperties(NamedTuple):
 
 
 Filling: TypeAlias = tuple[Profile, float]
-"""A profile filled with a material: its density, less that of what it takes the place of, kg/m^3.
+"""A profile filled with a material: its density, less that of what it takes the place of,
+kg/m^3.
 """
 
 
 def mass_properties(fillings: Sequence[Filling]) -> MassProperties:
-    """Mass properties of bodies of revolution put together, on one axis; exact but for rounding.
+    """Return the mass properties of bodies of revolution put together, on one axis; exact but for
+    rounding.
 
     By Green's theorem the integrals over a profile are integrals along its edges. With r the
     distance from the axis and z the height along it, that of pi r^2 over dz is the volume, that of

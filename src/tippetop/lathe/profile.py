@@ -73,16 +73,16 @@ class Profile:
         return len(self.loop) > len(self.edges) or self.edges[0].start.real == 0.0
 
     def points(self, steps: int) -> Points:
-        """Points along it, `steps` on every arc; the last of a line that closes itself is the
-        first.
+        """Return points along it, `steps` on every arc; the last of a line that closes itself is
+        the first.
         """
         shares = [np.arange(steps) / steps if edge.turn else np.zeros(1) for edge in self.edges]
         found = [edge.points(share) for edge, share in zip(self.edges, shares, strict=True)]
         return np.concatenate([*found, [self.edges[-1].end]])
 
     def points_above(self, height: float) -> list[tuple[float, ...]]:
-        """The points that state it, as `profile_of` takes them, with heights from another origin,
-        m.
+        """Return the points that state it, as `profile_of` takes them, with heights from another
+        origin, m.
         """
         start = self.edges[0].start
         ends = [(edge.end, (edge.radius,) if edge.turn else ()) for edge in self.edges]
@@ -91,11 +91,11 @@ class Profile:
         ]
 
     def surrounds(self, point: complex) -> bool:
-        """Whether a point that is not on it is inside."""
+        """Return whether a point that is not on it is inside."""
         return abs(sum(edge.angle_seen(point) for edge in self.loop)) > math.pi
 
     def distance(self, point: complex) -> float:
-        """Distance of a point from its edges, m."""
+        """Return the distance of a point from its edges, m."""
         return min(edge.distance(point) for edge in self.edges)
 
     def sides(self, other: "Profile") -> set[str]:
@@ -116,8 +116,8 @@ class Profile:
 def profile_of(
     points: Sequence[Sequence[float]], unit: float = 1.0, field: str = "profile"
 ) -> Profile:
-    """The profile through points, whose numbers are in a unit, m; in sentences they are called a
-    `field`.
+    """Return the profile through points, whose numbers are in a unit, m; in sentences they are
+    called a `field`.
 
     They are distance from the axis, height along it and, where an arc ends, its radius: positive if
     it turns to the left. In a row either way round, from the axis to the axis or from one to
@@ -143,7 +143,9 @@ def profile_of(
 
 
 def area_of(edges: Sequence[Edge]) -> float:
-    """Area between edges and the axis, m^2: positive to the left of them, by Green's theorem."""
+    """Return the area between edges and the axis, m^2: positive to the left of them, by Green's
+    theorem.
+    """
     return sum(float(points.real @ weights) for points, weights in (edge.nodes() for edge in edges))
 
 
@@ -175,8 +177,8 @@ def require_points(points: Sequence[Sequence[float]], field: str, most: int = MO
 
 
 def _edge(points: Sequence[Sequence[float]], number: int, size: float, field: str) -> Edge:
-    """The edge that ends at a point; refuses none, an arc that is too tight, and one across the
-    axis.
+    """Return the edge that ends at a point; refuses none, an arc that is too tight, and one across
+    the axis.
     """
     start, end = (complex(*point[:2]) for point in points[number - 1 : number + 1])
     if abs(end - start) <= ROUNDING * size:
@@ -205,7 +207,7 @@ def _edge(points: Sequence[Sequence[float]], number: int, size: float, field: st
 
 
 def _closed(edges: list[Edge], within: float, field: str) -> list[Edge]:
-    """The edges from the axis to the axis, or round to where they began; refuses others."""
+    """Return the edges from the axis to the axis, or round to where they began; refuses others."""
     first, last = edges[0].start, edges[-1].end
     closes = abs(last - first) <= within
     if closes:
@@ -244,8 +246,8 @@ def _on_axis(point: complex, within: float) -> complex:
 
 
 def _innermost(edge: Edge) -> complex:
-    """The point of an arc closest to the axis between its ends; its middle where that is at an
-    end.
+    """Return the point of an arc closest to the axis between its ends; its middle where that is at
+    an end.
     """
     if edge.turn:
         point = edge.center - abs(edge.radius)

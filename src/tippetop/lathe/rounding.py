@@ -20,7 +20,8 @@ FINEST = 1e-9
 """Smallest one: computed numbers."""
 
 EXACT = 1e-14
-"""How far a place on a circle may be from it by the rounding of floating-point numbers, relative.
+"""How far a place on a circle may be from it by the rounding of floating-point numbers,
+relative.
 """
 
 Point = tuple[float, ...]
@@ -67,7 +68,7 @@ def unrounded(points: Sequence[Point], rounding: float | None = None) -> tuple[P
 
 
 def _without_short_edges(points: list[Point], rounding_at: RoundingAt) -> list[Point]:
-    """The points without straight edges shorter than the rounding of their ends."""
+    """Return the points without straight edges shorter than the rounding of their ends."""
     kept = [points[0]]
     for k, point in enumerate(points[1:], start=1):
         before = kept[-1]
@@ -81,7 +82,7 @@ def _without_short_edges(points: list[Point], rounding_at: RoundingAt) -> list[P
 
 
 def _around_axis(points: list[Point], rounding_at: RoundingAt) -> tuple[Point, ...]:
-    """The points with the centres of arcs on the axis that are there but for rounding."""
+    """Return the points with the centres of arcs on the axis that are there but for rounding."""
     places = [complex(*point[:2]) for point in points]
     roundings = [rounding_at(point) for point in points]
     circles: list[tuple[complex, float] | None] = [None] * len(points)
@@ -115,8 +116,8 @@ def _circle(
     within: float,
     before: tuple[complex, float] | None,
 ) -> tuple[complex, float] | None:
-    """Centre on the axis and radius of an arc, that of the arc before if both are on one; None if
-    the centre is elsewhere.
+    """Return the centre on the axis and radius of an arc, that of the arc before if both are on
+    one; None if the centre is elsewhere.
     """
     size = abs(radius)
     share = abs(end - start) / (2.0 * size)
@@ -150,7 +151,7 @@ def _are_same(one: tuple[complex, float], other: tuple[complex, float], within: 
 
 
 def _on_circles(place: complex, circles: list[tuple[complex, float]], is_end: bool) -> complex:
-    """A place moved to the circle that it is on; where two circles differ, to the last."""
+    """Return a place moved to the circle that it is on; where two circles differ, to the last."""
     center, radius = circles[-1]
     arm = place - center
     if abs(abs(arm) - radius) <= EXACT * radius:

@@ -113,7 +113,9 @@ def _mesh(path: Path, name: str) -> Any:
 
 
 def _directions(mesh: Any, axis: str | None) -> list[Vectors]:
-    """Directions that an axis may have: one stated, or those of the drawing and of inertia."""
+    """Return the directions that an axis may have: one stated, or those of the drawing and of
+    inertia.
+    """
     unit = np.eye(3)
     if axis is not None:
         return [unit["xyz".index(axis)]]
@@ -123,7 +125,9 @@ def _directions(mesh: Any, axis: str | None) -> list[Vectors]:
 
 
 def _origins(mesh: Any, direction: Vectors, size: float) -> list[Vectors]:
-    """Points that an axis may go through: the origin if it is near, and the centre of mass."""
+    """Return points that an axis may go through: the origin if it is near, and the centre of
+    mass.
+    """
     center = np.asarray(mesh.center_mass)
     from_axis = center - (center @ direction) * direction
     near = np.linalg.norm(from_axis) <= NOT_ROUND * size
@@ -166,7 +170,7 @@ class _Surface:
         return (apart_least, sections[best]) if judged else (math.inf, [])
 
     def _section(self, angle: float) -> list[Line]:
-        """The lines in which the half-plane at an angle cuts the surface."""
+        """Return the lines in which the half-plane at an angle cuts the surface."""
         aside = np.mod(self.angle - angle + math.pi, math.tau) - math.pi
         is_left = aside > 0.0
         corners = is_left[self.faces]
@@ -217,7 +221,7 @@ class _Surface:
         return complex(0.0, float(shares @ self.z[face]))
 
     def through_vertices(self, line: Line) -> list[tuple[float, ...]]:
-        """The points of a line of the meridian, moved to the vertices along it."""
+        """Return the points of a line of the meridian, moved to the vertices along it."""
         distances, places = _distances(self.vertices, line)
         others = [
             _distances(self.vertices, other)[0] for other in self.meridian if other is not line
@@ -249,7 +253,7 @@ class _Surface:
 
 
 def _distances(points: Line, line: Line) -> tuple[Vectors, Vectors]:
-    """Distance of points from a line, and how far along it they are."""
+    """Return the distance of points from a line, and how far along it they are."""
     chords = np.diff(line)
     lengths = np.abs(chords)
     begins = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
@@ -266,7 +270,9 @@ def _distances(points: Line, line: Line) -> tuple[Vectors, Vectors]:
 
 
 def _chains(graph: dict[Any, list[Any]]) -> list[list[Any]]:
-    """The paths of a graph whose nodes have one or two neighbours; a loop ends where it begins."""
+    """Return the paths of a graph whose nodes have one or two neighbours; a loop ends where it
+    begins.
+    """
     left = dict(graph)
     chains = []
     while left:
@@ -286,7 +292,7 @@ def _chains(graph: dict[Any, list[Any]]) -> list[list[Any]]:
 
 
 def _without_repeats(line: Line, within: float) -> Line:
-    """The line without points next to the ones before."""
+    """Return the line without points next to the ones before."""
     kept = [line[0]]
     for point in line[1:-1]:
         if abs(point - kept[-1]) > within and abs(point - line[-1]) > within:
@@ -295,7 +301,7 @@ def _without_repeats(line: Line, within: float) -> Line:
 
 
 def _area(points: list[tuple[float, ...]]) -> float:
-    """Area between a line and the axis."""
+    """Return the area between a line and the axis."""
     line = np.array(points)
     means = 0.5 * (line[1:, 0] + line[:-1, 0])
     return abs(float(means @ np.diff(line[:, 1])))

@@ -127,7 +127,7 @@ def read_along(
 
 # translate: skip
 def _stated(axis: str | None) -> tuple[str, float | None]:
-    """The directions that an axis may have, and its place."""
+    """Return the directions that an axis may have, and its place."""
     if axis is None:
         return "xy", None
     parts = re.fullmatch(r"\s*([xy])\s*(?:=\s*(\S+))?\s*", axis) if isinstance(axis, str) else None
@@ -153,7 +153,7 @@ def _read(
     tolerance: float,
     field: str,
 ) -> Reading:
-    """The profile around an upright axis."""
+    """Return the profile around an upright axis."""
     points, _ = _chords([path for _, path in paths])
     size = float(max(np.ptp(points.real), np.ptp(points.imag)))
     if not size > 0.0:
@@ -188,7 +188,7 @@ def _read(
 
 
 def _beside(path: Path, place: float, side: float) -> Path:
-    """The path from an axis at a place, mirrored if it is on its left."""
+    """Return the path from an axis at a place, mirrored if it is on its left."""
 
     def move(point: complex) -> complex:
         return complex(side * (point.real - place), point.imag)
@@ -197,7 +197,7 @@ def _beside(path: Path, place: float, side: float) -> Path:
 
 
 def _ended(points: list[Point], gap: float) -> list[Point]:
-    """The points of a line, exactly from the axis to the axis, or back to the first."""
+    """Return the points of a line, exactly from the axis to the axis, or back to the first."""
     first, last = points[0], points[-1]
     if max(first[0], last[0]) > gap:
         points[-1] = (*first[:2], *last[2:])
@@ -210,7 +210,9 @@ def _ended(points: list[Point], gap: float) -> list[Point]:
 def _outlines(
     paths: list[tuple[str, Path]], gap: float
 ) -> tuple[list[tuple[str, Path]], list[Path]]:
-    """The paths joined to outlines, and the straight lines that touch nothing: centre lines."""
+    """Return the paths joined to outlines, and the straight lines that touch nothing: centre
+    lines.
+    """
     ends = [end for _, path in paths for end in (path[0].first, path[-1].last)]
 
     def is_apart(path: Path) -> bool:
@@ -242,7 +244,7 @@ def _axis(
     size: float,
     frame: _Frame,
 ) -> _Axis:
-    """The upright axis of a drawing."""
+    """Return the upright axis of a drawing."""
     paths = [path for _, path in outlines]
     points, _ = _chords(paths)
     low, high = float(points.real.min()), float(points.real.max())
@@ -279,7 +281,7 @@ def _axis(
 
 
 def _placed(paths: list[Path], place: float, size: float, frame: _Frame, how: str) -> _Axis:
-    """An axis at a place, of a drawing on one side of it, or on both if these agree."""
+    """Return an axis at a place, of a drawing on one side of it, or on both if these agree."""
     points, _ = _chords(paths)
     reach = points.real - place
     if reach.min() >= -GAP * size or reach.max() <= GAP * size:
@@ -298,7 +300,9 @@ def _placed(paths: list[Path], place: float, size: float, frame: _Frame, how: st
 
 
 def _is_half(paths: list[Path], edge: float, size: float) -> bool:
-    """Whether a drawing begins and ends on a line: with open ends there, or straight edges."""
+    """Return whether a drawing begins and ends on a line: with open ends there, or straight
+    edges.
+    """
     ends = [
         abs(end.real - edge) <= GAP * size
         for path in paths
@@ -323,7 +327,7 @@ def _difference(paths: list[Path], place: float) -> float:
 
 
 def _apart(points: NDArray[np.complex128], chords: Chords) -> float:
-    """Largest distance of points from the closest of some chords."""
+    """Return the largest distance of points from the closest of some chords."""
     starts, ends = chords
     along = np.where(starts == ends, 1e-300, ends - starts)
     lengths, closest = np.abs(along), []
@@ -335,7 +339,7 @@ def _apart(points: NDArray[np.complex128], chords: Chords) -> float:
 
 
 def _chords(paths: Sequence[Path]) -> Chords:
-    """The begins and ends of chords along all paths."""
+    """Return the begins and ends of chords along all paths."""
     lines = [np.array(stroke.sample(24)) for path in paths for stroke in path]
     return (
         np.concatenate([line[:-1] for line in lines]),
@@ -346,7 +350,7 @@ def _chords(paths: Sequence[Path]) -> Chords:
 def nested(
     outlines: Sequence[tuple[str, Sequence[Point]]], tolerance: float, field: str
 ) -> tuple[list[Point], list[list[Point]]]:
-    """The outer outline, and the cavities in it; refuses other outlines."""
+    """Return the outer outline, and the cavities in it; refuses other outlines."""
     profiles: list[tuple[str, Sequence[Point], Profile]] = [
         (name, points, profile_of(fit(points, tolerance).points, field=field))
         for name, points in outlines

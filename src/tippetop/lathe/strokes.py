@@ -55,18 +55,20 @@ class Stroke(NamedTuple):
         return self._replace(begin=self.end, end=self.begin)
 
     def part(self, low: float, high: float) -> "Stroke":
-        """The part between two shares of it."""
+        """Return the part between two shares of it."""
         span = self.end - self.begin
         return self._replace(begin=self.begin + low * span, end=self.begin + high * span)
 
     def sample(self, count: int) -> list[complex]:
-        """Points at equal steps of the parameter, both ends included; of a line, the ends."""
+        """Return points at equal steps of the parameter, both ends included; of a line, the
+        ends.
+        """
         steps = 1 if self.radius == math.inf else count
         span = self.end - self.begin
         return [self.at(self.begin + span * k / steps) for k in range(steps + 1)]
 
     def moved(self, place: Callable[[complex], complex], scale: float = 1.0) -> "Stroke":
-        """The stroke after a similarity that scales lengths by a factor."""
+        """Return the stroke after a similarity that scales lengths by a factor."""
         at = self.at
         return Stroke(lambda t: place(at(t)), self.begin, self.end, scale * self.radius)
 
@@ -104,9 +106,7 @@ def bezier(points: Sequence[complex]) -> Stroke:
 
 
 def ellipse(center: complex, one: complex, other: complex, begin: float, end: float) -> Stroke:
-    """Return an arc of the ellipse with these conjugate semi-axes, between two eccentric
-    angles.
-    """
+    """Return an arc of the ellipse with these conjugate semi-axes, between two eccentric angles."""
     size = max(abs(one), abs(other))
     skew = abs((one * other.conjugate()).real)
     is_circle = abs(abs(one) - abs(other)) <= ROUND * size and skew <= ROUND * size**2
@@ -146,7 +146,7 @@ def joined(paths: Sequence[Path], gap: float) -> list[Path]:
 
 
 def is_closed(path: Path, gap: float) -> bool:
-    """Whether a path ends where it begins, to within a gap."""
+    """Return whether a path ends where it begins, to within a gap."""
     alone = len(path) == 1 and path[0].radius == math.inf
     return not alone and abs(path[-1].last - path[0].first) <= gap
 
@@ -187,7 +187,7 @@ def _side(stroke: Stroke, within: float) -> int:
 
 
 def _cut(stroke: Stroke, within: float) -> list[Stroke]:
-    """The stroke in parts that do not cross the axis."""
+    """Return the stroke in parts that do not cross the axis."""
     across = [
         stroke.at(stroke.begin + (stroke.end - stroke.begin) * k / PROBES).real
         for k in range(PROBES + 1)

@@ -85,7 +85,7 @@ def _in_pixels(root: ElementTree.Element) -> tuple[float, complex]:
 
 
 def _length(text: str) -> float | None:
-    """A length, mm; None of one that is relative, or none."""
+    """Return a length, mm; None of one that is relative, or none."""
     parts = re.fullmatch(r"\s*([-+.\deE]+?)\s*([a-zA-Z]*)\s*", text)
     try:
         return float(parts[1]) * LENGTHS[parts[2].lower()] if parts else None
@@ -101,7 +101,7 @@ def _called(element: Any, number: int, count: int) -> str:
 
 
 def _paths(path: Any, scale: float, shift: complex, svgelements: Any) -> list[Path]:
-    """The subpaths of a path, y up."""
+    """Return the subpaths of a path, y up."""
     found: list[Path] = [[]]
 
     def place(point: complex) -> complex:
@@ -147,7 +147,7 @@ def _number(point: Any) -> complex:
 
 
 def _arc(segment: Any) -> Stroke:
-    """An arc of an ellipse, in the drawing's own numbers."""
+    """Return an arc of an ellipse, in the drawing's own numbers."""
     center = _number(segment.center)
     one = _number(segment.prx) - center
     # The other semi-axis may be either way; angles count from x to y, which is down.

@@ -180,12 +180,12 @@ def _fit(points: Sequence[Sequence[float]], tolerance: float, field: str) -> Fit
 
 
 def _within(inner: Profile, outer: Profile) -> bool:
-    """Whether a profile is inside another, though it may touch it."""
+    """Return whether a profile is inside another, though it may touch it."""
     sides = inner.sides(outer)
     return "in" in sides and "out" not in sides
 
 
 def _apart(one: Profile, other: Profile) -> bool:
-    """Whether neither of two profiles has a part inside the other, though they may touch."""
+    """Return whether neither of two profiles has a part inside the other, though they may touch."""
     sides = one.sides(other)
     return "out" in sides and "in" not in sides and "in" not in other.sides(one)

@@ -74,12 +74,13 @@ class Finding:
     news: str = ""
     """What else is found that the report could not know, in a sentence; "" for nothing."""
     right: str = ""
-    """What is right where the claim is not, in a few words with values; "" where the claim says it.
+    """What is right where the claim is not, in a few words with values; "" where the claim says
+    it.
     """
 
     @classmethod
     def unlisted(cls, converged: Value, note: str, *choices: Any, **others: Any) -> "Finding":
-        """A finding where the report's own method has nothing to say."""
+        """Return a finding where the report's own method has nothing to say."""
         return cls(None, converged, note, *choices, **others)
 
 
@@ -117,7 +118,8 @@ class Claim:
     unit: str | None = None
     """Unit of a number that is not printed; None if there is none."""
     formula: tuple[str, ...] = ()
-    """A formula as the report sets it apart, in TeX as far as matplotlib sets it, a string a line.
+    """A formula as the report sets it apart, in TeX as far as matplotlib sets it, a string a
+    line.
     """
     formula_right: tuple[str, ...] = ()
     """What it should be; () where it is right."""
@@ -126,7 +128,8 @@ class Claim:
     implied: bool = False
     """Whether the report does not say it in words."""
     right: str = ""
-    """What is right where the claim is not, in a few words; "" where the converged value says it.
+    """What is right where the claim is not, in a few words; "" where the converged value says
+    it.
     """
 
     @property
@@ -199,7 +202,7 @@ class Judgement:
         return abs(self.reported - found) <= self.tolerance.value * (1.0 + 1e-9)
 
     def record(self) -> dict[str, object]:
-        """The claim as plain data."""
+        """Return the claim as plain data."""
         claim, finding = self.claim, self.finding
         tolerance = self.tolerance
         return {
@@ -225,13 +228,13 @@ class Judgement:
 
 
 def count_verdicts(judgements: Iterable[Judgement]) -> dict[str, int]:
-    """The number of judgements of each verdict, by its name in lower case; 0 included."""
+    """Return the number of judgements of each verdict, by its name in lower case; 0 included."""
     counts = Counter(judgement.verdict for judgement in judgements)
     return {verdict.name.lower(): counts[verdict] for verdict in Verdict}
 
 
 def in_words(counts: Mapping[str, int]) -> str:
-    """The sum of the counts of verdicts, with those that are not 0 in brackets."""
+    """Return the sum of the counts of verdicts, with those that are not 0 in brackets."""
     verdicts = ", ".join(f"{number} {name}" for name, number in counts.items() if number)
     return f"{sum(counts.values())}" + (f" ({verdicts})" if verdicts else "")
 
@@ -259,22 +262,24 @@ def examines(
 
 
 def both(run: xr.Dataset, name: str) -> tuple[float, float]:
-    """A number by the report's method and converged."""
+    """Return a number by the report's method and converged."""
     return float(run[f"{name}_listing"]), float(run[name])
 
 
 def listed(template: str, *columns: Iterable[object], between: str = ", ") -> str:
-    """The rows of some columns in words, each as the template says."""
+    """Return the rows of some columns in words, each as the template says."""
     return between.join(template.format(*row) for row in zip(*columns, strict=True))
 
 
 def number(printed: str) -> float:
-    """A number as printed, pi included."""
+    """Return a number as printed, pi included."""
     return math.pi if printed == "pi" else float(printed)
 
 
 def _plain(value: Value | None) -> float | bool | None:
-    """A value as JSON can have it: no numbers of other kinds, and nothing that is not finite."""
+    """Return a value as JSON can have it: no numbers of other kinds, and nothing that is not
+    finite.
+    """
     if value is None or isinstance(value, bool):
         return value
     return float(value) if math.isfinite(value) else None

@@ -71,8 +71,8 @@ _ALONG = {
 def dataset(
     coordinates: Mapping[str, Any], attrs: Mapping[str, Any] | None = None, /, **variables: Any
 ) -> xr.Dataset:
-    """A dataset whose variables are told as values, unit, meaning and dimensions, as `variable`
-    takes them.
+    """Return a dataset whose variables are told as values, unit, meaning and dimensions, as
+    `variable` takes them.
 
     Coordinates are told as values, unit and meaning, or as values alone: words, or what `_ALONG`
     knows by what it is, and perhaps what of, as in spin and spin_listing.
@@ -92,6 +92,6 @@ def dataset(
 def variable(
     values: object, units: str | None, long_name: str, *dimensions: str
 ) -> tuple[tuple[str, ...], object, dict[str, str]]:
-    """A variable of a dataset with its meaning and its unit, None for words."""
+    """Return a variable of a dataset with its meaning and its unit, None for words."""
     unit = {} if units is None else {"units": units}
     return (dimensions, values, {**unit, "long_name": long_name})

@@ -40,7 +40,7 @@ class Plate:
     """What it shows that the report could not know, in a sentence; "" for nothing."""
 
     def dataset(self, data: Data) -> xr.Dataset:
-        """The data behind the figure."""
+        """Return the data behind the figure."""
         parts = [data[name] for name in self.needs]
         return xr.merge(parts, combine_attrs="drop_conflicts", compat="no_conflicts", join="outer")
 
@@ -50,7 +50,7 @@ _ABNORMAL = float(quoted.ABNORMAL_SPIN)
 
 
 def _printed_times(figure: str) -> dict[str, Any]:
-    """The times that the report prints for a figure, for its drawing."""
+    """Return the times that the report prints for a figure, for its drawing."""
     times = tuple(float(time) for time in quoted.REVERSALS[figure])
     return {"reported_turn": float(quoted.TURNED_AT[figure]), "reported_reversals": times}
 

@@ -50,7 +50,7 @@ def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) 
 def listing_rates(
     problem: Problem, wrap: float | None = math.pi, *, unilateral: bool = False
 ) -> Motion:
-    """The right-hand side of the report's listing as a motion without parameters."""
+    """Return the right-hand side of the report's listing as a motion without parameters."""
     top = problem.top
     return Motion(
         lambda y, _: published_rates(y, top, math, wrap, unilateral=unilateral),
@@ -60,7 +60,7 @@ def listing_rates(
 
 
 def launch_state(problem: Problem) -> Array:
-    """The launch in the report's variables, shape (7,)."""
+    """Return the launch in the report's variables, shape (7,)."""
     launch = problem.launch
     return np.array(
         [

@@ -94,8 +94,8 @@ def _impulses(
     arms: Sequence[Triple | None],
     held: list[list[float]],
 ) -> tuple[Triple, Triple]:
-    """The velocities after the impulses, by rounds over the contacts; `held` starts and takes
-    these.
+    """Return the velocities after the impulses, by rounds over the contacts; `held` starts and
+    takes these.
 
     Of each contact: along x, y, about z over the patch, and upwards.
     """
@@ -145,7 +145,7 @@ def _impulses(
 def _given(
     u: Triple, L: Triple, mass: float, turns: Sequence[Triple], impulse: Sequence[float]
 ) -> tuple[Triple, Triple]:
-    """Velocity and angular momentum after an impulse along all directions of a contact."""
+    """Return velocity and angular momentum after an impulse along all directions of a contact."""
     fx, fy, drill, up = impulse
     a, b, c, d = turns
     turned = (
@@ -157,7 +157,9 @@ def _given(
 
 
 def _turned(axis: Triple, momentum: Triple, time: float) -> Triple:
-    """The axis of a free top after a time over I1: it goes round its angular momentum evenly."""
+    """Return the axis of a free top after a time over I1: it goes round its angular momentum
+    evenly.
+    """
     size = math.sqrt(dot(momentum, momentum))
     if size == 0.0:
         return axis

@@ -28,7 +28,8 @@ UNCHECKED: list[dict[str, str]] = _TOLD["unchecked"]
 
 
 def section_of(place: str) -> str:
-    """The section of the page that a section of the report is in: the one named most closely.
+    """Return the section of the page that a section of the report is in: the one named most
+    closely.
 
     Raises `LookupError` if there is none.
     """

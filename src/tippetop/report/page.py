@@ -1,5 +1,4 @@
-"""The page: what was found, every figure and every claim, in one file that opens without a
-network.
+"""The page: what was found, every figure and every claim, in one file that opens without a network.
 
 It opens with the story, in five figures; all else is folded, a part each.
 """
@@ -46,7 +45,7 @@ def render(
     quick: bool,
     partial: str | None = None,
 ) -> str:
-    """The page of some figures and claims as HTML.
+    """Return the page of some figures and claims as HTML.
 
     The folder `figures` has SVG and PNG of these by name, which become part of the page. The
     `player` is a run and what plays it, as `tippetop.report.playable` packs them; None for a page
@@ -126,14 +125,15 @@ def _contents(parts: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _is_new(plate: Plate) -> bool:
-    """Whether a figure shows what the report could not know."""
+    """Return whether a figure shows what the report could not know."""
     return plate.section in OWN or (bool(plate.finding) and not plate.id.startswith("fig"))
 
 
 def _sections(
     plates: Sequence[Plate], claims: Sequence[Worded], figures: Path
 ) -> list[dict[str, Any]]:
-    """The report's sections and ours that there is something in, each with its figures and claims.
+    """Return the report's sections and ours that there is something in, each with its figures and
+    claims.
 
     A claim stands beside its figure if that is in the same section, else after all figures.
     """
@@ -157,7 +157,9 @@ def _sections(
 
 
 def _shown(plate: Plate, figures: Path, claims: Sequence[Worded], section: str) -> dict[str, Any]:
-    """A figure for the page, with the claims beside it and those elsewhere that it shows, too."""
+    """Return a figure for the page, with the claims beside it and those elsewhere that it shows,
+    too.
+    """
     svg = (figures / f"{plate.id}.svg").read_bytes()
     own = [claim for claim in claims if claim["figure"] == plate.id]
     return {
@@ -172,7 +174,7 @@ def _shown(plate: Plate, figures: Path, claims: Sequence[Worded], section: str) 
 
 
 def _story(claims: Sequence[Worded], shown: Set[str], figures: Path) -> list[dict[str, str]]:
-    """The parts of the story whose figures are shown, each with its picture."""
+    """Return the parts of the story whose figures are shown, each with its picture."""
     fields = {"claims": {claim["id"]: claim for claim in claims}, "quoted": quoted}
     return [
         {
@@ -188,7 +190,7 @@ def _story(claims: Sequence[Worded], shown: Set[str], figures: Path) -> list[dic
 
 
 def _thumbnail(name: str, figures: Path) -> str:
-    """The picture of a figure, small, as the address of an image."""
+    """Return the picture of a figure, small, as the address of an image."""
     with Image.open(figures / f"{name}.png") as whole:
         small = whole.convert("RGB")
     small.thumbnail(_THUMBNAIL, Image.Resampling.LANCZOS)
@@ -198,8 +200,8 @@ def _thumbnail(name: str, figures: Path) -> str:
 
 
 def _experiments(chosen: Selection) -> list[dict[str, Any]]:
-    """The experiments, as the page comes to them, with the figures drawn from each and the claims
-    decided.
+    """Return the experiments, as the page comes to them, with the figures drawn from each and the
+    claims decided.
     """
     return [
         {
@@ -213,7 +215,7 @@ def _experiments(chosen: Selection) -> list[dict[str, Any]]:
 
 
 def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
-    """A claim in words, for people; `shown` are the figures that it may refer to."""
+    """Return a claim in words, for people; `shown` are the figures that it may refer to."""
     claim, finding, tolerance = judgement.claim, judgement.finding, judgement.tolerance
     unit = "" if claim.units == "1" else f" {claim.units}"
     reported = claim.number.replace("pi", "π") or _number(judgement.reported)
@@ -265,7 +267,7 @@ def _without_measure(text: str) -> str:
 
 
 def _number(value: Value) -> str:
-    """A value for people."""
+    """Return a value for people."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if abs(value) < _ROUNDED:

@@ -14,7 +14,7 @@ SPIN, DURATION = 175.0, 9.0
 
 
 def playable(quick: bool) -> dict[str, str] | None:
-    """The run and its player for the page; None where the player is not built."""
+    """Return the run and its player for the page; None where the player is not built."""
     try:
         player = player_packed()
     except Unavailable:

@@ -21,7 +21,8 @@ ABNORMAL_SPIN = "170"
 """omega_a, rad/s (section 3.2)."""
 
 EXPONENT, NORMAL_FRICTION = "-0.985", (0.2, 1.0)
-"""The power of mu in the flip time, and the range of mu, s/m, that it is for (section 3.3, Fig. 7).
+"""The power of mu in the flip time, and the range of mu, s/m, that it is for (section 3.3, Fig.
+7).
 """
 
 ROUGH_FRICTION = 100.0

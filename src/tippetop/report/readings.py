@@ -17,14 +17,14 @@ SHOWN = 0.01
 
 
 def flip_time(times: Array, theta: Array, within: float = SETTLED) -> float:
-    """The first time at which theta is within this of its last value (the report's section 3.3),
-    s.
+    """Return the first time at which theta is within this of its last value (the report's section
+    3.3), s.
     """
     return float(times[np.argmax(np.abs(theta - theta[-1]) < within)])
 
 
 def crossings(times: Array, values: Array) -> Array:
-    """Times at which the values change sign, by linear interpolation, s."""
+    """Return times at which the values change sign, by linear interpolation, s."""
     finite = np.isfinite(values)
     times, values = times[finite], values[finite]
     here = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
@@ -33,7 +33,9 @@ def crossings(times: Array, values: Array) -> Array:
 
 
 def longest_quiet(times: Array, values: Array) -> tuple[float, float]:
-    """The longest time between two changes of sign, s; nan where there are fewer than two."""
+    """Return the longest time between two changes of sign, s; nan where there are fewer than
+    two.
+    """
     changes = crossings(times, values)
     if len(changes) < 2:
         return np.nan, np.nan
@@ -42,7 +44,7 @@ def longest_quiet(times: Array, values: Array) -> tuple[float, float]:
 
 
 def first_below_zero(times: Array, values: Array) -> float:
-    """The first time at which the values are negative, s; nan if they never are."""
+    """Return the first time at which the values are negative, s; nan if they never are."""
     if values[0] < 0:
         return float(times[0])
     changes = crossings(times, values)

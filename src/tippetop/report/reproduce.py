@@ -114,7 +114,7 @@ def reproduce(
 
 
 def _files(chosen: Selection) -> list[str]:
-    """Names of the files to be written, the page last."""
+    """Return names of the files to be written, the page last."""
     names = [f"{FIGURES}/{plate.id}.{kind}" for plate in chosen.plates for kind in ("png", "svg")]
     names += [f"{DATA}/{plate.id}.nc" for plate in chosen.plates if plate.needs]
     names += [f"{DATA}/{name}.nc" for name in _unseen(chosen)]
@@ -122,7 +122,7 @@ def _files(chosen: Selection) -> list[str]:
 
 
 def _unseen(chosen: Selection) -> list[str]:
-    """Names of the experiments that no figure shows: their data are files of their own."""
+    """Return names of the experiments that no figure shows: their data are files of their own."""
     shown = {name for plate in chosen.plates for name in plate.needs}
     return [experiment.id for experiment in chosen.experiments if experiment.id not in shown]
 
@@ -160,7 +160,7 @@ def _draw(name: str, stage: Path, quick: bool, *data: xr.Dataset) -> None:
 
 @contextmanager
 def _staging(folder: Path) -> Iterator[Path]:
-    """A folder beside the one to be written, gone afterwards whatever happens."""
+    """Yield a folder beside the one to be written, gone afterwards whatever happens."""
     with in_words(folder, "written"):
         folder.parent.mkdir(parents=True, exist_ok=True)
         if folder.exists() and not folder.is_dir():

@@ -54,7 +54,7 @@ def select(only: str | None = None) -> Selection:
 
 
 def _accepted(given: str) -> str:
-    """The names that are likely meant, or else what names there are."""
+    """Return the names that are likely meant, or else what names there are."""
     close = get_close_matches(given, [*PLATES, *CLAIMS], n=4, cutoff=0.5)
     if close:
         return "the name of a figure or claim, such as " + ", ".join(close)
@@ -62,6 +62,6 @@ def _accepted(given: str) -> str:
 
 
 def _figure_name(given: str) -> str:
-    """A figure's name from the ways in which people write it: 6, fig6, Fig. 6."""
+    """Return a figure's name from the ways in which people write it: 6, fig6, Fig. 6."""
     match = re.fullmatch(r"(?:fig(?:ure)?\.?\s*)?0*(\d{1,2})", given.strip(), flags=re.IGNORECASE)
     return f"fig{int(match[1]):02d}" if match else given.strip()

@@ -40,7 +40,7 @@ def carry_out(
     results: dict[str, Any] = {}
 
     def longest() -> Job | None:
-        """The longest task that has all it needs."""
+        """Return the longest task that has all it needs."""
         for task in waiting:
             if all(name in results for name in task.after):
                 waiting.remove(task)

@@ -11,7 +11,8 @@ _MODULES = (quoted, readings, dry, flights, patches, real, runs, theory, theory_
 
 
 def told(name: str) -> dict[str, Any]:
-    """The tables of a file of this folder, with what stands in braces in their texts filled in.
+    """Return the tables of a file of this folder, with what stands in braces in their texts filled
+    in.
 
     That is a constant of `quoted`, `readings` or the experiments, such as {dry.SPIN:g}, or one of
     the words that the file itself explains.

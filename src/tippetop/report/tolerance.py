@@ -41,5 +41,5 @@ def half_last_digit(printed: str) -> Tolerance:
 
 
 def rounded(value: float) -> str:
-    """The size of a small difference for people, or 0 where there is none."""
+    """Return the size of a small difference for people, or 0 where there is none."""
     return "0" if abs(value) < 1e-17 else f"{abs(value):.0e}"

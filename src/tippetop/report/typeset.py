@@ -35,7 +35,7 @@ _EXPONENT = re.compile(r"(?<![\w.])(?P<digits>\d[\d.]*)e(?P<power>[+-]\d+)(?!\w)
 
 
 def typeset(text: str) -> Markup:
-    """The text as HTML, with its formulas in letters, indices and powers."""
+    """Return the text as HTML, with its formulas in letters, indices and powers."""
     # An apostrophe is a prime here, and harmless in the text of a page.
     escaped = str(escape(text)).replace("&#39;", "'").replace(" x ", " × ")
     return Markup(_EXPONENT.sub(_power_of_ten, _SYMBOL.sub(_symbol, escaped)))
@@ -73,8 +73,8 @@ _PENS = {
 
 
 def formula(lines: Sequence[str]) -> Markup:
-    """Lines of TeX, as far as matplotlib sets it, as drawings in the color of the text around
-    them.
+    """Return lines of TeX, as far as matplotlib sets it, as drawings in the color of the text
+    around them.
     """
     return Markup("").join(_line(line) for line in lines)
 

@@ -12,7 +12,7 @@ TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|`(?:[^`\\]|\\.)*`|, | [+?:] |.')
 
 
 def laid_out(line: str) -> Iterator[str]:
-    """A line, or several: what is in its longest brackets further in, part by part."""
+    """Yield a line, or several: what is in its longest brackets further in, part by part."""
     begin, end = _longest_brackets(line)
     if len(line) <= WIDTH or begin == end or line.lstrip().startswith("/**"):
         yield line

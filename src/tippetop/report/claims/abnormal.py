@@ -106,7 +106,7 @@ def _(listing: xr.Dataset, sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.
 
 
 def _inverting(sweep: xr.Dataset, suffix: str, limit: float) -> np.ndarray:
-    """Final tilts of the launches between omega_c2 and a limit, rad."""
+    """Return final tilts of the launches between omega_c2 and a limit, rad."""
     spins = sweep[f"spin{suffix}"].values
     return np.asarray(
         sweep[f"final_theta{suffix}"].values[(spins > float(CRITICAL_SPINS[1])) & (spins < limit)]
@@ -114,5 +114,5 @@ def _inverting(sweep: xr.Dataset, suffix: str, limit: float) -> np.ndarray:
 
 
 def _turned(tilts: xr.DataArray | np.ndarray) -> bool:
-    """Whether all of the tilts count as turned over."""
+    """Return whether all of the tilts count as turned over."""
     return bool((np.abs(tilts - np.pi) < TURNED).all())

@@ -9,7 +9,8 @@ from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION, SPIN
 from tippetop.report.tolerance import ROUNDING
 
 _SAME = 1e-6
-"""Difference of tilts, rad, and of energies, relative, far above rounding and far below any motion.
+"""Difference of tilts, rad, and of energies, relative, far above rounding and far below any
+motion.
 """
 
 _OVER = np.pi / 2
@@ -133,7 +134,7 @@ def _(data: xr.Dataset, run: xr.Dataset) -> Finding:
 
 
 def _is_dry(ratios: list[float]) -> bool:
-    """Whether ratios of friction and normal force are such as dry solids have."""
+    """Return whether ratios of friction and normal force are such as dry solids have."""
     return _DRY[0] <= min(ratios) and max(ratios) <= _DRY[1]
 
 

@@ -52,8 +52,8 @@ _NAMED = f"{ENERGY_TIME} s"
 
 
 def _gains(run: xr.Dataset, suffix: str) -> dict[str, float]:
-    """The rise to the largest energy from the launch, from the named time, and from the lowest
-    before, J.
+    """Return the rise to the largest energy from the launch, from the named time, and from the
+    lowest before, J.
     """
     energy, times = run[f"energy{suffix}"].values, run[f"time{suffix}"].values
     top = int(np.argmax(energy))
@@ -72,7 +72,7 @@ def _listed(gains: dict[str, float], weight: float) -> str:
 
 
 def _weight(run: xr.Dataset) -> float:
-    """Energy of a fall by one radius, J."""
+    """Return the energy of a fall by one radius, J."""
     problem = Problem.from_json(run.attrs["problem"])
     return float(problem.body.mass * problem.gravity * float(problem.body.surface.size))
 
@@ -109,7 +109,9 @@ def _(run: xr.Dataset) -> Finding:
 
 
 def _kept_in_flight(run: xr.Dataset) -> tuple[float, float]:
-    """The largest change of the energy within a flight, J, and the greatest height of one, m."""
+    """Return the largest change of the energy within a flight, J, and the greatest height of one,
+    m.
+    """
     spans = zip(run["flight_start"].values, run["flight_end"].values, strict=True)
     inside = [run["energy_flight"].sel(time=slice(start, end)).values for start, end in spans]
     return max(float(np.ptp(part)) for part in inside if len(part) > 1), float(run["highest_gap"])
@@ -175,7 +177,7 @@ def _(run: xr.Dataset) -> Finding:
 
 
 def _swing_by_second(run: xr.Dataset, suffix: str) -> np.ndarray:
-    """The median swing of the tilt between turning points, rad, in every second of a run."""
+    """Return the median swing of the tilt between turning points, rad, in every second of a run."""
     theta, times = run[f"theta{suffix}"].values, run[f"time{suffix}"].values
     turns = np.flatnonzero(np.diff(np.sign(np.diff(theta)))) + 1
     second, size = times[turns][1:].astype(int), np.abs(np.diff(theta[turns]))
@@ -195,7 +197,9 @@ def _(run: xr.Dataset) -> Finding:
 
 
 def _numerator(run: xr.Dataset, suffix: str) -> tuple[float, float, float]:
-    """The three terms of the numerator of (2.15) where the force is first negative, N kg m2."""
+    """Return the three terms of the numerator of (2.15) where the force is first negative, N kg
+    m2.
+    """
     k = int(np.argmax(run[f"normal_force{suffix}"].values < 0))
     theta, theta_dot, phi_dot, omega3 = (
         float(run[f"{name}{suffix}"][k]) for name in ("theta", "theta_dot", "phi_dot", "omega3")

@@ -74,7 +74,7 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
 
 
 def _scatter(times: xr.DataArray) -> float:
-    """The largest departure of mu t from its mean, relative to the mean."""
+    """Return the largest departure of mu t from its mean, relative to the mean."""
     product = times["mu"] * times
     return float(abs(product / product.mean() - 1.0).max())
 
@@ -119,7 +119,7 @@ def _fits(times: xr.Dataset, others: xr.Dataset) -> list[_Fit]:
 
 
 def _nearest_fit(times: xr.Dataset, others: xr.Dataset) -> _Fit:
-    """The fit by the report's method that comes nearest to the exponent that it prints."""
+    """Return the fit by the report's method that comes nearest to the exponent that it prints."""
     return min(_fits(times, others), key=lambda fit: abs(fit.exponent - float(EXPONENT)))
 
 
@@ -171,8 +171,8 @@ def _nearest_to_pi(run: xr.Dataset, suffix: str) -> tuple[np.ndarray, np.ndarray
 
 
 def _round_the_pole(run: xr.Dataset, suffix: str) -> tuple[float, float]:
-    """The part of the nutations in which the axis goes round the pole, and when it does so last,
-    s.
+    """Return the part of the nutations in which the axis goes round the pole, and when it does so
+    last, s.
     """
     times, precession = _nearest_to_pi(run, suffix)
     round_it = precession > 0

@@ -143,7 +143,7 @@ def _(slow: xr.Dataset) -> Finding:
 
 
 def _stays_upright(slow: xr.Dataset, suffix: str) -> bool:
-    """Whether no tilt exceeds that of the launch, and all are gone in the end."""
+    """Return whether no tilt exceeds that of the launch, and all are gone in the end."""
     highest, final = slow[f"highest{suffix}"], slow[f"final{suffix}"]
     return bool((highest <= TILT + SETTLED).all() and (final < SETTLED).all())
 
@@ -182,7 +182,9 @@ def _(run: xr.Dataset, windows: xr.Dataset, other: xr.Dataset) -> Finding:
 
 
 def _miss(state: dict[str, float]) -> float:
-    """The largest difference of a state from the one that is printed of Fig. 5, rad and rad/s."""
+    """Return the largest difference of a state from the one that is printed of Fig. 5, rad and
+    rad/s.
+    """
     return max(abs(state[key] - value) for key, value in END_OF_FIG_5.items())
 
 

@@ -78,8 +78,8 @@ _READ_OFF = ("the tilt", "phi'", "omega3", "time")
 
 
 def _misses(run: xr.Dataset) -> tuple[float, ...]:
-    """Differences of tilt, precession, spin and arrival from converged ones, in parts of their
-    plots.
+    """Return differences of tilt, precession, spin and arrival from converged ones, in parts of
+    their plots.
     """
     spans = (np.pi, 2.0 * float(abs(run["phi_dot"]).max()), float(np.ptp(run["omega3"].values)))
     ends = zip(("end_theta", "end_phi_dot", "end_omega3"), spans, strict=True)

@@ -12,7 +12,8 @@ from tippetop.report.readings import SETTLED
 from tippetop.report.tolerance import Tolerance, rounded
 
 _NEAR_LIMIT = 1e-3
-"""Relative distance from the limit that counts as there: the tolerance of the report's own method.
+"""Relative distance from the limit that counts as there: the tolerance of the report's own
+method.
 """
 
 
@@ -116,12 +117,16 @@ def _(theory: xr.Dataset, states: xr.Dataset, times: xr.Dataset) -> Finding:
 
 
 def _tilt_miss(states: xr.Dataset) -> float:
-    """Largest difference between predicted and simulated final tilts of the report's top, rad."""
+    """Return the largest difference between predicted and simulated final tilts of the report's
+    top, rad.
+    """
     return float(abs(states["run_end"] - states["run_predicted"]).max())
 
 
 def _law_misses(times: xr.Dataset) -> tuple[float, float]:
-    """Relative differences from the limit of mu t at the least mu, for the arrival and for pi/2."""
+    """Return the relative differences from the limit of mu t at the least mu, for the arrival and
+    for pi/2.
+    """
     least = times.isel(mu_flip=0)
     mu = float(least["mu_flip"])
     arrival = mu * float(least["arrival_time_end"]) / float(times["limit_arrival"])

@@ -14,8 +14,8 @@ from tippetop.run import simulate
 
 @experiment("units", "the units of Table 1", 0.3)
 def _units(quick: bool) -> xr.Dataset:
-    """The same launch in metres and seconds and in other units, by the units that Table 1 may
-    mean.
+    """Return the same launch in metres and seconds and in other units, by the units that Table 1
+    may mean.
     """
     report = report_problem()
     seconds = 2.0
@@ -31,7 +31,7 @@ def _units(quick: bool) -> xr.Dataset:
 
 
 def _in_tenths(problem: Problem, power: int) -> Problem:
-    """The problem with every time in tenths of a second, if g has this power of time in its
+    """Return the problem with every time in tenths of a second, if g has this power of time in its
     unit.
     """
     unit = 10.0
@@ -40,7 +40,9 @@ def _in_tenths(problem: Problem, power: int) -> Problem:
 
 
 def _in_centimetres(problem: Problem, power: int) -> Problem:
-    """The problem with every length in centimetres, if mu has this power of length in its unit."""
+    """Return the problem with every length in centimetres, if mu has this power of length in its
+    unit.
+    """
     body, unit = problem.body, 100.0
     return problem.replace(
         {

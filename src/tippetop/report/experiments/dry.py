@@ -36,7 +36,8 @@ nutation.
 """
 
 WITHOUT_COMPILING: Any = {"integrator": "dop853", "tolerance": 1e-11}
-"""How single runs are followed: compiling what a top that slips and sticks takes would cost more.
+"""How single runs are followed: compiling what a top that slips and sticks takes would cost
+more.
 """
 
 COHEN = Problem(
@@ -59,13 +60,13 @@ SMOOTHED, SMOOTHED_SPIN = 0.3, 100.0
 
 
 def with_friction(problem: Problem, friction: object) -> Problem:
-    """The problem with another friction; its run ends where the top leaves the table."""
+    """Return the problem with another friction; its run ends where the top leaves the table."""
     return stopping(problem.model_copy(update={"friction": friction}))
 
 
 def friction_needed(spin: float, tilt: float) -> float:
-    """The least mu on which the report's top, set down without slip, rolls for ever; nan where none
-    does.
+    """Return the least mu on which the report's top, set down without slip, rolls for ever; nan
+    where none does.
 
     The largest ratio of friction and normal force on the way, a parabola through the sample nearest
     to it.
@@ -124,8 +125,8 @@ def _rolling(quick: bool) -> xr.Dataset:
 
 
 def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
-    """A sliding top followed by the classical Runge-Kutta method with fixed step, whatever its slip
-    does.
+    """Return a sliding top followed by the classical Runge-Kutta method with fixed step, whatever
+    its slip does.
 
     In natural units, every number of shape (steps + 1,).
     """

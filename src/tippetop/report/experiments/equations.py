@@ -30,8 +30,8 @@ _STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / (12.0 * _STEP)
 
 @experiment("printed-equations", "the equations of section 2.2 along a run", 0.3)
 def _printed(quick: bool) -> xr.Dataset:
-    """The equations of section 2.2 as printed, as listed and as they are, at instants of the main
-    run.
+    """Return the equations of section 2.2 as printed, as listed and as they are, at instants of the
+    main run.
     """
     problem = on_table(report_problem())
     top = problem.top
@@ -63,7 +63,7 @@ def _printed(quick: bool) -> xr.Dataset:
 def _at_one_instant(
     run: xr.Dataset, states: Array, published: Array, rates: Array, problem: Problem
 ) -> dict[str, object]:
-    """The two misprinted equations at the instant that stands for all."""
+    """Return the two misprinted equations at the instant that stands for all."""
     k, body = int(np.argmax(_INSTANTS == _INSTANT)), problem.body
     y, listed = states[:, k], published[:, k]
     c, s = math.cos(y[0]), math.sin(y[0])
@@ -114,7 +114,7 @@ def _arm_miss(now: xr.Dataset, top: Top) -> float:
 
 
 def _arm_height(theta: Array, top: Top) -> Array:
-    """The vertical part of the report's a, m."""
+    """Return the vertical part of the report's a, m."""
     _, _, _, R, alpha, _, _ = published_parameters(top)
     s, c = np.sin(theta), np.cos(theta)
     # Axis 1 is a right angle from the body's axis, in its vertical plane: its height is
@@ -123,8 +123,8 @@ def _arm_height(theta: Array, top: Top) -> Array:
 
 
 def _torques(now: xr.Dataset, top: Top) -> dict[str, Any]:
-    """The contact torque about axis 2 by (2.7) and corrected, and the power that either order of it
-    has.
+    """Return the contact torque about axis 2 by (2.7) and corrected, and the power that either
+    order of it has.
     """
     axis, momentum, velocity = (
         _vector(now, name) for name in ("axis", "angular_momentum", "velocity")
@@ -228,8 +228,8 @@ def left_of_217(theta: Scalar, phi_dot: Scalar, omega3: Scalar, alpha: float) ->
 
 @experiment("rotation", "the equations of section 2.1 at random states", 0.1)
 def _rotation(quick: bool) -> xr.Dataset:
-    """Section 2.1 at random states: the angular velocity by (2.1) and (2.2), and Euler's equations
-    (2.6).
+    """Return section 2.1 at random states: the angular velocity by (2.1) and (2.2), and Euler's
+    equations (2.6).
     """
     random = np.random.default_rng(1)
     misses = [
@@ -243,8 +243,8 @@ def _rotation(quick: bool) -> xr.Dataset:
 
 
 def _rotation_misses(angles: Array, rates: Array, torque: Array) -> tuple[float, float, float]:
-    """Relative errors of (2.1), (2.2) and (2.6) for these Euler angles, their rates and a
-    torque.
+    """Return the relative errors of (2.1), (2.2) and (2.6) for these Euler angles, their rates and
+    a torque.
     """
     h, inertia = 1e-4, np.array([2.0, 3.0, 4.0])
 

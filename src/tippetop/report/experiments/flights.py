@@ -35,7 +35,8 @@ def first_onset(
     window: float,
     accuracy: float,
 ) -> float:
-    """The least spin that leaves the table, rad/s: the first of a scan that does, then halving.
+    """Return the least spin that leaves the table, rad/s: the first of a scan that does, then
+    halving.
 
     `times` gives the time of the first lift-off at a spin, s, nan if there is none; `scanned` are
     those of the increasing `spins`, rad/s. A lift-off may come as late as the `window`, s;
@@ -53,7 +54,7 @@ def first_onset(
 def onset_between(
     times: Callable[[float], float], low: float, high: float, window: float, accuracy: float
 ) -> float:
-    """The onset between a spin that stays on the table and one that leaves it, by halving,
+    """Return the onset between a spin that stays on the table and one that leaves it, by halving,
     rad/s.
     """
     while high - low > 2.0 * accuracy:
@@ -63,8 +64,8 @@ def onset_between(
 
 
 def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: bool) -> xr.Dataset:
-    """Times of the first lift-off over spin and another parameter, and the onset for each of its
-    values.
+    """Return times of the first lift-off over spin and another parameter, and the onset for each of
+    its values.
     """
     name = field.partition(".")[2]
     spins = np.arange(60.0, 600.1, 120.0 if quick else 30.0)
@@ -100,8 +101,8 @@ def _over_tilt(quick: bool) -> xr.Dataset:
 
 
 def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
-    """Launches with these spins, rad/s, on a table that only pushes, followed through all their
-    flights.
+    """Return launches with these spins, rad/s, on a table that only pushes, followed through all
+    their flights.
 
     Variables over restitution and spin: what `flight_readings` gives, and first_lift_off, s.
     """

@@ -34,14 +34,14 @@ class Times(NamedTuple):
 
 
 def converged_times(spins: Array, mu: Array, window: float = WINDOW) -> Times:
-    """Converged times, on a table that pulls."""
+    """Return converged times, on a table that pulls."""
     found = swept(on_table(report_problem()), {"launch.spin": spins, "friction.mu": mu}, window)
     over = found["final_theta"] > math.pi / 2
     return Times(found["arrives"].where(over).values, found["turns_over"].values)
 
 
 def listing_times(spins: Array, mu: Array) -> Times:
-    """The same by the report's method; nan if it gave up."""
+    """Return the same by the report's method; nan if it gave up."""
     found = [[_listing_times(float(spin), float(m)) for m in mu] for spin in spins]
     return Times(*np.moveaxis(np.array(found), 2, 0))
 
@@ -74,7 +74,9 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float]:
 
 
 def _fitted(spins: Array, count: int) -> xr.Dataset:
-    """Times by both methods over the report's range of friction, with fits a mu^b at every spin."""
+    """Return times by both methods over the report's range of friction, with fits a mu^b at every
+    spin.
+    """
     mu = np.linspace(*NORMAL_FRICTION, count)
     data = dataset({"spin": spins, "mu": mu})
     for suffix, measure in (("", converged_times), ("_listing", listing_times)):

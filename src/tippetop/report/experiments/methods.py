@@ -104,7 +104,7 @@ _PARTS = ("in_all", "in_a_step")
 
 
 def _printed_errors(step: float, last: float) -> tuple[float, float]:
-    """Errors of (B.1) on y' = y cos(1 + t), y(0) = 1, after 2 s and in one step.
+    """Return errors of (B.1) on y' = y cos(1 + t), y(0) = 1, after 2 s and in one step.
 
     Its last stage is taken at this part of the step: 0 as printed, 1 as it should be.
     """

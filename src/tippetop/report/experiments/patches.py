@@ -40,12 +40,14 @@ ALONE = LEINE.replace({"body": LEINE_GLOCKER.model_dump()})
 
 
 def patch(mu: float, radius: float) -> ContensouFriction:
-    """Friction of a patch whose limit surface is an ellipsoid."""
+    """Return the friction of a patch whose limit surface is an ellipsoid."""
     return ContensouFriction(mu=mu, patch_radius=radius, pressure="ellipsoidal")
 
 
 def viscous_coefficient(mu: float, radius: float, spin: float) -> float:
-    """Viscous coefficient, s/m, of such a patch that drills at this rate: mu / (rho omega)."""
+    """Return the viscous coefficient, s/m, of such a patch that drills at this rate: mu / (rho
+    omega).
+    """
     return CREEP["ellipsoidal"] * mu / (radius * spin)
 
 
@@ -112,8 +114,8 @@ def _viscous(quick: bool) -> xr.Dataset:
 
 
 def _growth_ratios() -> list[list[float]]:
-    """Growth rates of the vertical spins on a patch of 0.5 mm, over those with its viscous
-    coefficient.
+    """Return the growth rates of the vertical spins on a patch of 0.5 mm, over those with its
+    viscous coefficient.
     """
     found = []
     for pressure, creep in CREEP.items():

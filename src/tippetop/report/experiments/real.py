@@ -61,7 +61,7 @@ ROLLING_WINDOW = 0.2
 
 
 def first_of(times: np.ndarray, after: float = 0.0) -> float:
-    """The first of some times after one, s; nan if there is none."""
+    """Return the first of some times after one, s; nan if there is none."""
     later = times[times > after]
     return float(later[0]) if len(later) else math.nan
 
@@ -89,8 +89,8 @@ def events_of(run: xr.Dataset) -> dict[str, float]:
 
 @experiment("real-leine", "Leine and Glocker's top, stem and all", 8.0)
 def _leine(quick: bool) -> xr.Dataset:
-    """Leine and Glocker's top: when the stem strikes, when it falls back, and how long it rests on
-    both.
+    """Return Leine and Glocker's top: when the stem strikes, when it falls back, and how long it
+    rests on both.
     """
     pressures = ["ellipsoidal"] if quick else ["ellipsoidal", "hertz"]
     problems = [LEINE.replace({"friction.pressure": name}) for name in pressures]
@@ -108,7 +108,9 @@ def _leine(quick: bool) -> xr.Dataset:
 
 
 def with_stem(radius: float) -> Body:
-    """The report's top with a stem that ends in a sphere of this radius, m, at the same height."""
+    """Return the report's top with a stem that ends in a sphere of this radius, m, at the same
+    height.
+    """
     bowl, _ = REPORT_STEM.shapes
     shapes: list[Shape] = [bowl, Sphere(radius=radius, center=REACH - radius)]
     return REPORT_STEM.model_copy(update={"shape": tuple(shapes)})
@@ -116,8 +118,8 @@ def with_stem(radius: float) -> Body:
 
 @experiment("real-stems", "which stems let the report's top stand", 2.0)
 def _stems(quick: bool) -> xr.Dataset:
-    """Whether the report's top stands on stems of several tips, and Jellett's integral when these
-    strike.
+    """Return whether the report's top stands on stems of several tips, and Jellett's integral when
+    these strike.
     """
     radii = np.array([0.003, 0.006, 0.009, 0.012]) if quick else np.arange(0.002, 0.0141, 0.001)
     final, needed, brought, struck = [], [], [], []
@@ -146,8 +148,8 @@ def _stems(quick: bool) -> xr.Dataset:
 
 @experiment("real-egg", "a hard-boiled egg that rises", 4.0)
 def _egg(quick: bool) -> xr.Dataset:
-    """A hard-boiled egg that is spun on its side: how far it rises, and whether it leaves the
-    table.
+    """Return a hard-boiled egg that is spun on its side: how far it rises, and whether it leaves
+    the table.
     """
     rates = [60.0, 200.0] if quick else [40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 200.0]
     friction = ViscousFriction(mu=EGG_MU)

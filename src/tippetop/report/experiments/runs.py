@@ -47,17 +47,17 @@ _DRAWN = 10_000
 
 
 def on_table(problem: Problem) -> Problem:
-    """The problem with a table that pulls when it must, as in the report."""
+    """Return the problem with a table that pulls when it must, as in the report."""
     return problem.replace({"contact.liftoff": "ignore"})
 
 
 def stopping(problem: Problem) -> Problem:
-    """The problem with a run that ends where the table would have to pull."""
+    """Return the problem with a run that ends where the table would have to pull."""
     return problem.replace({"contact.liftoff": "stop"})
 
 
 def unilateral(problem: Problem, restitution: float = 0.0) -> Problem:
-    """The problem with a table that only pushes: the top flies, falls back and hits it."""
+    """Return the problem with a table that only pushes: the top flies, falls back and hits it."""
     return problem.replace({"contact.liftoff": "fly", "contact.restitution": restitution})
 
 
@@ -74,7 +74,7 @@ def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WI
 
 
 def happenings(run: xr.Dataset, kind: str, surface: int | None = None) -> np.ndarray:
-    """Times of all events of a kind, to one surface or to any, s."""
+    """Return times of all events of a kind, to one surface or to any, s."""
     which = run["event_kind"].values == kind
     if surface is not None:
         which &= run["event_surface"].values == surface
@@ -125,7 +125,7 @@ def comparison(problem: Problem, quick: bool) -> xr.Dataset:
 
 
 def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
-    """The variables that are drawn, thinned to a number of points that a figure can show."""
+    """Return the variables that are drawn, thinned to a number of points that a figure can show."""
 
     def thin(run: xr.Dataset) -> xr.Dataset:
         return run.isel(time=slice(None, None, max(1, math.ceil(run.sizes["time"] / _DRAWN))))
@@ -153,8 +153,8 @@ def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
 
 
 def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
-    """The launch on a table that only pushes: what is drawn of it, its flights and what is read off
-    it.
+    """Return the launch on a table that only pushes: what is drawn of it, its flights and what is
+    read off it.
     """
     run = simulate(unilateral(problem), WINDOW, times=times)
     drawn: dict[str, object] = {}
@@ -250,7 +250,9 @@ def _windows(quick: bool) -> xr.Dataset:
 
 
 def likely_end(windows: xr.Dataset) -> xr.Dataset:
-    """The end, among runs of several lengths, that comes nearest to what is printed of Fig. 5."""
+    """Return the end, among runs of several lengths, that comes nearest to what is printed of Fig.
+    5.
+    """
     misses = [
         abs(windows[f"{key}_after_listing"].values - value) for key, value in END_OF_FIG_5.items()
     ]

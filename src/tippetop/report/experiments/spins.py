@@ -32,7 +32,9 @@ _TILT = ("rad", "tilt at the end of the run")
 
 
 def final_tilt(spin: float, window: float = WINDOW) -> float:
-    """Tilt at the end of a converged run on a table that pulls, rad; nan if it became singular."""
+    """Return tilt at the end of a converged run on a table that pulls, rad; nan if it became
+    singular.
+    """
     run = simulate(on_table(report_problem(spin)), window, samples=2)
     return float(run["theta"].values[-1]) if run.attrs["outcome"] == "completed" else math.nan
 
@@ -113,8 +115,8 @@ def critical_spins(
     margin: float,
     between: tuple[tuple[float, float], tuple[float, float]] = ((22.0, 34.0), (72.0, 84.0)),
 ) -> tuple[float, float]:
-    """Spins between which a launch ends neither upright nor turned over, looked for `between`
-    others, rad/s.
+    """Return spins between which a launch ends neither upright nor turned over, looked for
+    `between` others, rad/s.
 
     The `window` is the length of the runs, s. The `margin` is the tilt at the end that counts as
     upright, and the distance from pi that counts as turned over, rad.

@@ -23,7 +23,9 @@ ROCKING = (4.4, 4.75)
 
 
 def stepped(step: float) -> History:
-    """The top followed by time-stepping, with the friction of an ellipsoidal limit surface."""
+    """Return the top followed by time-stepping, with the friction of an ellipsoidal limit
+    surface.
+    """
     body, friction = LEINE.body, LEINE.friction
     assert isinstance(friction, ContensouFriction)
     balls = [Ball(shape.surface.height(0.0), -shape.surface.slope(0.0)) for shape in body.shapes]

@@ -40,7 +40,9 @@ LONG_RUN = 400.0
 
 @experiment("why-critical", "critical spins without a simulation", 1.0)
 def _critical(quick: bool) -> xr.Dataset:
-    """The critical spins by formula and by the spectrum, and what a short window makes of them."""
+    """Return the critical spins by formula and by the spectrum, and what a short window makes of
+    them.
+    """
     problem = report_problem()
     top = problem.top
     spins = np.linspace(10.0, 105.0, 39 if quick else 191)
@@ -80,7 +82,9 @@ def _critical(quick: bool) -> xr.Dataset:
 
 @experiment("why-bifurcation", "steady states against spin, and long runs", 5.0)
 def _bifurcation(quick: bool) -> xr.Dataset:
-    """Steady states against spin with their stability, and where long runs end, for two bodies."""
+    """Return steady states against spin with their stability, and where long runs end, for two
+    bodies.
+    """
     jumping = REPORT.model_copy(update={"I1": JUMP_RATIO * REPORT.I3})
     gradual = [10.0, 24.0, 35.0, *QUOTED_SPINS]
     if not quick:
@@ -114,7 +118,7 @@ _OF_RUNS = {
 def _diagram(
     suffix: str, body: Body, tilts: Array, launches: list[tuple[float, float]]
 ) -> xr.Dataset:
-    """Steady states of a body against the spin of a launch near theta = 0, and runs.
+    """Return steady states of a body against the spin of a launch near theta = 0, and runs.
 
     A launch is the spin near theta = 0 that has its Jellett's integral, rad/s, and its tilt, rad.
     """
@@ -162,7 +166,7 @@ def _left_of_217(end: xr.Dataset, problem: Problem) -> float:
 
 
 def _launched(base: Problem, spin: float, tilt: float) -> Problem:
-    """The launch at this tilt with the Jellett's integral of one at the usual tilt with this
+    """Return the launch at this tilt with the Jellett's integral of one at the usual tilt with this
     spin.
     """
     tilted = base.replace({"launch.tilt": tilt})
@@ -173,7 +177,7 @@ def _launched(base: Problem, spin: float, tilt: float) -> Problem:
 
 @experiment("why-groups", "which tops turn over", 0.3)
 def _groups(quick: bool) -> xr.Dataset:
-    """The map of the groups over gamma and alpha, and some tops on it."""
+    """Return the map of the groups over gamma and alpha, and some tops on it."""
     alpha = np.linspace(1e-3, 0.6, 121 if quick else 601)
     bodies = {"report, listing": REPORT, "report, Table 1": REPORT_TABLE_1}
     bodies["Leine and Glocker 2003"] = LEINE_GLOCKER

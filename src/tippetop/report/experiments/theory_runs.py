@@ -39,7 +39,7 @@ _BINS = 400
 
 @experiment("why-collapse", "runs at small friction against the averaged flow", 2.0)
 def _collapse(quick: bool) -> xr.Dataset:
-    """The tilt against mu t: the averaged flow, and runs at several frictions."""
+    """Return the tilt against mu t: the averaged flow, and runs at several frictions."""
     problem = report_problem(SPIN)
     flow = averaged_flow(problem, samples=400)
     end = 1.1 * flip_time_limit(problem)
@@ -69,7 +69,7 @@ def _collapse(quick: bool) -> xr.Dataset:
 
 
 def _band(mu: float, edges: Array) -> tuple[Array, Array]:
-    """Least and largest tilt of a run between these values of mu t."""
+    """Return least and largest tilt of a run between these values of mu t."""
     each = 60
     times = np.linspace(edges[0], edges[-1], each * (len(edges) - 1) + 1) / mu
     run = simulate(on_table(report_problem(SPIN, mu=mu)), float(times[-1]), times=times)
@@ -80,7 +80,7 @@ def _band(mu: float, edges: Array) -> tuple[Array, Array]:
 
 @experiment("why-exponent", "turning over against friction, in several senses", 6.0)
 def _exponent(quick: bool) -> xr.Dataset:
-    """The time to turn over against friction, by several definitions, and its limit."""
+    """Return the time to turn over against friction, by several definitions, and its limit."""
     small = np.geomspace(0.01 if quick else 0.003, 0.3, 4 if quick else 10)
     mu = np.concatenate([small[:-1], np.geomspace(0.3, 3.0, 13 if quick else 25)])
     problem = report_problem(SPIN)
@@ -132,15 +132,15 @@ def _times(mu: float, final: float) -> tuple[float, float, float, float]:
 
 
 def _decay_rate(mu: float) -> float:
-    """Decay rate of the inverted spin that the launch leads to, 1/s."""
+    """Return decay rate of the inverted spin that the launch leads to, 1/s."""
     problem = report_problem(SPIN, mu=mu)
     return -float(growth_rates_of_launches(SteadyKind.INVERTED, problem, np.array([SPIN]))[0])
 
 
 @experiment("why-diagnostics", "what the main run says of its nutation", 1.0)
 def _diagnostics(quick: bool) -> xr.Dataset:
-    """Gyroscopic balance, envelope of the nutation and effective potential along the report's main
-    run.
+    """Return gyroscopic balance, envelope of the nutation and effective potential along the
+    report's main run.
     """
     problem = on_table(report_problem(quoted.SPIN))
     top = problem.top
