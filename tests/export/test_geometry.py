@@ -7,7 +7,7 @@ from matplotlib.colors import to_rgb
 import tippetop as tt
 from tippetop.export.geometry import lathe
 from tippetop.figures.appearance import size, toy_parts
-from tippetop.figures.meridian import own_profile
+from tippetop.figures.meridian import stated_profile
 from tippetop.figures.toy import FAR, Toy
 from tippetop.mechanics.hull import outer_height
 from tippetop.mechanics.outline import outline
@@ -99,7 +99,7 @@ def test_rays_meet_the_toy_where_the_triangles_are(body: tt.Body) -> None:
 
 
 def test_a_turned_body_is_drawn_as_it_was_turned() -> None:
-    pieces = own_profile(TURNED)
+    pieces = stated_profile(TURNED)
     assert pieces is not None
     points = np.concatenate(pieces)
     inside = (points[:, 1] > 0.0) & (points[:, 1] < 0.013) & (points[:, 0] < 0.012)
@@ -121,7 +121,7 @@ def test_a_turned_body_is_drawn_as_it_was_turned() -> None:
 def test_a_profile_that_is_not_of_the_surfaces_is_not_drawn() -> None:
     longer = tt.Sphere(radius=0.004, center=0.03)
     other = TURNED.model_copy(update={"shape": (TURNED.shapes[0], longer)})
-    assert own_profile(other) is None
+    assert stated_profile(other) is None
     assert max(part.profile[:, 1].max() for part in toy_parts(other)) * size(
         other
     ) == pytest.approx(0.034)

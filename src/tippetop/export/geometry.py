@@ -1,4 +1,4 @@
-"""The toy as triangles, with a pattern that shows the spin: in metres, z along the axis."""
+"""Triangles of the toy, with its coloured pattern: in metres, z along the axis."""
 
 from typing import NamedTuple
 
@@ -11,23 +11,24 @@ from tippetop.figures.appearance import ToyPart
 Array = NDArray[np.float64]
 
 SEGMENTS = 48
-"""Facets around the axis; every pattern divides it."""
+"""Number of facets around the axis: a multiple of the number of sectors of every pattern."""
 
 
 class Mesh(NamedTuple):
-    """Triangles with a colour at every corner."""
+    """Triangles with a normal and a colour at every corner."""
 
     points: Array
     normals: Array
     colours: Array
     """Corners (m), unit normals and linear RGB, each of shape (n, 3)."""
     triangles: NDArray[np.uint32]
-    """Numbers of corners, anticlockwise seen from outside, shape (m, 3)."""
+    """Indices of corners, anticlockwise seen from outside, shape (m, 3)."""
 
 
 def lathe(part: ToyPart, unit: float, segments: int = SEGMENTS) -> Mesh:
-    """Return the triangles of a part of a toy whose size is `unit` (m), with edges where its
-    colours meet.
+    """Return the triangles of a part of a toy whose size is `unit` (m).
+
+    Corners are doubled where the colours of two sectors meet.
     """
     sectors, columns = len(part.colours), len(part.profile)
     steps = segments // sectors
@@ -48,9 +49,11 @@ def lathe(part: ToyPart, unit: float, segments: int = SEGMENTS) -> Mesh:
     a, b, c, d = (side.ravel() for side in (left[:, :-1], right[:, :-1], right[:, 1:], left[:, 1:]))
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
-    whole = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) > 1e-9 * np.ptp(points) ** 2
+    # Quadrilaterals that end on the axis have one triangle without area.
+    areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    has_area = areas > 1e-9 * np.ptp(points) ** 2
     colours = np.repeat(_linear(part.colours)[sector], columns, axis=0)
-    return Mesh(points, turned(normal), colours, triangles[whole].astype(np.uint32))
+    return Mesh(points, turned(normal), colours, triangles[has_area].astype(np.uint32))
 
 
 def _linear(colours: tuple[str, ...]) -> Array:

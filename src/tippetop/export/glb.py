@@ -1,4 +1,4 @@
-"""A run as an animated model (glTF 2.0, binary): opens in browsers, slide programs, Blender."""
+"""Animated model of a run (glTF 2.0, binary), for browsers, slide programs and Blender."""
 
 import json
 import struct
@@ -22,15 +22,17 @@ from tippetop.support.errors import InvalidInput
 from tippetop.support.files import written_beside
 
 TURN_PER_KEY = 0.5
-"""Angle by which the body may turn between two keys, rad; a viewer goes the shortest way between
-them.
+"""Largest rotation of the body between two keys, rad: viewers interpolate along the shortest
+way.
 """
 LEAST_KEYS = 60.0
-"""Keys per second at least."""
+"""Smallest number of keys per second."""
 MOST_KEYS = 100_000
+"""Largest number of keys of an animation."""
 
 _TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
 _TABLE_RADII = 8.0
+"""Radius of the table, in sizes of the toy."""
 
 
 def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
@@ -41,7 +43,7 @@ def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
     InvalidInput
-        If the run is none or would need too many keys, or the path is no name of a file.
+        If `run` is no run or needs more than `MOST_KEYS` keys, or the path is no name of a file.
 
     Examples
     --------
@@ -57,7 +59,7 @@ def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
 
 
 def glb_bytes(run: xr.Dataset) -> bytes:
-    """Return the animated model of a run."""
+    """Return the animated model of a run as the bytes of a .glb file."""
     problem = Problem.from_json(run.attrs["problem"])
     times = key_times(run, problem.body)
     poses = poses_at(run, times)
@@ -96,10 +98,10 @@ def glb_bytes(run: xr.Dataset) -> bytes:
 
 
 def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
-    """Return times of the animation's keys, s: so dense that the body turns little between them;
-    one if it is still.
+    """Return the times of the animation's keys, s.
 
-    Raises `InvalidInput` if the run would need too many keys.
+    Between two keys the body turns by at most `TURN_PER_KEY`. A run that ends at its launch has one
+    key. Raises `InvalidInput` if there would be more than `MOST_KEYS`.
     """
     start, end = run["time"].values[[0, -1]].tolist()
     duration = end - start
@@ -118,7 +120,7 @@ def key_times(run: xr.Dataset, body: Body) -> NDArray[np.float64]:
 
 
 class _Gltf:
-    """A glTF document and its one buffer, as they grow."""
+    """A glTF document and its buffer, built up part by part."""
 
     def __init__(self) -> None:
         self.buffer = bytearray()
@@ -133,17 +135,18 @@ class _Gltf:
         }
 
     def accessor(self, values: NDArray[Any]) -> int:
-        """Add an array to the buffer, whole numbers as such and others in single precision; its
-        number.
+        """Add an array to the buffer and return the index of its accessor.
+
+        Whole numbers are stored as 32-bit integers, others in single precision.
         """
-        whole = values.dtype == np.uint32
-        rows = values.reshape(len(values), -1).astype("<u4" if whole else "<f4")
+        is_integer = values.dtype == np.uint32
+        rows = values.reshape(len(values), -1).astype("<u4" if is_integer else "<f4")
         view = {"buffer": 0, "byteOffset": len(self.buffer), "byteLength": rows.nbytes}
         self.buffer += rows.tobytes()
         self.json["bufferViews"].append(view)
         accessor = {
             "bufferView": len(self.json["bufferViews"]) - 1,
-            "componentType": 5125 if whole else 5126,
+            "componentType": 5125 if is_integer else 5126,
             "count": len(rows),
             "type": _TYPES[rows.shape[1]],
             "min": rows.min(axis=0).tolist(),
@@ -153,7 +156,7 @@ class _Gltf:
         return len(self.json["accessors"]) - 1
 
     def mesh(self, name: str, surfaces: list[tuple[Mesh, float]]) -> int:
-        """Add a mesh of surfaces with their opacities; its number."""
+        """Add a mesh of surfaces with opacities and return its index."""
         primitives = []
         for (points, normals, colours, triangles), opacity in surfaces:
             attributes = {"POSITION": points, "NORMAL": normals, "COLOR_0": colours}
@@ -167,6 +170,7 @@ class _Gltf:
         return len(self.json["meshes"]) - 1
 
     def _material(self, opacity: float) -> int:
+        """Return the index of the material of this opacity."""
         surface = {
             "baseColorFactor": [1.0, 1.0, 1.0, opacity],
             "metallicFactor": 0.0,
@@ -180,7 +184,7 @@ class _Gltf:
         return int(self.json["materials"].index(material))
 
     def bytes(self) -> bytes:
-        """Return the document as a .glb file."""
+        """Return the document as the bytes of a .glb file."""
         self.json["buffers"] = [{"byteLength": len(self.buffer)}]
         text = json.dumps(self.json, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)

@@ -1,4 +1,4 @@
-"""A run as one HTML file that plays it without a network."""
+"""Page of a run: one HTML file that plays it without a network."""
 
 import html
 from pathlib import Path
@@ -22,9 +22,9 @@ def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pa
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
     InvalidInput
-        If the run is none, or the path no name of a file.
+        If `run` is no run, or the path is no name of a file.
     Unavailable
-        If the player is not built: see `tippetop.export.bundle`.
+        If the player is not built (`make page`).
 
     Examples
     --------

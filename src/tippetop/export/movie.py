@@ -1,4 +1,4 @@
-"""A run as a film: .mp4 by ffmpeg where there is one, .gif by Pillow."""
+"""Films of a run: .mp4 by ffmpeg, .gif by Pillow."""
 
 import math
 import shutil
@@ -24,13 +24,18 @@ from tippetop.support.validation import require_callback
 
 Frame = NDArray[np.uint8]
 
-MOST_FRAMES, RATES = 20_000, {".mp4": 30.0, ".gif": 20.0}
-LEAST_RATE = 0.01
-"""Fewest pictures a second: one in 100 s."""
+MOST_FRAMES = 20_000
+"""Largest number of pictures in a film: more take hours to draw."""
 
-"""Pictures of a film at most; and in a second of it, if nothing else is asked for."""
+RATES = {".mp4": 30.0, ".gif": 20.0}
+"""Default pictures per second of film, by kind of file."""
+
+LEAST_RATE = 0.01
+"""Smallest number of pictures per second: one in 100 s."""
 
 _EYE = np.array([2.6, -6.0, 3.0])
+"""Place of the eye from the toy's place on the table, in sizes of the toy."""
+
 _MP4 = ("-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart")
 
 
@@ -48,23 +53,28 @@ def write_movie(
 
     Parameters
     ----------
-    run, path, overwrite
-        What, where, and whether a file there may go.
+    run
+        Run to be shown.
+    path
+        File to write: .mp4 or .gif.
+    overwrite
+        Whether an existing file is replaced.
     fps
-        Pictures per second; None for 30 in an .mp4 and 20 in a .gif. A .gif shows each for a whole
-        number of hundredths of a second, two at least: it gets the nearest rate that it can hold,
-        and plays in time.
+        Pictures per second; None for 30 in an .mp4 and 20 in a .gif. A .gif shows each picture for
+        a whole number of hundredths of a second, at least two: it gets the nearest such rate, and
+        still plays at `speed`.
     speed
         Seconds of the run per second of film: less than 1 for slow motion.
     pixels
         Width and height, even numbers; None for 640 x 480 in an .mp4 and 360 x 270 in a .gif.
     progress
-        Told after every picture how many there are so far, and how many there will be.
+        Called after every picture with the number of pictures drawn and the number of all.
 
     Raises
     ------
     InvalidInput
-        If the suffix, the rate, the speed or the size cannot be, or the film would be too long.
+        If the suffix, the rate, the speed or the size is not accepted, or the film would have more
+        than `MOST_FRAMES` pictures.
     Unavailable
         If there is no ffmpeg for an .mp4.
     FileTrouble
@@ -88,7 +98,7 @@ def write_movie(
     _check(rate, speed, extent)
     rate, speed = float(rate), float(speed)
     if not encoder:
-        # What a .gif can hold; browsers slow down what is faster than 50.
+        # A .gif holds hundredths of a second; browsers slow down films faster than 50 a second.
         rate = 100.0 / min(max(round(100.0 / rate), 2), 0xFFFF)
     pictures = frames(run, rate, speed, extent, progress or (lambda drawn, count: None))
     with written_beside(path, overwrite) as beside:
@@ -100,28 +110,42 @@ def write_movie(
 
 
 def ffmpeg() -> str:
-    """Return the path of ffmpeg; `Unavailable` if it is not installed."""
-    found = shutil.which("ffmpeg")
-    if found is None:
+    """Return the path of ffmpeg; raise `Unavailable` if it is not installed."""
+    path = shutil.which("ffmpeg")
+    if path is None:
         raise Unavailable(
             "an .mp4 is made by ffmpeg, which is not on the PATH; install it, or ask for a .gif"
         )
-    return found
+    return path
 
 
 def require_film(ending: str, duration: float) -> None:
-    """Refuse a film that cannot be made of a run, before that is followed: one that takes too many
-    pictures.
+    """Raise an error if a film of a run of this duration (s) cannot be made.
 
-    Raises `InvalidInput`; or `Unavailable` if there is no ffmpeg for an .mp4.
+    This is asked before the run is computed.
+
+    Raises
+    ------
+    InvalidInput
+        If the film would have more than `MOST_FRAMES` pictures.
+    Unavailable
+        If there is no ffmpeg for an .mp4.
     """
     if ending == ".mp4":
         ffmpeg()
-    longest = (MOST_FRAMES - 1) / RATES[ending]
-    if is_number(duration) and duration > longest:
+    rate = RATES[ending]
+    if is_number(duration) and _is_too_long(duration, rate):
+        longest = (MOST_FRAMES - 1) / rate
         raise InvalidInput(
             "duration", duration, f"at most {longest:.6g} s", "is too long for a film"
         )
+
+
+def _is_too_long(duration: float, fps: float, speed: float = 1.0) -> bool:
+    """Return whether the film of a run of this duration (s) has more than `MOST_FRAMES`
+    pictures.
+    """
+    return duration * fps / speed >= MOST_FRAMES
 
 
 def frames(
@@ -131,12 +155,13 @@ def frames(
     pixels: tuple[int, int],
     progress: Callable[[int, int], None] = lambda drawn, count: None,
 ) -> Iterator[Frame]:
-    """Yield the pictures of a film, shape (height, width, 3) each; `InvalidInput` if there would be
-    too many.
+    """Yield the pictures of a film, each of shape (height, width, 3).
+
+    Raises `InvalidInput` if the film would have more than `MOST_FRAMES` pictures.
     """
     start, end = run["time"].values[[0, -1]].tolist()
-    least = (end - start) * fps / MOST_FRAMES
-    if speed <= least:
+    if _is_too_long(end - start, fps, speed):
+        least = (end - start) * fps / (MOST_FRAMES - 1)
         raise InvalidInput(
             "speed", speed, f"at least {least:.2g}", f"is too slow for a run of {end - start:g} s"
         )
@@ -159,6 +184,7 @@ def frames(
 
 
 def _captioned(drawn: Frame, headline: str, clock: str, speed: float) -> Frame:
+    """Return a picture with the headline of the run and the time written on it."""
     image = Image.fromarray(drawn)
     pen = ImageDraw.Draw(image)
     size = max(10, image.width // 38)
@@ -171,20 +197,24 @@ def _captioned(drawn: Frame, headline: str, clock: str, speed: float) -> Frame:
 
 
 def _check(fps: float, speed: float, pixels: tuple[int, int]) -> None:
+    """Raise `InvalidInput` if the rate, the speed or the size of a film is not accepted."""
     if not (is_number(fps) and LEAST_RATE <= fps <= 240):
         raise InvalidInput("fps", fps, f"a number at least {LEAST_RATE:g} and at most 240")
     if not (is_number(speed) and 0 < speed <= 100):
         raise InvalidInput("speed", speed, "a number greater than 0 and at most 100")
-    two = (
+    is_size = (
         isinstance(pixels, Sequence) and len(pixels) == 2 and all(is_whole(side) for side in pixels)
     )
-    if not two or any(side < 16 or side > 4096 or side % 2 for side in pixels):
+    if not is_size or any(side < 16 or side > 4096 or side % 2 for side in pixels):
         raise InvalidInput("pixels", pixels, "two even numbers from 16 to 4096")
 
 
 def _encode(
     encoder: str, pictures: Iterator[Frame], path: Path, fps: float, pixels: tuple[int, int]
 ) -> None:
+    """Write the pictures as an .mp4 by ffmpeg; raise `FileTrouble` with its last message if it
+    fails.
+    """
     width, height = pixels
     source = (
         "-f",
@@ -215,11 +245,12 @@ def _encode(
 
 
 def _save_gif(pictures: Iterator[Frame], path: Path, fps: float) -> None:
+    """Write the pictures as a .gif in the colours of the first."""
     first = Image.fromarray(next(pictures)).quantize(128)
-    rest = (
+    later = (
         Image.fromarray(drawn).quantize(palette=first, dither=Image.Dither.NONE)
         for drawn in pictures
     )
     first.save(
-        path, format="GIF", save_all=True, append_images=rest, duration=round(1000 / fps), loop=0
+        path, format="GIF", save_all=True, append_images=later, duration=round(1000 / fps), loop=0
     )

@@ -1,9 +1,9 @@
-"""Where the top is between the samples of a run, to the fourth order of their distance.
+"""Poses of the top between the samples of a run, with errors of fourth order in their distance.
 
-The axis is interpolated with its rate L x n / I1, and the turn about it with omega3 = L.n / I3,
-counting whole turns: between samples a fast top may turn more than once. The turn is what is left
-after the axis is carried over by the shortest rotation, so that the samples themselves are exact.
-The player in the browser does the same (`track.js`).
+The axis is interpolated with its rate L x n / I1. The turn about the axis is interpolated with
+omega3 = L.n / I3, full turns counted: between two samples a fast top may turn more than once. This
+turn is what remains of the rotation between two samples after the shortest rotation of the axis, so
+that the pose at each sample is exact. The player in the browser does the same (`track.js`).
 """
 
 from typing import NamedTuple
@@ -20,8 +20,9 @@ Array = NDArray[np.float64]
 
 
 class Poses(NamedTuple):
-    """Positions of the centre of mass, m, shape (k, 3), and k turns from axis up and marker along
-    x.
+    """Positions of the centre of mass, m, shape (k, 3), and k rotations of the body.
+
+    The body that is not rotated has its axis along z and its marker along x.
     """
 
     positions: Array
@@ -29,7 +30,7 @@ class Poses(NamedTuple):
 
 
 def poses_at(run: xr.Dataset, times: ArrayLike) -> Poses:
-    """Return the poses of a run at any times within it, s, shape (k,)."""
+    """Return the poses of a run at times (s) within it, shape (k,)."""
     samples, at = run["time"].values, np.asarray(times, dtype=float)
     i = np.clip(np.searchsorted(samples, at, side="right") - 1, 0, max(len(samples) - 2, 0))
     j = np.minimum(i + 1, len(samples) - 1)
@@ -46,8 +47,8 @@ def poses_at(run: xr.Dataset, times: ArrayLike) -> Poses:
     axis = between(axes, rates)
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     turns = Rotation.from_quat(run["orientation"].values, scalar_first=True)
-    left = (shortest(axes[i], axes[j]) * turns[i]).inv() * turns[j]
-    _, _, z, w = left.as_quat().T
+    about_axis_alone = (shortest(axes[i], axes[j]) * turns[i]).inv() * turns[j]
+    _, _, z, w = about_axis_alone.as_quat().T
     first, last = spins[i], spins[j] + _carrying_spin(axes[i], axes[j], rates[j])
     turn = 2 * np.arctan2(z, w)
     turn += 2 * np.pi * np.round((0.5 * h * (first + last) - turn) / (2 * np.pi))
@@ -59,7 +60,7 @@ def poses_at(run: xr.Dataset, times: ArrayLike) -> Poses:
 
 
 def contact_path(run: xr.Dataset) -> Array:
-    """Where the lowest point of the body is on the table at every sample, m, shape (k, 2)."""
+    """Return the lowest point of the body at every sample, m, shape (k, 2)."""
     arm = lowest_contact_vector(
         tuple(run["axis"].values.T), Problem.from_json(run.attrs["problem"]).top.surface
     )
@@ -67,8 +68,8 @@ def contact_path(run: xr.Dataset) -> Array:
 
 
 def _cubic(u: Array, h: Array, a: Array, b: Array, rate_a: Array, rate_b: Array) -> Array:
-    """Return the cubic through two values with the rates at both ends, at a share u of the time h
-    between them.
+    """Return the cubic with these values and rates at both ends, at the share u of the time h
+    between.
     """
     v = 1.0 - u
     by_value = v * v * (1 + 2 * u) * a + u * u * (3 - 2 * u) * b
@@ -76,18 +77,18 @@ def _cubic(u: Array, h: Array, a: Array, b: Array, rate_a: Array, rate_b: Array)
 
 
 def _carrying_spin(start: Array, axis: Array, rate: Array) -> Array:
-    """How fast the shortest rotation from `start` to a moving axis turns backwards about it,
-    rad/s.
+    """Return the spin (rad/s) about a moving axis that its shortest rotation from `start` takes
+    away.
     """
     turning = np.einsum("ij,ij->i", np.cross(start, axis), rate)
     return np.asarray(turning / np.maximum(1.0 + np.einsum("ij,ij->i", start, axis), 1e-9))
 
 
 def shortest(start: Array, end: Array) -> Rotation:
-    """Return the shortest rotations from unit vectors to others."""
+    """Return the shortest rotations that turn unit vectors `start` to unit vectors `end`."""
     cosine = np.einsum("ij,ij->i", start, end)
     quaternion = np.concatenate([np.cross(start, end), 1 + cosine[:, None]], axis=1)
     opposite = np.linalg.norm(quaternion, axis=1) < 1e-9
-    # About the coordinate axis that is most nearly across.
+    # Opposite vectors: half a turn about an axis that is perpendicular to both.
     quaternion[opposite, :3] = np.cross(start, np.eye(3)[np.abs(start).argmin(axis=1)])[opposite]
     return Rotation.from_quat(quaternion)

@@ -1,6 +1,4 @@
-"""Pictures of the toy on its table without a browser: a ray for every pixel, in sizes of the
-toy.
-"""
+"""Pictures of the toy on its table, by one ray or more per pixel; lengths in sizes of the toy."""
 
 from typing import Any, NamedTuple
 
@@ -13,53 +11,62 @@ from tippetop.figures.toy import FAR, Toy
 
 Array = NDArray[np.floating[Any]]
 Area = tuple[int, int, int, int]
-"""Pixels of a picture: left, right, top, bottom."""
+"""Area of a picture, pixels: left, right, top, bottom."""
 
 _LIGHT = np.array([-0.35, -0.60, 1.0]) / np.linalg.norm([-0.35, -0.60, 1.0])
+"""Unit vector to the light."""
+
+_SPREAD = 0.42
+"""Half the width of the picture over its depth."""
+
 _TABLE, _LINE, _SKY, _TRACE = (
     np.array(to_rgb(SCENES["light"][name])) for name in ("table", "line", "background", "trace")
 )
 
 
+_POINT_DISTANCE = 0.012
+"""Distance between points that are drawn as a line: about a pixel."""
+
+
 class View(NamedTuple):
-    """A camera: where it is, which way its picture's right, up and depth go, and how wide it
-    sees.
-    """
+    """Camera of a picture."""
 
     eye: Array
+    """Place of the camera."""
     right: Array
     up: Array
     ahead: Array
-    """Place, and unit vectors."""
-    spread: float
-    """Half the width of the picture over its depth."""
+    """Unit vectors to the right and upwards in the picture, and from the eye into it."""
     pixels: tuple[int, int]
     """Width and height of the picture."""
 
     def rays(self, area: Area, fine: int) -> Array:
-        """Return the unit directions of rays through some pixels, `fine` across each, shape (rows,
+        """Return unit directions of `fine` x `fine` rays through each pixel of an area, (rows,
         columns, 3).
         """
         left, right, top, bottom = area
         width, height = self.pixels
         x = (left + (np.arange((right - left) * fine) + 0.5) / fine) * 2 / width - 1
         y = (height - 2 * (top + (np.arange((bottom - top) * fine) + 0.5) / fine)) / width
-        across = np.multiply.outer(x, self.spread * self.right)
-        upward = np.multiply.outer(y, self.spread * self.up)
+        across = np.multiply.outer(x, _SPREAD * self.right)
+        upward = np.multiply.outer(y, _SPREAD * self.up)
         direction = (self.ahead + across + upward[:, None]).astype(np.float32)
         return np.asarray(
             direction / np.sqrt(np.einsum("...i,...i", direction, direction))[..., None]
         )
 
     def project(self, points: Array) -> tuple[Array, Array]:
-        """Return columns and rows, in pixels, of points in space of shape (k, 3)."""
+        """Return the columns and the rows, in pixels, of points in space of shape (k, 3)."""
         width, height = self.pixels
         offset = points - self.eye
-        depth = np.maximum(offset @ self.ahead, 1e-6) * self.spread * 2 / width
+        depth = np.maximum(offset @ self.ahead, 1e-6) * _SPREAD * 2 / width
         return width / 2 + offset @ self.right / depth, height / 2 - offset @ self.up / depth
 
     def area(self, about: Array, reach: Array) -> Area:
-        """Return the pixels that a box in space may cover."""
+        """Return the area of the picture that a box may cover.
+
+        The box has its centre at `about` and half its sides `reach` along the coordinate axes.
+        """
         width, height = self.pixels
         corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
         columns, rows = self.project(about + corners * reach)
@@ -68,22 +75,22 @@ class View(NamedTuple):
         return int(left), int(right), int(top), int(bottom)
 
 
-def view_of(target: Array, offset: Array, pixels: tuple[int, int], spread: float = 0.42) -> View:
-    """Return a camera at an offset from what it looks at."""
+def view_of(target: Array, offset: Array, pixels: tuple[int, int]) -> View:
+    """Return the camera at an offset from its target."""
     ahead = -offset / np.linalg.norm(offset)
     right = np.cross(ahead, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
-    return View(target + offset, right, np.cross(right, ahead), ahead, spread, pixels)
+    return View(target + offset, right, np.cross(right, ahead), ahead, pixels)
 
 
 def picture(
     toy: Toy, view: View, position: Array, frame: Array, path: Array, cell: float
 ) -> NDArray[np.uint8]:
-    """Return the picture of a moment, shape (height, width, 3).
+    """Return the picture of one instant, shape (height, width, 3).
 
     The toy's centre of mass is at `position`, and its axes are the columns of `frame`, shape (3,
-    3). The path of the contact point so far, shape (k, 2), is as `fine_path` makes it; `cell` is
-    the width of the table's squares.
+    3). `path` are points along the path of the contact point up to this instant, shape (k, 2), from
+    `fine_path`; `cell` is the width of the table's squares.
     """
     width, height = view.pixels
     colours = _table(view.eye, view.rays((0, width, 0, height), 1), cell)
@@ -109,6 +116,7 @@ def picture(
 
 
 def _table(eye: Array, rays: Array, cell: float) -> Array:
+    """Return the colours of the empty table and the sky along rays."""
     fall = np.minimum(rays[..., 2], -1e-6)
     distance = -eye[2] / fall
     seen = rays[..., 2] < -1e-3
@@ -128,14 +136,12 @@ def _table(eye: Array, rays: Array, cell: float) -> Array:
 
 
 def fine_path(trace: Array, touching: NDArray[np.bool_]) -> tuple[Array, NDArray[np.intp]]:
-    """Return points near enough to look like a line, and how many there are up to every corner of a
-    path.
+    """Return closely spaced points along a path, and their number up to each corner of the path.
 
-    There are none between corners of which one is not `touching` the table.
+    Between two corners there are points only if both are `touching` the table.
     """
-    steps = np.maximum(np.ceil(np.linalg.norm(np.diff(trace, axis=0), axis=1) / 0.012), 1).astype(
-        int
-    )
+    lengths = np.linalg.norm(np.diff(trace, axis=0), axis=1)
+    steps = np.maximum(np.ceil(lengths / _POINT_DISTANCE), 1).astype(int)
     steps[~(touching[1:] & touching[:-1])] = 0
     number = np.repeat(np.arange(len(steps)), steps)
     share = (np.arange(len(number)) - np.repeat(np.cumsum(steps) - steps, steps)) / steps[number]
@@ -144,6 +150,7 @@ def fine_path(trace: Array, touching: NDArray[np.bool_]) -> tuple[Array, NDArray
 
 
 def _draw_path(colours: Array, view: View, path: Array) -> None:
+    """Draw the points of a path, each two pixels wide and high."""
     width, height = view.pixels
     column, row = (at.astype(int) for at in view.project(np.pad(path, ((0, 0), (0, 1)))))
     for dx, dy in ((0, 0), (1, 0), (0, 1)):
@@ -155,7 +162,7 @@ def _draw_path(colours: Array, view: View, path: Array) -> None:
 def _draw_toy(
     colours: Array, toy: Toy, eye: Array, rays: Array, position: Array, frame: Array
 ) -> None:
-    """Draw the toy into an area of the picture, given several rays a pixel."""
+    """Draw the toy into an area of the picture; `rays` has several rays per pixel."""
     start, ahead = ((eye - position) @ frame).astype(np.float32), rays @ frame
     hits = toy.meet(np.broadcast_to(start, rays.shape), ahead)
     hit = np.nonzero(hits.distances < FAR)
@@ -173,7 +180,7 @@ def _draw_toy(
 def _cast_shadow(
     colours: Array, toy: Toy, eye: Array, rays: Array, position: Array, frame: Array
 ) -> None:
-    """Darken the table where the toy is between it and the light."""
+    """Darken the points of the table from which the toy hides the light."""
     ground = np.where(rays[..., 2] < -1e-3, -eye[2] / np.minimum(rays[..., 2], -1e-3), 1e3)
     foot = (eye + ground[..., None] * rays - position).astype(np.float32) @ frame
     towards = (_LIGHT @ frame).astype(np.float32)

@@ -1,6 +1,4 @@
-"""Turned bodies as files for printing, in millimetres: STL for the body alone, 3MF for all of its
-parts.
-"""
+"""Solids of turned bodies for printing, in millimetres: STL of the body, 3MF of all its parts."""
 
 import math
 from importlib.util import find_spec
@@ -15,12 +13,13 @@ from tippetop.support.errors import Described, InvalidInput, Unavailable, is_who
 from tippetop.support.files import path_of, require_ending, written_beside
 
 FACETS = 180
-"""Facets around the axis: of a ball of 20 mm they leave out 3 micrometres."""
+"""Default number of facets around the axis: 3 micrometres inside a ball of 20 mm."""
 
 MOST_FACETS = 4096
-"""Most facets around the axis: a solid of more is too large for memory."""
+"""Largest number of facets around the axis: solids with more do not fit in memory."""
 
 MM = 1e3
+"""Millimetres in a metre."""
 
 
 def write_solid(
@@ -28,25 +27,25 @@ def write_solid(
 ) -> None:
     """Write a turned body as triangles, closed, in millimetres.
 
-    Cavities and inserts are hollows in the body. In 3MF, the inserts that weigh something follow as
-    objects of their own.
+    Cavities and inserts are hollows in the body. In 3MF, each insert with a density is another
+    object.
 
     Parameters
     ----------
     piece
-        What is turned.
+        Turned body.
     path
         File to write: .stl or .3mf.
     overwrite
-        Whether the file may exist.
+        Whether an existing file is replaced.
     facets
         Facets around the axis, and around a circle of the profile: at least 8.
 
     Raises
     ------
     InvalidInput
-        If the name ends otherwise, the facets are too few, or an insert touches the surface of
-        another part.
+        If the suffix is another, the number of facets is not accepted, or an insert touches the
+        surface of another part.
     FileTrouble
         If the file exists or cannot be written.
     Unavailable
@@ -64,46 +63,48 @@ def write_solid(
     if not is_whole(facets) or not 8 <= facets <= MOST_FACETS:
         raise InvalidInput("facets", facets, f"a whole number from 8 to {MOST_FACETS}")
     meshes = solids(piece, facets)
-    whole = meshes["body"] if suffix == ".stl" else _trimesh().Scene(meshes)
-    content = whole.export(file_type=suffix[1:])
+    exported = meshes["body"] if suffix == ".stl" else _trimesh().Scene(meshes)
+    content = exported.export(file_type=suffix[1:])
     with written_beside(path, overwrite) as beside:
         beside.write_bytes(content)
 
 
 def solids(piece: Workpiece, facets: int) -> dict[str, Any]:
-    """Return the body, and then the weights in it, by name, each with the hollows that the others
-    leave.
+    """Return trimesh meshes (mm) of the body and of the inserts with a density, by name.
 
-    They are meshes of trimesh, in millimetres. Raises `InvalidInput` if an insert touches the
-    surface of the body or another insert.
+    Each mesh has hollows for the parts inside it. Raises `InvalidInput` if an insert touches the
+    surface of the body or of another insert.
     """
     for number, inner in enumerate(piece.insides):
-        if any("on" in inner.sides(other) for other in (piece.outline, *piece.insides[:number])):
+        surfaces = (piece.outline, *piece.insides[:number])
+        if any("on" in inner.sides(surface) for surface in surfaces):
             field = f"inserts.{number}.profile"
             raise InvalidInput(
                 field,
                 Described("an insert that touches a surface"),
                 "one inside another part",
-                "makes no solid",
+                "cannot be made a solid",
             )
     trimesh = _trimesh()
-    found = {"body": trimesh.creation.revolve(_line(piece.outline, facets), sections=facets)}
+    meshes = {"body": trimesh.creation.revolve(_line(piece.outline, facets), sections=facets)}
     for number, inner in enumerate(piece.insides, start=1):
-        found[f"insert {number}"] = trimesh.creation.revolve(_line(inner, facets), sections=facets)
-    shells = list(found.values())
+        meshes[f"insert {number}"] = trimesh.creation.revolve(_line(inner, facets), sections=facets)
+    shells = list(meshes.values())
     for shell, outer in zip(shells[1:], piece.around, strict=True):
         hollow = shell.copy()
         hollow.invert()
         name = "body" if outer is None else f"insert {outer + 1}"
-        found[name] = trimesh.util.concatenate([found[name], hollow])
+        meshes[name] = trimesh.util.concatenate([meshes[name], hollow])
     weights = (piece.density, *(insert.density for insert in piece.inserts))
     return {
-        name: solid for (name, solid), weight in zip(found.items(), weights, strict=True) if weight
+        name: solid for (name, solid), weight in zip(meshes.items(), weights, strict=True) if weight
     }
 
 
 def _line(profile: Profile, facets: int) -> Any:
-    """Return points along a profile, mm, shape (k, 2), so many around a circle."""
+    """Return points along a profile, mm, shape (k, 2); a full circle would have `facets` of
+    them.
+    """
     steps = [math.ceil(abs(edge.turn) / math.tau * facets) or 1 for edge in profile.edges]
     points = [edge.points(np.arange(k) / k) for edge, k in zip(profile.edges, steps, strict=True)]
     line = MM * np.append(np.concatenate(points), profile.edges[-1].end)
@@ -111,6 +112,7 @@ def _line(profile: Profile, facets: int) -> Any:
 
 
 def _trimesh() -> Any:
+    """Return the module trimesh; raise `Unavailable` if it is not installed."""
     if not all(find_spec(name) for name in ("trimesh", "lxml", "networkx")):
         raise Unavailable(
             'solids are written with trimesh, which is not installed: pip install "tippetop[lathe]"'

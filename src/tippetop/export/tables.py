@@ -1,4 +1,4 @@
-"""Results as tables in files: CSV, which any spreadsheet reads, and Parquet."""
+"""Tables of results in files: CSV and Parquet."""
 
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,10 +14,10 @@ from tippetop.support.files import written_beside
 def write_csv(
     result: xr.Dataset, path: Path | str, overwrite: bool = False, *, table: str | None = None
 ) -> Path:
-    """Write a table of a run, or that of a sweep, as CSV: a header of names with their units, then
-    one row a sample, event, flight or launch.
+    """Write a table of a run or of a sweep as CSV.
 
-    The tables and their columns are those of `to_dataframe`; what is not a number is left empty.
+    The header has names with units; each row is a sample, an event, a flight or a launch. The
+    tables and their columns are those of `to_dataframe`; nan is written as an empty cell.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def write_csv(
 def write_parquet(
     result: xr.Dataset, path: Path | str, overwrite: bool = False, *, table: str | None = None
 ) -> Path:
-    """Write a table of a run, or that of a sweep, as Parquet, with its units and attributes.
+    """Write a table of a run or of a sweep as Parquet, with units and attributes.
 
     The tables and their columns are those of `to_dataframe`, and ``pandas.read_parquet`` returns
     them with their attributes.

@@ -1,4 +1,4 @@
-"""A run as the player in the browser takes it: one block of bytes.
+"""Packed run for the player in the browser: one block of bytes.
 
 Layout, little-endian: the letters TTRK, the length of the header (uint32), the header (JSON, padded
 with blanks to a multiple of 8), the sample times (float64), then the header's columns (float32),
@@ -21,12 +21,14 @@ from tippetop.results.description import describe
 Array = NDArray[np.float64]
 
 MAGIC = b"TTRK"
+"""First bytes of a block."""
+
 SHADINGS = 200
-"""Flights shaded at most; nearer ones are shaded together."""
+"""Largest number of shaded flights; flights that follow each other closely are shaded as one."""
 
 
 def pack_run(run: xr.Dataset) -> bytes:
-    """Return the block of bytes of a run, or of a part of one."""
+    """Return the block of bytes of a run."""
     problem, (begin, end) = Problem.from_json(run.attrs["problem"]), _ends(run)
     columns, turns_over, account = _columns(run), float(run["turns_over"]), describe(run)
     header = {
@@ -64,8 +66,8 @@ def unpack_header(block: bytes) -> dict[str, Any]:
 
 
 def flights(run: xr.Dataset) -> Any:
-    """Begin and end of every flight there is to see, s, those too near each other to be told apart
-    as one.
+    """Return start and end (s) of every flight within a run; flights too close to be seen apart are
+    one.
     """
     (begin, end), starts, ends = _ends(run), run["flight_start"].values, run["flight_end"].values
     seen = (starts < end) & (ends > begin)
@@ -77,7 +79,7 @@ def flights(run: xr.Dataset) -> Any:
 
 
 def _ends(run: xr.Dataset) -> tuple[float, float]:
-    """When it begins and ends, s."""
+    """Return the times of the first and the last sample, s."""
     return float(run["time"].values[0]), float(run["time"].values[-1])
 
 
