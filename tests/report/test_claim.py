@@ -28,7 +28,7 @@ from tippetop.report.claims.registry import CLAIMS, EXAMINERS
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.registry import EXPERIMENTS
 from tippetop.report.gallery import DRAWN, PLATES
-from tippetop.report.outline import OWN, SECTIONS, STORY, UNCHECKED, section_of
+from tippetop.report.outline import ADDED_SECTIONS, SECTIONS, STORY, UNCHECKED, section_of
 from tippetop.report.tolerance import Tolerance, half_last_digit
 
 COARSER = {
@@ -228,7 +228,7 @@ def test_a_figure_shows_what_decides_the_claims_beside_it(claim: Claim) -> None:
 def test_every_statement_of_the_report_is_quoted() -> None:
     """Claims of the page's own sections quote nothing, for the report has no such section."""
     for claim in CLAIMS.values():
-        assert bool(claim.quote) is (section_of(claim.source.section) not in OWN)
+        assert bool(claim.quote) is (section_of(claim.source.section) not in ADDED_SECTIONS)
         assert len(claim.quote) < 160
 
 
@@ -286,7 +286,7 @@ def test_constants_stand_in_what_is_told_of_them() -> None:
 
 def test_figures_stand_in_sections_of_the_page() -> None:
     order = list(SECTIONS)
-    assert order[-3:] == list(OWN)
+    assert order[-3:] == list(ADDED_SECTIONS)
     for name, (title, _) in SECTIONS.items():
         assert title.startswith(name)
     for plate in PLATES.values():

@@ -1,5 +1,5 @@
-"""Claims: what the report says, what its own method gives, what is true, and the rule that
-decides.
+"""Claims of the report and of others, the values they are compared with, and the rule that
+judges.
 """
 
 import math
@@ -16,11 +16,11 @@ from tippetop.report.tolerance import Tolerance, half_last_digit
 
 Value: TypeAlias = float | bool
 Data: TypeAlias = Mapping[str, xr.Dataset]
-"""Datasets by the name of the experiment that made them."""
+"""Datasets by the names of the experiments that computed them."""
 
 
 class Verdict(Enum):
-    """What became of a claim; the value says when."""
+    """Judgement of a claim; the value states its condition."""
 
     REPRODUCED = "true, and what the report's own method gives"
     UPHELD = "true, although the report's own method does not give it"
@@ -29,18 +29,18 @@ class Verdict(Enum):
 
 
 RULE = (
-    "Every claim is compared with the converged value, which says whether it is true, and with what"
-    " the report's own method gives, where it gives anything: directly, or for one stated choice of"
-    " what the report leaves open; what is true is taken for the same choice, but a law has to be"
-    " true for the report's main launch. They agree within half a unit of the last printed digit"
-    " unless another tolerance is given, with its reason. What the report does not say in words,"
-    " but draws or codes, is marked as implied."
+    "Every claim is compared with the converged value, which decides whether it is true, and with"
+    " the value by the report's own method, where there is one. Where the report leaves something"
+    " open, both values are for one stated choice of it; a law has to be true for the report's main"
+    " launch. Values agree if they differ by at most half a unit of the last printed digit, unless"
+    " another tolerance is given with its reason. Claims that the report draws or codes without"
+    " saying them in words are marked as implied."
 )
 
 
 @dataclass(frozen=True)
 class Source:
-    """Where the report makes a claim."""
+    """Place of a claim in the report."""
 
     section: str
     figure: str | None = None
@@ -56,85 +56,85 @@ class Source:
 
 @dataclass(frozen=True)
 class Finding:
-    """What a run finds about a claim."""
+    """Result of examining a claim."""
 
     listing: Value | None
-    """What the report's own method gives; None where it has nothing to say."""
+    """Value by the report's own method; None where it does not give one."""
     converged: Value
-    """What is true."""
+    """True value."""
     note: str
-    """What else there is to know."""
+    """Explanation."""
     chosen: Value | None = None
     choice: str = ""
-    """What the report's method gives for one choice of what the report leaves open, and which
+    """Value by the report's method for one choice of what the report leaves open, and that
     choice.
     """
     reported: float | None = None
-    """What the report's printed formula evaluates to, where the claim is a formula."""
+    """Value of the report's printed formula, for a claim that is a formula."""
     news: str = ""
-    """What else is found that the report could not know, in a sentence; "" for nothing."""
+    """Further result that the report does not have, in a sentence; "" if there is none."""
     right: str = ""
-    """What is right where the claim is not, in a few words with values; "" where the claim says
-    it.
+    """Correct statement in a few words with values, for a claim that is not true; "" if
+    `Claim.right` has it.
     """
 
     @classmethod
     def unlisted(cls, converged: Value, note: str, *choices: Any, **others: Any) -> "Finding":
-        """Return a finding where the report's own method has nothing to say."""
+        """Return a finding for which the report's own method gives no value."""
         return cls(None, converged, note, *choices, **others)
 
 
 class Examiner(NamedTuple):
-    """How a claim is examined."""
+    """Function that examines a claim, and what it needs."""
 
     needs: tuple[str, ...]
-    """Names of the experiments that decide it; () for the one called as its figure."""
+    """Names of the experiments that it needs; () for the one with the name of the claim's
+    figure.
+    """
     tolerance: Tolerance | None
-    """What counts as agreement where the printed digits do not say it."""
+    """Largest difference that counts as agreement; None for half a unit of the last printed
+    digit.
+    """
     examine: Callable[..., Finding]
-    """Computes the finding from the experiments' datasets, given in the order of `needs`."""
+    """Function of the experiments' datasets, in the order of `needs`, that returns the finding."""
+    takes_printed: bool = False
+    """Whether the function also takes the printed number, as the keyword `printed`."""
 
 
 @dataclass(frozen=True)
 class Claim:
-    """What the report says, how to examine it, and which figure shows it."""
+    """A statement of the report or of others, with its examiner and its figure."""
 
     id: str
-    """Its name."""
+    """Name."""
     examiner: Examiner
-    """How it is examined."""
+    """Examiner."""
     source: Source
-    """Where it stands."""
+    """Place."""
     text: str
-    """What is claimed."""
+    """The statement."""
     quote: str = ""
-    """What the report says, word for word and in its spelling; "" where it is not the report that
-    says it.
-    """
+    """Words of the report, in its spelling; "" if the statement is not the report's."""
     printed: str = ""
-    """The number as printed, with its unit; "" where the claim is not a number or
-    `Finding.reported` has it.
-    """
+    """Printed number with its unit; "" if the claim is no number or `Finding.reported` has it."""
     unit: str | None = None
     """Unit of a number that is not printed; None if there is none."""
     formula: tuple[str, ...] = ()
-    """A formula as the report sets it apart, in TeX as far as matplotlib sets it, a string a
-    line.
-    """
+    """Displayed formula, in the TeX that matplotlib sets, a string per line."""
     formula_right: tuple[str, ...] = ()
-    """What it should be; () where it is right."""
+    """Corrected formula; () if the formula is right."""
     figure: str | None = None
-    """Name of our figure that shows it, or None."""
+    """Name of the figure that shows the claim, or None."""
     implied: bool = False
-    """Whether the report does not say it in words."""
+    """Whether the report draws or codes the claim without saying it in words."""
     right: str = ""
-    """What is right where the claim is not, in a few words; "" where the converged value says
-    it.
+    """Correct statement in a few words, for a claim that is not true; "" if the converged value
+    says it.
     """
 
     @property
     def is_of_report(self) -> bool:
-        """Whether the report makes the claim; otherwise someone else does."""
+        """Whether the report makes the claim."""
         return bool(self.quote) or ": the report" in self.source.section
 
     @property
@@ -158,13 +158,15 @@ class Claim:
         return self.unit or self.printed.partition(" ")[2] or "1"
 
     def judge(self, data: Data, quick: bool) -> "Judgement":
-        """Examine the claim by the experiments it needs."""
-        return Judgement(self, self.examiner.examine(*(data[name] for name in self.needs)), quick)
+        """Return the judgement of the claim by the data of the experiments it needs."""
+        datasets = [data[name] for name in self.needs]
+        options = {"printed": number(self.number)} if self.examiner.takes_printed else {}
+        return Judgement(self, self.examiner.examine(*datasets, **options), quick)
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """A claim that was examined."""
+    """A claim with its finding."""
 
     claim: Claim
     finding: Finding
@@ -172,37 +174,37 @@ class Judgement:
 
     @property
     def reported(self) -> Value:
-        """What the report says, as a value."""
+        """Value that the report states."""
         if not self.claim.is_number:
             return True
         return number(self.claim.number) if self.finding.reported is None else self.finding.reported
 
     @property
     def tolerance(self) -> Tolerance | None:
-        """What counts as agreement; None for claims that are true or false."""
+        """Largest difference that counts as agreement; None for a claim that is true or false."""
         if not self.claim.is_number:
             return None
         return self.claim.examiner.tolerance or half_last_digit(self.claim.number)
 
     @property
     def verdict(self) -> Verdict:
-        """What the values say; see `RULE`."""
-        given = [
-            value for value in (self.finding.listing, self.finding.chosen) if value is not None
-        ]
-        theirs = any(map(self._agrees_with, given))
+        """Verdict by `RULE`."""
+        values = (self.finding.listing, self.finding.chosen)
+        by_method = [value for value in values if value is not None]
+        method_agrees = any(map(self._agrees_with, by_method))
         if self._agrees_with(self.finding.converged):
-            return Verdict.REPRODUCED if theirs or not given else Verdict.UPHELD
-        return Verdict.EXPLAINED if theirs else Verdict.CORRECTED
+            return Verdict.REPRODUCED if method_agrees or not by_method else Verdict.UPHELD
+        return Verdict.EXPLAINED if method_agrees else Verdict.CORRECTED
 
-    def _agrees_with(self, found: Value) -> bool:
+    def _agrees_with(self, value: Value) -> bool:
+        """Return whether the report's value agrees with this one."""
         if self.tolerance is None:
-            return bool(self.reported) == bool(found)
-        # A bound that rounding alone decides is met: 7.4 and 7.45 differ by half a digit.
-        return abs(self.reported - found) <= self.tolerance.value * (1.0 + 1e-9)
+            return bool(self.reported) == bool(value)
+        # Rounding must not decide at the bound itself: 7.4 and 7.45 differ by half a digit.
+        return abs(self.reported - value) <= self.tolerance.value * (1.0 + 1e-9)
 
     def record(self) -> dict[str, object]:
-        """Return the claim as plain data."""
+        """Return the judgement as plain data."""
         claim, finding = self.claim, self.finding
         tolerance = self.tolerance
         return {
@@ -228,46 +230,54 @@ class Judgement:
 
 
 def count_verdicts(judgements: Iterable[Judgement]) -> dict[str, int]:
-    """Return the number of judgements of each verdict, by its name in lower case; 0 included."""
+    """Return the number of judgements of each verdict, by its name in lower case, zeros
+    included.
+    """
     counts = Counter(judgement.verdict for judgement in judgements)
     return {verdict.name.lower(): counts[verdict] for verdict in Verdict}
 
 
 def in_words(counts: Mapping[str, int]) -> str:
-    """Return the sum of the counts of verdicts, with those that are not 0 in brackets."""
+    """Return the number of all claims as text, with the verdicts that occur in brackets."""
     verdicts = ", ".join(f"{number} {name}" for name, number in counts.items() if number)
     return f"{sum(counts.values())}" + (f" ({verdicts})" if verdicts else "")
 
 
 EXAMINERS: dict[str, Examiner] = {}
-"""How claims are examined, by their names: those registered so far; take all from
-`tippetop.report.claims.registry`.
+"""Examiners by the names of their claims; `tippetop.report.claims.registry` registers all of
+them.
 """
 
 
 def examines(
-    claim: str, *needs: str, tolerance: Tolerance | None = None, **options: Any
+    claim: str,
+    *needs: str,
+    tolerance: Tolerance | None = None,
+    takes_printed: bool = False,
+    **options: Any,
 ) -> Callable[[Callable[..., Finding]], Callable[..., Finding]]:
-    """Register the decorated function, with some options, as what alone examines a claim; see
-    `Examiner`.
+    """Return a decorator that registers a function as the examiner of a claim.
+
+    See `Examiner` for the arguments; `options` are further keywords of the function. Raises
+    `ValueError` if the claim has an examiner already.
     """
 
     def register(examine: Callable[..., Finding]) -> Callable[..., Finding]:
         if claim in EXAMINERS:
             raise ValueError(f"the claim {claim} is examined twice")
-        EXAMINERS[claim] = Examiner(needs, tolerance, partial(examine, **options))
+        EXAMINERS[claim] = Examiner(needs, tolerance, partial(examine, **options), takes_printed)
         return examine
 
     return register
 
 
 def both(run: xr.Dataset, name: str) -> tuple[float, float]:
-    """Return a number by the report's method and converged."""
+    """Return a number by the report's method, and converged."""
     return float(run[f"{name}_listing"]), float(run[name])
 
 
 def listed(template: str, *columns: Iterable[object], between: str = ", ") -> str:
-    """Return the rows of some columns in words, each as the template says."""
+    """Return a text of rows, each formatted by the template from the values of the columns."""
     return between.join(template.format(*row) for row in zip(*columns, strict=True))
 
 
@@ -277,9 +287,7 @@ def number(printed: str) -> float:
 
 
 def _plain(value: Value | None) -> float | bool | None:
-    """Return a value as JSON can have it: no numbers of other kinds, and nothing that is not
-    finite.
-    """
+    """Return a value as JSON can hold it: None if it is not finite."""
     if value is None or isinstance(value, bool):
         return value
     return float(value) if math.isfinite(value) else None

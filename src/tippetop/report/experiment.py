@@ -1,4 +1,4 @@
-"""Experiments: the computations that figures and claims are made from, each giving one dataset."""
+"""Experiments: independent computations, one dataset each, for the figures and the claims."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,19 +12,19 @@ Compute: TypeAlias = Callable[[bool], xr.Dataset]
 
 @dataclass(frozen=True)
 class Experiment:
-    """A computation that depends on nothing else."""
+    """A computation that depends on no other."""
 
     id: str
-    """What it is called."""
+    """Name."""
     title: str
-    """What it finds out, in a few words."""
+    """Subject, in a few words."""
     cost: float
-    """About how long it takes, s: for the order of work and for the time left."""
+    """Approximate duration, s: for the order of work and the remaining time."""
     compute: Compute
-    """Does it; the argument says whether a coarser version is enough."""
+    """Function that computes the dataset; its argument says whether a coarser version is enough."""
 
     def run(self, quick: bool) -> xr.Dataset:
-        """Compute, and note on the result what it is."""
+        """Return the computed dataset, with the experiment's name and version as attributes."""
         data = self.compute(quick)
         data.attrs = {
             "title": self.title,
@@ -38,12 +38,13 @@ class Experiment:
 
 
 EXPERIMENTS: dict[str, Experiment] = {}
-"""Those registered so far; take all from `tippetop.report.experiments.registry`."""
+"""Experiments that are registered; `tippetop.report.experiments.registry` registers all of them."""
 
 
 def experiment(name: str, title: str, cost: float) -> Callable[[Compute], Compute]:
-    """Register the decorated function as what does an experiment, which no other may; see
-    `Experiment`.
+    """Return a decorator that registers a function as the computation of an experiment.
+
+    See `Experiment` for the arguments. Raises `ValueError` if the name is used twice.
     """
 
     def register(compute: Compute) -> Compute:
@@ -65,33 +66,35 @@ _ALONG = {
     "window": ("s", "length of the runs"),
     "margin": ("rad", "what counts as 0"),
 }
-"""Units and meanings of what experiments go over."""
+"""Units and meanings of common coordinates."""
 
 
 def dataset(
     coordinates: Mapping[str, Any], attrs: Mapping[str, Any] | None = None, /, **variables: Any
 ) -> xr.Dataset:
-    """Return a dataset whose variables are told as values, unit, meaning and dimensions, as
-    `variable` takes them.
+    """Return a dataset of variables and coordinates with units and meanings.
 
-    Coordinates are told as values, unit and meaning, or as values alone: words, or what `_ALONG`
-    knows by what it is, and perhaps what of, as in spin and spin_listing.
+    A variable is a tuple of the arguments of `variable`: values, unit, meaning and dimensions. A
+    coordinate is a tuple of values, unit and meaning, or values alone: words, or a quantity of
+    `_ALONG`, whose name may have a suffix, as in spin and spin_listing.
     """
-    own = {name: told for name, told in coordinates.items() if isinstance(told, tuple)}
-    kinds = {name: _ALONG.get(name.partition("_")[0]) for name in coordinates}
-    own |= {
-        name: (coordinates[name], *kind) for name, kind in kinds.items() if kind and name not in own
-    }
+    coords: dict[str, Any] = {}
+    for name, coordinate in coordinates.items():
+        kind = _ALONG.get(name.partition("_")[0])
+        if isinstance(coordinate, tuple):
+            coords[name] = variable(*coordinate, name)
+        elif kind:
+            coords[name] = variable(coordinate, *kind, name)
+        else:
+            coords[name] = coordinate
     return xr.Dataset(
-        {name: variable(*told) for name, told in variables.items()},
-        {**coordinates, **{name: variable(*told, name) for name, told in own.items()}},
-        attrs,
+        {name: variable(*arguments) for name, arguments in variables.items()}, coords, attrs
     )
 
 
 def variable(
     values: object, units: str | None, long_name: str, *dimensions: str
 ) -> tuple[tuple[str, ...], object, dict[str, str]]:
-    """Return a variable of a dataset with its meaning and its unit, None for words."""
+    """Return a variable of a dataset with its meaning and its unit, which is None for words."""
     unit = {} if units is None else {"units": units}
     return (dimensions, values, {**unit, "long_name": long_name})

@@ -1,4 +1,4 @@
-"""The figures: what is told of them, in `figures.toml`, and how each is drawn."""
+"""Figures of the page: their titles and captions from `figures.toml`, and how each is drawn."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,32 +15,34 @@ from tippetop.figures.tippe_top import tippe_top_drawing
 from tippetop.report import quoted
 from tippetop.report.claim import Data
 from tippetop.report.experiments.runs import likely_end
-from tippetop.report.told import told
+from tippetop.report.texts import filled_tables
 
 Draw = Callable[[xr.Dataset], Figure]
 
 
 @dataclass(frozen=True)
 class Plate:
-    """A figure of the report redone, or one of our own."""
+    """A figure of the page: one of the report's redone, or an added one."""
 
     id: str
-    """Name, and stem of its files."""
+    """Name, and stem of the names of its files."""
     draw: Draw
-    """Makes the figure from their merged dataset (empty for a drawing that needs none)."""
+    """Function that draws the figure from its dataset, which is empty for a drawing without
+    data.
+    """
     title: str
     """Heading."""
     caption: str
-    """What is seen, in a few sentences."""
+    """Description of what is seen, in a few sentences."""
     needs: tuple[str, ...]
-    """Names of the experiments it shows."""
+    """Names of the experiments whose data it shows."""
     section: str
-    """The section of the page that it belongs to; see `tippetop.report.outline`."""
+    """Section of the page that it belongs to; see `tippetop.report.outline`."""
     finding: str = ""
-    """What it shows that the report could not know, in a sentence; "" for nothing."""
+    """Result that the report does not have, in a sentence; "" if there is none."""
 
     def dataset(self, data: Data) -> xr.Dataset:
-        """Return the data behind the figure."""
+        """Return the merged data of the experiments that the figure shows."""
         parts = [data[name] for name in self.needs]
         return xr.merge(parts, combine_attrs="drop_conflicts", compat="no_conflicts", join="outer")
 
@@ -50,7 +52,7 @@ _ABNORMAL = float(quoted.ABNORMAL_SPIN)
 
 
 def _printed_times(figure: str) -> dict[str, Any]:
-    """Return the times that the report prints for a figure, for its drawing."""
+    """Return the times that the report prints for a figure, as arguments of its drawing."""
     times = tuple(float(time) for time in quoted.REVERSALS[figure])
     return {"reported_turn": float(quoted.TURNED_AT[figure]), "reported_reversals": times}
 
@@ -109,10 +111,10 @@ DRAWN: dict[str, Draw] = {
     "real-egg": real.egg_figure,
     "real-rolling": real.rolling_figure,
 }
-"""How each figure is drawn from the merged data of its experiments."""
+"""Function that draws each figure from the merged data of its experiments."""
 
 PLATES: dict[str, Plate] = {
     name: Plate(name, DRAWN[name], **{"needs": (name,), **fields})
-    for name, fields in told("figures").items()
+    for name, fields in filled_tables("figures").items()
 }
-"""Every figure by its name, in the order of the page."""
+"""All figures by name, in the order of the page."""

@@ -1,4 +1,4 @@
-"""The report's method, errors and all: its equations with theta modulo pi, by ode45 at default
+"""The report's method with its errors: its equations, theta modulo pi, ode45 at default
 tolerances.
 """
 
@@ -17,17 +17,16 @@ VARIABLES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y
 
 
 def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) -> xr.Dataset:
-    """Run an eccentric sphere with viscous friction as the report's listing does: it never leaves
-    the table.
+    """Return the run of an eccentric sphere on viscous friction by the report's listing.
 
-    `unilateral` lets the lines count that set a negative normal force to zero (commented out in the
-    report).
+    The sphere never leaves the table. With `unilateral`, the lines of the listing that set a
+    negative normal force to zero, and that are commented out in the report, are executed.
 
     Returns
     -------
     xarray.Dataset
         Over `time`, the points of output of ode45: the report's variables (theta modulo pi, as
-        plotted), `theta_integrated` without that, `normal_force` (2.15) and `energy` (4.1).
+        plotted), `theta_integrated` (not modulo pi), `normal_force` (2.15) and `energy` (4.1).
         Attributes: steps, evaluations, failure (empty if none).
     """
     motion, start = listing_rates(problem, unilateral=unilateral), launch_state(problem)

@@ -1,10 +1,11 @@
-"""Moreau's time-stepping for a top of several spheres, as Leine and Glocker followed theirs.
+"""Moreau's time-stepping for a top of several spheres, as Leine and Glocker (2003) computed theirs.
 
-A step of fixed length moves the top freely for its first half, gives all impulses of contact there
-at once, and moves it freely for the second half (Moreau 1988). A contact acts when its gap is not
-open at the middle, plastically, with friction of a patch that has an ellipsoidal limit surface.
-Events are known to a step, and what happens between two steps is lost. Plain numbers, and none of
-the equations of the package.
+A step of fixed length moves the top freely for its first half, applies all impulses of contact, and
+moves the top freely for its second half (Moreau 1988). A contact acts if its gap is closed at the
+middle of the step: plastically, with friction of a patch that has an ellipsoidal limit surface.
+Events are known to within a step; what happens between two steps is lost.
+
+The module shares no equations with the package, so that it is an independent check.
 """
 
 import math
@@ -16,21 +17,21 @@ from tippetop.mechanics.vectors import VERTICAL, add, cross, dot, scale
 Triple = tuple[float, float, float]
 
 CLOSE = 1e-9
-"""Change of the impulses between two rounds at which they are taken, relative."""
+"""Relative change of the impulses in one iteration at which they count as converged."""
 
 ROUNDS = 300
-"""Rounds at most."""
+"""Largest number of iterations."""
 
 
 class Ball(NamedTuple):
-    """One of the spheres: radius, and height of its centre above the centre of mass, m."""
+    """Sphere of the top: its radius, and the height of its centre above the centre of mass, m."""
 
     radius: float
     center: float
 
 
 class SphereTop(NamedTuple):
-    """What is followed: SI units; `patch` is the semi-axis of the limit surface, m."""
+    """Top of several spheres, SI units; `patch` is the semi-axis of the limit surface, m."""
 
     mass: float
     I1: float
@@ -42,9 +43,7 @@ class SphereTop(NamedTuple):
 
 
 class History(NamedTuple):
-    """What a method with a step knows: at every step, its tilt, rad, and which spheres had an
-    impulse.
-    """
+    """Results at every step: the tilt, rad, and which spheres received an impulse."""
 
     step: float
     tilts: list[float]
@@ -52,14 +51,15 @@ class History(NamedTuple):
 
 
 def follow(body: SphereTop, tilt: float, spin: float, duration: float, step: float) -> History:
-    """Follow a top that is set down at this tilt (rad) and spin (rad/s) with its centre of mass at
-    rest.
+    """Return the motion of a top that is set down at this tilt (rad) and spin (rad/s).
+
+    Its centre of mass is at rest at launch. `duration` and `step` are in s.
     """
     axis = (math.sin(tilt), 0.0, math.cos(tilt))
     momentum = scale(body.I3 * spin, axis)
     height = max(ball.radius - ball.center * axis[2] for ball in body.balls)
     velocity = (0.0, 0.0, 0.0)
-    held: list[list[float]] = [[0.0] * 4 for _ in body.balls]
+    impulses: list[list[float]] = [[0.0] * 4 for _ in body.balls]
     tilts, touching = [], []
     for _ in range(round(duration / step)):
         axis, height = (
@@ -74,14 +74,17 @@ def follow(body: SphereTop, tilt: float, spin: float, duration: float, step: flo
             for b in body.balls
         ]
         if any(arms):
-            velocity, momentum = _impulses(body, axis, velocity, momentum, arms, held)
+            velocity, momentum = _impulses(body, axis, velocity, momentum, arms, impulses)
         axis, height = (
             _turned(axis, momentum, 0.5 * step / body.I1),
             height + 0.5 * step * velocity[2],
         )
         tilts.append(math.acos(max(-1.0, min(1.0, axis[2]))))
         touching.append(
-            tuple(arm is not None and one[3] > 0.0 for arm, one in zip(arms, held, strict=True))
+            tuple(
+                arm is not None and impulse[3] > 0.0
+                for arm, impulse in zip(arms, impulses, strict=True)
+            )
         )
     return History(step, tilts, touching)
 
@@ -92,12 +95,13 @@ def _impulses(
     velocity: Triple,
     momentum: Triple,
     arms: Sequence[Triple | None],
-    held: list[list[float]],
+    impulses: list[list[float]],
 ) -> tuple[Triple, Triple]:
-    """Return the velocities after the impulses, by rounds over the contacts; `held` starts and
-    takes these.
+    """Return velocity and angular momentum after the impulses of all contacts.
 
-    Of each contact: along x, y, about z over the patch, and upwards.
+    The impulses are iterated over the contacts, starting from those of the step before, which
+    `impulses` has and which are replaced in it. Each contact has four: along x, along y, about z
+    over the patch radius, and upwards.
     """
     across, along = 1.0 / body.I1, 1.0 / body.I3 - 1.0 / body.I1
     patch, mass = body.patch, body.mass
@@ -105,7 +109,7 @@ def _impulses(
     contacts = []
     for number, arm in enumerate(arms):
         if arm is None:
-            held[number] = [0.0] * 4
+            impulses[number] = [0.0] * 4
             continue
         turns = [
             cross(arm, (1.0, 0.0, 0.0)),
@@ -118,11 +122,11 @@ def _impulses(
             for k, t in enumerate(turns)
         ]
         contacts.append((number, turns, masses[3], 0.5 / max(masses[:3])))
-        u, L = _given(u, L, mass, turns, held[number])
+        u, L = _with_impulse(u, L, mass, turns, impulses[number])
     for _ in range(ROUNDS):
         worst = 0.0
         for number, turns, resisted, weight in contacts:
-            old = held[number]
+            old = impulses[number]
             w = add(scale(across, L), scale(along * dot(L, axis), axis))
             up = max(0.0, old[3] - (u[2] + dot(turns[3], w)) / resisted)
             slid = [
@@ -134,18 +138,18 @@ def _impulses(
             share = limit / size if size > limit else 1.0
             new = [share * slid[0], share * slid[1], share * slid[2], up]
             change = (new[0] - old[0], new[1] - old[1], new[2] - old[2], new[3] - old[3])
-            u, L = _given(u, L, mass, turns, change)
-            held[number] = new
+            u, L = _with_impulse(u, L, mass, turns, change)
+            impulses[number] = new
             worst = max(worst, max(map(abs, change)) - CLOSE * up)
         if worst <= 0.0:
             break
     return u, L
 
 
-def _given(
+def _with_impulse(
     u: Triple, L: Triple, mass: float, turns: Sequence[Triple], impulse: Sequence[float]
 ) -> tuple[Triple, Triple]:
-    """Return velocity and angular momentum after an impulse along all directions of a contact."""
+    """Return velocity and angular momentum after an impulse in the four directions of a contact."""
     fx, fy, drill, up = impulse
     a, b, c, d = turns
     turned = (
@@ -157,8 +161,8 @@ def _given(
 
 
 def _turned(axis: Triple, momentum: Triple, time: float) -> Triple:
-    """Return the axis of a free top after a time over I1: it goes round its angular momentum
-    evenly.
+    """Return the axis of a free top after a time over I1: it turns evenly about the angular
+    momentum.
     """
     size = math.sqrt(dot(momentum, momentum))
     if size == 0.0:

@@ -1,10 +1,8 @@
-"""MATLAB's ode45 as the report used it: Dormand-Prince 5(4) with that program's control of the
-step.
+"""MATLAB's ode45 as the report used it: Dormand-Prince 5(4) with ode45's step control.
 
-SciPy's RK45 has the same formula but chooses the size of its steps otherwise: it weighs the error
-by its root mean square, ode45 by its largest component; and the two grow and shrink a step by
-different rules. At the default tolerance that is enough to move the instants of a sensitive motion
-by tenths of a second, hence both.
+SciPy's RK45 has the same formulas and another step control: it measures the error by its root mean
+square, ode45 by its largest component, and the two change the step by different rules. At the
+default tolerance this difference moves the instants of a sensitive motion by tenths of a second.
 """
 
 from collections.abc import Callable
@@ -18,10 +16,10 @@ from tippetop.integrators.base import Array
 Rates = Callable[[Array], Array]
 
 RELATIVE, ABSOLUTE = 1e-3, 1e-6
-"""Tolerances of ode45 when none are given."""
+"""Default tolerances of ode45."""
 
 REFINE = 4
-"""Points of output for every step taken."""
+"""Number of points of output per step."""
 
 _A, _B, _E, _P = RK45.A, RK45.B, RK45.E, RK45.P
 _PARTS = np.arange(1, REFINE) / REFINE
@@ -31,24 +29,24 @@ _STAGES = 7
 
 @dataclass(frozen=True)
 class Solution:
-    """What the method returns."""
+    """Solution by ode45."""
 
     times: Array
     states: Array
-    """Ends of the steps and the points of output between them, shapes (k,) and (k, size)."""
+    """Ends of the steps with the points of output between them, shapes (k,) and (k, size)."""
     steps: int
     evaluations: int
-    """Steps accepted, and evaluations of the right-hand side."""
+    """Number of accepted steps, and of evaluations of the right-hand side."""
     failure: str | None = None
-    """Why it gave up, or None."""
+    """Why the integration stopped early, or None."""
 
 
 def dormand_prince_step(
     rates: Rates, state: Array, slope: Array, step: float
 ) -> tuple[Array, Array]:
-    """Take one step of the fifth-order formula, from a state and its rates, shape (size,).
+    """Return the state after one step of the fifth-order formula, and the rates at its stages.
 
-    Returns the state at the end, shape (size,), and the rates at all stages, shape (7, size).
+    `state` and its rates `slope` have shape (size,), the rates at the stages (7, size).
     """
     stages = np.empty((_STAGES, len(state)))
     stages[0] = slope
@@ -66,10 +64,10 @@ def ode45(
     relative: float = RELATIVE,
     absolute: float = ABSOLUTE,
 ) -> Solution:
-    """Integrate y' = rates(y) as MATLAB's ode45 does (Shampine & Reichelt 1997), with tolerances
-    per step.
+    """Return the solution of y' = rates(y) by the algorithm of MATLAB's ode45.
 
-    `start` is the state at time 0, shape (size,).
+    The tolerances are per step; `start` is the state at time 0, shape (size,). Source: Shampine and
+    Reichelt (1997).
     """
     threshold, longest = absolute / relative, 0.1 * duration
     time, state = 0.0, np.array(start, dtype=float)

@@ -1,39 +1,41 @@
-"""The order of the page: the story it opens with, the report's own sections, then ours."""
+"""Order of the page: the opening story, the report's sections, and the sections added to them."""
 
 import tomllib
 from pathlib import Path
 
 REPORT_TITLE = "The Dynamics of Tippe Top and Numerical Simulation"
-"""The title of the report, a student's project report."""
+"""Title of the report, a student's project report."""
 
-_TOLD = tomllib.loads(Path(__file__).with_name("outline.toml").read_text(encoding="utf-8"))
+_TABLES = tomllib.loads(Path(__file__).with_name("outline.toml").read_text(encoding="utf-8"))
 
 SECTIONS: dict[str, tuple[str, str]] = {
-    one["name"]: (one["title"], one.get("words", "")) for one in _TOLD["sections"]
+    section["name"]: (section["title"], section.get("words", "")) for section in _TABLES["sections"]
 }
-"""Titles and opening words of the page's sections, by what the report calls them; those without a
-claim or a figure are left out.
+"""Titles and opening texts of the page's sections, by name; a section without content is left
+out.
 """
 
-STORY: list[dict[str, str]] = _TOLD["story"]
-"""What was found, in five parts: each has the name of a figure, a title, and a text in which
-{claims[NAME][FIELD]} stands for a field of a claim in words and {quoted.NAME} for a constant.
+STORY: list[dict[str, str]] = _TABLES["story"]
+"""The story that opens the page: for each part the name of a figure, a title and a text.
+
+In the texts, {claims[NAME][FIELD]} stands for a field of a claim in words, and {quoted.NAME} for a
+constant.
 """
 
-OWN = ("Why", "Friction", "Real tops")
-"""The sections that are not the report's."""
+ADDED_SECTIONS = ("Why", "Friction", "Real tops")
+"""Sections of the page that the report does not have."""
 
-UNCHECKED: list[dict[str, str]] = _TOLD["unchecked"]
-"""Statements of the report without a verdict, in its order: their places, and the reasons."""
+UNCHECKED: list[dict[str, str]] = _TABLES["unchecked"]
+"""Statements of the report that are not judged, in its order: places and reasons."""
 
 
 def section_of(place: str) -> str:
-    """Return the section of the page that a section of the report is in: the one named most
-    closely.
+    """Return the section of the page for a section of the report: the one with the longest matching
+    name.
 
     Raises `LookupError` if there is none.
     """
-    found = [key for key in SECTIONS if place.startswith(key)]
-    if not found:
+    matching = [key for key in SECTIONS if place.startswith(key)]
+    if not matching:
         raise LookupError(f"the page has no section for {place!r}")
-    return max(found, key=len)
+    return max(matching, key=len)

@@ -1,6 +1,6 @@
-"""The page: what was found, every figure and every claim, in one file that opens without a network.
+"""Page of the report redone: findings, figures and claims in one file that opens without a network.
 
-It opens with the story, in five figures; all else is folded, a part each.
+The page opens with the story in five figures. Everything else is in sections that unfold.
 """
 
 import base64
@@ -18,22 +18,31 @@ from tippetop.integrators import DEFAULT
 from tippetop.report import quoted
 from tippetop.report.claim import RULE, Judgement, Value, Verdict, count_verdicts, in_words
 from tippetop.report.gallery import PLATES, Plate
-from tippetop.report.outline import OWN, REPORT_TITLE, SECTIONS, STORY, UNCHECKED, section_of
+from tippetop.report.outline import (
+    ADDED_SECTIONS,
+    REPORT_TITLE,
+    SECTIONS,
+    STORY,
+    UNCHECKED,
+    section_of,
+)
 from tippetop.report.selection import Selection
 from tippetop.report.typeset import formula, typeset
 
 _THUMBNAIL = (640, 420)
-"""Largest size of the pictures that the page opens with, pixels."""
+"""Largest size of the opening pictures, pixels."""
 
 _ROUNDED = 1e-12
-"""Values below this are shown as 0: they are what rounding leaves of zero. The least value that
-means anything, a difference of two computations, is about 1e-9.
+"""Absolute value below which a value is shown as 0.
+
+Zeros are computed with rounding errors below it, and the smallest value with a meaning, a
+difference of two computations, is about 1e-9.
 """
 
 _VERDICTS = [verdict.name.lower() for verdict in Verdict]
 
 Worded = dict[str, Any]
-"""A claim in words."""
+"""Texts and fields of a claim as the page shows them."""
 
 
 def render(
@@ -47,10 +56,18 @@ def render(
 ) -> str:
     """Return the page of some figures and claims as HTML.
 
-    The folder `figures` has SVG and PNG of these by name, which become part of the page. The
-    `player` is a run and what plays it, as `tippetop.report.playable` packs them; None for a page
-    without. `quick` has it say that the computations were coarse, `partial` what was asked for,
-    when it was not everything.
+    Parameters
+    ----------
+    plates, judgements
+        Figures and judged claims to be shown.
+    figures
+        Folder with an SVG and a PNG of each figure, by name; they become part of the page.
+    player
+        A run and its player, packed by `tippetop.report.playable`; None for a page without.
+    quick
+        Whether the computations were coarse; the page then says so.
+    partial
+        Name of the one figure or claim that was selected, or None.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("tippetop.report", "."),
@@ -62,14 +79,14 @@ def render(
     environment.filters |= {"typeset": typeset, "formula": formula}
     shown = {plate.id for plate in plates}
     claims = [worded(judgement, shown) for judgement in judgements]
-    wrong = [verdict.name.lower() for verdict in (Verdict.CORRECTED, Verdict.EXPLAINED)]
-    theirs = [claim for claim in claims if claim["is_of_report"]]
+    errors = [verdict.name.lower() for verdict in (Verdict.CORRECTED, Verdict.EXPLAINED)]
+    of_report = [claim for claim in claims if claim["is_of_report"]]
     counts = count_verdicts(one for one in judgements if one.claim.is_of_report)
-    others = count_verdicts(one for one in judgements if not one.claim.is_of_report)
+    counts_of_others = count_verdicts(one for one in judgements if not one.claim.is_of_report)
     shown_counts = count_verdicts(judgements)
     parts: dict[str, Any] = {
-        "errors": [claim for name in wrong for claim in theirs if claim["verdict"] == name],
-        "sound": [claim for claim in theirs if claim["verdict"] not in wrong],
+        "errors": [claim for name in errors for claim in of_report if claim["verdict"] == name],
+        "sound": [claim for claim in of_report if claim["verdict"] not in errors],
         "unknown": [] if partial else [plate for plate in plates if _is_new(plate)],
         "news": [claim for claim in claims if claim["news"]],
         "player": player,
@@ -84,8 +101,8 @@ def render(
         contents=_contents(parts),
         claims=claims,
         report_title=REPORT_TITLE,
-        statements=len(theirs),
-        of_others=in_words(others) if sum(others.values()) else "",
+        statements=len(of_report),
+        of_others=in_words(counts_of_others) if sum(counts_of_others.values()) else "",
         story=[] if partial else _story(claims, shown, figures),
         verdicts=[
             {
@@ -115,7 +132,7 @@ _CLOSING = {"experiments_done": "The experiments behind it", "unchecked": "What 
 
 
 def _contents(parts: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """What there is on the page, in its order: the names to link at, and the titles."""
+    """Return the table of contents: names of the page's parts for links, and their titles."""
     return [
         ("summary", "What was found"),
         *((name, title) for name, title in _OPENING.items() if parts[name]),
@@ -125,25 +142,26 @@ def _contents(parts: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _is_new(plate: Plate) -> bool:
-    """Return whether a figure shows what the report could not know."""
-    return plate.section in OWN or (bool(plate.finding) and not plate.id.startswith("fig"))
+    """Return whether a figure shows a result that the report does not have."""
+    return plate.section in ADDED_SECTIONS or (
+        bool(plate.finding) and not plate.id.startswith("fig")
+    )
 
 
 def _sections(
     plates: Sequence[Plate], claims: Sequence[Worded], figures: Path
 ) -> list[dict[str, Any]]:
-    """Return the report's sections and ours that there is something in, each with its figures and
-    claims.
+    """Return the sections of the page that have content, each with its figures and claims.
 
-    A claim stands beside its figure if that is in the same section, else after all figures.
+    A claim stands beside its figure if both are in the same section, otherwise after all figures.
     """
-    found = []
+    sections = []
     for key, (title, words) in SECTIONS.items():
         inside = [claim for claim in claims if claim["section"] == key]
         drawn = [plate for plate in plates if section_of(plate.section) == key]
         names = {plate.id for plate in drawn}
-        rest = [claim for claim in inside if claim["figure"] not in names]
-        if drawn or rest:
+        without_figure = [claim for claim in inside if claim["figure"] not in names]
+        if drawn or without_figure:
             shown = [_shown(plate, figures, claims, key) for plate in drawn]
             counts = Counter(claim["verdict"] for claim in inside)
             named = {
@@ -152,24 +170,22 @@ def _sections(
                 "words": words,
                 "verdicts": [(name, counts[name]) for name in _VERDICTS if counts[name]],
             }
-            found.append({**named, "figures": shown, "claims": rest})
-    return found
+            sections.append({**named, "figures": shown, "claims": without_figure})
+    return sections
 
 
 def _shown(plate: Plate, figures: Path, claims: Sequence[Worded], section: str) -> dict[str, Any]:
-    """Return a figure for the page, with the claims beside it and those elsewhere that it shows,
-    too.
-    """
+    """Return the fields of a figure on the page, with its claims in this and in other sections."""
     svg = (figures / f"{plate.id}.svg").read_bytes()
-    own = [claim for claim in claims if claim["figure"] == plate.id]
+    of_figure = [claim for claim in claims if claim["figure"] == plate.id]
     return {
         "id": plate.id,
         "title": plate.title,
         "caption": plate.caption,
         "image": _embedded(svg, "svg+xml"),
         "needs": plate.needs,
-        "claims": [claim for claim in own if claim["section"] == section],
-        "elsewhere": [claim for claim in own if claim["section"] != section],
+        "claims": [claim for claim in of_figure if claim["section"] == section],
+        "elsewhere": [claim for claim in of_figure if claim["section"] != section],
     }
 
 
@@ -190,9 +206,9 @@ def _story(claims: Sequence[Worded], shown: Set[str], figures: Path) -> list[dic
 
 
 def _thumbnail(name: str, figures: Path) -> str:
-    """Return the picture of a figure, small, as the address of an image."""
-    with Image.open(figures / f"{name}.png") as whole:
-        small = whole.convert("RGB")
+    """Return a small picture of a figure as a data URL."""
+    with Image.open(figures / f"{name}.png") as full_size:
+        small = full_size.convert("RGB")
     small.thumbnail(_THUMBNAIL, Image.Resampling.LANCZOS)
     file = io.BytesIO()
     small.save(file, "webp", quality=82)
@@ -200,8 +216,8 @@ def _thumbnail(name: str, figures: Path) -> str:
 
 
 def _experiments(chosen: Selection) -> list[dict[str, Any]]:
-    """Return the experiments, as the page comes to them, with the figures drawn from each and the
-    claims decided.
+    """Return the experiments in the order of the page, each with the figures and claims that need
+    it.
     """
     return [
         {
@@ -215,7 +231,10 @@ def _experiments(chosen: Selection) -> list[dict[str, Any]]:
 
 
 def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
-    """Return a claim in words, for people; `shown` are the figures that it may refer to."""
+    """Return the texts and fields of a claim as the page shows them.
+
+    `shown` are the figures on the page, to which the claim can refer.
+    """
     claim, finding, tolerance = judgement.claim, judgement.finding, judgement.tolerance
     unit = "" if claim.units == "1" else f" {claim.units}"
     reported = claim.number.replace("pi", "π") or _number(judgement.reported)
@@ -254,7 +273,7 @@ def worded(judgement: Judgement, shown: Set[str] = frozenset()) -> Worded:
 
 
 def _without_measure(text: str) -> str:
-    """What is claimed, without the last parenthesis, which says what the value is."""
+    """Return the text of a claim without its last parenthesis, which states how it is measured."""
     if not text.endswith(")."):
         return text
     depth, start = 0, len(text) - 1
@@ -267,7 +286,7 @@ def _without_measure(text: str) -> str:
 
 
 def _number(value: Value) -> str:
-    """Return a value for people."""
+    """Return a value as text for people."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if abs(value) < _ROUNDED:
@@ -276,4 +295,5 @@ def _number(value: Value) -> str:
 
 
 def _embedded(content: bytes, kind: str) -> str:
+    """Return an image as a data URL."""
     return f"data:image/{kind};base64," + base64.b64encode(content).decode("ascii")

@@ -1,4 +1,4 @@
-"""A run to be played on the page itself: the launch that the report calls abnormal."""
+"""Run that plays on the page itself: the launch that the report calls abnormal."""
 
 from tippetop.export.bundle import LOADER, packed, player_packed
 from tippetop.export.track import pack_run
@@ -10,11 +10,11 @@ from tippetop.run import simulate
 from tippetop.support.errors import Unavailable
 
 SPIN, DURATION = 175.0, 9.0
-"""The launch, rad/s, and how long it is followed, s: until it spins inverted."""
+"""Spin of the launch, rad/s, and length of the run, s: until the top spins inverted."""
 
 
 def playable(quick: bool) -> dict[str, str] | None:
-    """Return the run and its player for the page; None where the player is not built."""
+    """Return the packed run and its player for the page; None if the player is not built."""
     try:
         player = player_packed()
     except Unavailable:

@@ -1,6 +1,4 @@
-"""Redo the report: compute what its figures and claims need, judge, draw, and write a folder with a
-page.
-"""
+"""Procedure that redoes the report: compute, judge, draw, and write a folder with a page."""
 
 import json
 import os
@@ -32,32 +30,34 @@ PAGE, CLAIMS_FILE, FIGURES, DATA = "index.html", "claims.json", "figures", "data
 _PLAYER = "run to play"
 
 Progress = Callable[[float, float, str], None]
-"""Told the work done, all the work (both in about seconds), and what was done last."""
+"""Callback with the work done, all the work (both in estimated seconds), and the last task's
+name.
+"""
 
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What came of redoing the report."""
+    """Results of redoing the report."""
 
     folder: Path
-    """Where it was written."""
+    """Folder with the results."""
     judgements: tuple[Judgement, ...]
-    """The claims examined, in the order of the report."""
+    """Judged claims, in the order of the report."""
     figures: tuple[str, ...]
     """Names of the figures drawn."""
     quick: bool
-    """Whether coarser computations were asked for."""
+    """Whether the computations were coarse."""
     seconds: float
-    """How long it took."""
+    """Duration of the computation, s."""
 
     @property
     def counts(self) -> dict[str, int]:
-        """The number of the report's claims of each verdict."""
+        """Number of the report's claims of each verdict."""
         return count_verdicts(one for one in self.judgements if one.claim.is_of_report)
 
     @property
     def counts_of_others(self) -> dict[str, int]:
-        """The number of claims of each verdict that others make."""
+        """Number of claims of each verdict that others make."""
         return count_verdicts(one for one in self.judgements if not one.claim.is_of_report)
 
 
@@ -70,14 +70,14 @@ def reproduce(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> Reproduction:
-    """Redo the report's figures and examine its claims, all or `only` one; see `select`.
+    """Redo the report's figures and judge its claims, all or `only` one; see `select`.
 
-    The folder gets index.html, claims.json, figures/ and data/, once all is computed. A `quick` run
-    has coarser sweeps and fewer samples, and its results say so. Without a number of `workers`
-    there are as many processes as processors, 2 at most.
+    The folder gets index.html, claims.json, figures/ and data/ once everything is computed. A
+    `quick` run has coarser sweeps and fewer samples, and its results say so. Without a number of
+    `workers` there are as many processes as processors, at most 2.
 
-    Raises `InvalidInput` if there is no such figure or claim; `FileTrouble` if there are results
-    already, or the folder cannot be written.
+    Raises `InvalidInput` if there is no such figure or claim; `FileTrouble` if the folder has
+    results already, or cannot be written.
     """
     began = time.monotonic()
     folder = Path(folder)
@@ -114,7 +114,7 @@ def reproduce(
 
 
 def _files(chosen: Selection) -> list[str]:
-    """Return names of the files to be written, the page last."""
+    """Return the names of the files to be written, the page last."""
     names = [f"{FIGURES}/{plate.id}.{kind}" for plate in chosen.plates for kind in ("png", "svg")]
     names += [f"{DATA}/{plate.id}.nc" for plate in chosen.plates if plate.needs]
     names += [f"{DATA}/{name}.nc" for name in _unseen(chosen)]
@@ -122,12 +122,15 @@ def _files(chosen: Selection) -> list[str]:
 
 
 def _unseen(chosen: Selection) -> list[str]:
-    """Return names of the experiments that no figure shows: their data are files of their own."""
+    """Return the names of the experiments that no figure shows; their data get files of their
+    own.
+    """
     shown = {name for plate in chosen.plates for name in plate.needs}
     return [experiment.id for experiment in chosen.experiments if experiment.id not in shown]
 
 
 def _tasks(chosen: Selection, quick: bool, stage: Path) -> list[Task]:
+    """Return the computations and the drawings, with their estimated durations."""
     share = 0.3 if quick else 1.0
     computing = [
         Task(one.id, one.cost * share, _compute, (one.id, quick)) for one in chosen.experiments
@@ -140,14 +143,16 @@ def _tasks(chosen: Selection, quick: bool, stage: Path) -> list[Task]:
 
 
 def _compute(name: str, quick: bool) -> xr.Dataset:
-    """Run an experiment (in a process of its own), without warnings of launches that it means."""
+    """Return the data of an experiment, without warnings of launches that are implausible on
+    purpose.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Implausible)
         return EXPERIMENTS[name].run(quick)
 
 
 def _draw(name: str, stage: Path, quick: bool, *data: xr.Dataset) -> None:
-    """Draw a figure, and write the data behind it (in a process of its own)."""
+    """Draw a figure and write it with the data behind it; this runs in another process."""
     plate = PLATES[name]
     dataset = plate.dataset(dict(zip(plate.needs, data, strict=True)))
     if plate.needs:
@@ -155,12 +160,12 @@ def _draw(name: str, stage: Path, quick: bool, *data: xr.Dataset) -> None:
     figure = plate.draw(dataset)
     for kind in ("png", "svg"):
         save(figure, stage / FIGURES / f"{name}.{kind}", **({"dpi": 100} if quick else {}))
-        figure.set_layout_engine("none")  # all is in its place by now
+        figure.set_layout_engine("none")  # the first file has placed everything
 
 
 @contextmanager
 def _staging(folder: Path) -> Iterator[Path]:
-    """Yield a folder beside the one to be written, gone afterwards whatever happens."""
+    """Yield a temporary folder beside the one to be written; it is removed in any case."""
     with in_words(folder, "written"):
         folder.parent.mkdir(parents=True, exist_ok=True)
         if folder.exists() and not folder.is_dir():
@@ -175,7 +180,7 @@ def _staging(folder: Path) -> Iterator[Path]:
 
 
 def _move(stage: Path, folder: Path, names: list[str], overwrite: bool) -> None:
-    """Put the finished files in their places."""
+    """Move the finished files to their places."""
     with in_words(folder, "written"):
         for name in names:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)

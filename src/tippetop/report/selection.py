@@ -1,4 +1,4 @@
-"""What to redo: everything, or one figure or claim with only the experiments it needs."""
+"""Selection of what to redo: everything, or one figure or claim with the experiments it needs."""
 
 import re
 from dataclasses import dataclass
@@ -15,14 +15,14 @@ from tippetop.support.errors import InvalidInput
 
 @dataclass(frozen=True)
 class Selection:
-    """Figures, claims, and the experiments they need."""
+    """Figures and claims."""
 
     plates: tuple[Plate, ...]
     claims: tuple[Claim, ...]
 
     @property
     def experiments(self) -> tuple[Experiment, ...]:
-        """The experiments needed, in the order of the page."""
+        """Experiments that the figures and claims need, in the order of the page."""
         needs = chain(
             *(plate.needs for plate in self.plates), *(claim.needs for claim in self.claims)
         )
@@ -30,11 +30,11 @@ class Selection:
 
 
 def select(only: str | None = None) -> Selection:
-    """Choose what to redo: everything, or `only` the figure (fig06; 6 will do) or claim of this
-    name.
+    """Return everything, or `only` the figure (fig06; 6 will do) or claim of this name.
 
-    With a figure come the claims that can be decided from its data; with a claim, the figure that
-    shows it if it needs nothing more. Raises `InvalidInput` if there is no such figure or claim.
+    A figure is selected with the claims that can be decided from its data; a claim with the figure
+    that shows it, if the figure needs no further experiment. Raises `InvalidInput` if there is no
+    such figure or claim.
     """
     if only is None:
         return Selection(tuple(PLATES.values()), tuple(CLAIMS.values()))
@@ -53,15 +53,15 @@ def select(only: str | None = None) -> Selection:
     raise InvalidInput("--only", only, _accepted(name))
 
 
-def _accepted(given: str) -> str:
-    """Return the names that are likely meant, or else what names there are."""
-    close = get_close_matches(given, [*PLATES, *CLAIMS], n=4, cutoff=0.5)
+def _accepted(name: str) -> str:
+    """Return the names closest to a wrong one, or all names if none is close."""
+    close = get_close_matches(name, [*PLATES, *CLAIMS], n=4, cutoff=0.5)
     if close:
         return "the name of a figure or claim, such as " + ", ".join(close)
     return "a figure (" + ", ".join(PLATES) + ") or a claim (" + ", ".join(CLAIMS) + ")"
 
 
-def _figure_name(given: str) -> str:
-    """Return a figure's name from the ways in which people write it: 6, fig6, Fig. 6."""
-    match = re.fullmatch(r"(?:fig(?:ure)?\.?\s*)?0*(\d{1,2})", given.strip(), flags=re.IGNORECASE)
-    return f"fig{int(match[1]):02d}" if match else given.strip()
+def _figure_name(name: str) -> str:
+    """Return a figure's name from the forms in which people write it: 6, fig6, Fig. 6."""
+    match = re.fullmatch(r"(?:fig(?:ure)?\.?\s*)?0*(\d{1,2})", name.strip(), flags=re.IGNORECASE)
+    return f"fig{int(match[1]):02d}" if match else name.strip()

@@ -1,6 +1,4 @@
-"""Work for several processes: experiments and drawings, handed out as soon as what they need is
-there.
-"""
+"""Tasks that depend on each other, carried out in several processes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -11,28 +9,28 @@ from tippetop.support.processes import Job, shared
 
 @dataclass
 class Task:
-    """A call to be made once others have returned."""
+    """A call that is made after some other tasks."""
 
     name: str
-    """What it is called; unique."""
+    """Unique name."""
     cost: float
-    """About how long it takes, s."""
+    """Approximate duration, s."""
     call: Callable[..., Any]
-    """Function of this module's kind: importable, so that another process can have it."""
+    """Function to be called; it is importable, so that another process can call it."""
     arguments: tuple[Any, ...]
-    """What it is called with."""
+    """First arguments of the call."""
     after: tuple[str, ...] = ()
-    """Names of tasks that come first; it is called with their results, too."""
+    """Names of the tasks whose results are the last arguments."""
 
 
 def carry_out(
     tasks: Sequence[Task], workers: int, progress: Callable[[float, float, str], None] | None = None
 ) -> dict[str, Any]:
-    """Do the tasks, the longest first, in so many processes, and return their results by name.
+    """Return the results of all tasks by name.
 
-    With one worker all is done in this process. `progress` is told the cost done, the cost of all,
-    and the name of the task that was done last. Raises `Unavailable` if the process of a task was
-    killed again and again.
+    Tasks run in `workers` processes, the longest first; with one worker all run in this process.
+    `progress` is called with the cost done, the cost of all tasks, and the name of the task that
+    was done last. Raises `Unavailable` if the process of a task was killed again and again.
     """
     total, done = sum(task.cost for task in tasks), 0.0
     costs = {task.name: task.cost for task in tasks}
@@ -40,7 +38,7 @@ def carry_out(
     results: dict[str, Any] = {}
 
     def longest() -> Job | None:
-        """Return the longest task that has all it needs."""
+        """Return the longest task that does not wait for results, or None."""
         for task in waiting:
             if all(name in results for name in task.after):
                 waiting.remove(task)

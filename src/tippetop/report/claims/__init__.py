@@ -1,1 +1,1 @@
-"""Everything the report claims that can be put to numbers, a file for each part of it."""
+"""Functions that examine the claims, a file for each subject; `registry` collects them."""

@@ -1,6 +1,4 @@
-"""Claims about what the report calls abnormal: launches faster than omega_a, and what becomes of
-them.
-"""
+"""Claims about launches that the report calls abnormal: those faster than omega_a."""
 
 import numpy as np
 import xarray as xr
@@ -18,19 +16,21 @@ def _(run: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     return Finding(
         not float(run["largest_energy_listing"]) > launch,
         max(rises) <= ROUNDED * launch,
-        "On a table that only pushes it never rises, neither here nor in any launch of the figure"
+        "On a table that only pushes the energy never rises, neither here nor in any launch of the"
+        " figure"
         f" flights: the largest change from sample to sample is {max(rises):.0e} J. At 175 rad/s"
         f" the top loses {1e3 * (launch - float(run['energy_flight'][-1])):.1f} mJ of"
         f" {1e3 * launch:.1f} mJ, {1e3 * impacts:.2f} mJ of them in impacts. By the report's method"
-        " and (4.1) it exceeds that of the launch: that is how the report knows that something is"
+        " and (4.1) the energy exceeds that of the launch: this shows the report that something is"
         " wrong.",
     )
 
 
 @examines("sec4-huge-spin", "onset-tilt", "onset-mu", "run-175", "final-tilt")
 def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dataset) -> Finding:
-    own = over_tilt.sel(tilt=TILT)
-    huge = own["first_lift_off"].sel(spin=own["spin"] > float(ABNORMAL_SPIN))
+    at_report_tilt = over_tilt.sel(tilt=TILT)
+    spins = at_report_tilt["spin"]
+    huge = at_report_tilt["first_lift_off"].sel(spin=spins > float(ABNORMAL_SPIN))
     slippery, steep = over_mu["onset"].isel(window=-1), over_tilt["onset"].isel(window=0)
     at_mu = slippery.isel(mu=int(np.nanargmin(slippery.values)))
     at_tilt = steep.isel(tilt=int(np.nanargmin(steep.values)))
@@ -44,7 +44,7 @@ def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dat
         bool(np.isfinite(run["zero_of_force_listing"])),
         bool(np.isfinite(huge).all()),
         f"At the report's tilt and friction every launch of the scan above {ABNORMAL_SPIN} rad/s,"
-        f" up to {own['spin'][-1]:g} rad/s, leaves the table within 20 s; the onset is"
+        f" up to {spins[-1]:g} rad/s, leaves the table within 20 s; the onset is"
         f" {sweep['lift_off_onset']:.2f} rad/s. For other launches it is lower: {at_tilt:.0f} rad/s"
         f" at a tilt of {at_tilt['tilt']:.2f} rad, {at_mu:.0f} rad/s at mu = {at_mu['mu']:.2g} s/m"
         f" in longer runs.{never}",
@@ -62,7 +62,7 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
     return Finding(
         cured,
         turned and float(sweep["lift_off_onset"]) <= lost,
-        f"The abnormal point is {'no' if turned else 'still a'} property of the top. On a table"
+        f"The abnormal point is {'not' if turned else 'still'} a property of the top. On a table"
         f" that pulls, launches from {lost:g} rad/s on end anywhere; on one that only pushes, those"
         f" from {spins[0]:g} to {spins[-1]:g} rad/s end within {np.abs(true - np.pi).max():.1g} rad"
         f" of pi after {sweep.attrs['window_s']:g} s, and those up to {flights['spin'][-1]:g} rad/s"
@@ -71,9 +71,9 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
         " set a negative normal force to zero; without and with them its method ends, by spin, at"
         f" {ends}.",
         news=(
-            "Three lines of its own listing, commented out, would have cured the abnormal point:"
-            " they set a negative normal force to zero, which is close to letting the top hop, for"
-            " the hops are low."
+            "Three lines of the report's listing, commented out, would have removed the abnormal"
+            " point: they set a negative normal force to zero, which is close to letting the top"
+            " hop, because the hops are low."
             if cured
             else ""
         ),
@@ -106,7 +106,7 @@ def _(listing: xr.Dataset, sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.
 
 
 def _inverting(sweep: xr.Dataset, suffix: str, limit: float) -> np.ndarray:
-    """Return final tilts of the launches between omega_c2 and a limit, rad."""
+    """Return the final tilts of the launches between omega_c2 and a limit, rad."""
     spins = sweep[f"spin{suffix}"].values
     return np.asarray(
         sweep[f"final_theta{suffix}"].values[(spins > float(CRITICAL_SPINS[1])) & (spins < limit)]
@@ -114,5 +114,5 @@ def _inverting(sweep: xr.Dataset, suffix: str, limit: float) -> np.ndarray:
 
 
 def _turned(tilts: xr.DataArray | np.ndarray) -> bool:
-    """Return whether all of the tilts count as turned over."""
+    """Return whether all tilts count as turned over."""
     return bool((np.abs(tilts - np.pi) < TURNED).all())

@@ -1,4 +1,4 @@
-"""What was published of tippe tops on dry friction, against exact runs."""
+"""Published statements on tippe tops on dry friction, against exact runs."""
 
 import numpy as np
 import xarray as xr
@@ -8,34 +8,35 @@ from tippetop.report.experiments.dry import COHEN_STEP, COHEN_WINDOW
 from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION, SPIN
 from tippetop.report.tolerance import ROUNDING
 
-_SAME = 1e-6
-"""Difference of tilts, rad, and of energies, relative, far above rounding and far below any
-motion.
+_EQUAL = 1e-6
+"""Difference of tilts (rad) and relative difference of energies below which runs are equal: far
+above rounding, far below any motion.
 """
 
 _OVER = np.pi / 2
+"""Tilt above which a top has turned over, rad."""
 
 _DRY = (0.1, 1.0)
-"""Coefficients of Coulomb friction that dry solids have, from polished to rough ones; the claim
-dry-normal-mu tells them.
+"""Range of Coulomb friction coefficients of dry solids, polished to rough, as in the claim
+dry-normal-mu.
 """
 
 
 @examines("dry-tilting-rate")
 def _(data: xr.Dataset) -> Finding:
-    held = data["theta_held"]
-    same = float(abs(held - held.isel(held=0)).max()) < _SAME
-    rolls = same and int(data["slips_held"].sum()) == 0 and float(data["lost_held"].max()) < _SAME
+    tilt = data["theta_held"]
+    same = float(abs(tilt - tilt.isel(held=0)).max()) < _EQUAL
+    rolls = same and int(data["slips_held"].sum()) == 0 and float(data["lost_held"].max()) < _EQUAL
     needed, shown = float(data["needed_main"]), data["held"].values
     return Finding.unlisted(
         not rolls,
         f"At {data.attrs['spin_rad_per_s']:g} rad/s and {data.attrs['tilt_rad']:g} rad the report's"
-        f" top needs mu = {needed:.5f} to roll. On mu = {shown.min():.5f} to {shown.max():g} it"
-        f" does the same for {float(data['time'][-1]):g} s: it never slips, its tilt is at most"
-        f" {float(held.max()):.4f} rad and its energy is kept to"
-        f" {float(data['lost_held'].max()):.0e}. On 0.1 % less than it needs it slips after"
-        f" {1e3 * float(data['held_below']):.1f} ms. The law has its place while a top slips, for"
-        " there friction goes as mu; judged is one that is set down without slip, as the report's"
+        f" top needs mu = {needed:.5f} to roll. On mu = {shown.min():.5f} to {shown.max():g} its"
+        f" motion is the same for {float(data['time'][-1]):g} s: it never slips, its tilt is at"
+        f" most {float(tilt.max()):.4f} rad and its energy is constant to"
+        f" {float(data['lost_held'].max()):.0e}. With 0.1 % less friction it slips after"
+        f" {1e3 * float(data['held_below']):.1f} ms. The law can hold while a top slips, for then"
+        " friction is proportional to mu; the top judged is set down without slip, as the report's"
         " are.",
     )
 
@@ -66,7 +67,7 @@ def _(data: xr.Dataset) -> Finding:
         bool(not np.isfinite(data["sticks"]) or data["slips_again"] > 0),
         f"Steps of {1e3 * COHEN_STEP:g} ms jump over the end of slip: the least slip speed at any"
         f" of them is {1e3 * least:.1f} mm/s. Exactly it is zero from {float(data['sticks']):.6f} s"
-        f" on, where the energy is kept to {float(data['energy_kept']):.0e}.",
+        f" on, and the energy is then constant to {float(data['energy_kept']):.0e}.",
     )
 
 
@@ -75,13 +76,13 @@ def _(data: xr.Dataset) -> Finding:
     eps, times = data["eps"].values, data["turning_time"].values
     return Finding.unlisted(
         bool(np.isfinite(data["exact_turns"])),
-        f"Smoothed below eps = {eps[0]:g} m/s, friction of mu = {data.attrs['mu']:g} turns the top"
-        f" over in {times[0]:.2f} s, below {eps[-1]:g} m/s in {times[-1]:.2f} s; there the time"
-        f" goes as eps to the power {float(data['last_exponent']):.2f}. On the law itself the tilt"
-        f" is at most {float(data['highest']):.4f} rad for {float(data['followed']):g} s: to let"
-        " eps go to zero and to wait are not to be exchanged.",
+        f"Regularised below eps = {eps[0]:g} m/s, friction of mu = {data.attrs['mu']:g} turns the"
+        f" top over in {times[0]:.2f} s, below {eps[-1]:g} m/s in {times[-1]:.2f} s; at the least"
+        f" eps the time goes as eps to the power {float(data['last_exponent']):.2f}. On Coulomb's"
+        f" law itself the tilt is at most {float(data['highest']):.4f} rad for"
+        f" {float(data['followed']):g} s: small eps and long times do not commute.",
         bool(np.isfinite(times).all()),
-        "the friction is smoothed",
+        "the friction is regularised",
     )
 
 
@@ -114,10 +115,11 @@ def _(data: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(worst[np.abs(worst - 1.0).argmax()]),
         "The coefficient is (3 pi / 8) mu / (R omega) with Hertz's pressure and mu / (rho omega)"
-        " with an ellipsoidal limit surface. How well it stands for the whole way, by the ratio of"
-        f" the times to the horizontal, over {float(data['coefficient'][0]):g} to"
-        f" {float(data['coefficient'][-1]):g} s/m: {spans}. On little friction the slip outgrows"
-        " the limit; on much, drilling takes spin.",
+        " with an ellipsoidal limit surface. The ratio of the times to the horizontal, for"
+        f" coefficients from {float(data['coefficient'][0]):g} to"
+        f" {float(data['coefficient'][-1]):g} s/m, shows how far it holds for large tilts: {spans}."
+        " With little friction the slip becomes too large for the limit; with much, drilling takes"
+        " spin.",
     )
 
 
@@ -128,13 +130,13 @@ def _(data: xr.Dataset, run: xr.Dataset) -> Finding:
         _is_dry(theirs),
         _is_dry(ours),
         f"Slipping at {float(run['largest_slip']):.2f} m/s, a top with these coefficients has as"
-        f" much friction as on dry friction of {ours[0]:.2f} to {ours[1]:.2f}. Normal for fast"
-        f" slip, they are low for slow slip. {_surfaces(data)}",
+        f" much friction as on dry friction of {ours[0]:.2f} to {ours[1]:.2f}. This is normal for"
+        f" fast slip, and little for slow slip. {_surfaces(data)}",
     )
 
 
 def _is_dry(ratios: list[float]) -> bool:
-    """Return whether ratios of friction and normal force are such as dry solids have."""
+    """Return whether ratios of friction and normal force are within the range of dry solids."""
     return _DRY[0] <= min(ratios) and max(ratios) <= _DRY[1]
 
 
@@ -143,13 +145,16 @@ def _(data: xr.Dataset) -> Finding:
     slowest = float((data["hertz_coefficient"].max() / ROUGH_FRICTION) * SPIN)
     return Finding.unlisted(
         bool((data["hertz_coefficient"] < ROUGH_FRICTION).all()),
-        f"{_surfaces(data)} None reaches {ROUGH_FRICTION:g} s/m there, but the coefficient goes as"
-        f" one over the spin: below {slowest:.0f} rad/s the hardest of these does.",
+        f"{_surfaces(data)} None reaches {ROUGH_FRICTION:g} s/m at this spin, but the coefficient"
+        f" is inversely proportional to the spin: below {slowest:.0f} rad/s the hardest of them"
+        " does.",
     )
 
 
 def _surfaces(data: xr.Dataset) -> str:
-    """Which viscous friction patches of common materials stand for."""
+    """Return a sentence on the viscous friction that is equivalent to patches of common
+    materials.
+    """
     names, radii, coefficients = (
         data[name].values for name in ("material", "hertz_radius", "hertz_coefficient")
     )

@@ -25,6 +25,7 @@ def _(check: xr.Dataset) -> Finding:
 
 
 def _largest_miss(check: xr.Dataset, words: str) -> Finding:
+    """Return the largest difference of some equations as a finding."""
     miss = check["miss"]
     each = listed("{} {}", miss["equation"].values, map(rounded, miss.values))
     return Finding.unlisted(float(miss.max()), f"Differences {words}: {each}.")
@@ -38,11 +39,11 @@ def _largest_miss(check: xr.Dataset, words: str) -> Finding:
 def _(check: xr.Dataset) -> Finding:
     return Finding(
         *both(check, "torque"),
-        f"Turned round, a x F has {check['torque_turned']:.4e} N m: wrong still, because F counts"
-        " the weight, which acts at the centre of mass and has no torque about it. Without the"
-        f" weight it is {check['torque_corrected']:.4e} N m, as (2.8) and the run have it. In the"
-        " printed order the contact force would do work at"
-        f" {1e3 * float(check['power_printed']):+.2f} mW where friction takes"
+        f"In the other order, a x F is {check['torque_turned']:.4e} N m: still wrong, because F"
+        " includes the weight, which acts at the centre of mass and has no torque about it."
+        f" Without the weight it is {check['torque_corrected']:.4e} N m, as in (2.8) and in the"
+        " run. With the printed order the power of the contact force would be"
+        f" {1e3 * float(check['power_printed']):+.2f} mW; the power of friction is"
         f" {1e3 * float(check['power']):+.2f} mW.",
         reported=float(check["torque_printed"]),
     )
@@ -56,10 +57,10 @@ def _(check: xr.Dataset) -> Finding:
 def _(check: xr.Dataset) -> Finding:
     return Finding(
         *both(check, "precession"),
-        "An I1 stands too much in the numerator. Read as I1 over the bracket it gives"
-        f" {check['precession_printed']:.4g}, read as a factor"
-        f" {check['precession_printed_product']:.4g} (in wrong units either way); the listing has"
-        f" the right equation. {TRANSCRIBED}",
+        "The I1 in the numerator is one too many. Read as I1 over the bracket, the formula gives"
+        f" {check['precession_printed']:.4g}; read as a factor,"
+        f" {check['precession_printed_product']:.4g} (both in wrong units). The listing has the"
+        f" right equation. {TRANSCRIBED}",
         reported=float(check["precession_printed"]),
     )
 

@@ -8,6 +8,7 @@ from tippetop.problem.presets import REPORT
 from tippetop.problem.problem import Problem
 from tippetop.report.claim import Finding, examines
 from tippetop.report.quoted import ENERGY, ENERGY_TIME, STOP
+from tippetop.report.readings import turning_points
 from tippetop.report.tolerance import PLOTTED, rounded
 
 
@@ -27,33 +28,37 @@ def _(run: xr.Dataset) -> Finding:
 def _(run: xr.Dataset) -> Finding:
     theirs, ours = _gains(run, "_listing"), _gains(run, "")
     weight = _weight(run)
-    kept = run["energy_flight"].sel(time=slice(float(ENERGY_TIME), None)).values
-    gained = float(kept.max() - kept[0])
+    later = run["energy_flight"].sel(time=slice(float(ENERGY_TIME), None)).values
+    gained = float(later.max() - later[0])
     return Finding(
         theirs["the launch"],
         gained,
-        "The report does not say from where on. By its method and (4.1) the energy gains "
+        "The report does not state from which time the gain counts. By its method and (4.1) the"
+        " energy gains "
         + _listed(theirs, weight)
         + "; the full energy of the converged motion, on a table that pulls as well, gains "
         + _listed(ours, weight)
         + f". On a table that only pushes it gains {rounded(gained)} J after {_NAMED}, and"
         " falls by "
-        f"{1e3 * float(kept[0] - kept[-1]):.1f} mJ instead.",
+        f"{1e3 * float(later[0] - later[-1]):.1f} mJ instead.",
         theirs[_NAMED],
         f"the gain is counted from {_NAMED}, the time that the report names",
         right=(
-            f"{'nothing' if gained <= ROUNDED * kept[0] else f'{gained:.4f} J'}; on a table that"
+            f"{'nothing' if gained <= ROUNDED * later[0] else f'{gained:.4f} J'}; on a table that"
             f" pulls, as in the report, {ours[_NAMED]:.4f} J"
         ),
     )
 
 
 _NAMED = f"{ENERGY_TIME} s"
+"""Time at which the report states the energy."""
 
 
 def _gains(run: xr.Dataset, suffix: str) -> dict[str, float]:
-    """Return the rise to the largest energy from the launch, from the named time, and from the
-    lowest before, J.
+    """Return the gains of energy up to its largest value, J.
+
+    They are counted from the launch, from the time that the report names, and from the least energy
+    before the largest.
     """
     energy, times = run[f"energy{suffix}"].values, run[f"time{suffix}"].values
     top = int(np.argmax(energy))
@@ -72,7 +77,7 @@ def _listed(gains: dict[str, float], weight: float) -> str:
 
 
 def _weight(run: xr.Dataset) -> float:
-    """Return the energy of a fall by one radius, J."""
+    """Return the work of the weight in a fall by one radius, J."""
     problem = Problem.from_json(run.attrs["problem"])
     return float(problem.body.mass * problem.gravity * float(problem.body.surface.size))
 
@@ -82,35 +87,35 @@ def _(run: xr.Dataset) -> Finding:
     fall = float(ENERGY) / _weight(run)
     return Finding.unlisted(
         fall,
-        "So much for the arithmetic. What it is there to show, that the energy could grow by a"
-        " fall, is judged apart (fig10-by-falling).",
+        "The arithmetic is right. What it is meant to show, that a fall could increase the energy,"
+        " is another claim (fig10-by-falling).",
     )
 
 
 @examines("fig10-by-falling", "run-175")
 def _(run: xr.Dataset) -> Finding:
-    change, height = _kept_in_flight(run)
+    change, height = _change_in_flight(run)
     work = _weight(run) / float(REPORT.surface.size) * height
     none = change < 1e-6 * work  # far above rounding, far below any part of it
     return Finding.unlisted(
         not none,
         "The report argues that the top cannot gain the energy, because it would have to fall so"
-        " far. But (4.1) counts the height already, as m g R (1 - alpha cos theta): what falls"
-        " turns one part of its energy into another. In its flights the top falls by up to"
+        " far. But (4.1) includes the potential energy, m g R (1 - alpha cos theta): a fall turns"
+        " it into kinetic energy. In its flights the top falls by up to"
         f" {1e3 * height:.2f} mm, by which its weight does {1e6 * work:.0f} µJ of work, and its"
-        f" energy changes by {rounded(change)} J. What the report concludes, that a growing energy"
-        " is not physical, is right for a simpler reason: neither the weight nor a table that only"
-        " pushes nor friction adds to it.",
+        f" energy changes by {rounded(change)} J. The report's conclusion, that a growing energy is"
+        " not physical, is right for a simpler reason: neither the weight nor a table that only"
+        " pushes nor friction increases it.",
         right=(
             "a fall of any height changes the energy by"
-            f" {'nothing' if none else f'{change:.1e} J'}: (4.1) counts the height already"
+            f" {'nothing' if none else f'{change:.1e} J'}: (4.1) includes the potential energy"
         ),
     )
 
 
-def _kept_in_flight(run: xr.Dataset) -> tuple[float, float]:
-    """Return the largest change of the energy within a flight, J, and the greatest height of one,
-    m.
+def _change_in_flight(run: xr.Dataset) -> tuple[float, float]:
+    """Return the largest change of the energy within a flight, J, and the greatest height of a
+    flight, m.
     """
     spans = zip(run["flight_start"].values, run["flight_end"].values, strict=True)
     inside = [run["energy_flight"].sel(time=slice(start, end)).values for start, end in spans]
@@ -135,12 +140,14 @@ def _(run: xr.Dataset) -> Finding:
         " friction -mu g_n v then pushes along the slip instead of against it. On a table that"
         f" only pushes it falls to {run['energy_flight'][-1]:.4f} J. Formula (4.1) swings with"
         " every nutation, before lift-off too, because it leaves out slip. Gravity is no"
-        " exception: its work is in the energy already (fig10-by-falling).",
+        " exception: the energy includes its potential (fig10-by-falling).",
     )
 
 
 ROUNDED = 1e-12
-"""Rises of the energy, in parts of that at launch, that are rounding: the tolerance of the runs."""
+"""Largest rise of the energy, relative to that at launch, that is rounding: the tolerance of
+runs.
+"""
 
 
 @examines("fig12-stop-time", "run-175")
@@ -158,7 +165,7 @@ def _(run: xr.Dataset) -> Finding:
         " stop, and there the top leaves the table. By the report's method it does so at"
         f" {theirs:.3f} s, where a plot does not show it yet: the pull passes 1 % of the largest"
         f" force only at {visible:.3f} s. Nor is there a need to stop: after {run['flights']:.0f}"
-        f" flights the top slides on from {run['last_touchdown']:.2f} s.",
+        f" flights the top slides again, from {run['last_touchdown']:.2f} s on.",
     )
 
 
@@ -169,17 +176,17 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         bool(theirs.min() < visible < theirs.max()),
         bool(ours.min() < visible < ours.max()),
-        "Both words are qualitative; a motion is taken for smooth while a plot does not show its"
-        f" swings. In the first second a swing of the tilt takes it {ours[0]:.3f} rad, less than"
-        f" the {visible:.2f} rad that a plot from 0 to pi shows; by second"
-        f" {np.argmax(ours) + 1:.0f} it takes it {ours.max():.2f} rad.",
+        "Both words are qualitative; a motion counts as smooth while a plot does not show its"
+        f" swings. In the first second the median swing of the tilt is {ours[0]:.3f} rad, less than"
+        f" the {visible:.2f} rad that a plot from 0 to pi shows; in second"
+        f" {np.argmax(ours) + 1:.0f} it is {ours.max():.2f} rad.",
     )
 
 
 def _swing_by_second(run: xr.Dataset, suffix: str) -> np.ndarray:
     """Return the median swing of the tilt between turning points, rad, in every second of a run."""
     theta, times = run[f"theta{suffix}"].values, run[f"time{suffix}"].values
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(theta)))) + 1
+    turns = turning_points(theta)
     second, size = times[turns][1:].astype(int), np.abs(np.diff(theta[turns]))
     return np.array([np.median(size[second == k]) for k in np.unique(second)])
 
@@ -226,13 +233,13 @@ def _(run: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(run["highest_gap"]) > PLOTTED.value * float(REPORT.surface.size),
         f"It leaves the table first after {run['lift_off_time']:.2f} s, and rises higher than the 1"
-        f" % of its radius that a drawing could show. {_hopping(run)} That the motion is hard to"
-        " discuss, as the report has it, does not keep it from being computed.",
+        f" % of its radius that a drawing could show. {_hopping(run)} The report calls the motion"
+        " hard to discuss; it can be computed.",
     )
 
 
 def _hopping(run: xr.Dataset) -> str:
-    """How a launch goes on when the table only pushes, in a sentence."""
+    """Return a sentence on the flights of a launch on a table that only pushes."""
     return (
         f"When the table only pushes, the top makes {int(run['flights'])} flights, the highest of"
         f" {1e3 * float(run['highest_gap']):.2f} mm, with {run['airborne_time']:.2f} s in the air"

@@ -1,4 +1,4 @@
-"""Claims about friction: Fig. 7, Fig. 8, and what is said of other values of mu."""
+"""Claims about friction: Fig. 7, Fig. 8, and statements on other values of mu."""
 
 from typing import Any, NamedTuple
 
@@ -11,9 +11,7 @@ from tippetop.report.quoted import EXPONENT
 from tippetop.report.tolerance import ARRIVED, PLOTTED, TRANSCRIBED, half_last_digit
 
 _LOST = 0.1
-"""Relative departure from the law that counts as losing it: more than its scatter over a decade
-below; the claim fig07-inverse tells it.
-"""
+"""Relative departure from the law above which it does not hold, as in the claim fig07-inverse."""
 
 
 @examines("sec3-friction", "friction-extremes")
@@ -28,8 +26,8 @@ def _(data: xr.Dataset) -> Finding:
         and bool((np.diff(times[fastest:][turns[fastest:]]) > 0).all())
         and not turns[-1],
         f"The axis of the main launch first passes the horizontal after {some}; within"
-        f" {data.attrs['window_s']:g} s it does not at {none}. Much friction hinders: the slip that"
-        " turns the top over is soon gone, and a rolling top turns slowly.",
+        f" {data.attrs['window_s']:g} s it does not at {none}. Much friction hinders turning over:"
+        " the slip that turns the top over soon ends, and a rolling top turns slowly.",
     )
 
 
@@ -37,15 +35,15 @@ def _(data: xr.Dataset) -> Finding:
 def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     nearest = _nearest_fit(times, others)
     fits = [fit.exponent for fit in _fits(times, others)]
-    given = sum(abs(fit - float(EXPONENT)) <= half_last_digit(EXPONENT).value for fit in fits)
+    agreeing = sum(abs(fit - float(EXPONENT)) <= half_last_digit(EXPONENT).value for fit in fits)
     return Finding(
         *both(times, "exponent"),
         f"Judged as a law, at Fig. 4's spin, {times.attrs['spin_rad_per_s']:g} rad/s, in steps of"
-        f" {_step(times['mu']):.2g} s/m; the report gives neither. Of {len(fits)} fits by its"
-        f" method, at this and other spins and steps, {given or 'none'}"
-        f" give{'s' if given == 1 else ''} {EXPONENT}: they have {min(fits):.2f} to"
+        f" {_step(times['mu']):.2g} s/m; the report states neither. Of {len(fits)} fits by its"
+        f" method, at this and other spins and steps, {agreeing or 'none'}"
+        f" give{'s' if agreeing == 1 else ''} {EXPONENT}: their exponents are {min(fits):.2f} to"
         f" {max(fits):.2f}, and the nearest is {nearest.exponent:.4f} ({nearest.converged:.4f}"
-        " converged). A law it is not: the time jumps as the last swings about pi miss or meet the"
+        " converged). It is not a law: the time jumps when one swing more about pi exceeds"
         " 0.01 rad (why-exponent).",
         nearest.exponent,
         f"fitted at {nearest.spin:g} rad/s in steps of {nearest.step:g} s/m",
@@ -60,8 +58,8 @@ def _(times: xr.Dataset, others: xr.Dataset) -> Finding:
     return Finding(
         theirs < _LOST,
         ours < _LOST,
-        f"Judged as the exponent of Fig. 7 is: by the report's definition of the flip time, at"
-        f" {times.attrs['spin_rad_per_s']:g} rad/s. There mu t departs from its mean over this"
+        f"Judged like the exponent of Fig. 7: by the report's definition of the flip time, at"
+        f" {times.attrs['spin_rad_per_s']:g} rad/s. Then mu t departs from its mean over this"
         f" range by up to {100 * theirs:.0f} % by its method and {100 * ours:.0f} % converged, and"
         f" by up to {100 * nearest.scatter:.0f} % at {nearest.spin:g} rad/s, where the fit is"
         f" nearest to {EXPONENT}. The time at which the axis first passes the horizontal, which"
@@ -80,8 +78,10 @@ def _scatter(times: xr.DataArray) -> float:
 
 
 class _Fit(NamedTuple):
-    """A fit of a power of mu: spin, rad/s, step of mu, s/m, the largest relative departure of mu t
-    from its mean and the exponent by the report's method, and the converged exponent.
+    """Fit of a power of mu: spin (rad/s), step of mu (s/m), scatter and exponents.
+
+    `scatter` is the largest relative departure of mu t from its mean, and `exponent` the exponent
+    of the fit, both by the report's method; `converged` is the converged exponent.
     """
 
     spin: float
@@ -92,12 +92,12 @@ class _Fit(NamedTuple):
 
 
 _FITTED = 5
-"""The fewest values of mu that a fit is made of."""
+"""Smallest number of values of mu in a fit."""
 
 
 def _fits(times: xr.Dataset, others: xr.Dataset) -> list[_Fit]:
-    """All fits: that of the main spin, and those of others with every value of mu, and with every
-    second.
+    """Return all fits: of the main spin, and of other spins with every and with every second value
+    of mu.
     """
     suffixes = ("_listing", "")
     main = (float(times[f"exponent{suffix}"]) for suffix in suffixes)
@@ -105,21 +105,21 @@ def _fits(times: xr.Dataset, others: xr.Dataset) -> list[_Fit]:
     fits = [_Fit(float(times.attrs["spin_rad_per_s"]), _step(times["mu"]), scatter, *main)]
     for k, spin in enumerate(others["spin"].values):
         for every in (1, 2) if others.sizes["mu"] > 2 * _FITTED - 2 else (1,):
-            some = others.isel(spin=k, mu=slice(None, None, every))
-            rows = (some[f"flip_time{suffix}"].values for suffix in suffixes)
+            times_at = others.isel(spin=k, mu=slice(None, None, every))
+            rows = (times_at[f"flip_time{suffix}"].values for suffix in suffixes)
             fits.append(
                 _Fit(
                     float(spin),
-                    _step(some["mu"]),
-                    _scatter(some["flip_time_listing"]),
-                    *(power_law(some["mu"].values, row)[1] for row in rows),
+                    _step(times_at["mu"]),
+                    _scatter(times_at["flip_time_listing"]),
+                    *(power_law(times_at["mu"].values, row)[1] for row in rows),
                 )
             )
     return [fit for fit in fits if np.isfinite(fit.exponent)]
 
 
 def _nearest_fit(times: xr.Dataset, others: xr.Dataset) -> _Fit:
-    """Return the fit by the report's method that comes nearest to the exponent that it prints."""
+    """Return the fit by the report's method with the exponent nearest to the printed one."""
     return min(_fits(times, others), key=lambda fit: abs(fit.exponent - float(EXPONENT)))
 
 
@@ -150,18 +150,18 @@ def _(run: xr.Dataset) -> Finding:
     return Finding(
         theirs > 0.5,
         ours > 0.5,
-        "theta is a polar angle and cannot exceed pi; that the top nutates around it means that"
-        " its axis goes round the pole, with the precession in the same sense where it is nearest"
-        " to pi as where it is farthest. At 155 rad/s (the spin of Fig. 8 is not given) it does so"
-        f" in {100 * ours:.0f} % of the nutations of 20 s after turning over, until {last:.1f} s;"
-        f" from then on the tilt swings below pi, between {late.min():.3f} and {late.max():.3f}"
-        " rad, beside the pole.",
+        "theta is a polar angle and cannot exceed pi; a top nutates around pi if its axis goes"
+        " round the pole, so that the precession has the same sense where theta is nearest to pi"
+        " as where it is farthest. At 155 rad/s (the report does not state the spin of Fig. 8) it"
+        f" does so in {100 * ours:.0f} % of the nutations of 20 s after turning over, until"
+        f" {last:.1f} s; after that the tilt swings below pi, between {late.min():.3f} and"
+        f" {late.max():.3f} rad, beside the pole.",
     )
 
 
 def _nearest_to_pi(run: xr.Dataset, suffix: str) -> tuple[np.ndarray, np.ndarray]:
-    """When the tilt is largest in the nutations beyond the horizontal, s, and the precession there,
-    rad/s.
+    """Return the times (s) of the largest tilts of nutations beyond pi/2, and the precession
+    (rad/s) then.
     """
     times, theta = run[f"time{suffix}"].values, run[f"theta{suffix}"].values
     rising = np.diff(theta) > 0
@@ -171,8 +171,8 @@ def _nearest_to_pi(run: xr.Dataset, suffix: str) -> tuple[np.ndarray, np.ndarray
 
 
 def _round_the_pole(run: xr.Dataset, suffix: str) -> tuple[float, float]:
-    """Return the part of the nutations in which the axis goes round the pole, and when it does so
-    last, s.
+    """Return the share of nutations in which the axis goes round the pole, and the last time of
+    one, s.
     """
     times, precession = _nearest_to_pi(run, suffix)
     round_it = precession > 0
@@ -198,8 +198,8 @@ def _(later: xr.Dataset) -> Finding:
     swing = later["swing"]
     return Finding.unlisted(
         float(swing[-1]),
-        f"20 s are too short for it: there the tilt still swings by {swing[0]:.3f} rad. Converged"
-        " swings in the second before:"
+        f"After 20 s the tilt still swings by {swing[0]:.3f} rad. Converged swings in the second"
+        " before:"
         f" {listed('{:.4f} rad at {:g} s', swing.values, swing['end'].values)}.",
     )
 
@@ -228,10 +228,10 @@ _TIME: dict[str, Any] = {
 def _(check: xr.Dataset, *, quantity: str, others: str, wrong: str, correct: str) -> Finding:
     misses = abs(check[f"theta_in_{others}"] - check["theta"])
     k = int(np.argmin(misses.values))
-    found = float(misses[f"power_of_{quantity}"][k])
+    power = float(misses[f"power_of_{quantity}"][k])
     return Finding(
-        found,
-        found,
+        power,
+        power,
         f"A launch computed in other units of {quantity} must give the same tilt. Converted as "
         f"{correct} it differs by {misses[k]:.1e} rad after 2 s, as {wrong} by "
         f"{misses[1 - k]:.1e} rad." + (f" {TRANSCRIBED}" if quantity == "time" else ""),

@@ -1,6 +1,4 @@
-"""Claims about single launches: Figs. 4 and 5, Appendix C, and Table 1, whose inertias Fig. 5
-decides.
-"""
+"""Claims about single launches: Figs. 4 and 5, Appendix C, and the inertias of Table 1."""
 
 import math
 
@@ -17,25 +15,25 @@ from tippetop.report.tolerance import AROUND, ARRIVED, PLOTTED, Tolerance, round
 
 @examines("fig04-flip-time", "run-155", "run-50", tolerance=AROUND)
 @examines("fig05-flip-time", "run-50", "run-155", tolerance=AROUND)
-def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
+def _(run: xr.Dataset, other_run: xr.Dataset) -> Finding:
     theirs, ours = run["arrival_time_listing"].values, run["arrival_time"].values
-    k = _common_threshold(run, other)
+    k = _common_threshold(run, other_run)
     within = float(run["within"][k])
     return Finding(
         float(theirs[0]),
         float(ours[k]),
-        "The report does not say how it read the time. By the definition of section 3.3 (within"
+        "The report does not state how it read the time. By the definition of section 3.3 (within"
         f" {SETTLED:g} rad of the last tilt) it is {run['arrives']:.2f} s. One threshold has to"
-        f" serve for both figures: {within:.3f} rad comes nearest to both of their times, with"
-        f" {ours[k]:.2f} s here.",
+        f" hold for both figures: {within:.3f} rad comes nearest to both printed times, and gives"
+        f" {ours[k]:.2f} s for this one.",
         float(theirs[k]),
         f"arrived is within {within:.3f} rad of the last tilt, for Figs. 4 and 5",
     )
 
 
 def _common_threshold(*runs: xr.Dataset) -> int:
-    """Which distance from the last tilt brings the report's method nearest to both times that it
-    prints.
+    """Return the index of the arrival threshold at which the report's method is nearest to both
+    figures.
     """
     figures = {"run-155": "fig04", "run-50": "fig05"}
     misses = [
@@ -61,17 +59,17 @@ def _common_threshold(*runs: xr.Dataset) -> int:
 def _(run: xr.Dataset, *, name: str, meant: str) -> Finding:
     return Finding(
         *both(run, name),
-        f"The precession changes sign {run['reversals']:.0f} times in 20 s, with the nutation, last"
-        f" at {run['last_reversal']:.2f} s; the one meant is {meant}.",
+        f"The precession changes sign {run['reversals']:.0f} times in 20 s, because of the"
+        f" nutation, the last time at {run['last_reversal']:.2f} s; the value is for {meant}.",
     )
 
 
 @examines("fig04-inverts", "run-155", tolerance=ARRIVED)
 def _(run: xr.Dataset) -> Finding:
-    left = math.pi - float(run["end_theta"])
+    distance = math.pi - float(run["end_theta"])
     return Finding(
         *both(run, "end_theta"),
-        f"After 20 s the axis is still {1e3 * left:.2f} mrad from the vertical; the rest decays"
+        f"After 20 s the axis is still {1e3 * distance:.2f} mrad from the vertical; this decays"
         " slowly.",
     )
 
@@ -89,21 +87,21 @@ def _(run: xr.Dataset) -> Finding:
 
 @examines("sec3-omega-smooth", "run-155", "run-50", tolerance=PLOTTED)
 def _(*runs: xr.Dataset) -> Finding:
-    theirs, ours, other = (
+    theirs, ours, precession = (
         [_detour(run[name].values) for run in runs]
         for name in ("omega3_listing", "omega3", "phi_dot")
     )
     return Finding(
         max(theirs),
         max(ours),
-        "The axial spin only falls, but for ripples: friction acts on it through the slip across"
-        f" the lean. The precession, by contrast, goes {other[0]:.0f} and {other[1]:.1f} times its"
-        " range to and fro.",
+        "The axial spin falls, with small ripples, because friction acts on it by the slip across"
+        f" the lean. The precession, by contrast, oscillates: it varies by {precession[0]:.0f} and"
+        f" {precession[1]:.1f} times its range in total.",
     )
 
 
 def _detour(values: np.ndarray) -> float:
-    """By how much a curve is longer than its range, as a part of it."""
+    """Return the length of a curve's ups and downs beyond its range, relative to its range."""
     return float(np.abs(np.diff(values)).sum() / np.ptp(values)) - 1.0
 
 
@@ -134,16 +132,16 @@ def _(slow: xr.Dataset) -> Finding:
     return Finding(
         _stays_upright(slow, "_listing"),
         _stays_upright(slow, ""),
-        "The sentence has two readings. The report calls theta the nutation angle, and judged is"
-        f" that it does not grow: launched at {TILT:g} rad at {spins} rad/s, it is never more than"
-        f" {float(slow['highest'].max()):.3f} rad and ends at {ends}. In the usual sense, of the"
-        " axis nodding up and down, the top does nutate, and only friction lets it die away: it"
-        f" makes {swings} swings of more than {SETTLED:g} rad.",
+        "The sentence has two readings. The report calls theta the nutation angle, and the claim"
+        f" judged is that theta does not grow: launched at {TILT:g} rad at {spins} rad/s, it is"
+        f" never more than {float(slow['highest'].max()):.3f} rad and ends at {ends}. In the usual"
+        " sense of the word, an axis that nods up and down, the top does nutate, and friction lets"
+        f" the nutation decay: it makes {swings} swings of more than {SETTLED:g} rad.",
     )
 
 
 def _stays_upright(slow: xr.Dataset, suffix: str) -> bool:
-    """Return whether no tilt exceeds that of the launch, and all are gone in the end."""
+    """Return whether no tilt exceeds that of the launch, and all of them decay."""
     highest, final = slow[f"highest{suffix}"], slow[f"final{suffix}"]
     return bool((highest <= TILT + SETTLED).all() and (final < SETTLED).all())
 
@@ -156,22 +154,23 @@ _DISPLAYED = Tolerance(
 
 
 @examines("fig05-end", "run-50", "run-50-windows", "run-50-table-1", tolerance=_DISPLAYED)
-def _(run: xr.Dataset, windows: xr.Dataset, other: xr.Dataset) -> Finding:
+def _(run: xr.Dataset, windows: xr.Dataset, of_table: xr.Dataset) -> Finding:
     chosen = likely_end(windows)
     every = float(windows["window"].diff("window")[0])
     tried = f"from {windows['window'][0]:g} to {windows['window'][-1]:g} s in steps of {every:g} s"
     end = {key: float(run[f"end_{key}"]) for key in END_OF_FIG_5}
-    then = {key: float(chosen[f"{key}_after"]) for key in END_OF_FIG_5}
-    other_end = {key: float(other[f"end_{key}"]) for key in END_OF_FIG_5}
+    chosen_end = {key: float(chosen[f"{key}_after"]) for key in END_OF_FIG_5}
+    end_of_table = {key: float(of_table[f"end_{key}"]) for key in END_OF_FIG_5}
     duration = float(run["time"][-1])
     return Finding(
         _miss({key: float(run[f"end_{key}_listing"]) for key in END_OF_FIG_5}),
         _miss(end),
-        "The report does not say when its end was, and the top has not settled then: of runs"
+        "The report does not state the time of its end, at which the top has not settled: of runs"
         f" {tried}, the one of {chosen['window']:g} s comes nearest to all three numbers by its"
-        f" method. Converged they are {_triple(then)} at {chosen['window']:g} s, so that the"
-        f" report's are right to {_miss(then):.4f}, and {_triple(end)} after {duration:.0f} s. With"
-        f" the inertias of Table 1 as printed they would be {_triple(other_end)}.",
+        f" method. Converged values are {_triple(chosen_end)} at {chosen['window']:g} s, so that"
+        f" the report's are right to {_miss(chosen_end):.4f}, and {_triple(end)} after"
+        f" {duration:.0f} s. With the inertias of Table 1 as printed they would be"
+        f" {_triple(end_of_table)}.",
         _miss({key: float(chosen[f"{key}_after_listing"]) for key in END_OF_FIG_5}),
         f"the run was cut short at {chosen['window']:g} s",
         right=(
@@ -182,9 +181,7 @@ def _(run: xr.Dataset, windows: xr.Dataset, other: xr.Dataset) -> Finding:
 
 
 def _miss(state: dict[str, float]) -> float:
-    """Return the largest difference of a state from the one that is printed of Fig. 5, rad and
-    rad/s.
-    """
+    """Return the largest difference of a state from the one printed of Fig. 5, rad and rad/s."""
     return max(abs(state[key] - value) for key, value in END_OF_FIG_5.items())
 
 
@@ -195,9 +192,9 @@ def _triple(state: dict[str, float]) -> str:
 @examines(
     "table-1-inertia", "run-50", "run-50-table-1", tolerance=Tolerance(1e-6, "fractions are exact")
 )
-def _(run: xr.Dataset, other: xr.Dataset) -> Finding:
+def _(run: xr.Dataset, of_table: xr.Dataset) -> Finding:
     unit = REPORT.mass * float(REPORT.surface.size) ** 2
-    runs = {"listing": (run, REPORT), "table": (other, REPORT_TABLE_1)}
+    runs = {"listing": (run, REPORT), "table": (of_table, REPORT_TABLE_1)}
     misses = {
         name: _miss({key: float(run[f"end_{key}"]) for key in END_OF_FIG_5})
         for name, (run, _) in runs.items()

@@ -39,9 +39,9 @@ def _(data: xr.Dataset) -> Finding:
         companion,
         companion,
         "Appendix B names ode45, and the listing calls it: a pair of formulas by Dormand and"
-        f" Prince, which takes the one of order {companion:.1f} to choose its steps and goes on"
-        f" with the one of order {data['order_ode45_in_all']:.1f}, after which one may name it as"
-        " well. (B.1) is used nowhere.",
+        f" Prince, of which the one of order {companion:.1f} controls the step and the one of order"
+        f" {data['order_ode45_in_all']:.1f} gives the solution; the method is often named after"
+        " the second. (B.1) is not used.",
     )
 
 
@@ -67,7 +67,7 @@ def _(*data: xr.Dataset) -> Finding:
     )
     return Finding.unlisted(
         float(worst.max()),
-        "On the launches that stay on the table, over their ends and their arrivals: at most"
+        "In the ends and the arrivals of the launches that stay on the table it is at most"
         f" {listed('{:.2f} % in {}', 100 * worst, _READ_OFF)}. Not every printed digit is right:"
         f" the end of Fig. 5, at {end['window']:g} s, is off by up to {digits:.4f} rad or rad/s. At"
         f" 175 rad/s small errors grow: the force falls through zero {late:.2f} s late.",
@@ -75,11 +75,12 @@ def _(*data: xr.Dataset) -> Finding:
 
 
 _READ_OFF = ("the tilt", "phi'", "omega3", "time")
+"""Names of the values of `_misses`."""
 
 
 def _misses(run: xr.Dataset) -> tuple[float, ...]:
-    """Return differences of tilt, precession, spin and arrival from converged ones, in parts of
-    their plots.
+    """Return the errors of final tilt, precession, spin and of arrival, as shares of their
+    plots.
     """
     spans = (np.pi, 2.0 * float(abs(run["phi_dot"]).max()), float(np.ptp(run["omega3"].values)))
     ends = zip(("end_theta", "end_phi_dot", "end_omega3"), spans, strict=True)
@@ -108,7 +109,7 @@ def _(counts: xr.Dataset) -> Finding:
 
 
 _STIFF = 2.0
-"""By how much an implicit method must be the cheaper in a stiff case."""
+"""Ratio of evaluations, best explicit over best implicit method, above which a launch is stiff."""
 
 
 @examines("section-5-cause")
@@ -118,13 +119,13 @@ def _(counts: xr.Dataset) -> Finding:
         mu for mu in np.unique(friction) if 0 < stiff[friction == mu].sum() < (friction == mu).sum()
     ]
     named = " and ".join(f"{mu:g} s/m" for mu in decided)
-    own, ratio = friction == MU, counts["stiffness"].values
-    tried = "none is stiff" if not stiff[own].any() else f"{stiff[own].sum()} are stiff"
+    usual, ratio = friction == MU, counts["stiffness"].values
+    tried = "none is stiff" if not stiff[usual].any() else f"{stiff[usual].sum()} are stiff"
     return Finding.unlisted(
         bool(decided),
-        f"It does so at mu = {named or 'none tried'}. What the report does not say is that friction"
-        f" takes part: of {own.sum()} launches at mu = {MU:g} s/m, fast or slow, lying or next to a"
-        f" pole, {tried}, with a ratio of at most {ratio[own].max():.1f}.",
+        f"The launch decides at mu = {named or 'none tried'}. The report does not mention that"
+        f" friction matters too: of {usual.sum()} launches at mu = {MU:g} s/m, fast or slow, lying"
+        f" or next to a pole, {tried}, with a ratio of at most {ratio[usual].max():.1f}.",
     )
 
 
@@ -140,11 +141,11 @@ def _(counts: xr.Dataset) -> Finding:
     misses = listed("{:.4f} rad at {:g} rad/s (ratio {:.1f})", *columns, between=" and ")
     return Finding.unlisted(
         float(rough["bdf_miss"].max()),
-        "The report does not name its cases. These are its friction of Fig. 8, at which implicit"
-        f" methods need fewer evaluations; after {counts.attrs['span_s']:g} s the difference is"
-        f" {misses}. By SciPy's BDF, which has ode15s's formulas and its way to vary the order, at"
-        " the default tolerances. Where the top turns over, errors grow; tighter tolerances are"
-        " the cure.",
+        "The report does not state its cases. Those tried have its friction of Fig. 8, at which"
+        f" implicit methods need fewer evaluations; after {counts.attrs['span_s']:g} s the"
+        f" difference is {misses}, by SciPy's BDF, which has the formulas and the order control of"
+        " ode15s, at the default tolerances. Where the top turns over, errors grow; tighter"
+        " tolerances reduce them.",
         right=f"at default tolerances it is off by {misses}",
     )
 
@@ -161,13 +162,13 @@ def _(check: xr.Dataset, *runs: xr.Dataset) -> Finding:
     return Finding(
         theirs,
         theirs,
-        "Where theta passes a multiple of pi the listing takes a leaning top for one that is"
-        " nearly the other way up. Without the modulo the change is"
-        f" {float(check['jump']) / size:.0e}. It does harm only if a step carries theta across;"
-        f" points of output outside 0 to pi, in the {len(wraps)} runs looked at: {outside}.",
+        "Where theta passes a multiple of pi, the listing replaces an upright top by an inverted"
+        " one, and the rates jump. Without the modulo the change is"
+        f" {float(check['jump']) / size:.0e}. The jump matters only if a step carries theta across"
+        f" the pole; points of output outside 0 to pi, in {len(wraps)} runs: {outside}.",
         right=(
-            "it does not where theta passes a multiple of pi: a leaning top is taken for one nearly"
-            " the other way up"
+            "it does not where theta passes a multiple of pi: an upright top is replaced by an"
+            " inverted one"
         )
         + ("" if any(wraps.values()) else f", though in none of {len(wraps)} runs"),
     )

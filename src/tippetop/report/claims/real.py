@@ -1,4 +1,4 @@
-"""What was published of tops with stems, eggs, disks and balls, against exact runs."""
+"""Published statements on tops with stems, eggs, disks and balls, against exact runs."""
 
 import numpy as np
 import xarray as xr
@@ -17,21 +17,21 @@ _THIN = Tolerance(
 )
 
 
-@examines("real-leine-stem", tolerance=_READ, event="stem", printed=1.5)
-@examines("real-leine-back", tolerance=_READ, event="back", printed=4.5)
-@examines("real-leine-both", tolerance=_READ, event="both", printed=4.6)
-@examines("real-leine-apart", tolerance=_READ, event="apart", printed=5.4)
-def _(data: xr.Dataset, *, event: str, printed: float) -> Finding:
+@examines("real-leine-stem", tolerance=_READ, takes_printed=True, event="stem")
+@examines("real-leine-back", tolerance=_READ, takes_printed=True, event="back")
+@examines("real-leine-both", tolerance=_READ, takes_printed=True, event="both")
+@examines("real-leine-apart", tolerance=_READ, takes_printed=True, event="apart")
+def _(data: xr.Dataset, *, printed: float, event: str) -> Finding:
     times = data[event]
     pressures, misses = data["pressure"].values, abs(times - printed)
     failing = [str(name) for name in pressures[(misses > _READ.value).values]]
     return Finding.unlisted(
         float(times[0]),
-        "The paper does not say which pressure in the patch its figure is for. Judged is the"
-        " ellipsoidal limit surface, the law of a code of its authors; it misses by"
+        "The paper does not state the pressure in the patch for its figure. The value is for the"
+        " ellipsoidal limit surface, the law of a code of its authors; it differs by"
         f" {float(misses[0]):.3f} s. By the pressure:"
         f" {listed('{:.4f} s ({})', times.values, pressures)}. "
-        + (f"Too far off would be: {', '.join(failing)}. " if failing else "")
+        + (f"Outside the tolerance: {', '.join(failing)}. " if failing else "")
         + f"Energy and work balance to {float(data['energy_error'].max()):.0e} of the energy.",
     )
 
@@ -56,11 +56,11 @@ def _(data: xr.Dataset) -> Finding:
     )
     return Finding.unlisted(
         goes,
-        "By its step, how far off are the stem's first touch, the fall back on the sphere and the"
-        " beginning of double contact, of how many strikes the rocking before this consists, and"
-        f" how far off the tilt is after 8 s: {steps}. There are {int(data['exact_strikes'])}"
-        " strikes above the bound at which the rocking is cut off; those closer together than a"
-        " step are one to it, so that both surfaces rest on the table too early.",
+        "For each step, the errors of the stem's first touch, of the fall back on the sphere and of"
+        " the beginning of double contact, the number of strikes in the rocking before it, and the"
+        f" error of the tilt after 8 s: {steps}. An exact run has {int(data['exact_strikes'])}"
+        " strikes above the bound at which the rocking is cut off; time-stepping counts strikes"
+        " within one step as one, so that both surfaces rest on the table too early.",
     )
 
 
@@ -72,10 +72,10 @@ def _(data: xr.Dataset) -> Finding:
     return Finding.unlisted(
         bool((stands == enough).all()),
         f"{int(stands.sum())} of {len(stands)} stems of the report's top, whose tips have radii of"
-        f" {1e3 * float(data['radius'].min()):g} to {1e3 * float(data['radius'].max()):g} mm, are"
-        f" stood upon after {data.attrs['window_s']:g} s. Jellett's integral is {share.min():.3f}"
-        f" to {share.max():.3f} of the least as they touch. It does not change while the tip alone"
-        " touches, and a top that lacks it falls back.",
+        f" {1e3 * float(data['radius'].min()):g} to {1e3 * float(data['radius'].max()):g} mm, carry"
+        f" the top after {data.attrs['window_s']:g} s. Jellett's integral at their first touch is"
+        f" {share.min():.3f} to {share.max():.3f} of the least value. It does not change while the"
+        " tip alone touches, and a top with less falls back.",
     )
 
 
@@ -104,7 +104,7 @@ def _(data: xr.Dataset) -> Finding:
     return Finding.unlisted(
         float(ratio[np.abs(ratio - 1.0).argmax()]),
         "The toy of 75 mm and 12.5 mm thickness, at tilts up to "
-        f"{float(data['disk_tilt'].values[near].max()):g} rad. The tilt keeps to "
+        f"{float(data['disk_tilt'].values[near].max()):g} rad. The tilt is constant to "
         f"{float(data['disk_drift'].max()):.0e} rad in runs on dry friction.",
     )
 
@@ -115,6 +115,7 @@ def _(data: xr.Dataset) -> Finding:
     off = np.cos(tilt) - 2 / 5 + data.attrs["gravity"] / (rate**2 * data.attrs["ball_radius_m"])
     return Finding.unlisted(
         float(np.abs(off).max()),
-        f"Runs at {rate.min():.1f} to {rate.max():.1f} rad/s on dry friction, whose tilts keep to "
-        f"{float(data['balls_drift'].max()):.0e} rad. Slower than sqrt(5 g / (2 R)) none is.",
+        f"Runs at {rate.min():.1f} to {rate.max():.1f} rad/s on dry friction; their tilts are"
+        f" constant to {float(data['balls_drift'].max()):.0e} rad. The motion does not exist below"
+        " sqrt(5 g / (2 R)).",
     )

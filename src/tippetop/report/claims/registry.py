@@ -1,4 +1,4 @@
-"""Everything the report claims that can be put to numbers: told in `claims.toml`, examined here."""
+"""All claims: their texts from `claims.toml`, and the functions that examine them."""
 
 from tippetop.report.claim import EXAMINERS as EXAMINERS
 from tippetop.report.claim import Claim, Source
@@ -15,10 +15,10 @@ from tippetop.report.claims import (  # noqa: F401 - for what they register
     steady,
     why,
 )
-from tippetop.report.told import told
+from tippetop.report.texts import filled_tables
 
 CLAIMS: dict[str, Claim] = {
     name: Claim(name, EXAMINERS[name], Source(**fields.pop("source")), **fields)
-    for name, fields in told("claims").items()
+    for name, fields in filled_tables("claims").items()
 }
-"""Every claim by its name, in the order of the report."""
+"""All claims by name, in the order of the report."""

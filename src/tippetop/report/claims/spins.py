@@ -22,16 +22,16 @@ _NEEDED = ("final-tilt-listing", "critical-spins", "why-critical")
     "fig06-c1",
     *_NEEDED,
     tolerance=_STEP,
+    takes_printed=True,
     name="upright",
-    printed=CRITICAL_SPINS[0],
     change="the upright spin loses its stability",
 )
 @examines(
     "fig06-c2",
     *_NEEDED,
     tolerance=_STEP,
+    takes_printed=True,
     name="inverted",
-    printed=CRITICAL_SPINS[1],
     change="the inverted spin gains stability",
 )
 def _(
@@ -39,12 +39,12 @@ def _(
     sweep: xr.Dataset,
     theory: xr.Dataset,
     *,
+    printed: float,
     name: str,
-    printed: str,
     change: str,
 ) -> Finding:
     theirs, chosen = listing[f"critical_{name}_listing"], _common_margin(listing)
-    given = float(theirs.sel(margin_listing=chosen))
+    by_method = float(theirs.sel(margin_listing=chosen))
     by_window, exact = sweep[f"{name}_by_window"], theory.sel(vertical=name)
     windows = listed("{:.2f} in {:g} s", by_window.values, by_window["window"].values)
     spectrum = abs(float(exact["critical_spectrum"] / exact["critical_formula"]) - 1.0)
@@ -52,20 +52,21 @@ def _(
     return Finding(
         float(theirs[-1]),
         float(exact["critical_launch"]),
-        f"There {change}, at {exact['critical_formula']:.4f} rad/s of vertical spin by formula, and"
-        f" {same} by the spectrum of the linear motion. Runs show it the better the longer they"
-        f" are: {windows}. The report's 20 s are too short for a launch near the threshold to"
-        f" settle. It does not say which tilt counted as settled: {chosen:.4f} rad comes nearest to"
-        f" both its critical spins. What is left is {abs(given - float(printed)):.3f} rad/s, of the"
-        f" {_STEP.value:g} rad/s that are a step of such a scan.",
-        given,
+        f"At this spin {change}: at {exact['critical_formula']:.4f} rad/s of vertical spin by the"
+        f" formula, and {same} by the spectrum of the linear motion. Longer runs are nearer to it:"
+        f" {windows}. The report's 20 s are too short for a launch near the threshold to settle."
+        " The report does not state which tilt counted as settled:"
+        f" {chosen:.4f} rad comes nearest to both its critical spins, to"
+        f" {abs(by_method - printed):.3f} rad/s, where a step of such a scan is"
+        f" {_STEP.value:g} rad/s.",
+        by_method,
         f"settled is within {chosen:.4f} rad, for both critical spins",
     )
 
 
 def _common_margin(listing: xr.Dataset) -> float:
-    """What must have counted as settled for the report's method to come nearest to both its spins,
-    rad.
+    """Return the margin (rad) at which the report's method comes nearest to both its critical
+    spins.
     """
     misses = [
         abs(listing[f"critical_{name}_listing"].values - float(printed))
@@ -86,6 +87,6 @@ def _(listing: xr.Dataset, sweep: xr.Dataset) -> Finding:
         float(listing["lost_listing"]),
         lost,
         f"The values are the first spins that end more than {TURNED:g} rad from pi, on a table that"
-        f" pulls. What Fig. 6 shows begins later than its cause: from {onset:.2f} rad/s on the"
-        " table would have to pull within 20 s. On one that only pushes there is no such point.",
+        f" pulls. The table would have to pull within 20 s from {onset:.2f} rad/s on, which is"
+        " below the point that Fig. 6 shows. On a table that only pushes there is no such point.",
     )

@@ -7,31 +7,31 @@ import xarray as xr
 
 from tippetop.problem.presets import REPORT
 from tippetop.report.claim import Finding, examines, listed
-from tippetop.report.experiments.equations import left_of_217
+from tippetop.report.experiments.equations import residual_of_217
 from tippetop.report.quoted import END_OF_FIG_5
 from tippetop.report.tolerance import STEADY, TRANSCRIBED, Tolerance, rounded
 
 
 @examines("sec2-no-slip", "steady-bodies", "run-155", "run-50", tolerance=STEADY)
 def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
-    left = np.maximum(steady["slip"], steady["slip_rate"])
+    slip = np.maximum(steady["slip"], steady["slip_rate"])
     theirs = max(float(run["end_slip_listing"] / run["largest_slip_listing"]) for run in runs)
     return Finding.unlisted(
-        float(left.max()),
+        float(slip.max()),
         f"After {steady.attrs['duration_s']:g} s, for {steady.sizes['body']} bodies. After the 20 s"
-        f" of Figs. 4 and 5 the report's method has at most {theirs:.0e} of the largest slip left."
-        " That friction would otherwise slow the top down is the reason, and the right one: it"
-        " takes energy wherever there is slip.",
+        f" of Figs. 4 and 5 the slip by the report's method is at most {theirs:.0e} of its largest"
+        " value. The report's reason, that friction would otherwise slow the top down, is right:"
+        " friction takes energy as long as there is slip.",
     )
 
 
 @examines("eq-2.16", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
-    left = np.maximum(steady["residual_216"].values, steady["phi_ddot"].values)
+    residual = np.maximum(steady["residual_216"].values, steady["phi_ddot"].values)
     return Finding.unlisted(
-        float(left.max()),
-        f"The largest of {len(left)} bodies after {steady.attrs['duration_s']:g} s; {left[0]:.1e}"
-        " for the report's. The second line, phi'' = 0, is counted in parts of phi'^2.",
+        float(residual.max()),
+        f"The largest of {len(residual)} bodies after {steady.attrs['duration_s']:g} s;"
+        f" {residual[0]:.1e} for the report's. The second line, phi'' = 0, is relative to phi'^2.",
     )
 
 
@@ -39,8 +39,8 @@ _ALPHA = float(REPORT.surface.proportions[0])
 
 
 def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
-    """How far three numbers that satisfy (2.17) may miss it when each is rounded to three decimals,
-    rad/s.
+    """Return the residual (rad/s) of (2.17) that rounding its three numbers to three decimals can
+    cause.
     """
     return 0.0005 * (abs(phi_dot * math.sin(theta)) + abs(math.cos(theta) - _ALPHA) + 1.0)
 
@@ -54,18 +54,20 @@ def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
     ),
 )
 def _(run: xr.Dataset) -> Finding:
-    listed, ours = (
+    by_method, ours = (
         float(
-            left_of_217(**{name: run[f"end_{name}{suffix}"] for name in END_OF_FIG_5}, alpha=_ALPHA)
+            residual_of_217(
+                **{name: run[f"end_{name}{suffix}"] for name in END_OF_FIG_5}, alpha=_ALPHA
+            )
         )
         for suffix in ("_listing", "")
     )
-    quoted = float(left_of_217(**END_OF_FIG_5, alpha=_ALPHA))
+    quoted = float(residual_of_217(**END_OF_FIG_5, alpha=_ALPHA))
     return Finding(
-        listed,
+        by_method,
         ours,
-        f"The three numbers that the report quotes leave {quoted:+.4f} rad/s, almost all of it the"
-        " rounding of theta and phi'. Its method and the converged motion are taken after 20 s.",
+        f"The three numbers that the report quotes give {quoted:+.4f} rad/s, almost all of it from"
+        " the rounding of theta and phi'. The other values are after 20 s.",
         reported=quoted,
     )
 
@@ -74,10 +76,10 @@ def _(run: xr.Dataset) -> Finding:
 def _(states: xr.Dataset) -> Finding:
     low, high = (float(limit) for limit in states["limits"])
     inside = states.isel(run=((states["run_spin"] > low) & (states["run_spin"] < high)).values)
-    left = inside["run_left"]
+    residual = inside["run_left"]
     shown = ", ".join(f"{spin:g}" for spin in inside["run_spin"].values)
     return Finding.unlisted(
-        float(left.max()),
+        float(residual.max()),
         f"In runs of {states.attrs['long_run_s']:g} s launched at {shown} rad/s, which end at tilts"
         f" from {inside['run_end'].min():.2f} to {inside['run_end'].max():.2f} rad.",
     )
@@ -86,13 +88,13 @@ def _(states: xr.Dataset) -> Finding:
 @examines("eq-2.17-exception", "run-10", tolerance=STEADY)
 def _(run: xr.Dataset) -> Finding:
     late = run.sel(time=slice(15.0, None))
-    left = left_of_217(late["theta"], late["phi_dot"], late["omega3"], _ALPHA)
+    residual = residual_of_217(late["theta"], late["phi_dot"], late["omega3"], _ALPHA)
     return Finding.unlisted(
-        float((abs(left) / abs(late["omega3"])).max()),
-        "Judged, as (2.14) is, over all the states in which the report's top can end. theta = 0 is"
-        " one, and an exception too: the derivation divides by sin(theta). An upright top spins"
-        " steadily at any omega3, and what is left of its nutation turns at"
-        f" {late['phi_dot'].mean():.2f} rad/s where (2.17) would have"
+        float((abs(residual) / abs(late["omega3"])).max()),
+        "Judged, like (2.14), over all the states in which the report's top can end. theta = 0 is"
+        " one of them and another exception: the derivation divides by sin(theta). An upright top"
+        " spins steadily at any omega3, and its remaining nutation turns at"
+        f" {late['phi_dot'].mean():.2f} rad/s, where (2.17) would give"
         f" {float(late['omega3'].mean()) / (1.0 - _ALPHA):.2f} rad/s.",
     )
 
@@ -102,21 +104,21 @@ def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
     # The bracket over I3 is alpha + (gamma - 1) cos(theta): it has a zero where |gamma - 1| reaches
     # alpha.
     bracket = chart["top_alpha"] - abs(chart["top_gamma"] - 1.0)
-    listed, tilting = float(bracket[0]), float(steady["theta_dot"].max())
+    least, tilting = float(bracket[0]), float(steady["theta_dot"].max())
     return Finding.unlisted(
-        listed > 0 and tilting < STEADY.value,
-        "Judged, as (2.17) is, over all the states in which the report's top can end: there the"
-        f" bracket is at least {listed:.2f} I3, and theta' is at most {rounded(tilting)} phi'. In"
-        " general (2.14) leaves two other ways: omega3 = 0, and a zero of the bracket, at"
+        least > 0 and tilting < STEADY.value,
+        "Judged, like (2.17), over all the states in which the report's top can end: in them the"
+        f" bracket is at least {least:.2f} I3, and theta' is at most {rounded(tilting)} phi'. In"
+        " general (2.14) has two other solutions: omega3 = 0, and a zero of the bracket, at"
         " cos(theta) = alpha / (1 - I1/I3), for tops with |I1/I3 - 1| of alpha or more.",
     )
 
 
 @examines("eq-2.17-any-body", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
-    left = abs(steady["residual_217"]) / abs(steady["phi_dot"])
-    each = listed("{} {}", steady["body"].values, map(rounded, left.values))
-    return Finding.unlisted(float(left.max()), f"Differences over phi': {each}.")
+    residual = abs(steady["residual_217"]) / abs(steady["phi_dot"])
+    each = listed("{} {}", steady["body"].values, map(rounded, residual.values))
+    return Finding.unlisted(float(residual.max()), f"Differences over phi': {each}.")
 
 
 @examines("eq-2.16-third", "steady-bodies", tolerance=STEADY)
@@ -127,7 +129,8 @@ def _(steady: xr.Dataset) -> Finding:
     return Finding.unlisted(
         slowest,
         f"A misprint for omega3' = 0, which holds: in the steady states of {steady.sizes['body']}"
-        f" bodies it is at most {steady['omega3_rate'].max():.0e} rad/s². No angle phi_3 is"
-        " introduced, and read as printed it would be wrong of any: the precession and the"
-        f" rotation about the axis both go on, at {slowest:.2f} rad/s and more. {TRANSCRIBED}",
+        f" bodies it is at most {steady['omega3_rate'].max():.0e} rad/s². The report introduces no"
+        " angle phi_3, and as printed the equation would be wrong for either angle: the precession"
+        f" and the rotation about the axis both go on, at {slowest:.2f} rad/s or faster."
+        f" {TRANSCRIBED}",
     )

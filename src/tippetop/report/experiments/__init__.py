@@ -1,1 +1,1 @@
-"""The computations behind the figures and claims, a file for each subject."""
+"""Computations behind the figures and claims, a file for each subject; `registry` collects them."""

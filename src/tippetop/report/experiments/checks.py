@@ -1,4 +1,4 @@
-"""What is checked beside the equations: the units of Table 1, and the block of Fig. 8."""
+"""Checks beside the equations: the units of Table 1, and the block of Fig. 8."""
 
 import numpy as np
 import xarray as xr
@@ -14,8 +14,8 @@ from tippetop.run import simulate
 
 @experiment("units", "the units of Table 1", 0.3)
 def _units(quick: bool) -> xr.Dataset:
-    """Return the same launch in metres and seconds and in other units, by the units that Table 1
-    may mean.
+    """Return one launch in metres and seconds and in other units, converted by units of mu and
+    g.
     """
     report = report_problem()
     seconds = 2.0
@@ -31,7 +31,7 @@ def _units(quick: bool) -> xr.Dataset:
 
 
 def _in_tenths(problem: Problem, power: int) -> Problem:
-    """Return the problem with every time in tenths of a second, if g has this power of time in its
+    """Return the problem with times in tenths of a second, for g with this power of time in its
     unit.
     """
     unit = 10.0
@@ -40,7 +40,7 @@ def _in_tenths(problem: Problem, power: int) -> Problem:
 
 
 def _in_centimetres(problem: Problem, power: int) -> Problem:
-    """Return the problem with every length in centimetres, if mu has this power of length in its
+    """Return the problem with lengths in centimetres, for mu with this power of length in its
     unit.
     """
     body, unit = problem.body, 100.0
@@ -61,7 +61,7 @@ def _tilt_after(problem: Problem, duration: float) -> float:
 
 @experiment("block", "a block on the table of Fig. 8", 0.1)
 def _block(quick: bool) -> xr.Dataset:
-    """How far a block slides on the table of Fig. 8 when it starts with 1 m/s."""
+    """Return the distance that a block slides on the table of Fig. 8 from a speed of 1 m/s."""
     mu, gravity = 100.0, report_problem().gravity
     law = ViscousFriction(mu=mu).law
     # Equal steps of speed: dx = v dv / v', exact by the midpoint rule because v' is proportional to

@@ -1,6 +1,4 @@
-"""Dry friction of a point: tops that roll, Cohen's top step by step, and what smoothing makes of
-it.
-"""
+"""Dry friction at a point: tops that roll, Cohen's top step by step, and regularised friction."""
 
 import math
 from dataclasses import replace
@@ -23,22 +21,20 @@ from tippetop.problem.launch import Launch
 from tippetop.problem.presets import report_problem
 from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment
-from tippetop.report.experiments.runs import happenings, stopping
+from tippetop.report.experiments.runs import event_times, stopping
 from tippetop.report.quoted import SPIN, TILT
 from tippetop.run import simulate
 
 SLIPPERY = 0.028
-"""One that does not quite hold the report's top at its main launch."""
+"""Friction coefficient a little below the least for rolling at the report's main launch."""
 
 ROLLED = 1.5
-"""How long tops are followed to find the most friction they need, s: several periods of their
+"""Length of the runs that find the least friction for rolling, s: several periods of the
 nutation.
 """
 
 WITHOUT_COMPILING: Any = {"integrator": "dop853", "tolerance": 1e-11}
-"""How single runs are followed: compiling what a top that slips and sticks takes would cost
-more.
-"""
+"""Options of single runs that slip and stick: compiling them would take longer than the runs."""
 
 COHEN = Problem(
     body=presets.COHEN,
@@ -50,13 +46,13 @@ COHEN = Problem(
 """Cohen's top, set down with its centre of mass at rest; Am. J. Phys. 45 (1977) 12."""
 
 COHEN_STEP, COHEN_WINDOW = 0.01, 2.0
-"""His step, and how long his figure 5 is, s."""
+"""Step of Cohen's method, and length of the run in his figure 5, s."""
 
 FOLLOWED = 4.0
-"""How long his top is followed here, s."""
+"""Length of the runs of Cohen's top, s."""
 
 SMOOTHED, SMOOTHED_SPIN = 0.3, 100.0
-"""Friction coefficient and spin of the tops on smoothed Coulomb friction."""
+"""Friction coefficient and spin (rad/s) of the tops on regularised Coulomb friction."""
 
 
 def with_friction(problem: Problem, friction: object) -> Problem:
@@ -65,13 +61,13 @@ def with_friction(problem: Problem, friction: object) -> Problem:
 
 
 def friction_needed(spin: float, tilt: float) -> float:
-    """Return the least mu on which the report's top, set down without slip, rolls for ever; nan
-    where none does.
+    """Return the least mu on which the report's top, set down without slip, rolls; nan if there is
+    none.
 
-    The largest ratio of friction and normal force on the way, a parabola through the sample nearest
-    to it.
+    This is the largest ratio of friction and normal force along the run, from a parabola through
+    the largest sample and its neighbours.
     """
-    # It holds every top of the map, and lets no contact force be inconsistent.
+    # On this mu every top of the map rolls, and no contact force is inconsistent.
     problem = with_friction(report_problem(spin, tilt), CoulombFriction(mu=1.4))
     run = simulate(problem, ROLLED, samples=3001)
     force = run["contact_force"].values
@@ -79,15 +75,13 @@ def friction_needed(spin: float, tilt: float) -> float:
         return math.nan
     ratio = np.hypot(force[:, 0], force[:, 1]) / force[:, 2]
     k = min(max(int(ratio.argmax()), 1), len(ratio) - 2)
-    before, here, after = ratio[k - 1 : k + 2]
-    return float(here + (after - before) ** 2 / (8.0 * (2.0 * here - before - after)))
+    before, largest, after = ratio[k - 1 : k + 2]
+    return float(largest + (after - before) ** 2 / (8.0 * (2.0 * largest - before - after)))
 
 
 @experiment("dry-rolling", "the friction that rolling needs", 4.0)
 def _rolling(quick: bool) -> xr.Dataset:
-    """How much friction rolling needs, and what a launch does with a little more and with a little
-    less.
-    """
+    """Return the friction that rolling needs, and launches with a little more and a little less."""
     spins = np.linspace(10.0, 250.0, 5 if quick else 17)
     tilts = np.array([0.1, 0.2, 0.8] if quick else [0.05, 0.1, 0.2, 0.4, 0.8])
     least = np.array([[friction_needed(float(s), float(t)) for s in spins] for t in tilts])
@@ -95,40 +89,40 @@ def _rolling(quick: bool) -> xr.Dataset:
     main = report_problem(SPIN, TILT)
     times = np.linspace(0.0, 20.0, 2001)
     coefficients = [1.001 * needed, *((1.0,) if quick else (0.3, 1.0))]
-    held = [
+    rolling = [
         simulate(with_friction(main, CoulombFriction(mu=mu)), 20.0, times=times)
         for mu in coefficients
     ]
-    lost = [float(abs(run["energy_lost"] / run["energy_start"])) for run in held]
-    slips_held = [len(happenings(run, "slip")) for run in held]
+    lost = [float(abs(run["energy_lost"] / run["energy_start"])) for run in rolling]
+    slips = [len(event_times(run, "slip")) for run in rolling]
     less = with_friction(main, CoulombFriction(mu=0.999 * needed))
     below = simulate(less, 0.1, samples=2, phase_limit=1)  # for more than a period of the nutation
     slipping = with_friction(main, CoulombFriction(mu=SLIPPERY))
-    slips = simulate(slipping, 0.3 if quick else 3.0, **WITHOUT_COMPILING)
+    slippery = simulate(slipping, 0.3 if quick else 3.0, **WITHOUT_COMPILING)
     return dataset(
         {
             "tilt": tilts,
             "spin": spins,
             "time": times,
-            "time_slips": slips["time"].values,
+            "time_slips": slippery["time"].values,
             "held": (coefficients, "1", "friction coefficient"),
         },
         {"spin_rad_per_s": SPIN, "tilt_rad": TILT, "slippery_mu": SLIPPERY},
         friction_needed=(least, "1", "least mu for rolling", "tilt", "spin"),
         needed_main=(needed, "1", "least mu for rolling, main launch"),
-        theta_held=([run["theta"].values for run in held], "rad", "tilt", "held", "time"),
-        slips_held=(slips_held, "1", "times of slipping", "held"),
+        theta_held=([run["theta"].values for run in rolling], "rad", "tilt", "held", "time"),
+        slips_held=(slips, "1", "times of slipping", "held"),
         lost_held=(lost, "1", "energy lost, relative", "held"),
         held_below=(float(below["end_time"]), "s", "how long a little less holds it"),
-        theta_slips=(slips["theta"].values, "rad", "tilt", "time_slips"),
+        theta_slips=(slippery["theta"].values, "rad", "tilt", "time_slips"),
     )
 
 
 def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
-    """Return a sliding top followed by the classical Runge-Kutta method with fixed step, whatever
-    its slip does.
+    """Return the steps of a sliding top by the classical Runge-Kutta method with fixed step.
 
-    In natural units, every number of shape (steps + 1,).
+    The method goes on sliding when slip ends. The state is in natural units, with numbers of shape
+    (steps + 1,).
     """
     units, top = natural_units(problem.top), natural(problem.top)
     rates = RightHandSide(replace(sliding_motion(top.kind, False), guards=()), top.numbers)
@@ -154,23 +148,24 @@ def _cohen(quick: bool) -> xr.Dataset:
         slip = np.hypot(*(u - v for u, v in zip(state.velocity, rolling, strict=True)))
         slowest.append(float(slip.min()) * units.speed)
     exact = simulate(COHEN, FOLLOWED, times=times, **WITHOUT_COMPILING)
-    stick = float(happenings(exact, "stick")[0])
+    stick = float(event_times(exact, "stick")[0])
     sticking = exact["energy"].values[times > stick]
-    kept = float(np.ptp(sticking) / sticking[-1])
+    energy_change = float(np.ptp(sticking) / sticking[-1])
     return dataset(
         {"step": steps, "time": times},
         theta_stepped=(tilts, "rad", "tilt, stepped", "step", "time"),
         slowest=(slowest, "m s-1", "least slip speed at a step", "step"),
         theta=(exact["theta"].values, "rad", "tilt, exact", "time"),
         sticks=(stick, "s", "when slip ends"),
-        slips_again=(len(happenings(exact, "slip")), "1", "how often it slips again"),
-        energy_kept=(kept, "1", "largest relative change of the energy while it sticks"),
+        slips_again=(len(event_times(exact, "slip")), "1", "how often it slips again"),
+        energy_kept=(energy_change, "1", "largest relative change of the energy while it sticks"),
     )
 
 
 def turning_time(problem: Problem, window: float) -> float:
-    """When the axis first passes the horizontal, s; nan if it has not in the window, or until it
-    sticks.
+    """Return when the axis first passes the horizontal, s.
+
+    nan is returned if it does not do so within the window, or before the top sticks.
     """
     return float(simulate(problem, window, samples=2, phase_limit=1)["turns_over"])
 

@@ -1,6 +1,4 @@
-"""The report's printed equations, put to numbers: of motion, of rotation, and of the steady
-state.
-"""
+"""The report's printed equations, evaluated: of motion, of rotation, and of the steady state."""
 
 import math
 from typing import Any
@@ -24,14 +22,17 @@ from tippetop.run import simulate
 
 _INSTANT = 5.0
 _INSTANTS = np.array([1.0, 3.0, _INSTANT, 6.0, 8.0])
+"""Instants at which equations of motion are compared with a run, s."""
+
 _STEP = 3e-5
 _STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / (12.0 * _STEP)
+"""Coefficients of the fourth-order difference quotient at five points, `_STEP` (s) apart."""
 
 
 @experiment("printed-equations", "the equations of section 2.2 along a run", 0.3)
 def _printed(quick: bool) -> xr.Dataset:
-    """Return the equations of section 2.2 as printed, as listed and as they are, at instants of the
-    main run.
+    """Return differences between the equations of section 2.2 and the main run, at several
+    instants.
     """
     problem = on_table(report_problem())
     top = problem.top
@@ -63,7 +64,7 @@ def _printed(quick: bool) -> xr.Dataset:
 def _at_one_instant(
     run: xr.Dataset, states: Array, published: Array, rates: Array, problem: Problem
 ) -> dict[str, object]:
-    """Return the two misprinted equations at the instant that stands for all."""
+    """Return the two misprinted equations as printed and corrected, at `_INSTANT`."""
     k, body = int(np.argmax(_INSTANTS == _INSTANT)), problem.body
     y, listed = states[:, k], published[:, k]
     c, s = math.cos(y[0]), math.sin(y[0])
@@ -98,9 +99,7 @@ def _at_one_instant(
 
 
 def _arm_miss(now: xr.Dataset, top: Top) -> float:
-    """How far the report's a = R (sin(theta) 1 + (alpha - cos(theta)) 3) is from the contact
-    vector, in R.
-    """
+    """Return the largest component of the report's a minus the contact vector, over R."""
     axis, momentum, velocity = (
         _vector(now, name) for name in ("axis", "angular_momentum", "velocity")
     )
@@ -114,32 +113,29 @@ def _arm_miss(now: xr.Dataset, top: Top) -> float:
 
 
 def _arm_height(theta: Array, top: Top) -> Array:
-    """Return the vertical part of the report's a, m."""
+    """Return the vertical component of the report's a, m."""
     _, _, _, R, alpha, _, _ = published_parameters(top)
     s, c = np.sin(theta), np.cos(theta)
-    # Axis 1 is a right angle from the body's axis, in its vertical plane: its height is
-    # -sin(theta).
+    # Axis 1 is perpendicular to the body's axis in its vertical plane, with height -sin(theta).
     return np.asarray(R * (-s * s + (alpha - c) * c))
 
 
 def _torques(now: xr.Dataset, top: Top) -> dict[str, Any]:
-    """Return the contact torque about axis 2 by (2.7) and corrected, and the power that either
-    order of it has.
-    """
+    """Return contact torques about axis 2, printed and corrected, and the powers they imply."""
     axis, momentum, velocity = (
         _vector(now, name) for name in ("axis", "angular_momentum", "velocity")
     )
     touch = contact(axis, momentum, (velocity[0], velocity[1]), top)
     normal = touch.normal_force
     force: Vector = (normal * touch.traction.force[0], normal * touch.traction.force[1], normal)
-    whole: Vector = (force[0], force[1], normal - top.mass * top.gravity)
+    total: Vector = (force[0], force[1], normal - top.mass * top.gravity)
     second = scale(1.0 / math.hypot(*axis[:2]), cross(VERTICAL, axis))
     omega = angular_velocity(axis, momentum, top)
     driving = dot(force, velocity)
     return {
         "second_axis": second,
-        "printed": dot(cross(whole, touch.arm), second),
-        "turned": dot(cross(touch.arm, whole), second),
+        "printed": dot(cross(total, touch.arm), second),
+        "turned": dot(cross(touch.arm, total), second),
         "corrected": dot(cross(touch.arm, force), second),
         "power_printed": driving + dot(cross(force, touch.arm), omega),
         "power": driving + dot(cross(touch.arm, force), omega),
@@ -153,8 +149,8 @@ def _vector(now: xr.Dataset, name: str) -> Vector:
 
 @experiment("steady-bodies", "steady states of several bodies", 0.5)
 def _steady(quick: bool) -> xr.Dataset:
-    """Where several bodies end up between upright and inverted, and how well (2.16) and (2.17) hold
-    there.
+    """Return final states of several bodies between upright and inverted, and residuals of (2.16),
+    (2.17).
     """
     m, R = REPORT.mass, float(REPORT.surface.size)
     tops = [
@@ -206,7 +202,7 @@ def _steady(quick: bool) -> xr.Dataset:
 
 
 def _residuals(y: list[float], top: Top) -> tuple[float, float]:
-    """What is left of (2.17), rad/s, and of (2.16), relative to its terms, in this state."""
+    """Return the residuals of (2.17), rad/s, and of (2.16), relative to its terms, in a state."""
     theta, _, _, precession, spin, _, _ = y
     _, I1, I3, R, alpha, _, _ = published_parameters(top)
     c, s = math.cos(theta), math.sin(theta)
@@ -217,20 +213,18 @@ def _residuals(y: list[float], top: Top) -> tuple[float, float]:
         normal * R * alpha * (1 - alpha * c),
         -I1 * alpha * precession**2 * s**2,
     )
-    left = max(abs(sum(line)) / max(abs(term) for term in line) for line in (first, fourth))
-    return left_of_217(theta, precession, spin, alpha), left
+    residual = max(abs(sum(line)) / max(abs(term) for term in line) for line in (first, fourth))
+    return residual_of_217(theta, precession, spin, alpha), residual
 
 
-def left_of_217(theta: Scalar, phi_dot: Scalar, omega3: Scalar, alpha: float) -> Scalar:
-    """What is left of (2.17), omega3 = phi' (cos(theta) - alpha), rad/s."""
+def residual_of_217(theta: Scalar, phi_dot: Scalar, omega3: Scalar, alpha: float) -> Scalar:
+    """Return the residual of (2.17), omega3 = phi' (cos(theta) - alpha), rad/s."""
     return omega3 - phi_dot * (np.cos(theta) - alpha)
 
 
 @experiment("rotation", "the equations of section 2.1 at random states", 0.1)
 def _rotation(quick: bool) -> xr.Dataset:
-    """Return section 2.1 at random states: the angular velocity by (2.1) and (2.2), and Euler's
-    equations (2.6).
-    """
+    """Return errors of the equations of section 2.1 at random states: (2.1), (2.2) and (2.6)."""
     random = np.random.default_rng(1)
     misses = [
         _rotation_misses(random.uniform(0.3, 1.3, 3), random.normal(size=3), random.normal(size=3))
@@ -243,8 +237,8 @@ def _rotation(quick: bool) -> xr.Dataset:
 
 
 def _rotation_misses(angles: Array, rates: Array, torque: Array) -> tuple[float, float, float]:
-    """Return the relative errors of (2.1), (2.2) and (2.6) for these Euler angles, their rates and
-    a torque.
+    """Return the relative errors of (2.1), (2.2) and (2.6) for Euler angles, their rates and a
+    torque.
     """
     h, inertia = 1e-4, np.array([2.0, 3.0, 4.0])
 
@@ -276,11 +270,11 @@ def _rotation_misses(angles: Array, rates: Array, torque: Array) -> tuple[float,
 
     gained = (momentum(h) - momentum(-h)) / (2.0 * h)
     return (
-        _part(by_axes - omega, omega),
-        _part(np.array(by_components) - omega, omega),
-        _part(gained - torque, torque),
+        _relative_size(by_axes - omega, omega),
+        _relative_size(np.array(by_components) - omega, omega),
+        _relative_size(gained - torque, torque),
     )
 
 
-def _part(difference: Array, whole: Array) -> float:
-    return float(np.abs(difference).max() / np.abs(whole).max())
+def _relative_size(difference: Array, total: Array) -> float:
+    return float(np.abs(difference).max() / np.abs(total).max())

@@ -1,4 +1,4 @@
-"""Launches that leave the table: from which spin on, and how they go on."""
+"""Launches that leave the table: the least spin that does, and the flights after it."""
 
 import math
 from collections.abc import Callable
@@ -14,17 +14,17 @@ from tippetop.report.quoted import MU, TILT
 from tippetop.run import simulate
 
 LONG_WINDOW = 100.0
-"""Length of the longer runs in which a lift-off is looked for, s."""
+"""Length of the longer runs that are searched for a lift-off, s."""
 
 FLIGHTS_WINDOW = 60.0
-"""Length of the runs that are followed through all their flights, s."""
+"""Length of the runs through all flights, s."""
 
 SAMPLES_PER_SECOND = 100
-"""Samples a second of these runs."""
+"""Number of samples per second of the runs through all flights."""
 
 
 def leaves_at(problem: Problem, window: float) -> float:
-    """When a launch first leaves the table, s; nan if it does not within the window."""
+    """Return when a launch first leaves the table, s; nan if it does not within the window."""
     return float(simulate(stopping(problem), window, samples=2)["first_lift_off"])
 
 
@@ -35,13 +35,12 @@ def first_onset(
     window: float,
     accuracy: float,
 ) -> float:
-    """Return the least spin that leaves the table, rad/s: the first of a scan that does, then
-    halving.
+    """Return the least spin that leaves the table, rad/s, from a scan refined by halving.
 
     `times` gives the time of the first lift-off at a spin, s, nan if there is none; `scanned` are
-    those of the increasing `spins`, rad/s. A lift-off may come as late as the `window`, s;
-    `accuracy` is the largest error, rad/s. nan if none of the scan lifts off, or already the first
-    does.
+    these times at the increasing `spins`, rad/s. A lift-off counts up to the time `window`, s;
+    `accuracy` is the largest error, rad/s. nan is returned if no spin of the scan lifts off, or
+    already the first does.
     """
     lifting = np.flatnonzero(scanned <= window)
     if not len(lifting) or lifting[0] == 0:
@@ -54,8 +53,8 @@ def first_onset(
 def onset_between(
     times: Callable[[float], float], low: float, high: float, window: float, accuracy: float
 ) -> float:
-    """Return the onset between a spin that stays on the table and one that leaves it, by halving,
-    rad/s.
+    """Return the onset of lift-off (rad/s) between a spin that stays and one that leaves, by
+    halving.
     """
     while high - low > 2.0 * accuracy:
         middle = 0.5 * (low + high)
@@ -64,8 +63,8 @@ def onset_between(
 
 
 def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: bool) -> xr.Dataset:
-    """Return times of the first lift-off over spin and another parameter, and the onset for each of
-    its values.
+    """Return times of the first lift-off against spin and another field, and the onset for its
+    values.
     """
     name = field.partition(".")[2]
     spins = np.arange(60.0, 600.1, 120.0 if quick else 30.0)
@@ -101,19 +100,18 @@ def _over_tilt(quick: bool) -> xr.Dataset:
 
 
 def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
-    """Return launches with these spins, rad/s, on a table that only pushes, followed through all
-    their flights.
+    """Return launches with these spins (rad/s) on a table that only pushes, with all their flights.
 
-    Variables over restitution and spin: what `flight_readings` gives, and first_lift_off, s.
+    Variables over restitution and spin: those of `flight_readings`, and first_lift_off, s.
     """
     samples = int(SAMPLES_PER_SECOND * FLIGHTS_WINDOW) + 1
     problems = [unilateral(report_problem(spin), restitution) for spin in spins]
     runs = [simulate(problem, FLIGHTS_WINDOW, samples=samples) for problem in problems]
     read = [flight_readings(run).assign(first_lift_off=run["first_lift_off"]) for run in runs]
-    whole = dataset(
+    data = dataset(
         {"spin": list(spins), "restitution": [restitution]}, {"window_s": FLIGHTS_WINDOW}
     )
-    return whole.assign(xr.concat(read, "spin").expand_dims("restitution"))
+    return data.assign(xr.concat(read, "spin").expand_dims("restitution"))
 
 
 @experiment("flights", "launches followed through their flights", 11.0)

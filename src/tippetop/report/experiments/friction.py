@@ -1,6 +1,4 @@
-"""How long the top takes to turn over, as a function of friction: Fig. 7 and what is said around
-it.
-"""
+"""Time of turning over against friction: Fig. 7 and the statements around it."""
 
 import math
 from typing import NamedTuple
@@ -18,32 +16,35 @@ from tippetop.report.listing import listing_run
 from tippetop.report.quoted import NORMAL_FRICTION, SPIN
 from tippetop.report.readings import SETTLED, crossings, flip_time
 
-OTHER_SPINS = (100.0, 115.0, 130.0, 145.0, 160.0)
-"""Other spins than that of its main run that the report, which does not say it, may have used for
-its Fig. 7, rad/s: all of them turn the top over without lifting it at mu = 0.3 s/m.
+FIG_7_SPINS = (100.0, 115.0, 130.0, 145.0, 160.0)
+"""Spins besides that of its main run that the report may have used for its Fig. 7, rad/s.
+
+The report does not state it. At mu = 0.3 s/m all of them turn the top over without lifting it.
 """
 
 
 class Times(NamedTuple):
-    """When tops turn over, s, of every spin with every friction coefficient, shape (spins, mu)."""
+    """Times of turning over, s, of every spin with every friction coefficient, shape (spins,
+    mu).
+    """
 
     flip: Array
-    """By the report's definition; nan where a run became singular or did not turn the top over."""
+    """By the report's definition; nan if a run became singular or did not turn the top over."""
     turning: Array
-    """When the axis first passes the horizontal; nan where it does not."""
+    """When the axis first passes the horizontal; nan if it does not."""
 
 
 def converged_times(spins: Array, mu: Array, window: float = WINDOW) -> Times:
-    """Return converged times, on a table that pulls."""
-    found = swept(on_table(report_problem()), {"launch.spin": spins, "friction.mu": mu}, window)
-    over = found["final_theta"] > math.pi / 2
-    return Times(found["arrives"].where(over).values, found["turns_over"].values)
+    """Return the converged times, on a table that pulls."""
+    runs = swept(on_table(report_problem()), {"launch.spin": spins, "friction.mu": mu}, window)
+    over = runs["final_theta"] > math.pi / 2
+    return Times(runs["arrives"].where(over).values, runs["turns_over"].values)
 
 
 def listing_times(spins: Array, mu: Array) -> Times:
-    """Return the same by the report's method; nan if it gave up."""
-    found = [[_listing_times(float(spin), float(m)) for m in mu] for spin in spins]
-    return Times(*np.moveaxis(np.array(found), 2, 0))
+    """Return the times by the report's method; nan where it gave up."""
+    times = [[_listing_times(float(spin), float(m)) for m in mu] for spin in spins]
+    return Times(*np.moveaxis(np.array(times), 2, 0))
 
 
 def _listing_times(spin: float, mu: float) -> tuple[float, float]:
@@ -59,10 +60,10 @@ _TURNING = ("s", "first tilt of more than pi/2")
 
 
 def power_law(mu: Array, times: Array) -> tuple[float, float, float]:
-    """Fit t = a mu^b; return a, b, and a correlation.
+    """Return a and b of the fit t = a mu^b, and a correlation.
 
-    The fit is that of the curve itself, by least squares; the correlation is Pearson's, of log t
-    with log mu. They are nan where there are no three positive times, of coefficients that differ.
+    The fit is by least squares of t; the correlation is Pearson's, of log t with log mu. All are
+    nan unless there are three positive times for friction coefficients that differ.
     """
     sound = np.isfinite(times)
     x, y = mu[sound], times[sound]
@@ -74,7 +75,7 @@ def power_law(mu: Array, times: Array) -> tuple[float, float, float]:
 
 
 def _fitted(spins: Array, count: int) -> xr.Dataset:
-    """Return times by both methods over the report's range of friction, with fits a mu^b at every
+    """Return times by both methods over the report's range of friction, with fits a mu^b for every
     spin.
     """
     mu = np.linspace(*NORMAL_FRICTION, count)
@@ -94,21 +95,21 @@ def _fitted(spins: Array, count: int) -> xr.Dataset:
 
 @experiment("flip-times", f"flip time against friction, at {SPIN:g} rad/s", 2.0)
 def _flip_times(quick: bool) -> xr.Dataset:
-    told = {"spin_rad_per_s": SPIN, "within_rad": SETTLED, "window_s": WINDOW}
-    return _fitted(np.array([SPIN]), 7 if quick else 17).isel(spin=0, drop=True).assign_attrs(told)
+    attrs = {"spin_rad_per_s": SPIN, "within_rad": SETTLED, "window_s": WINDOW}
+    times = _fitted(np.array([SPIN]), 7 if quick else 17)
+    return times.isel(spin=0, drop=True).assign_attrs(attrs)
 
 
 @experiment("flip-times-spins", "the same at other spins", 7.0)
-def _other_spins(quick: bool) -> xr.Dataset:
-    return _fitted(np.array(OTHER_SPINS[:3:2] if quick else OTHER_SPINS), 5 if quick else 9)
+def _flip_times_of_spins(quick: bool) -> xr.Dataset:
+    return _fitted(np.array(FIG_7_SPINS[:3:2] if quick else FIG_7_SPINS), 5 if quick else 9)
 
 
 @experiment("flip-times-wide", "flip time over three decades of friction", 2.5)
 def _wide(quick: bool) -> xr.Dataset:
     mu = np.geomspace(0.03, 10.0, 9) if quick else np.geomspace(0.01, 10.0, 28)
     spins = np.array([100.0, SPIN])
-    # Long enough to turn over and to settle, which strong friction delays; and the same for
-    # neighbours, so that they can be followed together.
+    # Strong friction delays settling. Powers of two let neighbours run as one sweep.
     needed = np.maximum(3.0 / mu + 4.0, 30.0 * mu)
     windows = WINDOW * 2.0 ** np.ceil(np.log2(np.maximum(1.0, needed / WINDOW)))
     times = np.empty((len(spins), len(mu)))
@@ -130,9 +131,9 @@ def _wide(quick: bool) -> xr.Dataset:
 def _extremes(quick: bool) -> xr.Dataset:
     mu = np.array([0.0, 0.3, 1.0, 100.0, *([] if quick else [300.0]), 1000.0])
     window = 0.5 * WINDOW if quick else WINDOW
-    found = swept(on_table(report_problem(SPIN)), {"friction.mu": mu}, window)
+    runs = swept(on_table(report_problem(SPIN)), {"friction.mu": mu}, window)
     return dataset(
         {"mu": mu},
         {"spin_rad_per_s": SPIN, "window_s": window},
-        turning_time=(found["turns_over"].values, *_TURNING, "mu"),
+        turning_time=(runs["turns_over"].values, *_TURNING, "mu"),
     )

@@ -1,4 +1,4 @@
-"""The numerical methods: their order, and what a stiff launch costs them."""
+"""Numerical methods: their orders, and their cost for stiff launches."""
 
 import math
 from collections.abc import Sequence
@@ -32,8 +32,8 @@ LAUNCHES = (
     (10.0, TILT, ROUGH_FRICTION),
     (SPIN, TILT, ROUGH_FRICTION),
 )
-"""Spins (rad/s), tilts (rad) and friction coefficients (s/m) of the launches the methods are
-compared on.
+"""Spins (rad/s), tilts (rad) and friction coefficients (s/m) of the launches that compare
+methods.
 """
 
 _SPAN = 3.0
@@ -41,7 +41,7 @@ _SPAN = 3.0
 
 @experiment("order", "order of accuracy of the two Runge-Kutta formulas", 1.0)
 def _order(quick: bool) -> xr.Dataset:
-    # Nothing is special about this launch, so that no term of an error vanishes by symmetry.
+    # This launch has no symmetry by which a term of an error could vanish.
     changes = {"launch.tilt_rate": 2.0, "launch.precession": 6.0, "launch.slip": (0.1, 0.05)}
     problem, span = on_table(report_problem(80.0, tilt=0.7).replace(changes)), 0.1
     steps = span / np.array([50, 100, 200] if quick else [50, 100, 200, 400])
@@ -75,9 +75,9 @@ def _order(quick: bool) -> xr.Dataset:
     }
     coarse = 2.0 / np.array([20.0, 40.0, 80.0, 160.0])
     printed = {
-        f"printed{suffix}_{part}": found
+        f"printed{suffix}_{part}": values
         for suffix, last in (("", 0.0), ("_mended", 1.0))
-        for part, found in zip(
+        for part, values in zip(
             _PARTS, np.array([_printed_errors(h, last) for h in coarse]).T, strict=True
         )
     }
@@ -104,9 +104,10 @@ _PARTS = ("in_all", "in_a_step")
 
 
 def _printed_errors(step: float, last: float) -> tuple[float, float]:
-    """Return errors of (B.1) on y' = y cos(1 + t), y(0) = 1, after 2 s and in one step.
+    """Return the errors of (B.1) on y' = y cos(1 + t), y(0) = 1, after 2 s and after one step.
 
-    Its last stage is taken at this part of the step: 0 as printed, 1 as it should be.
+    `last` is the share of the step at which the last stage is evaluated: 0 as printed, 1 as it
+    should be.
     """
 
     def rate(y: float, t: float) -> float:
@@ -129,7 +130,7 @@ def _distance(axis: Array, run: xr.Dataset) -> float:
 
 
 class _Counted:
-    """The listing's right-hand side, counting every evaluation, those for a Jacobian included."""
+    """Right-hand side of the listing that counts its evaluations, those for Jacobians included."""
 
     def __init__(self, problem: Problem) -> None:
         self.motion = listing_rates(problem)
@@ -141,16 +142,16 @@ class _Counted:
 
 
 class Effort(NamedTuple):
-    """What a method needs and gives at the report's tolerances."""
+    """Cost and result of a method at the report's tolerances."""
 
     evaluations: int
-    """Evaluations of the right-hand side; -1 where the method gives up."""
+    """Number of evaluations of the right-hand side; -1 if the method gives up."""
     tilt: float
-    """The tilt that it ends at, rad."""
+    """Tilt at the end, rad."""
 
 
 def effort(problem: Problem, method: str, span: float) -> Effort:
-    """What a method makes of a launch."""
+    """Return the cost and the result of a method for a launch."""
     rates = _Counted(problem)
     start = launch_state(problem)
     if method == "ode45":
@@ -194,16 +195,16 @@ def _stiffness(quick: bool) -> xr.Dataset:
 @experiment("theta-mod-pi", "the listing's right-hand side at the poles", 0.1)
 def _jump(quick: bool) -> xr.Dataset:
     problem = report_problem()
-    tiny, rest = 1e-9, (3.0, 0.0, 10.0, SPIN, 0.05, 0.05)
+    tiny, state = 1e-9, (3.0, 0.0, 10.0, SPIN, 0.05, 0.05)
 
     def beside(motion: Motion) -> list[float]:
-        return [float(motion.rates((side * tiny, *rest), ())[6]) for side in (-1, 1)]
+        return [float(motion.rates((side * tiny, *state), ())[6]) for side in (-1, 1)]
 
     before, after = beside(listing_rates(problem))
     true = beside(listing_rates(problem, wrap=None))
     return dataset(
         {},
-        {"state": f"theta = -/+{tiny:g}; theta', phi, phi', omega3, v_x, v_y = {rest}"},
+        {"state": f"theta = -/+{tiny:g}; theta', phi, phi', omega3, v_x, v_y = {state}"},
         jump_listing=(abs(after - before), "m s-2", "jump of the rate of v_y with theta modulo pi"),
         jump=(abs(true[1] - true[0]), "m s-2", "its change without the modulo"),
         size=(abs(after), "m s-2", "the rate of v_y itself"),

@@ -1,6 +1,4 @@
-"""Patches that slip and drill at once: when the top turns over, and which viscous friction they
-stand for.
-"""
+"""Contact patches that slip and drill: times of turning over, and equivalent viscous friction."""
 
 import math
 
@@ -24,10 +22,10 @@ MU = 0.3
 """Friction coefficient of the map."""
 
 CREEP = {"hertz": 3.0 * math.pi / 8.0, "ellipsoidal": 1.0 / ELLIPSOIDAL_RADIUS}
-"""Viscous coefficient of a patch that drills, in mu / (R omega), by its pressure."""
+"""Viscous coefficient of a drilling patch in units of mu / (R omega), by its pressure."""
 
 MAP_WINDOW = 6.0
-"""How long the tops of the map are followed, s."""
+"""Length of the runs of the map, s."""
 
 SPIN = 100.0
 """Spin of the launches that are compared with viscous friction, rad/s."""
@@ -36,7 +34,7 @@ FRICTIONS = (0.1, 0.2, 0.4)
 """Friction coefficients of the patches that are compared with viscous friction."""
 
 ALONE = LEINE.replace({"body": LEINE_GLOCKER.model_dump()})
-"""Their launch with the stem left out."""
+"""Launch of Leine and Glocker's top without its stem."""
 
 
 def patch(mu: float, radius: float) -> ContensouFriction:
@@ -45,15 +43,13 @@ def patch(mu: float, radius: float) -> ContensouFriction:
 
 
 def viscous_coefficient(mu: float, radius: float, spin: float) -> float:
-    """Return the viscous coefficient, s/m, of such a patch that drills at this rate: mu / (rho
-    omega).
-    """
+    """Return the viscous coefficient of a drilling patch for small slip, s/m: mu / (rho omega)."""
     return CREEP["ellipsoidal"] * mu / (radius * spin)
 
 
 @experiment("dry-patch", "turning over by patch radius and spin", 5.0)
 def _map(quick: bool) -> xr.Dataset:
-    """When the report's top turns over, if it does, by the radius of its patch and its spin."""
+    """Return the times of turning over against patch radius and spin."""
     radii = np.geomspace(2e-4, 6e-3, 5) if quick else np.geomspace(1e-4, 6e-3, 12)
     spins = np.linspace(25.0, 115.0, 4) if quick else np.linspace(34.0, 115.0, 10)
     grid = [
@@ -76,9 +72,7 @@ def _map(quick: bool) -> xr.Dataset:
 
 @experiment("dry-viscous", "patches against viscous friction", 2.0)
 def _viscous(quick: bool) -> xr.Dataset:
-    """When patches turn the top over, and viscous friction with their coefficient for small
-    slip.
-    """
+    """Return the times of turning over on patches and on the equivalent viscous friction."""
     coefficients = np.geomspace(1.0, 40.0, 4 if quick else 10)
     base = report_problem(SPIN)
 
@@ -114,10 +108,10 @@ def _viscous(quick: bool) -> xr.Dataset:
 
 
 def _growth_ratios() -> list[list[float]]:
-    """Return the growth rates of the vertical spins on a patch of 0.5 mm, over those with its
-    viscous coefficient.
+    """Return growth rates of the vertical spins on a patch of 0.5 mm over those on viscous
+    friction.
     """
-    found = []
+    ratios = []
     for pressure, creep in CREEP.items():
         frictions = (
             ContensouFriction(mu=MU, patch_radius=5e-4, pressure=pressure),
@@ -131,5 +125,5 @@ def _growth_ratios() -> list[list[float]]:
             ]
             for top in tops
         )
-        found.append([one / other for one, other in zip(dry, viscous, strict=True)])
-    return found
+        ratios.append([on_patch / on_film for on_patch, on_film in zip(dry, viscous, strict=True)])
+    return ratios

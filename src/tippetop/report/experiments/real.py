@@ -1,4 +1,4 @@
-"""Tops and other toys as they are: stems that the table strikes, an egg, a disk, and two balls."""
+"""Real tops and other toys: stems that strike the table, an egg, a disk and two balls."""
 
 import math
 
@@ -19,49 +19,52 @@ from tippetop.problem.presets import (
 from tippetop.problem.problem import Problem
 from tippetop.problem.shapes import Shape, Sphere
 from tippetop.report.experiment import dataset, experiment
-from tippetop.report.experiments.runs import happenings
+from tippetop.report.experiments.runs import event_times
 from tippetop.run import simulate
 from tippetop.theory.resting_center import RestingCenter, resting_center
 from tippetop.theory.stem import jellett_about, least_jellett_to_stand
+
+GRAVITY = 9.81
+"""Gravity in published experiments and computations, m/s^2."""
 
 LEINE = Problem(
     body=LEINE_GLOCKER_STEM,
     friction=ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal"),
     launch=Launch(tilt=0.1, spin=180.0, velocity=(0.0, 0.0, 0.0)),
-    gravity=9.81,
+    gravity=GRAVITY,
 )
 """The launch of Leine and Glocker (2003), with their stem."""
 
 LEINE_WINDOW = 8.0
-"""How long they follow it, s."""
+"""Length of Leine and Glocker's run, s."""
 
 REACH = 0.03
 """Height of the stem's end above the centre of mass, the same for all stems, m."""
 
 STEM_WINDOW = 20.0
-"""How long tops with stems are followed, s."""
+"""Length of the runs of tops with stems, s."""
 
 UPRIGHT_ON_STEM = 0.1
-"""Tilt short of pi at the end, rad, within which a top stands on its stem."""
+"""Distance of the final tilt from pi within which a top stands on its stem, rad."""
 
 EGG_MU = 1.0
 """Viscous friction under the egg, s/m."""
 
 EGG_WINDOW = 8.0
-"""How long eggs are followed, s."""
+"""Length of the runs of eggs, s."""
 
 ROUGH = CoulombFriction(mu=1.0)
-"""Friction that lets nothing slip here."""
+"""Friction on which the disk and the balls never slip."""
 
 BALL_TILTS = (1.2, 1.55)
-"""Tilts of the hurricane balls, rad: below a right angle, at which the other ball touches too."""
+"""Range of tilts of the hurricane balls, rad: at a right angle the other ball touches too."""
 
 ROLLING_WINDOW = 0.2
-"""How long steady rolling is followed, s: some turns."""
+"""Length of the runs of steady rolling, s: some turns."""
 
 
 def first_of(times: np.ndarray, after: float = 0.0) -> float:
-    """Return the first of some times after one, s; nan if there is none."""
+    """Return the first of some times after `after`, s; nan if there is none."""
     later = times[times > after]
     return float(later[0]) if len(later) else math.nan
 
@@ -72,43 +75,44 @@ EVENTS = {
     "both": "beginning of double contact",
     "apart": "end of double contact",
 }
-"""What happens to Leine and Glocker's top."""
+"""Events of Leine and Glocker's top."""
 
 
-def events_of(run: xr.Dataset) -> dict[str, float]:
-    """When it happens, s."""
-    both = first_of(happenings(run, "double contact"))
-    stem, back = (first_of(happenings(run, "touchdown", surface)) for surface in (1, 0))
+def contact_events(run: xr.Dataset) -> dict[str, float]:
+    """Return the times of `EVENTS` in a run, s."""
+    both = first_of(event_times(run, "double contact"))
+    stem, back = (first_of(event_times(run, "touchdown", surface)) for surface in (1, 0))
     return {
         "stem": stem,
         "back": back,
         "both": both,
-        "apart": first_of(happenings(run, "opening"), both),
+        "apart": first_of(event_times(run, "opening"), both),
     }
 
 
 @experiment("real-leine", "Leine and Glocker's top, stem and all", 8.0)
 def _leine(quick: bool) -> xr.Dataset:
-    """Return Leine and Glocker's top: when the stem strikes, when it falls back, and how long it
-    rests on both.
+    """Return Leine and Glocker's top: first touch of the stem, fall back, and contact of both
+    surfaces.
     """
     pressures = ["ellipsoidal"] if quick else ["ellipsoidal", "hertz"]
     problems = [LEINE.replace({"friction.pressure": name}) for name in pressures]
     runs = [simulate(problem, LEINE_WINDOW, samples=801) for problem in problems]
-    found, errors = [events_of(run) for run in runs], [float(run["energy_error"]) for run in runs]
+    times = [contact_events(run) for run in runs]
+    errors = [float(run["energy_error"]) for run in runs]
     return dataset(
         {"pressure": pressures, "time": runs[0]["time"].values},
         theta=([run["theta"].values for run in runs], "rad", "tilt", "pressure", "time"),
         energy_error=(errors, "1", "energy", "pressure"),
         **{
-            name: ([one[name] for one in found], "s", long, "pressure")
+            name: ([each[name] for each in times], "s", long, "pressure")
             for name, long in EVENTS.items()
         },
     )
 
 
 def with_stem(radius: float) -> Body:
-    """Return the report's top with a stem that ends in a sphere of this radius, m, at the same
+    """Return the report's top with a stem that ends in a sphere of this radius, m, at a fixed
     height.
     """
     bowl, _ = REPORT_STEM.shapes
@@ -118,15 +122,15 @@ def with_stem(radius: float) -> Body:
 
 @experiment("real-stems", "which stems let the report's top stand", 2.0)
 def _stems(quick: bool) -> xr.Dataset:
-    """Return whether the report's top stands on stems of several tips, and Jellett's integral when
-    these strike.
+    """Return final tilts of the report's top on stems, and Jellett's integral when they first
+    touch.
     """
     radii = np.array([0.003, 0.006, 0.009, 0.012]) if quick else np.arange(0.002, 0.0141, 0.001)
     final, needed, brought, struck = [], [], [], []
     for radius in radii.tolist():
         problem = report_problem().replace({"body": with_stem(radius)})
         run = simulate(problem, STEM_WINDOW, samples=2001)
-        touch = first_of(happenings(run, "touchdown", 1))
+        touch = first_of(event_times(run, "touchdown", 1))
         before = run.isel(time=int(np.searchsorted(run["time"].values, touch)) - 1)
         axis, momentum = (
             tuple(before[name].values.tolist()) for name in ("axis", "angular_momentum")
@@ -141,22 +145,20 @@ def _stems(quick: bool) -> xr.Dataset:
         {"window_s": STEM_WINDOW, "upright_rad": UPRIGHT_ON_STEM, "reach_m": REACH},
         final_theta=(final, "rad", "tilt at the end", over),
         jellett=(brought, "kg m3 s-1", "Jellett's integral about the tip at its touch", over),
-        jellett_needed=(needed, "kg m3 s-1", "what it takes to stand", over),
+        jellett_needed=(needed, "kg m3 s-1", "least Jellett's integral to stand on the tip", over),
         touch=(struck, "s", "first touch of the stem", over),
     )
 
 
 @experiment("real-egg", "a hard-boiled egg that rises", 4.0)
 def _egg(quick: bool) -> xr.Dataset:
-    """Return a hard-boiled egg that is spun on its side: how far it rises, and whether it leaves
-    the table.
-    """
+    """Return tilts and lift-offs of a hard-boiled egg that is spun on its side at several rates."""
     rates = [60.0, 200.0] if quick else [40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 200.0]
     friction = ViscousFriction(mu=EGG_MU)
     launches = [Launch(tilt=1.5, spin=0.0, precession=rate) for rate in rates]
     problems = [Problem(body=EGG, friction=friction, launch=launch) for launch in launches]
     runs = [simulate(problem, EGG_WINDOW, samples=401) for problem in problems]
-    lifts = [first_of(happenings(run, "lift-off")) for run in runs]
+    lifts = [first_of(event_times(run, "lift-off")) for run in runs]
     return dataset(
         {
             "rate": (rates, "rad s-1", "rate of turning about the vertical at launch"),
@@ -169,13 +171,14 @@ def _egg(quick: bool) -> xr.Dataset:
 
 
 def rolling(body: Body, tilt: float) -> tuple[RestingCenter, xr.Dataset] | None:
-    """How a body rolls with its centre at rest, and a run of it; None where it cannot."""
-    problem = Problem(body=body, friction=ROUGH, launch=Launch(tilt=tilt, spin=0.0), gravity=9.81)
-    found = resting_center(tilt, problem.top)
-    if found is None:
+    """Return the rolling of a body with its centre at rest, and a run of it; None if it cannot."""
+    launch = Launch(tilt=tilt, spin=0.0)
+    problem = Problem(body=body, friction=ROUGH, launch=launch, gravity=GRAVITY)
+    motion = resting_center(tilt, problem.top)
+    if motion is None:
         return None
-    turning = problem.replace({"launch.spin": found.spin, "launch.precession": found.precession})
-    return found, simulate(turning, ROLLING_WINDOW, samples=41)
+    rolls = problem.replace({"launch.spin": motion.spin, "launch.precession": motion.precession})
+    return motion, simulate(rolls, ROLLING_WINDOW, samples=41)
 
 
 @experiment("real-rolling", "Euler's disk and hurricane balls", 2.0)
@@ -183,25 +186,25 @@ def _rolling(quick: bool) -> xr.Dataset:
     tilts = {"disk": [0.1, 0.3, 0.5] if quick else np.linspace(0.05, 0.6, 12).tolist()}
     tilts["balls"] = np.linspace(*BALL_TILTS, 4 if quick else 12).tolist()
     bodies = {"disk": EULER_DISK, "balls": HURRICANE_BALLS}
-    found: dict[str, list[tuple[float, float, float, float]]] = {name: [] for name in bodies}
+    measured: dict[str, list[tuple[float, float, float, float]]] = {name: [] for name in bodies}
     for name, body in bodies.items():
         for tilt in tilts[name]:
             rolls = rolling(body, tilt)
             if rolls is not None:
                 motion, run = rolls
-                measured = float(run["phi_dot"].mean())
+                precession = float(run["phi_dot"].mean())
                 drift = float(np.abs(run["theta"] - tilt).max())
-                found[name].append((tilt, motion.precession, measured, drift))
+                measured[name].append((tilt, motion.precession, precession, drift))
     columns = {
         f"{name}_{label}": (list(values), *meaning, name)
-        for name, rows in found.items()
+        for name, rows in measured.items()
         for (label, *meaning), values in zip(_COLUMNS, zip(*rows, strict=True), strict=True)
     }
-    gravity, radius = 9.81, float(EULER_DISK.shapes[0].surface.size)
-    thin = np.sqrt(4.0 * gravity / (radius * np.sin([row[0] for row in found["disk"]])))
+    radius = float(EULER_DISK.shapes[0].surface.size)
+    thin = np.sqrt(4.0 * GRAVITY / (radius * np.sin([row[0] for row in measured["disk"]])))
     return dataset(
         {},
-        {"ball_radius_m": float(HURRICANE_BALLS.shapes[0].surface.size), "gravity": gravity},
+        {"ball_radius_m": float(HURRICANE_BALLS.shapes[0].surface.size), "gravity": GRAVITY},
         disk_thin=(thin, "rad s-1", "precession of a thin disk", "disk"),
         **columns,
     )

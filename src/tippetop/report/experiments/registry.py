@@ -1,4 +1,4 @@
-"""All experiments by name: each module here registers its own."""
+"""All experiments by name: importing the modules of this folder registers them."""
 
 from tippetop.report.experiment import EXPERIMENTS as EXPERIMENTS
 from tippetop.report.experiments import (  # noqa: F401 - for what they register

@@ -19,6 +19,7 @@ from tippetop.report.readings import (
     first_below_zero,
     flip_time,
     longest_quiet,
+    turning_points,
 )
 from tippetop.run import simulate
 from tippetop.sweeps import Ending, Product, Sweep, compute
@@ -27,27 +28,28 @@ WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""
 
 ARRIVALS = np.linspace(SETTLED, 0.1, 46)
-"""Distances from the last tilt at which a top may be said to have arrived, rad; the report's is the
+"""Distances from the last tilt within which a top may have arrived, rad; the report's is the
 first.
 """
 
 WINDOWS = np.arange(9.0, WINDOW + 0.5)
-"""Lengths of the runs that may have given the end of the report's Fig. 5, s: from its time of
-arrival on.
-"""
+"""Lengths of runs that may have given the end of the report's Fig. 5, s: from its arrival on."""
 
 CAPPED_SPINS = (165.0, 175.0, 200.0)
-"""Spins of launches on which the lines that the listing has commented out are tried, rad/s."""
+"""Spins of launches for which the commented-out lines of the listing are tried, rad/s."""
 
 SLOW_SPINS = (10.0, 20.0, 25.0)
 """Spins of launches below omega_c1, rad/s."""
 
 SERIES = ("theta", "theta_dot", "phi_dot", "omega3", "slip_x", "slip_y", "normal_force", "energy")
+"""Variables that are compared over time."""
+
 _DRAWN = 10_000
+"""Smallest number of points in a series that figures show."""
 
 
 def on_table(problem: Problem) -> Problem:
-    """Return the problem with a table that pulls when it must, as in the report."""
+    """Return the problem with a table that also pulls, as in the report."""
     return problem.replace({"contact.liftoff": "ignore"})
 
 
@@ -62,24 +64,25 @@ def unilateral(problem: Problem, restitution: float = 0.0) -> Problem:
 
 
 SWEPT = 1e-12
-"""Relative error per step of the sweeps, as of single runs."""
+"""Relative error per step of sweeps, the same as of single runs."""
 
 
 def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WINDOW) -> xr.Dataset:
-    """What becomes of the launches that cross these values of fields; nan where that is not to be
-    had.
+    """Return the sweep of a problem over the crossed values of fields.
+
+    Results of launches that failed, were inaccurate or could not be set up are nan.
     """
-    found = compute(Sweep(problem, Product.of(values), window, SWEPT))
-    return found.where(~found["outcome"].isin([Ending.FAILED, Ending.INACCURATE, Ending.BAD]))
+    sweep = compute(Sweep(problem, Product.of(values), window, SWEPT))
+    return sweep.where(~sweep["outcome"].isin([Ending.FAILED, Ending.INACCURATE, Ending.BAD]))
 
 
-def happenings(run: xr.Dataset, kind: str, surface: int | None = None) -> np.ndarray:
-    """Return times of all events of a kind, to one surface or to any, s."""
+def event_times(run: xr.Dataset, kind: str, surface: int | None = None) -> np.ndarray:
+    """Return the times of all events of a kind, on one surface or on any, s."""
     which = run["event_kind"].values == kind
     if surface is not None:
         which &= run["event_surface"].values == surface
-    found: np.ndarray = run["event_time"].values[which]
-    return found
+    times: np.ndarray = run["event_time"].values[which]
+    return times
 
 
 _FLIGHT = {
@@ -87,26 +90,27 @@ _FLIGHT = {
     "impact_energy_lost": "energy_in_impacts",
     "final_theta": "final_theta_flight",
 }
-"""What some numbers of a run on a table that only pushes are called here."""
+"""Names in experiments of some numbers of a run on a table that only pushes."""
 
 
 def flight_readings(run: xr.Dataset) -> xr.Dataset:
-    """What is read off a run on a table that only pushes."""
-    found = run[["flights", "airborne_time", "highest_gap", *_FLIGHT]].rename(_FLIGHT)
+    """Return numbers of a run on a table that only pushes."""
+    readings = run[["flights", "airborne_time", "highest_gap", *_FLIGHT]].rename(_FLIGHT)
     last, rise = max(run["flight_end"].values, default=0.0), np.diff(run["energy"].values).max()
-    found["last_touchdown"] = variable(last, "s", "end of the last flight; 0 without one")
-    found["energy_rise"] = variable(rise, "J", "largest rise of the energy from sample to sample")
-    return found
+    readings["last_touchdown"] = variable(last, "s", "end of the last flight; 0 without one")
+    readings["energy_rise"] = variable(
+        rise, "J", "largest rise of the energy from sample to sample"
+    )
+    return readings
 
 
 def comparison(problem: Problem, quick: bool) -> xr.Dataset:
-    """One launch by the report's method and converged, on a table that pulls, with what is read off
-    both.
+    """Return one launch by the report's method and converged, with readings of both runs.
 
-    Variables over `time` are converged; those over `time_listing`, named ``..._listing``, are the
-    report's method at its own points of output. If the table would have to pull, there are also
-    variables over `time` named ``..._flight``, converged for a table that only pushes, and what is
-    read off them.
+    Variables over `time` are converged, for a table that pulls. Variables over `time_listing`,
+    named ``..._listing``, are by the report's method, at its points of output. If the table would
+    have to pull, variables over `time` named ``..._flight`` are converged for a table that only
+    pushes, and there are readings of that run.
     """
     problem = on_table(problem)
     true = simulate(problem, WINDOW, samples=20_001 if quick else 40_001)
@@ -125,37 +129,40 @@ def comparison(problem: Problem, quick: bool) -> xr.Dataset:
 
 
 def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
-    """Return the variables that are drawn, thinned to a number of points that a figure can show."""
+    """Return the variables that are drawn, thinned to the number of points that a figure can
+    show.
+    """
 
     def thin(run: xr.Dataset) -> xr.Dataset:
         return run.isel(time=slice(None, None, max(1, math.ceil(run.sizes["time"] / _DRAWN))))
 
-    data, other = thin(true[[*SERIES, "energy_published"]]).drop_attrs(deep=False), thin(listing)
+    data = thin(true[[*SERIES, "energy_published"]]).drop_attrs(deep=False)
+    thinned = thin(listing)
     published = "energy by the report's equation (4.1)"
     data["energy_published"].attrs = {
         "units": "J",
         "long_name": f"{published}, along the converged motion",
     }
-    every = math.ceil(listing.sizes["time"] / other.sizes["time"])
-    label = "time of the report's method" + (
-        f", one in {every} of its points of output" if every > 1 else ""
-    )
-    data["time_listing"] = variable(other["time"].values, "s", label, "time_listing")
+    every = math.ceil(listing.sizes["time"] / thinned.sizes["time"])
+    label = "time of the report's method"
+    if every > 1:
+        label += f", one in {every} of its points of output"
+    data["time_listing"] = variable(thinned["time"].values, "s", label, "time_listing")
     labels = {
         "energy": f"{published} and its method",
         "theta_integrated": "theta before it is wrapped",
     }
     for name in (*SERIES, "theta_integrated"):
-        told = data["theta" if name not in data else name].attrs
-        label = labels.get(name, f"{told['long_name']}, by the report's method")
-        data[f"{name}_listing"] = variable(other[name].values, told["units"], label, "time_listing")
+        attrs = data["theta" if name not in data else name].attrs
+        label = labels.get(name, f"{attrs['long_name']}, by the report's method")
+        data[f"{name}_listing"] = variable(
+            thinned[name].values, attrs["units"], label, "time_listing"
+        )
     return data
 
 
 def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
-    """Return the launch on a table that only pushes: what is drawn of it, its flights and what is
-    read off it.
-    """
+    """Return the launch on a table that only pushes: its series, its flights and its readings."""
     run = simulate(unilateral(problem), WINDOW, times=times)
     drawn: dict[str, object] = {}
     for name in ("theta", "normal_force", "energy"):
@@ -165,11 +172,11 @@ def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
         )
     for name in ("flight_start", "flight_end", "flight_highest_gap"):
         drawn[name] = run[name]
-    return drawn | {str(name): found for name, found in flight_readings(run).items()}
+    return drawn | {str(name): value for name, value in flight_readings(run).items()}
 
 
 def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
-    """What is read off a run; see `tippetop.report.readings`."""
+    """Return the readings of a run; see `tippetop.report.readings`."""
     times, theta, turning = run["time"].values, run["theta"].values, run["phi_dot"].values
     changes = crossings(times, turning)
     quiet = longest_quiet(times, turning)
@@ -207,7 +214,9 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
 
 
 def _launch(name: str, cost: float, title: str, *numbers: float) -> None:
-    """The report's top launched with a spin, and a tilt and a friction if they are others than
+    """Register the comparison of a launch of the report's top.
+
+    `numbers` are the arguments of `report_problem`: a spin, and a tilt and a friction other than
     usual.
     """
     experiment(name, title, cost)(lambda quick: comparison(report_problem(*numbers), quick))
@@ -220,7 +229,7 @@ def _table_1(quick: bool) -> xr.Dataset:
 
 @experiment("settling-mu-100", "how the nutation of Fig. 8 dies away", 0.8)
 def _settling(quick: bool) -> xr.Dataset:
-    """How far the tilt still swings, in the second before several times, on the table of Fig. 8."""
+    """Return the swing of the tilt in the second before several times, on the table of Fig. 8."""
     ends = np.array([20.0, 40.0] if quick else [20.0, 40.0, 80.0])
     run = simulate(
         on_table(report_problem(SPIN, mu=ROUGH_FRICTION)),
@@ -250,8 +259,8 @@ def _windows(quick: bool) -> xr.Dataset:
 
 
 def likely_end(windows: xr.Dataset) -> xr.Dataset:
-    """Return the end, among runs of several lengths, that comes nearest to what is printed of Fig.
-    5.
+    """Return the run, among those of several lengths, whose end is nearest to the one printed of
+    Fig. 5.
     """
     misses = [
         abs(windows[f"{key}_after_listing"].values - value) for key, value in END_OF_FIG_5.items()
@@ -261,8 +270,8 @@ def likely_end(windows: xr.Dataset) -> xr.Dataset:
 
 @experiment("listing-capped", "the listing with what it has commented out", 2.5)
 def _capped(quick: bool) -> xr.Dataset:
-    """Where launches end by the report's method, and if a negative normal force is set to zero in
-    it.
+    """Return final tilts by the report's method, with and without a cap of the normal force at
+    zero.
     """
     spins = CAPPED_SPINS[1:2] if quick else CAPPED_SPINS
 
@@ -279,14 +288,14 @@ def _capped(quick: bool) -> xr.Dataset:
 
 @experiment("slow-spins", "launches below the first critical spin", 1.5)
 def _slow(quick: bool) -> xr.Dataset:
-    """How far launches below omega_c1 tilt, and where they end, by both methods."""
+    """Return the largest and the final tilts of launches below omega_c1, by both methods."""
     columns: dict[str, list[float]] = {}
     for spin in SLOW_SPINS:
         problem = report_problem(spin)
         true = simulate(on_table(problem), WINDOW, samples=2_001 if quick else 20_001)
         for suffix, run in (("", true), ("_listing", listing_run(problem, WINDOW))):
             theta = run["theta"].values
-            turns = np.flatnonzero(np.diff(np.sign(np.diff(theta)))) + 1
+            turns = turning_points(theta)
             swings = int((np.abs(np.diff(theta[[0, *turns]])) > SETTLED).sum())
             for name, value in (("highest", theta.max()), ("final", theta[-1]), ("swings", swings)):
                 columns.setdefault(f"{name}{suffix}", []).append(float(value))

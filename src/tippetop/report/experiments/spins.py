@@ -1,4 +1,4 @@
-"""Where a launch ends up as a function of its spin: Fig. 6 and its two critical points."""
+"""Final tilt as a function of the spin: Fig. 6 and its two critical spins."""
 
 import math
 
@@ -15,24 +15,24 @@ from tippetop.report.readings import SETTLED
 from tippetop.run import simulate
 
 MARGINS = (0.001, SETTLED, 0.1)
-"""Tilts that may count as upright, and distances from pi that may count as turned over, rad."""
+"""Tilts that may count as upright, and distances from pi that may count as inverted, rad."""
 
 LISTED_MARGINS = np.linspace(0.001, 0.01, 91)
-"""The same, finely, for the report's method: up to its own 0.01 rad."""
+"""Fine values of the same margins, up to 0.01 rad, for the report's method."""
 
 TURNED = 0.1
-"""How far from pi a final tilt must be for a launch to count as not turned over, rad."""
+"""Distance of a final tilt from pi within which a launch counts as turned over, rad."""
 
 LONG_WINDOWS = (20.0, 60.0, 200.0, 600.0)
 
 FLYING = (165.0, 210.0)
-"""Spins between which Fig. 6 also has the final tilt on a table that only pushes, rad/s."""
+"""Range of spins with final tilts on a table that only pushes, in Fig. 6, rad/s."""
 
 _TILT = ("rad", "tilt at the end of the run")
 
 
 def final_tilt(spin: float, window: float = WINDOW) -> float:
-    """Return tilt at the end of a converged run on a table that pulls, rad; nan if it became
+    """Return the final tilt of a converged run on a table that pulls, rad; nan if it became
     singular.
     """
     run = simulate(on_table(report_problem(spin)), window, samples=2)
@@ -64,12 +64,12 @@ def _by_listing(quick: bool) -> xr.Dataset:
         for margin in LISTED_MARGINS
     ]
     name = "spin above which the final tilt is no longer 0, by the report's method"
-    other = "spin above which the final tilt is pi, by the report's method"
+    name_inverted = "spin above which the final tilt is pi, by the report's method"
     return dataset(
         {"spin_listing": spins, "margin_listing": LISTED_MARGINS},
         final_theta_listing=(tilts, *_TILT, "spin_listing"),
         critical_upright_listing=(upright, "rad s-1", name, "margin_listing"),
-        critical_inverted_listing=(inverted, "rad s-1", other, "margin_listing"),
+        critical_inverted_listing=(inverted, "rad s-1", name_inverted, "margin_listing"),
         lost_listing=_least_lost(
             spins, np.abs(tilts - math.pi) > TURNED, ", by the report's method"
         ),
@@ -77,13 +77,14 @@ def _by_listing(quick: bool) -> xr.Dataset:
 
 
 def _least_lost(spins: np.ndarray, lost: np.ndarray, words: str) -> tuple[float, str, str]:
-    found = spins[(spins > 100) & lost]
+    """Return the least spin above 100 rad/s that does not end at pi, with its unit and meaning."""
+    lost_spins = spins[(spins > 100) & lost]
     name = f"least spin above 100 rad/s that does not end at pi{words}"
-    return found.min() if len(found) else np.nan, "rad s-1", name
+    return lost_spins.min() if len(lost_spins) else np.nan, "rad s-1", name
 
 
 def _where(x: np.ndarray, y: np.ndarray, level: float) -> float:
-    """Where rising values reach a level, by linear interpolation."""
+    """Return the place at which rising values reach a level, by linear interpolation."""
     return float(np.interp(level, np.maximum.accumulate(y), x))
 
 
@@ -115,11 +116,11 @@ def critical_spins(
     margin: float,
     between: tuple[tuple[float, float], tuple[float, float]] = ((22.0, 34.0), (72.0, 84.0)),
 ) -> tuple[float, float]:
-    """Return spins between which a launch ends neither upright nor turned over, looked for
-    `between` others, rad/s.
+    """Return the two spins (rad/s) between which a launch ends neither upright nor inverted.
 
-    The `window` is the length of the runs, s. The `margin` is the tilt at the end that counts as
-    upright, and the distance from pi that counts as turned over, rad.
+    `window` is the length of the runs, s. `margin` is the final tilt that counts as upright, and
+    the distance from pi that counts as inverted, rad. `between` are the intervals in which the
+    spins are searched, rad/s.
     """
 
     def upright(spin: float) -> float:
@@ -137,14 +138,14 @@ def critical_spins(
 @experiment("critical-spins", "critical spins against the length of the runs", 9.0)
 def _thresholds(quick: bool) -> xr.Dataset:
     windows = LONG_WINDOWS[:2] if quick else LONG_WINDOWS
-    found = [critical_spins(windows[0], SETTLED)]
+    critical = [critical_spins(windows[0], SETTLED)]
     for window in windows[1:]:
-        # With more patience they are farther in, and near the last ones.
-        upright, inverted = found[-1]
-        found.append(
+        # Longer runs show critical spins that lie between those of shorter runs, near to them.
+        upright, inverted = critical[-1]
+        critical.append(
             critical_spins(window, SETTLED, ((upright, upright + 1.0), (inverted - 1.2, inverted)))
         )
-    by_window = np.array(found)
+    by_window = np.array(critical)
     by_margin = np.array([critical_spins(WINDOW, margin) for margin in MARGINS])
     names = (
         "spin above which the final tilt is no longer 0",

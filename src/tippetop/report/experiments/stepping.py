@@ -1,6 +1,4 @@
-"""Leine and Glocker's top by time-stepping: what a fixed step finds of its impacts and its
-rocking.
-"""
+"""Leine and Glocker's top by time-stepping: its impacts and its rocking at several steps."""
 
 import math
 
@@ -10,20 +8,20 @@ import xarray as xr
 from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.problem.frictions import ContensouFriction
 from tippetop.report.experiment import dataset, experiment
-from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, events_of
-from tippetop.report.experiments.runs import happenings
+from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, contact_events
+from tippetop.report.experiments.runs import event_times
 from tippetop.report.moreau import Ball, History, SphereTop, follow
 from tippetop.run import simulate
 
 STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)
-"""Steps that are tried, s."""
+"""Lengths of the steps, s."""
 
 ROCKING = (4.4, 4.75)
-"""The time around the rocking that is shown, s."""
+"""Span of time around the rocking that is shown, s."""
 
 
 def stepped(step: float) -> History:
-    """Return the top followed by time-stepping, with the friction of an ellipsoidal limit
+    """Return the top's history by time-stepping, with the friction of an ellipsoidal limit
     surface.
     """
     body, friction = LEINE.body, LEINE.friction
@@ -34,10 +32,12 @@ def stepped(step: float) -> History:
     return follow(followed, LEINE.launch.tilt, LEINE.launch.spin, LEINE_WINDOW, step)
 
 
-def found_in(history: History) -> dict[str, float]:
-    """When things happen as far as the steps tell, s, and how many strikes make up the rocking.
+def events_in_steps(history: History) -> dict[str, float]:
+    """Return the times of `EVENTS`, s, and the number of strikes in the rocking, as the steps show
+    them.
 
-    It stands on its stem for half a second at least, and rests on both where these touch for 20 ms.
+    The fall back is the first touch of the sphere more than half a second after that of the stem;
+    double contact is a time of 20 ms or more in which both surfaces have impulses.
     """
     step, touching = history.step, np.array(history.touching)
     times = (np.arange(len(touching)) + 0.5) * step
@@ -53,11 +53,9 @@ def found_in(history: History) -> dict[str, float]:
     )
     begins, ends = np.flatnonzero(changes == 1), np.flatnonzero(changes == -1)
     rests = np.flatnonzero((ends - begins) * step > 0.02)
-    both, apart = (
-        (float(times[begins[rests[0]]]), float(times[ends[rests[0]] - 1]))
-        if len(rests)
-        else 2 * (math.nan,)
-    )
+    both, apart = math.nan, math.nan
+    if len(rests):
+        both, apart = float(times[begins[rests[0]]]), float(times[ends[rests[0]] - 1])
     onsets = touching[1:] & ~touching[:-1]
     strikes = int(onsets[(times[1:] >= back) & (times[1:] <= both)].sum())
     return {"stem": touched, "back": back, "both": both, "apart": apart, "strikes": strikes}
@@ -65,13 +63,13 @@ def found_in(history: History) -> dict[str, float]:
 
 @experiment("real-stepping", "Leine and Glocker's top by time-stepping", 12.0)
 def _stepping(quick: bool) -> xr.Dataset:
-    """What time-stepping finds of the top, over its step, and what an exact run finds."""
+    """Return events and tilts by time-stepping with several steps, and by an exact run."""
     histories = [stepped(step) for step in (STEPS[:3] if quick else STEPS)]
-    found = [found_in(history) for history in histories]
+    events = [events_in_steps(history) for history in histories]
     samples = 8001
     run = simulate(LEINE, LEINE_WINDOW, samples=samples)
     times = run["time"].values
-    exact, impacts = events_of(run), happenings(run, "impact")
+    exact, impacts = contact_events(run), event_times(run, "impact")
     exact["strikes"] = int(((impacts >= exact["back"]) & (impacts <= exact["both"])).sum())
     shown = (times >= ROCKING[0]) & (times <= ROCKING[1])
     ends = [one.step * np.arange(1, len(one.tilts) + 1) for one in histories]
@@ -87,7 +85,10 @@ def _stepping(quick: bool) -> xr.Dataset:
         theta=(tilts, "rad", "tilt", "step", "time"),
         exact_theta=(run["theta"].values[shown], "rad", "tilt of an exact run", "time"),
         exact_final_theta=(float(run["theta"][-1]), "rad", "tilt at the end of an exact run"),
-        **{name: ([one[name] for one in found], *told, "step") for name, told in meanings.items()},
+        **{
+            name: ([each[name] for each in events], *meaning, "step")
+            for name, meaning in meanings.items()
+        },
         **{
             f"exact_{name}": (value, meanings[name][0], f"{name}, exactly")
             for name, value in exact.items()

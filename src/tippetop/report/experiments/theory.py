@@ -1,6 +1,4 @@
-"""Steady states of the report's top and of others, found without a simulation, and runs beside
-them.
-"""
+"""Steady states of the report's top and of others, computed without a simulation, and runs."""
 
 import math
 from dataclasses import astuple
@@ -13,7 +11,7 @@ from tippetop.problem.bodies import Body
 from tippetop.problem.presets import LEINE_GLOCKER, REPORT, REPORT_TABLE_1, report_problem
 from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment
-from tippetop.report.experiments.equations import left_of_217
+from tippetop.report.experiments.equations import residual_of_217
 from tippetop.report.experiments.runs import WINDOW
 from tippetop.report.readings import SETTLED
 from tippetop.run import simulate
@@ -29,20 +27,18 @@ from tippetop.theory.steady import VERTICAL_SPINS, precession_branch
 from tippetop.theory.thresholds import critical_spin, critical_spins, jellett_line
 
 QUOTED_SPINS = (50.0, 60.0, 100.0)
-"""Spins at which the predicted final tilt is compared with a run in words, rad/s."""
+"""Spins at which a claim's text compares the predicted final tilt with a run, rad/s."""
 
 JUMP_RATIO = 0.75
-"""I1 / I3 of a top like the report's that jumps: with alpha = 0.3 it is in group IIb."""
+"""I1 / I3 of a top that jumps, otherwise like the report's: with alpha = 0.3 it is in group IIb."""
 
 LONG_RUN = 400.0
-"""Length of the runs whose end is compared with the steady states, s."""
+"""Length of the runs whose ends are compared with steady states, s."""
 
 
 @experiment("why-critical", "critical spins without a simulation", 1.0)
 def _critical(quick: bool) -> xr.Dataset:
-    """Return the critical spins by formula and by the spectrum, and what a short window makes of
-    them.
-    """
+    """Return the critical spins by formula and by the spectrum, and those that short runs show."""
     problem = report_problem()
     top = problem.top
     spins = np.linspace(10.0, 105.0, 39 if quick else 191)
@@ -82,7 +78,7 @@ def _critical(quick: bool) -> xr.Dataset:
 
 @experiment("why-bifurcation", "steady states against spin, and long runs", 5.0)
 def _bifurcation(quick: bool) -> xr.Dataset:
-    """Return steady states against spin with their stability, and where long runs end, for two
+    """Return steady states against spin with their stability, and the ends of long runs, of two
     bodies.
     """
     jumping = REPORT.model_copy(update={"I1": JUMP_RATIO * REPORT.I3})
@@ -100,9 +96,9 @@ def _bifurcation(quick: bool) -> xr.Dataset:
             [(spin, tilt) for spin in sudden for tilt in (0.1, math.pi - 0.1)],
         ),
     ]
-    whole = xr.merge(parts, compat="no_conflicts", join="exact", combine_attrs="drop_conflicts")
-    whole.attrs = {"long_run_s": LONG_RUN, "inertia_ratio_jump": JUMP_RATIO}
-    return whole
+    merged = xr.merge(parts, compat="no_conflicts", join="exact", combine_attrs="drop_conflicts")
+    merged.attrs = {"long_run_s": LONG_RUN, "inertia_ratio_jump": JUMP_RATIO}
+    return merged
 
 
 _OF_RUNS = {
@@ -118,23 +114,24 @@ _OF_RUNS = {
 def _diagram(
     suffix: str, body: Body, tilts: Array, launches: list[tuple[float, float]]
 ) -> xr.Dataset:
-    """Return steady states of a body against the spin of a launch near theta = 0, and runs.
+    """Return steady states of a body against the spin of a launch near theta = 0, and ends of runs.
 
-    A launch is the spin near theta = 0 that has its Jellett's integral, rad/s, and its tilt, rad.
+    A launch is a spin (rad/s) and a tilt (rad): its Jellett's integral is that of a launch near
+    theta = 0 with this spin.
     """
     base = report_problem().replace({"body": body.model_dump()})
     branch = precession_branch(base.top, tilts)
     rates = np.max(eigenvalues(branch, base.top).real, axis=1)
     spins = branch.jellett / jellett_line(base).per_spin
-    found = [_launched(base, spin, tilt) for spin, tilt in launches]
-    runs = [simulate(problem, LONG_RUN, samples=2).isel(time=-1) for problem in found]
+    problems = [_launched(base, spin, tilt) for spin, tilt in launches]
+    runs = [simulate(problem, LONG_RUN, samples=2).isel(time=-1) for problem in problems]
     ends = [float(run["theta"]) for run in runs]
-    predicted = [predict(problem) for problem in found]
+    predicted = [predict(problem) for problem in problems]
     of_runs = {
         "spin": [spin for spin, _ in launches],
         "tilt": [tilt for _, tilt in launches],
         "end": ends,
-        "left": [_left_of_217(run, base) for run in runs],
+        "left": [_relative_residual_217(run, base) for run in runs],
         "predicted": [one.final.tilt for one in predicted],
         "stable": [len(one.stable) for one in predicted],
     }
@@ -157,17 +154,17 @@ def _diagram(
     )
 
 
-def _left_of_217(end: xr.Dataset, problem: Problem) -> float:
-    """What is left of (2.17) at the end of a run, over phi'."""
-    left = left_of_217(
+def _relative_residual_217(end: xr.Dataset, problem: Problem) -> float:
+    """Return the residual of (2.17) at the end of a run over phi'."""
+    residual = residual_of_217(
         end["theta"], end["phi_dot"], end["omega3"], groups.eccentricity(problem.top)
     )
-    return float(abs(left / end["phi_dot"]))
+    return float(abs(residual / end["phi_dot"]))
 
 
 def _launched(base: Problem, spin: float, tilt: float) -> Problem:
-    """Return the launch at this tilt with the Jellett's integral of one at the usual tilt with this
-    spin.
+    """Return the launch at a tilt whose Jellett's integral is that of this spin at the usual
+    tilt.
     """
     tilted = base.replace({"launch.tilt": tilt})
     return tilted.replace(

@@ -1,6 +1,4 @@
-"""How the top gets where it is going: the limit of weak friction, and what a run says of its
-nutation.
-"""
+"""Slow inversion: the limit of weak friction, and the nutation within a run."""
 
 import math
 
@@ -26,10 +24,10 @@ from tippetop.theory.prediction import predict
 from tippetop.theory.steady import SteadyKind
 
 SPIN = 100.0
-"""Spin of the launches whose slow flow is shown, rad/s."""
+"""Spin of the launches whose averaged flow is shown, rad/s."""
 
 FRICTIONS = (0.3, 0.03, 0.003)
-"""Friction coefficients of the runs that are laid over each other, s/m."""
+"""Friction coefficients of the runs that are compared in mu t, s/m."""
 
 CROSSED = math.pi / 2
 """Tilt at which the top has turned half over, rad."""
@@ -69,7 +67,7 @@ def _collapse(quick: bool) -> xr.Dataset:
 
 
 def _band(mu: float, edges: Array) -> tuple[Array, Array]:
-    """Return least and largest tilt of a run between these values of mu t."""
+    """Return the least and the largest tilt of a run between successive values of mu t."""
     each = 60
     times = np.linspace(edges[0], edges[-1], each * (len(edges) - 1) + 1) / mu
     run = simulate(on_table(report_problem(SPIN, mu=mu)), float(times[-1]), times=times)
@@ -112,8 +110,8 @@ _SENSES = {
 
 
 def _times(mu: float, final: float) -> tuple[float, float, float, float]:
-    """When a run turns half over, first comes near its end, stays there, flips by the report's
-    rule, s.
+    """Return the times (s) of the first tilt above pi/2, of arriving, of settling, and of the
+    report's flip.
     """
     duration = max(WINDOW, 3.5 / mu + 8.0 / _decay_rate(mu))
     run = simulate(on_table(report_problem(SPIN, mu=mu)), duration, samples=40_001)

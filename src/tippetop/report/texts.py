@@ -1,4 +1,4 @@
-"""What is told in words: the data beside the code, in files of TOML."""
+"""Texts of figures and claims from the files of TOML in this folder, with constants filled in."""
 
 import tomllib
 from pathlib import Path
@@ -10,12 +10,11 @@ from tippetop.report.experiments import dry, flights, patches, real, runs, theor
 _MODULES = (quoted, readings, dry, flights, patches, real, runs, theory, theory_runs)
 
 
-def told(name: str) -> dict[str, Any]:
-    """Return the tables of a file of this folder, with what stands in braces in their texts filled
-    in.
+def filled_tables(name: str) -> dict[str, Any]:
+    """Return the tables of a file of this folder with the names in braces replaced by their values.
 
-    That is a constant of `quoted`, `readings` or the experiments, such as {dry.SPIN:g}, or one of
-    the words that the file itself explains.
+    The names are constants of `quoted`, of `readings` or of the experiments, such as {dry.SPIN:g},
+    or the words that the file itself defines.
     """
     tables = tomllib.loads(Path(__file__).with_name(f"{name}.toml").read_text(encoding="utf-8"))
     names = {module.__name__.rpartition(".")[2]: module for module in _MODULES} | tables.pop(
@@ -23,13 +22,11 @@ def told(name: str) -> dict[str, Any]:
     )
 
     def filled(value: Any) -> Any:
-        return (
-            value.format(**names)
-            if isinstance(value, str)
-            else tuple(value)
-            if isinstance(value, list)
-            else value
-        )
+        if isinstance(value, str):
+            return value.format(**names)
+        if isinstance(value, list):
+            return tuple(value)
+        return value
 
     return {
         key: {name: filled(value) for name, value in table.items()} for key, table in tables.items()
