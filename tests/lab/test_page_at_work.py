@@ -64,10 +64,16 @@ def test_the_film_of_a_run_can_be_watched(lab: Lab, tmp_path: Path) -> None:
     assert not visitor.ask("() => tippetopLab.player.playing"), "filmed to its end"
 
 
+def unfold_options(visitor: Visit) -> None:
+    """Show the options below the player's buttons."""
+    visitor.page.locator(".tt-more summary").click()
+
+
 def test_the_spin_is_heard_four_octaves_up(lab: Lab) -> None:
     # For so long its spin stays the same.
     visitor = lab("launch.spin=155&duration=2")
     page = visitor.page
+    unfold_options(visitor)
     page.get_by_label("repeat").check()
     page.get_by_label("hear the spin").check()
     visitor.ask("() => tippetopLab.player.toggle(true)")
@@ -83,6 +89,7 @@ def test_the_spin_is_heard_four_octaves_up(lab: Lab) -> None:
 
 def test_a_run_is_repeated_on_request(lab: Lab) -> None:
     visitor = lab("launch.spin=100&duration=2&t=0")
+    unfold_options(visitor)
     visitor.page.get_by_label("repeat").check()
     visitor.ask("() => { tippetopLab.player.seek(1.9); tippetopLab.player.toggle(true); }")
     visitor.wait("() => tippetopLab.player.time < 1")
@@ -101,6 +108,7 @@ def test_time_goes_slower_while_the_top_turns_over(lab: Lab) -> None:
     turned = visitor.ask("() => tippetopLab.player.turnsOver")
     assert visitor.ask(passed, 1.0) == pytest.approx(0.01)
     assert visitor.ask(passed, turned) == pytest.approx(0.0015)
+    unfold_options(visitor)
     visitor.page.get_by_label("slow and low as it turns over").uncheck()
     assert visitor.ask(passed, turned) == pytest.approx(0.01)
 
@@ -174,6 +182,7 @@ def test_a_sheet_is_printed_with_launch_picture_curves_and_link(lab: Lab, tmp_pa
 def test_the_link_carries_time_camera_units_arrows_and_pins(lab: Lab) -> None:
     visitor = lab("tab=launch&launch.spin=120&duration=6&t=0")
     page = visitor.page
+    unfold_options(visitor)
     page.get_by_label("turns/s").check()
     page.get_by_text("rad", exact=True).check()
     page.get_by_label("axis", exact=True).check()

@@ -2,6 +2,7 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 
+import { Flick } from "../player/flick.js";
 import { createPlayer } from "../player/player.js";
 import { Compare } from "./compare.jsx";
 import { Launch } from "./controls.jsx";
@@ -150,6 +151,7 @@ function Stage({ lab, dark }) {
       open: innerWidth > 1700,
     });
     lab.player = player;
+    if (player.scene) new Flick(player.canvas, player.scene, (spin, tilt) => lab.flick(spin, tilt));
     player.addEventListener("time", () => lab.dispatchEvent(new Event("time")));
     player.addEventListener("view", () => lab.share());
     if (before && lab.track) {

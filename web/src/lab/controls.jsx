@@ -34,6 +34,12 @@ export function Launch({ lab }) {
       <Preset lab={lab} />
       <Dials lab={lab} dials={MAIN} marks={marks} />
       <Prospect lab={lab} marks={marks} />
+      <div class="row">
+        <button type="button" class="strong" onClick={() => lab.go(setup)}>
+          {t("controls.launch")}
+        </button>
+        <span class="hint">{t("controls.flick")}</span>
+      </div>
       <Friction lab={lab} />
       <Units lab={lab} />
       <Section lab={lab} name="more" dials={TABLE}>

@@ -112,7 +112,7 @@ function Slider({ dial, lab, value, id, marks }) {
         data-field={dial.field}
         aria-valuetext={shown(value / scale, kindOf(dial, setup), units)}
         onInput={slide}
-        onChange={() => lab.settle()}
+        onChange={() => lab.settle(true)}
       />
       {marks.length > 0 && (
         <div class="dial-marks" aria-hidden="true">

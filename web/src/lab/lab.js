@@ -14,6 +14,8 @@ import { tell } from "./words.js";
 const MOST_TURNS = 10_000;
 const PATIENCE = 250;
 const SHARE = 300;
+// How long a launch is played whose slider was moved, s.
+const PREVIEW = 1;
 export const MOST_PINS = 3;
 
 // Bring the stage into view where it is not.
@@ -65,10 +67,20 @@ export class Lab extends EventTarget {
     else this.settle();
   }
 
-  // What is set now can be gone back to; it is followed as exactly as can be.
-  settle() {
+  // What is set now can be gone back to; it is followed as exactly as can be, and its first second is played on request.
+  settle(preview = false) {
     this.keep(true);
-    this.request(false);
+    this.request(false, false, preview);
+  }
+
+  // Launch the top as a hand has flicked it; a story waits for its own launch.
+  flick(spin, tilt) {
+    if (this.state.tab === "story") return;
+    const launch = {
+      "launch.spin": Number(spin.toPrecision(3)),
+      "launch.tilt": Number(tilt.toFixed(2)),
+    };
+    this.go(changed(this.state.setup, launch));
   }
 
   // Launch something else and play it.
@@ -95,7 +107,7 @@ export class Lab extends EventTarget {
   }
 
   // Follow the launch that is set: quickly while a slider moves.
-  async request(play, quick = false) {
+  async request(play, quick = false, preview = false) {
     const { setup } = this.state;
     this.isAwaited = true;
     this.latest += 1;
@@ -116,6 +128,7 @@ export class Lab extends EventTarget {
       if (!track) return;
       this.good = setup;
       if (isLatest() || !this.playing) this.show(track, play, isLatest());
+      if (preview && isLatest() && !stillness()) this.player.preview(PREVIEW);
     } catch (error) {
       clearTimeout(late);
       if (isLatest()) this.refuse(refusal(error, this.state));

@@ -7,6 +7,7 @@ import { stillness } from "../player/player.js";
 import { part, t } from "./i18n.js";
 import { PRESETS, preset } from "./presets.js";
 import { changed } from "./setup.js";
+import { TorquePicture } from "./torque.jsx";
 
 // How long nothing in particular is watched before the answer is told, and the most of anything, s.
 const WATCHED = 4;
@@ -20,10 +21,11 @@ const MOMENTS = {
 };
 
 // Of each step: its launch, what is to be seen in it, the arrows and curves it shows, the preset whose figure in the
-// report shows it too, and what the visitor may go on to.
+// report shows it too, whether the picture of the torque explains it, and what the visitor may go on to.
 const STEPS = [
   {
     from: "turns",
+    picture: true,
     watch: "flip",
     setup: preset("turns"),
     show: ["trace", "glass", "axis"],
@@ -214,7 +216,7 @@ function Question({ words, guess, onGuess }) {
 }
 
 function Why({ lab, number, words, guess }) {
-  const { extra, from } = STEPS[number];
+  const { extra, from, picture } = STEPS[number];
   const { figure } = PRESETS.find(({ key }) => key === from) ?? {};
   const element = useFocus();
   return (
@@ -225,6 +227,7 @@ function Why({ lab, number, words, guess }) {
         </p>
       )}
       <p>{words.why}</p>
+      {picture && <TorquePicture />}
       <details>
         <summary>{t("story.deeper")}</summary>
         <p class="deeper">{words.deeper}</p>

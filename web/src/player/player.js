@@ -185,6 +185,7 @@ export class Player extends EventTarget {
     if (playing && this.time >= this.duration) this.time = this.track?.start ?? 0;
     const changed = this.playing !== playing;
     this.playing = playing;
+    this.until = Infinity;
     this.last = undefined;
     if (changed && playing) this.sharpness?.begin();
     this.playButton.innerHTML = icon(playing ? "pause" : "play");
@@ -270,11 +271,19 @@ export class Player extends EventTarget {
     this.dispatchEvent(new Event("time"));
   }
 
+  // Play from the start for a while, s.
+  preview(time) {
+    this.seek(this.track?.start ?? 0);
+    this.toggle(true);
+    this.until = time;
+  }
+
   advance(now) {
     const passed = this.last === undefined ? 0 : Math.min((now - this.last) / 1000, 0.25);
     this.last = now;
     this.time += passed * this.speed * (this.climax ? pace(this.time, this.turnsOver) : 1);
     this.sharpness?.pace(passed);
+    if (this.time >= this.until) this.toggle(false);
     if (this.time >= this.duration) {
       this.time = this.loop ? this.track.start : this.duration;
       if (!this.loop) this.toggle(false);
