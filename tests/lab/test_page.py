@@ -383,7 +383,7 @@ def test_the_headline_is_true_of_other_bodies(
     ("language", "said"),
     [
         ("en", "Implausible: the spin at launch is 12000 rad/s, beyond 10000 rad/s."),
-        ("de", "Unwahrscheinlich: Die Drehung beim Start"),
+        ("de", "Unplausibel: Die Drehung beim Start"),
     ],
 )
 def test_an_implausible_launch_is_said_to_be_so_beside_the_headline(

@@ -15,7 +15,8 @@ from node import printed
 def test_the_torque_is_what_changes_the_angular_momentum(tilt):
     """The change over a short time, in the plane of the axis and the vertical at its start."""
     spin, step = 155.0, 1e-5
-    problem = tt.presets.report_problem(spin=spin, tilt=tilt).replace({"launch.precession": 0.0})
+    launch = tt.Launch(spin=spin, tilt=tilt, velocity=(0.0, 0.0))
+    problem = tt.presets.report_problem().model_copy(update={"launch": launch})
     module = json.dumps((WEB / "src" / "lab" / "torque.js").as_uri())
     asked = json.dumps(problem.model_dump(mode="json"))
     found = json.loads(

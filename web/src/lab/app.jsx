@@ -4,6 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 
 import { Flick } from "../player/flick.js";
 import { createPlayer } from "../player/player.js";
+import { Classroom } from "./classroom.jsx";
 import { Compare } from "./compare.jsx";
 import { Launch } from "./controls.jsx";
 import { Help } from "./help.jsx";
@@ -21,6 +22,7 @@ const PANELS = {
   own: Own,
   compare: Compare,
   map: MapPanel,
+  class: Classroom,
   keep: Keep,
 };
 

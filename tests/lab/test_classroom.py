@@ -1,0 +1,63 @@
+"""A class collects the results of its groups in one plot, and a hand flicks the top."""
+
+from collections.abc import Callable
+
+import tippetop as tt
+from browsing import Visit
+from bundled import found_in_the_page
+
+Lab = Callable[..., Visit]
+
+RESULTS = """
+import { readResults, resultCode, spinsOf } from "./results.js";
+const run = { problem: { launch: { spin: 123.456 } }, metrics: { final_theta: Math.PI / 2 } };
+const code = resultCode(run);
+export const found = {
+  code,
+  back: readResults(code),
+  mixed: readResults("155 179,9\\n\\nabout 12\\n50;86.1°\\n20 200\\n"),
+  spins: spinsOf(4, 10, 100),
+};
+"""
+
+
+def test_result_codes_are_read_back() -> None:
+    found = found_in_the_page(RESULTS)
+    assert found["code"] == "123.5 90.0"
+    assert found["back"] == {"points": [[123.5, 90.0]], "wrong": []}
+    assert found["mixed"] == {"points": [[155, 179.9], [50, 86.1]], "wrong": [3, 5]}
+    assert found["spins"] == [10, 40, 70, 100]
+
+
+def test_a_class_makes_one_diagram(lab: Lab) -> None:
+    visitor = lab("tab=class&launch.spin=50&duration=12")
+    page = visitor.page
+    assert page.locator(".codes li").count() == 8
+    assert "tippetop lab --host" in page.locator(".classroom .refused").inner_text()
+    tilt = float(tt.simulate(tt.presets.report_problem(spin=50.0), 12.0, samples=2)["final_theta"])
+    code = page.locator(".mine").inner_text()
+    assert code == f"50 {tilt * 57.29577951308232:.1f}"
+    page.locator(".classroom textarea").fill(f"{code}\n155 179.9\nnothing\n")
+    assert page.locator(".scatter .dot").count() == 2
+    assert "lines 3" in page.locator(".classroom [role=alert]").inner_text()
+    address = page.locator(".codes a").last.get_attribute("href")
+    assert address is not None
+    group = lab(address.partition("#")[2])
+    group.launched("problem.launch.spin === 150")
+
+
+def test_a_flick_of_the_top_launches_it(lab: Lab) -> None:
+    visitor = lab("tab=launch&t=0")
+    visitor.pause(0.0)
+    page = visitor.page
+    box = page.locator("canvas.tt-canvas").bounding_box()
+    assert box is not None
+    x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.6 * box["height"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for step in range(1, 7):
+        page.mouse.move(x + 20 * step, y)
+    page.mouse.up()
+    visitor.launched("problem.launch.spin !== 155 && problem.launch.spin > 5")
+    assert 0.0 < visitor.ask("() => tippetopLab.track.header.problem.launch.spin") <= 250.0
+    assert visitor.ask("() => tippetopLab.player.scene.controls.enabled")
