@@ -8,8 +8,7 @@ import numpy as np
 
 from tippetop.contact.closed import ContactMode, sliding_motion
 from tippetop.contact.closing import closing_motion
-from tippetop.contact.double import SlidingOnTwo
-from tippetop.contact.double_sticking import StickingAndSlidingBack, StickingOnTwo
+from tippetop.contact.double import TwoContactMode
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzBranch, HertzDrillingLaw, HertzSlidingLaw
@@ -72,15 +71,15 @@ def sliding_motions(top):
         yield f"closing {ending}", closing_motion(kind, ending, True), (*numbers, 1e9, 1e-3)
     if isinstance(surface, Hull):
         other = top._replace(surface=surface._replace(active=1))
-        modes = {"": SlidingOnTwo}
+        statuses = {"": (False, False)}
         if isinstance(law, CoulombLaw):
-            modes |= {
-                " turning": StickingAndSlidingBack,
-                " sticking": StickingOnTwo,
+            statuses |= {
+                " turning": (True, False),
+                " sticking": (True, True),
             }
         for way in (0.0, -1.0)[: 1 + rolls]:
-            for told, form in modes.items():
-                mode = form(top, other, way)
+            for told, sticks in statuses.items():
+                mode = TwoContactMode(top, other, sticks, way, sense=-1.0)
                 yield f"two {way}{told}", mode.motion, mode.parameters
 
 

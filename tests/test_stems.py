@@ -9,7 +9,7 @@ import xarray as xr
 import tippetop as tt
 from tippetop.contact import automaton, collision, touching
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.double import SlidingOnTwo, on_two
+from tippetop.contact.double import TwoContactMode, on_two
 from tippetop.contact.mode import EventKind, Mode
 from tippetop.contact.passing import Resting
 from tippetop.mechanics.contact_pair import ContactPair
@@ -333,7 +333,7 @@ def test_what_hardly_slips_on_two_surfaces_rests(velocity: float) -> None:
 
 def test_what_slips_on_two_surfaces_goes_on() -> None:
     automaton, state = lying("coulomb", (-0.02, 0.02), 1e-8)
-    assert isinstance(automaton.resting(0.0, state).then, SlidingOnTwo)
+    assert isinstance(automaton.resting(0.0, state).then, TwoContactMode)
 
 
 def test_the_farther_of_two_surfaces_beside_the_centre_of_mass_opens_and_is_named() -> None:

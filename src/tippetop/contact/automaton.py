@@ -23,12 +23,9 @@ from tippetop.contact.closed import (
 )
 from tippetop.contact.closing import JAMMED, LANDED, OVERTAKEN, REOPENING
 from tippetop.contact.collision import collision
-from tippetop.contact.double import BRANCHING, OPENING, OnTwo, on_two
+from tippetop.contact.double import BRANCHING, OPENING, TwoContactMode, on_two
 from tippetop.contact.double_sticking import (
     SlipBeginningOnTwo,
-    StickingAndSliding,
-    StickingAndSlidingBack,
-    StickingOnTwo,
 )
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.loosening import BEGUN, ENDED, UNSEEN, BothLoosening, Loosening
@@ -159,7 +156,7 @@ class Automaton:
             return here._after_onset(mode, end, time)
         if isinstance(mode, Stopping):
             return here._after_clock(mode, end, time)
-        if isinstance(mode, OnTwo):
+        if isinstance(mode, TwoContactMode):
             return here._after_two(mode, end, time)
         assert isinstance(mode, ContactMode), f"nothing follows {mode.name}"
         return here._after_one(mode, end, time)
@@ -227,7 +224,7 @@ class Automaton:
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
         return self._begin(time, state, Vanishing(slip=end.cause == SLIP))
 
-    def _after_two(self, mode: OnTwo, end: ModeEnd, time: float) -> Transition:
+    def _after_two(self, mode: TwoContactMode, end: ModeEnd, time: float) -> Transition:
         """Return what follows on two contacts."""
         state, rolls = end.state, mode.rolls
         if isinstance(mode, SlipBeginningOnTwo) and end.cause == BEGUN:
@@ -236,7 +233,7 @@ class Automaton:
             opens, stays = (mode.tops, mode.tops[::-1])[end.contact]
             event = Event(EventKind.OPENING, time, surface=number_of(opens))
             state = state._replace(momentum=mode.stilled(state.axis, state.momentum))
-            slips = mode.slips_on(1 - end.contact)
+            slips = not mode.sticks[1 - end.contact]
             after = self.on(number_of(stays)).mode_for(state, slips=slips)
             return Transition((event,), after, state)
         if end.cause == BRANCHING:
@@ -564,12 +561,13 @@ class Automaton:
         events = (*events, Event(EventKind.OPENING, time, surface=opens))
         return self.on(stays).resting_alone(time, here.state, events)
 
-    def slip_on_two(self, time: float, state: State, mode: OnTwo, contact: int) -> Transition:
+    def slip_on_two(
+        self, time: float, state: State, mode: TwoContactMode, contact: int
+    ) -> Transition:
         """Return the mode in which a contact of two begins to slip at the limit of what the table
         can, or both do (-1).
         """
-        alone = isinstance(mode, StickingAndSliding)
-        here = TwoClosed.of(state, mode.tops, mode.rolls, (True, not alone))
+        here = TwoClosed.of(state, mode.tops, mode.rolls, mode.sticks)
         try:
             resolved = here.slipping(None if contact < 0 else contact)
         except ArithmeticError as error:
@@ -587,15 +585,17 @@ class Automaton:
         if not any(resolved.sticks):
             return Transition((), on_two(here.state, here.tops, here.rolls), here.state)
         if all(resolved.sticks):
-            mode = StickingOnTwo(here.tops[0], here.tops[1], here.rolls, here.slowest_rolling)
+            one, other = here.tops
+            slowest = here.slowest_rolling
+            mode = TwoContactMode(one, other, (True, True), here.rolls, slowest_rolling=slowest)
             still = rests(here.state, *resolved.motion.rates.turning)
             return Transition((), Resting(here.tops[0], mode) if still else mode, here.state)
         return Transition((), self._turning(here.tops, here.xi[2], here.rolls), here.state)
 
-    def _turning(self, tops: Tops, zeta: float, rolls: float) -> StickingAndSliding:
+    def _turning(self, tops: Tops, zeta: float, rolls: float) -> TwoContactMode:
         """Return the mode in which the first contact sticks, and the second slips so."""
-        form = StickingAndSliding if zeta >= 0.0 else StickingAndSlidingBack
-        return form(tops[0], tops[1], rolls)
+        sense = 1.0 if zeta >= 0.0 else -1.0
+        return TwoContactMode(tops[0], tops[1], (True, False), rolls, sense)
 
     def _slip_begins(self, here: TwoClosed, resolved: Resolution, growing: int) -> Transition:
         """Return the mode in which slip begins on two contacts, with some power of time."""
@@ -610,7 +610,9 @@ class Automaton:
         slips = slips_of(here.pair, begins)
         one, other = (on_branch(top, slip) for top, slip in zip(here.tops, slips, strict=True))
         way = begins if all(here.ended) else begins[:2]
-        mode = SlipBeginningOnTwo(one, other, here.rolls, begin, way, growing)
+        mode = SlipBeginningOnTwo(
+            one, other, rolls=here.rolls, begin=begin, direction=way, growing=growing
+        )
         return Transition((), mode, mode.state(begin))
 
 

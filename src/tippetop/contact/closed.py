@@ -61,13 +61,16 @@ class StatedMode(IntegratedMode):
 
     size: ClassVar[int] = 8
     """How many numbers the mode has, unless `count` says otherwise."""
-    further: ClassVar[int] = 0
-    """How many parameters, beside the numbers of its tops."""
 
     @property
     def count(self) -> int:
         """How many numbers the mode has."""
         return self.size
+
+    @property
+    def further_count(self) -> int:
+        """How many parameters there are beside the numbers of the tops."""
+        return 0
 
     @property
     def lasting(self) -> bool:
@@ -115,9 +118,9 @@ def motion_of(form: Any, kinds: tuple[Kind, ...]) -> Motion:
         found: tuple[Scalar, ...] = mode(numbers).rates(y)
         return found
 
-    example = form.with_tops([kind.example for kind in kinds], (0.0,) * form.further)
+    example = form.with_tops([kind.example for kind in kinds], (0.0,) * form.further_count)
     guards = tuple(guard(name, value) for name, value in example.guard_values())
-    count = sum(kind.numbers for kind in kinds) + form.further
+    count = sum(kind.numbers for kind in kinds) + form.further_count
     return Motion(rates, form.count, count, guards, form.lasting)
 
 

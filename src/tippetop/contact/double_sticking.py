@@ -1,157 +1,27 @@
-"""Two surfaces touch the table at once, and one does not slip, or both; and how slip begins
-there.
-"""
+"""The first moments of slip at one of two closed contacts, or at both."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from dataclasses import dataclass
+from typing import ClassVar
 
-from tippetop.contact.closed import SLIP, GuardValue, split
-from tippetop.contact.double import ENDING, OnTwo, SlidingOnTwo
+from tippetop.contact.closed import GuardValue, split
+from tippetop.contact.double import TwoContactMode
 from tippetop.contact.loosening import ACCURACY, ORDER, nothing, piece
-from tippetop.contact.mode import Segment, explanation, numbered
+from tippetop.contact.mode import Segment, explanation
 from tippetop.contact.passing import LOOKS
-from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
-from tippetop.mechanics.contact_pair import ContactPair, slip_apart, slips_of
+from tippetop.mechanics.contact_pair import ContactPair, slips_of
 from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.pair_motion import PairMotion, pair_motion
-from tippetop.mechanics.rolling import (
-    directions_of,
-    slip_length,
-    velocity_without_slip,
-    without_drilling,
-)
 from tippetop.mechanics.slip_onset import Growing, onset
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import scaled, velocity_of
-from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Row, Scalar
+from tippetop.mechanics.stick_slip import velocity_of
+from tippetop.mechanics.vectors import Row
 from tippetop.mechanics.wrench import Slip
 
 
 @dataclass(frozen=True)
-class HeldOnTwo(OnTwo):
-    """The first contact sticks, if not both: axis and angular momentum say how the body rolls on
-    it.
-    """
-
-    def numbers(self, state: State) -> tuple[Scalar, ...]:
-        """Axis and angular momentum."""
-        return (*state.axis, *state.momentum)
-
-    def state(self, y: Row) -> State:
-        """The state, whose velocity is that of rolling on the first contact."""
-        axis, momentum = split(y)
-        momentum = self.stilled(axis, momentum)
-        velocity = velocity_without_slip(axis, momentum, self.top)
-        return on_table(SlidingState(axis, momentum, velocity), self.top)
-
-
-@dataclass(frozen=True)
-class StickingAndSliding(HeldOnTwo):
-    """The first contact sticks and the second slips across the axis: along t of `contact_pair`."""
-
-    name: ClassVar[str] = "sticking_and_sliding"
-    sign: ClassVar[float] = 1.0
-
-    @property
-    def label(self) -> str:
-        """Its name, with the numbers of the surface that sticks, and of that which slips."""
-        return f"sticking{self.held}_on_{number_of(self.top)}_sliding_on_{number_of(self.other)}"
-
-    @property
-    def stuck(self) -> tuple[int, ...]:
-        """The first surface."""
-        return (number_of(self.top),)
-
-    def slips_on(self, contact: int) -> bool:
-        """Return that the second does."""
-        return contact == 1
-
-    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
-        """What the table does, and how both contacts slip."""
-        pair = ContactPair.of(*split(y), self.tops)
-        zeta, way = slip_apart(pair), scaled(self.sign, directions_of(pair.first.axis)[1][:2])
-        return pair_motion(pair, (None, way), self.rolls), slips_of(
-            pair, (0.0 * zeta, 0.0 * zeta, zeta)
-        )
-
-    def guard_values(self) -> list[GuardValue]:
-        """The guards of what holds the first, and of slip on the second, too."""
-        own: list[GuardValue] = [
-            (numbered(SLIP, 0), lambda mode, y: mode.found(y)[0].reserve(0)),
-            (ENDING, lambda mode, y: mode.sign * slip_apart(ContactPair.of(*split(y), mode.tops))),
-        ]
-        return own + super().guard_values()
-
-
-@dataclass(frozen=True)
-class StickingAndSlidingBack(StickingAndSliding):
-    """The same where the second contact slips the other way."""
-
-    name: ClassVar[str] = "sticking_and_sliding_back"
-    sign: ClassVar[float] = -1.0
-
-
-@dataclass(frozen=True)
-class StickingOnTwo(HeldOnTwo):
-    """Both contacts stick: the body rolls about the line that joins them, or is at rest."""
-
-    least: float = -1.0
-    """The |omega_e| at which patches slip that stick while the body rolls."""
-
-    name: ClassVar[str] = "sticking"
-    further: ClassVar[int] = 1
-
-    @property
-    def parameters(self) -> tuple[Scalar, ...]:
-        """The numbers of the top on either surface, and when patches slip."""
-        return (*self.top.numbers, *self.other.numbers, self.least)
-
-    @property
-    def stuck(self) -> tuple[int, ...]:
-        """Both surfaces."""
-        return number_of(self.top), number_of(self.other)
-
-    def slips_on(self, contact: int) -> bool:
-        """Return that none does."""
-        return False
-
-    def without_tops(self) -> Self:
-        """Without what is a parameter, too."""
-        return replace(super().without_tops(), least=0.0)
-
-    def with_tops(self, tops: Sequence[Top], more: Sequence[Scalar]) -> Self:
-        """With that."""
-        return replace(super().with_tops(tops, more), least=more[0])
-
-    def guard_values(self) -> list[GuardValue]:
-        """The guards of what holds the contacts, too."""
-        found = super().guard_values()
-        if slip_length(self.top.friction) is None:
-            found += [
-                (numbered(SLIP, 0), lambda mode, y: mode.found(y)[0].left(0)),
-                (numbered(SLIP, 1), lambda mode, y: mode.found(y)[0].left(1)),
-                (SLIP, lambda mode, y: mode.found(y)[0].both_reserve),
-            ]
-        elif self.rolls:
-            found.append((SLIP, lambda mode, y: mode.rolls * mode.found(y)[0].rolling - mode.least))
-        return found
-
-    def state(self, y: Row) -> State:
-        """The state, without turning about the vertical, whose velocity is that of rolling."""
-        axis, momentum = split(y)
-        return super().state((*axis, *without_drilling(axis, momentum, self.top)))
-
-    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
-        """What the table does, and that neither contact slips."""
-        pair = ContactPair.of(*split(y), self.tops)
-        return pair_motion(pair, (None, None), self.rolls), ((0.0, 0.0), (0.0, 0.0))
-
-
-@dataclass(frozen=True)
-class SlipBeginningOnTwo(SlidingOnTwo):
+class SlipBeginningOnTwo(TwoContactMode):
     """The first moments of slip at a contact, or at both, as power series in time.
 
     Slip itself is told, and loses no digits.

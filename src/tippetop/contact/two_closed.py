@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from tippetop.contact.double import SLOWEST_SLIP, OnTwo
+from tippetop.contact.double import SLOWEST_SLIP, TwoContactMode
 from tippetop.contact.mode import Event, EventKind
 from tippetop.contact.surfaces import number_of
 from tippetop.mechanics.beginning import settling
@@ -59,7 +59,7 @@ class Before(NamedTuple):
     """Whether the body rolled, if that is resisted."""
 
     @classmethod
-    def of(cls, mode: OnTwo) -> "Before":
+    def of(cls, mode: TwoContactMode) -> "Before":
         """Return what they did in a mode."""
         return cls(mode.stuck, bool(mode.rolls))
 
