@@ -228,6 +228,7 @@ NAMES: list[Mistake] = [
         ("body.radius", 0.02, "did you mean body.shape.radius?"),
         ("body.shapes", 3, "did you mean"),
         ("body.I2", 3e-6, "bodies of revolution only"),
+        ("density", 700.0, "a field of a workpiece; tippetop body FILE --toml"),
         ("body.Iyy", 3e-6, "bodies of revolution only"),
         ("body.shape.alpha", 0.3, "did you mean"),
         ("body.shape.r", 0.02, "did you mean"),

@@ -79,6 +79,15 @@ def test_every_path_in_the_guide_exists() -> None:
     assert [path for path in named if not any((at / path).exists() for at in (ROOT, SOURCE))] == []
 
 
+def test_every_target_in_the_guide_exists() -> None:
+    quoted = re.findall(r"`make ([^`]+)`", GUIDE)
+    named = {target for targets in quoted for target in targets.split()}
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    lines = re.findall(r"^([\w-]+(?: [\w-]+)*):(?!=)", makefile, re.MULTILINE)
+    assert len(named) > 10
+    assert named - {target for line in lines for target in line.split()} == set()
+
+
 def test_a_launch_goes_the_way_that_the_guide_tells() -> None:
     told = re.findall(r"^\d+\. `src/tippetop/([\w/]+\.py)`, `([\w.]+)`", GUIDE, re.MULTILINE)
     done = subprocess.run(

@@ -956,6 +956,8 @@ def conforms(value, schema, root):
             )
         case "null":
             return value is None
+        case "string":
+            return isinstance(value, str) and re.search(schema["pattern"], value) is not None
         case "object":
             known = schema["properties"]
             return (
@@ -1014,6 +1016,22 @@ class TestSchema:
                     written = rf"(?<![\w/^]){re.escape(unit)}(?![\w/^])"
                     assert not unit or re.search(written, entry["text"]), (part, name)
 
+    @pytest.mark.parametrize(
+        ("name", "value"),
+        [
+            ("launch.spin", "2200 rpm"),
+            ("launch.tilt", "5°"),
+            ("body.mass", "20g"),
+            ("body.shape.radius", "1e-2 m"),
+            ("launch.slip", ["1 cm/s", 0.0]),
+            ("gravity", "9.8 m/s^2"),
+        ],
+    )
+    def test_it_accepts_numbers_with_units_as_the_models_do(self, name, value):
+        fields = fields_with(name, value)
+        assert Problem(**fields)
+        assert conforms(fields, self.SCHEMA, self.SCHEMA)
+
     @given(problems())
     def test_it_accepts_every_problem(self, original):
         assert conforms(json.loads(original.to_json()), self.SCHEMA, self.SCHEMA)
@@ -1023,6 +1041,8 @@ class TestSchema:
         [
             ("gravity", 0.0),
             ("gravity", "9.8"),
+            ("gravity", "1e5"),
+            ("friction.mu", "a little"),
             ("body", ...),
             ("body.mass", -1.0),
             ("body.shape.eccentricity", 1.0),

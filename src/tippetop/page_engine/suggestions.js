@@ -1,6 +1,6 @@
 // Names that were likely meant, as in tippetop.support.suggestions.
 import * as m from "./mechanics.js";
-import { NOT_OF_REVOLUTION, OTHER_NAMES, PLACES } from "./tables.js";
+import { HINTS_BY_NAME, OTHER_NAMES, PLACES } from "./tables.js";
 import { closest } from "./words.js";
 
 const LONGEST = 60;
@@ -10,7 +10,7 @@ const own = (table, name) => (Object.hasOwn(table, name) ? table[name] : undefin
 
 /** The refusal of a value for a field that a part does not have. */
 export function unknown_field(name, value, fields, kinds = []) {
-  let hint = own(NOT_OF_REVOLUTION, name) ?? "";
+  let hint = own(HINTS_BY_NAME, name) ?? "";
   if (kinds.length) hint = `it is a field of the kind ${kinds.join(" or ")}`;
   const meant = hint ? "" : likely(name, fields, PLACES);
   if (meant) hint = `did you mean ${meant}?`;
@@ -22,7 +22,7 @@ export function unknown_field(name, value, fields, kinds = []) {
 export function not_one_of(field, value, choices) {
   const word = typeof value === "string" ? value : "";
   const meant = likely(word, choices, {});
-  const hint = own(NOT_OF_REVOLUTION, word) ?? (meant ? `did you mean ${meant}?` : "");
+  const hint = own(HINTS_BY_NAME, word) ?? (meant ? `did you mean ${meant}?` : "");
   return new m.InvalidInput(field, value, `one of ${choices.join(", ")}`, "", hint);
 }
 

@@ -21,7 +21,7 @@ from tippetop.problem.shapes import Shape
 from tippetop.results import catalogue
 from tippetop.support import units
 from tippetop.support.accepted_values import count_of, range_of
-from tippetop.support.suggestions import NOT_OF_REVOLUTION, OTHER_NAMES
+from tippetop.support.suggestions import HINTS_BY_NAME, OTHER_NAMES
 from tippetop.support.validation import POINTS, Padded, Part, Quantity
 
 LIMITS = {"exclusiveMinimum": "gt", "minimum": "ge", "exclusiveMaximum": "lt", "maximum": "le"}
@@ -51,7 +51,7 @@ def tables(command: str) -> str:
         ),
         "PLACES": Part.places,
         "OTHER_NAMES": OTHER_NAMES,
-        "NOT_OF_REVOLUTION": NOT_OF_REVOLUTION,
+        "HINTS_BY_NAME": HINTS_BY_NAME,
         "KINDS": {si: kind._asdict() for si, kind in units.KINDS.items()},
         "UNIT_NAMES": units.COMMON,
         "CATALOGUE": {"sampled": {name: _variable(one) for name, one in catalogue.SAMPLED.items()}},

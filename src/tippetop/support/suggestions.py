@@ -30,7 +30,7 @@ OTHER_NAMES = {
 REVOLUTION = "bodies of revolution only"
 """What is said to whoever describes another body."""
 
-NOT_OF_REVOLUTION = {
+HINTS_BY_NAME = {
     **dict.fromkeys(
         ("I2", "I_2", "i2", "Iyy", "I22", "B"),
         f"{REVOLUTION}: they have two equal moments I1, and I3 about the axis",
@@ -43,8 +43,12 @@ NOT_OF_REVOLUTION = {
         ("box", "cuboid", "cube", "block", "brick", "prism", "polyhedron", "tetrahedron", "mesh"),
         f"{REVOLUTION}: their surfaces are spheres, rings and spheroids",
     ),
+    **dict.fromkeys(
+        ("profile", "density", "inserts"),
+        "it is a field of a workpiece; tippetop body FILE --toml makes a problem of one",
+    ),
 }
-"""Names of fields and of shapes that only other bodies have."""
+"""Hints for names that problems do not have: those of other bodies and of workpieces."""
 
 
 def unknown_field(
@@ -67,7 +71,7 @@ def unknown_field(
     kinds
         The other kinds of the part that have the field.
     """
-    hint = NOT_OF_REVOLUTION.get(name.rpartition(".")[2], "")
+    hint = HINTS_BY_NAME.get(name.rpartition(".")[2], "")
     if kinds:
         hint = f"it is a field of the kind {' or '.join(kinds)}"
     if not hint and (meant := likely(name, own, places)):
@@ -82,7 +86,7 @@ def not_one_of(field: str, value: object, choices: Collection[str]) -> InvalidIn
     """Return the refusal of a word that is not one of the choices, with the one likely meant."""
     word = value if isinstance(value, str) else ""
     meant = likely(word, choices, {})
-    hint = NOT_OF_REVOLUTION.get(word, f"did you mean {meant}?" if meant else "")
+    hint = HINTS_BY_NAME.get(word, f"did you mean {meant}?" if meant else "")
     return InvalidInput(field, value, f"one of {', '.join(choices)}", hint=hint)
 
 

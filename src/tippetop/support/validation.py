@@ -35,7 +35,7 @@ from tippetop.support.accepted_values import refusal_of
 from tippetop.support.errors import MISSING, InvalidInput, is_whole
 from tippetop.support.field_paths import part_at
 from tippetop.support.suggestions import not_one_of, unknown_field
-from tippetop.support.units import has_unit, in_si, number_hint
+from tippetop.support.units import DIGITS, KINDS, has_unit, in_si, number_hint
 
 
 def _no_word(value: Any) -> Any:
@@ -91,6 +91,10 @@ def require_callback(field: str, value: object) -> None:
         raise InvalidInput(field, value, "a function, or None")
 
 
+TEXT_WITH_UNIT = rf"^\s*[+-]?{DIGITS}([eE][+-]?\d+)?\s*(?![eE][+-]?\d)[A-Za-zµ°/].*$"
+"""Pattern of a number and its unit in a text."""
+
+
 class Quantity(NamedTuple):
     """What a field of numbers measures."""
 
@@ -111,6 +115,34 @@ class Quantity(NamedTuple):
             return value if depth and isinstance(value, str) else self.in_si(value, depth)
 
         return core_schema.no_info_before_validator_function(convert, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Return the schema of the field with a text beside every number."""
+        return self._or_text(handler(schema))
+
+    def _or_text(self, schema: dict[str, Any]) -> dict[str, Any]:
+        kind = KINDS.get(self.units)
+        if self.units == "1" or kind is None:
+            return schema
+        if schema.get("type") in ("number", "integer"):
+            text = {
+                "type": "string",
+                "pattern": TEXT_WITH_UNIT,
+                "description": f"{kind.name} {kind.examples}",
+            }
+            common: dict[str, Any] = {
+                name: schema[name] for name in ("title", "default") if name in schema
+            }
+            number = {name: value for name, value in schema.items() if name not in common}
+            return {"anyOf": [number, text], **common}
+        nested: dict[str, Any] = {
+            name: [self._or_text(one) for one in schema[name]]
+            for name in ("prefixItems", "anyOf")
+            if name in schema
+        }
+        return {**schema, **nested}
 
     def in_si(self, value: Any, depth: int = 1) -> Any:
         """Return a value of the field, or lists of values so deep, with its numbers in SI."""

@@ -196,11 +196,18 @@ class LaunchSamples(Entry):
 
 
 def _frozen(field: str, distribution: Any) -> DrawnColumn:
-    """The column of a frozen distribution of `scipy.stats`."""
+    """Return the column of a frozen distribution of `scipy.stats`."""
     family = distribution.dist
-    shape, loc, scale = family._parse_args(*distribution.args, **distribution.kwds)
-    numbers = {"shape": tuple(map(float, shape)), "loc": float(loc), "scale": float(scale)}
-    return DrawnColumn.written(field, {"distribution": family.name, **numbers})
+    shapes = [name.strip() for name in family.shapes.split(",")] if family.shapes else []
+    given = dict(zip([*shapes, "loc", "scale"], distribution.args, strict=False))
+    numbers = {"loc": 0.0, "scale": 1.0, **given, **distribution.kwds}
+    table = {
+        "distribution": family.name,
+        "shape": tuple(float(numbers[name]) for name in shapes),
+        "loc": float(numbers["loc"]),
+        "scale": float(numbers["scale"]),
+    }
+    return DrawnColumn.written(field, table)
 
 
 def _named(field: str, entry: Mapping[str, Any]) -> dict[str, Any]:
