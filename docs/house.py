@@ -21,6 +21,7 @@ ROOMS = {
     "figures": "draws results, solves nothing",
     "page_engine": "the engine in the page, JavaScript",
     "translate": "Python modules to JavaScript",
+    "fit": "data, fits with errors, plans of measurements",
     "sweeps": "many launches: grid, lanes, store, schedulers",
     "extend": "what users' laws, surfaces and events need",
     "run": "simulate: one launch from mode to mode",

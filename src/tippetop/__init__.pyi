@@ -8,7 +8,13 @@ from .export.movie import write_movie as write_movie
 from .export.solid import write_solid as write_solid
 from .export.tables import write_csv as write_csv
 from .export.tables import write_parquet as write_parquet
+from .figures.fits import plot_fit as plot_fit
 from .figures.overview import plot as plot
+from .fit.fitted import FitResult as FitResult
+from .fit.fitted import compare_fits as compare_fits
+from .fit.least_squares import fit as fit
+from .fit.measurement import Measurement as Measurement
+from .fit.measurement import read_measurement as read_measurement
 from .lab.notebook import view as view
 from .lathe.design import design_bowl as design_bowl
 from .lathe.design import design_insert as design_insert
@@ -46,6 +52,7 @@ from .results.summary import summarize as summarize
 from .run import simulate as simulate
 from .support.errors import FileTrouble as FileTrouble
 from .support.errors import InvalidInput as InvalidInput
+from .support.errors import NotConverged as NotConverged
 from .support.errors import TippetopError as TippetopError
 from .support.errors import Unavailable as Unavailable
 from .sweeps.grid import Draws as Draws

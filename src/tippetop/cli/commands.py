@@ -13,6 +13,7 @@ from typer.core import TyperGroup
 from tippetop import __version__
 from tippetop.cli.body import body
 from tippetop.cli.critical import critical
+from tippetop.cli.fit import fit
 from tippetop.cli.lab import lab
 from tippetop.cli.problem import problem
 from tippetop.cli.reproduce import reproduce
@@ -80,7 +81,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (simulate, reproduce, critical, sweep, lab, problem, body):
+for command in (simulate, reproduce, critical, sweep, fit, lab, problem, body):
     app.command()(command)
 
 

@@ -128,13 +128,17 @@ def of_a_problem(
         }
         command(Choice(told["file"], told["preset"], settings, told["changes"] or ()), **given)
 
-    _, *own = signature(command).parameters.values()
+    _, *parameters = signature(command).parameters.values()
+    # Arguments without a default come before the file with the problem.
+    required = [one for one in parameters if one.default is Parameter.empty]
+    own = [one for one in parameters if one.default is not Parameter.empty]
     options = {"file": file, **ASKED}.items()
     asking = [
         Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind)
         for name, kind in options
     ]
-    whole = Signature([*asking, *(one.replace(kind=Parameter.KEYWORD_ONLY) for one in own)])
+    named = [one.replace(kind=Parameter.KEYWORD_ONLY) for one in (*required, *own)]
+    whole = Signature([*named[: len(required)], *asking, *named[len(required) :]])
     asked.__signature__ = whole  # type: ignore[attr-defined]
     return asked
 

@@ -3,6 +3,7 @@
     TippetopError
     |-- InvalidInput (ValueError)      names the field, the value and what is accepted
     |-- FileTrouble (OSError)          a file that cannot be read, or may not be overwritten
+    |-- NotConverged (RuntimeError)    a fit that did not reach a minimum
     `-- Unavailable (RuntimeError)     something optional that is not installed here
 
 How a run ends is not an error: see `tippetop.contact.mode.Outcome`.
@@ -177,6 +178,18 @@ class FileTrouble(TippetopError, OSError):
     ... except tt.FileTrouble as error:
     ...     print(error)
     none.toml cannot be read: No such file or directory
+    """
+
+
+# translate: skip
+class NotConverged(TippetopError, RuntimeError):
+    """A search for the best numbers that did not reach a minimum: there is no result.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> issubclass(tt.NotConverged, RuntimeError)
+    True
     """
 
 

@@ -1,0 +1,126 @@
+"""`tippetop fit`: numbers of a problem from data of a real top."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+import tippetop as tt
+from tippetop.cli.options import (
+    DRAWINGS,
+    NUMBER,
+    Choice,
+    Force,
+    Json,
+    number_of,
+    of_a_problem,
+    write_figure,
+)
+from tippetop.cli.terminal import listing, show, show_json
+from tippetop.support.errors import InvalidInput
+from tippetop.support.files import place_for, require_ending, written_beside
+
+if TYPE_CHECKING:
+    from tippetop.fit.fitted import FitResult
+
+
+@of_a_problem
+def fit(
+    choice: Choice,
+    data: Annotated[Path, typer.Argument(help="Table of data: t and theta, t, x and y, rpm, ...")],
+    vary: Annotated[
+        str,
+        typer.Option(
+            metavar="FIELDS",
+            help="Fields to fit, with commas: friction.mu,launch.spin; or with ranges: "
+            "friction.mu=0.1:0.5.",
+        ),
+    ] = "",
+    noise: Annotated[
+        str | None,
+        typer.Option(help="Standard deviation of the data in their unit; one for each column."),
+    ] = None,
+    view: Annotated[
+        str | None, typer.Option(help="Where pictures were taken from: above or side.")
+    ] = None,
+    point: Annotated[str, typer.Option(help="What x and y are of: tip or center.")] = "tip",
+    scale: Annotated[
+        str | None, typer.Option(metavar=NUMBER, help="Metres a pixel, or as in '0.2 mm'.")
+    ] = None,
+    frame_rate: Annotated[float | None, typer.Option(help="Pictures a second.")] = None,
+    start: Annotated[
+        str, typer.Option(metavar=NUMBER, help="Time of the launch in the data, s.")
+    ] = "0",
+    y_down: Annotated[
+        bool, typer.Option("--y-down", help="y grows downwards in pictures.")
+    ] = False,
+    track: Annotated[str | None, typer.Option(help="Track, of several in a file.")] = None,
+    starts: Annotated[int, typer.Option(help="From how many points the search begins.")] = 1,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw data and fit as .png, .svg or .pdf.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Write the fitted problem as .toml.")] = None,
+    as_json: Json = False,
+    force: Force = False,
+) -> None:
+    """Fit numbers of a problem to data of a real top, and say how well they are known."""
+    if not vary:
+        raise InvalidInput("--vary", vary, "fields with commas, such as friction.mu,launch.spin")
+    for option, path, endings in (("--plot", plot, DRAWINGS), ("--out", out, (".toml",))):
+        if path is not None:
+            require_ending(option, path, endings)
+            place_for(path, force)
+    measurement: Any = tt.read_measurement(
+        data,
+        view=view,  # type: ignore[arg-type]
+        point=point,
+        scale=number_of("--scale", scale, "m"),
+        noise=None if noise is None else [_number(part) for part in noise.split(",")],
+        frame_rate=frame_rate,
+        start=number_of("--start", start, "s") or 0.0,
+        y_down=y_down,
+        track=track,
+    )
+    result = tt.fit(choice.problem(), measurement, _vary(vary), starts=starts)
+    if plot is not None:
+        from tippetop.figures.fits import plot_fit  # noqa: PLC0415 - slow to import
+
+        write_figure(plot_fit(result), plot, force)
+    if out is not None:
+        with written_beside(out, force) as beside:
+            beside.write_text(result.problem.to_toml(), encoding="utf-8")
+    if as_json:
+        show_json({**result.summary(), "plot": plot and str(plot), "out": out and str(out)})
+        return
+    show(*_lines(result), files=[path for path in (plot, out) if path is not None])
+
+
+def _lines(result: "FitResult") -> list[Any]:
+    """Return the fit for people."""
+    rows = [
+        (name, f"{value:.5g}", "±", f"{result.errors[name]:.2g}")
+        for name, value in result.values.items()
+    ]
+    sums = f"chi² = {result.chi2:.4g} for {result.degrees_of_freedom} degrees of freedom"
+    words = [f"[bold]not determined:[/] {direction}" for direction in result.undetermined]
+    headings = ("number", "value", "", "standard error")
+    return [listing(None, headings, rows, words=("number", "")), sums, *words, *result.cautions]
+
+
+def _vary(text: str) -> dict[str, tuple[float, float] | None]:
+    """Return fields and ranges from "friction.mu=0.1:0.5,launch.spin"."""
+    fields = dict[str, tuple[float, float] | None]()
+    for part in text.split(","):
+        field, equals, ends = part.strip().partition("=")
+        low, colon, high = ends.partition(":")
+        if equals and not colon:
+            raise InvalidInput("--vary", part, "FIELD or FIELD=LOW:HIGH")
+        fields[field] = (_number(low), _number(high)) if equals else None
+    return fields
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InvalidInput("number", text, "a number") from None

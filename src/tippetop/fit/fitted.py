@@ -1,0 +1,417 @@
+"""What a fit tells: numbers with errors, residuals, and what the data do not determine."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+import numpy as np
+import xarray as xr
+from scipy.optimize import brentq
+from scipy.stats import norm, t
+
+from tippetop.fit.measurement import Measurement
+from tippetop.integrators.base import Array
+from tippetop.problem.problem import Problem
+from tippetop.support.errors import InvalidInput, NotConverged, is_number
+from tippetop.support.suggestions import not_one_of
+
+if TYPE_CHECKING:
+    from tippetop.fit.least_squares import Search
+
+UNDETERMINED = 1e-6
+"""Singular value, relative to the largest, below which data do not determine a direction: above the
+errors of the derivatives, which are 1e-8."""
+
+WEAK = 1.0
+"""Relative standard error from which on a direction counts as not determined in practice."""
+
+SHARE = 0.3
+"""Least component of a number in an undetermined direction to be named."""
+
+CORRELATED_RESIDUALS = 1.0
+"""Statistic of Durbin and Watson below which residuals are not random: 2 for random ones."""
+
+RIVAL = 6.0
+"""Sum of squares above the least, in variances, up to which another minimum is reported."""
+
+CLEAR = 6.0
+"""Difference of BIC from which on one model is preferred: "strong" evidence of Kass and Raftery."""
+
+
+class Minimum(NamedTuple):
+    """Where a search ended."""
+
+    numbers: Array
+    cost: float
+    """Sum of the squares of the residuals."""
+    converged: bool
+    message: str
+
+
+class Interval(NamedTuple):
+    """Limits of a number."""
+
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class FitResult:
+    """The result of `tt.fit`.
+
+    Attributes
+    ----------
+    problem
+        The problem with its fitted numbers.
+    values, errors
+        Fitted numbers and their standard errors, by name: fields of the problem, then numbers of
+        the instruments. An error is infinite where the data do not determine the number, and NaN
+        where the derivative does not exist: see `cautions`, and use `profile`.
+    covariance
+        Labelled matrix.
+    residuals
+        (prediction - data) / noise of each measurement, shape (rows, columns).
+    noise
+        Standard deviation that the errors rest on: of each measurement's columns, as it was stated,
+        or the estimated one.
+    chi2, degrees_of_freedom
+        Sum of squared standardised residuals, and the count it is expected to be.
+    aic, bic
+        Akaike's and Schwarz's criteria of the model; smaller is better.
+    undetermined
+        Directions that the data do not determine, in words.
+    cautions
+        What else a reader must know, in words.
+    alternatives
+        Other minima that are almost as good, as numbers by name.
+    runs
+        How many runs the fit followed.
+    """
+
+    problem: Problem
+    values: Mapping[str, float]
+    errors: Mapping[str, float]
+    covariance: xr.DataArray
+    residuals: tuple[Array, ...]
+    noise: tuple[Array, ...]
+    chi2: float
+    degrees_of_freedom: int
+    aic: float
+    bic: float
+    undetermined: tuple[str, ...]
+    cautions: tuple[str, ...]
+    alternatives: tuple[Mapping[str, float], ...]
+    runs: int
+    measurements: tuple[Measurement, ...] = field(repr=False)
+    search: "Search" = field(repr=False)
+
+    @classmethod
+    def of(cls, search: "Search", best: Minimum, rivals: Sequence[Minimum]) -> Self:
+        """Return the result of a search that ended in a minimum."""
+        model, numbers = search.model, best.numbers
+        residuals = search.residuals(numbers)
+        jacobian = search.jacobian(numbers, exact=True)
+        smooth = np.isfinite(jacobian).all(axis=0)
+        if not smooth.all():
+            jacobian[:, ~smooth] = search.jacobian(numbers)[:, ~smooth]
+        count, fitted = jacobian.shape
+        degrees = count - fitted
+        variance = 1.0 if search.is_noise_known else best.cost / max(degrees, 1)
+        covariance, undetermined = _covariance(
+            jacobian, model.scales(numbers), model.names, variance
+        )
+        errors = np.where(smooth, np.sqrt(np.diag(covariance)), np.nan)
+        standardised = np.full(len(model.data), np.nan)
+        standardised[search.measured] = residuals / np.sqrt(variance) if variance else residuals
+        ends = np.cumsum([one.values.size for one in model.measurements])[:-1]
+        pieces = np.split(standardised, ends)
+        deviations = np.split(search.deviations * np.sqrt(variance), ends)
+        shaped = tuple(
+            piece.reshape(one.values.shape)
+            for piece, one in zip(pieces, model.measurements, strict=True)
+        )
+        log_likelihood, parameters = _log_likelihood(search, best.cost, count)
+        parameters += fitted
+        names = list(model.names)
+        return cls(
+            model.problem_of(numbers),
+            dict(zip(names, numbers.tolist(), strict=True)),
+            dict(zip(names, errors.tolist(), strict=True)),
+            xr.DataArray(covariance, {"number": names, "beside": names}, ("number", "beside")),
+            shaped,
+            tuple(
+                level.reshape(one.values.shape)[0]
+                for level, one in zip(deviations, model.measurements, strict=True)
+            ),
+            best.cost / variance if variance else 0.0,
+            degrees,
+            2.0 * parameters - 2.0 * log_likelihood,
+            float(np.log(count)) * parameters - 2.0 * log_likelihood,
+            undetermined,
+            _cautions(search, numbers, shaped, degrees, best.cost),
+            tuple(
+                dict(zip(names, rival.numbers.tolist(), strict=True))
+                for rival in rivals
+                if rival.cost - best.cost < RIVAL * variance
+                and np.any(np.abs(rival.numbers - numbers) > 3.0 * errors)
+            ),
+            model.runs,
+            model.measurements,
+            search,
+        )
+
+    @property
+    def correlation(self) -> xr.DataArray:
+        """Labelled matrix of correlations."""
+        deviations = np.sqrt(np.diag(self.covariance.values))
+        with np.errstate(invalid="ignore"):
+            return self.covariance / np.outer(deviations, deviations)
+
+    def interval(self, name: str, level: float = 0.95) -> Interval:
+        """Return the interval of a number at a level of confidence, by its standard error."""
+        reach = self._reach(level) * self.errors[self._checked(name)]
+        return Interval(self.values[name] - reach, self.values[name] + reach)
+
+    def profile(self, name: str, level: float = 0.95) -> Interval:
+        """Return the interval by the profile likelihood, which needs no linear model.
+
+        The other numbers are fitted again at each trial value. An end is infinite where the data do
+        not bound it.
+
+        Raises
+        ------
+        NotConverged
+            If one of those fits does not converge.
+        """
+        place = list(self.values).index(self._checked(name))
+        best = np.array(list(self.values.values()))
+        variance = 1.0 if self.search.is_noise_known else self._cost / self.degrees_of_freedom
+        reach = self._reach(level)
+        error = self.errors[name]
+        scale = float(self.search.model.scales(best)[place])
+        step = reach * error if np.isfinite(error) else 0.1 * scale
+        ends = []
+        for side in (-1.0, 1.0):
+            nearest = [best]
+
+            def excess(distance: float, side: float = side, nearest: Any = nearest) -> float:
+                start = nearest[0].copy()
+                start[place] = best[place] + side * distance
+                if not np.isfinite(self.search.residuals(start)).all():
+                    return np.inf
+                minimum = self.search.refine(start, held=place)
+                if not minimum.converged:
+                    raise NotConverged(
+                        f"the profile of {name} did not converge at {start[place]:.4g}"
+                        f" ({minimum.message})"
+                    )
+                nearest[0] = minimum.numbers
+                return float(np.sqrt(max(minimum.cost - self._cost, 0.0) / variance) - reach)
+
+            ends.append(best[place] + side * _crossing(excess, step))
+        return Interval(float(ends[0]), float(ends[1]))
+
+    def predict(self) -> tuple[Array, ...]:
+        """Return what the fitted run shows at the data, shape (rows, columns) each."""
+        return tuple(
+            one.values + residual * noise
+            for one, residual, noise in zip(
+                self.measurements, self.residuals, self.noise, strict=True
+            )
+        )
+
+    def summary(self) -> dict[str, Any]:
+        """Return the fit for programs: plain numbers and texts by name."""
+        return {
+            "problem": self.problem.model_dump(),
+            "values": dict(self.values),
+            "errors": dict(self.errors),
+            "covariance": self.covariance.values.tolist(),
+            "chi2": self.chi2,
+            "degrees_of_freedom": self.degrees_of_freedom,
+            "noise": [one.tolist() for one in self.noise],
+            "aic": self.aic,
+            "bic": self.bic,
+            "undetermined": list(self.undetermined),
+            "cautions": list(self.cautions),
+            "alternatives": [dict(one) for one in self.alternatives],
+            "runs": self.runs,
+        }
+
+    def __str__(self) -> str:
+        """Return the fit in lines for people."""
+        lines = [
+            f"{name} = {value:.5g} ± {self.errors[name]:.2g}" for name, value in self.values.items()
+        ]
+        lines.append(f"chi² = {self.chi2:.4g} for {self.degrees_of_freedom} degrees of freedom")
+        lines += [f"not determined: {direction}" for direction in self.undetermined]
+        return "\n".join([*lines, *self.cautions])
+
+    @property
+    def _cost(self) -> float:
+        residuals = np.concatenate([one.ravel() for one in self.residuals])
+        scale = 1.0 if self.search.is_noise_known else float(self.noise[0][0]) ** 2
+        return float(np.nansum(residuals**2)) * scale
+
+    def _reach(self, level: float) -> float:
+        """Return half an interval in standard errors."""
+        if not (is_number(level) and 0.0 < level < 1.0):
+            raise InvalidInput("level", level, "a number between 0 and 1, such as 0.95")
+        upper = 0.5 + 0.5 * level
+        if self.search.is_noise_known:
+            return float(norm.ppf(upper))
+        return float(t.ppf(upper, max(self.degrees_of_freedom, 1)))
+
+    def _checked(self, name: str) -> str:
+        if name not in self.values:
+            raise not_one_of("name", name, list(self.values))
+        return name
+
+
+FARTHEST = 6
+"""Doublings of a distance in search of the end of a profile's interval."""
+
+
+def _crossing(excess: Any, step: float) -> float:
+    """Return the distance at which an increasing function passes zero; infinity if none does."""
+    inner, outer = 0.0, step
+    for _ in range(FARTHEST):
+        height = excess(outer)
+        if height == np.inf:
+            outer = 0.5 * (inner + outer)
+        elif height > 0.0:
+            return float(brentq(excess, inner, outer, xtol=1e-3 * step, rtol=1e-3))
+        else:
+            inner, outer = outer, 2.0 * outer
+    return np.inf
+
+
+def _covariance(
+    jacobian: Array, scales: Array, names: Sequence[str], variance: float
+) -> tuple[Array, tuple[str, ...]]:
+    """Return the covariance, and the directions that are not determined, in words."""
+    _, strengths, directions = np.linalg.svd(jacobian * scales, full_matrices=False)
+    directions_count = len(scales)
+    singular = strengths <= UNDETERMINED * strengths[0]
+    if len(strengths) < directions_count:  # fewer data than numbers
+        raise InvalidInput("data", f"{len(jacobian)} numbers", f"at least {directions_count}")
+    spread = np.where(singular, 0.0, 1.0 / np.where(singular, 1.0, strengths))
+    relative = (directions.T * spread**2) @ directions * variance
+    covariance = scales[:, None] * relative * scales
+    words = list[str]()
+    for direction, strength, null in zip(directions, strengths, singular, strict=True):
+        error = np.inf if null else np.sqrt(variance) / strength
+        if error >= WEAK:
+            words.append(_direction(direction, names, error))
+        if null:
+            involved = np.abs(direction) > UNDETERMINED**0.5
+            covariance[np.ix_(involved, involved)] = np.inf
+    return covariance, tuple(words)
+
+
+def _direction(direction: Array, names: Sequence[str], error: float) -> str:
+    """Return a direction in words."""
+    order = np.argsort(-np.abs(direction))
+    named = [place for place in order if abs(direction[place]) >= SHARE]
+    sign = np.sign(direction[named[0]])
+    if len(named) == 1:
+        subject = names[named[0]]
+    else:
+        moves = [
+            f"{names[place]} {'up' if sign * direction[place] > 0 else 'down'}" for place in named
+        ]
+        subject = " with ".join(moves)
+    if np.isinf(error):
+        return f"{subject} (the data do not change with it)"
+    return f"{subject} (to {100.0 * error:.2g} %)"
+
+
+def _log_likelihood(search: "Search", cost: float, count: int) -> tuple[float, int]:
+    """Return the logarithm of the likelihood, and how many numbers of the noise it fits."""
+    deviations = search.deviations[search.measured]
+    if search.is_noise_known:
+        return -0.5 * (cost + float(np.log(2.0 * np.pi * deviations**2).sum())), 0
+    smallest = np.finfo(float).tiny
+    return -0.5 * count * float(np.log(2.0 * np.pi * max(cost / count, smallest)) + 1.0), 1
+
+
+def _cautions(
+    search: "Search", numbers: Array, residuals: Sequence[Array], degrees: int, cost: float
+) -> tuple[str, ...]:
+    """Return what a reader of the errors must know."""
+    model, words = search.model, list[str]()
+    for name, reason in model.reasons.items():
+        words.append(f"{name} has no linear error: {reason}; use profile()")
+    for name, number, low, high in zip(model.names, numbers, search.low, search.high, strict=True):
+        if min(abs(number - low), abs(number - high)) <= 1e-6 * max(abs(number), 1e-300):
+            words.append(f"{name} is at the end of its range: its error means nothing")
+    if search.is_noise_known and degrees > 0 and cost > degrees + 5.0 * np.sqrt(2.0 * degrees):
+        words.append(
+            f"chi² is {cost:.4g} where {degrees} is expected: the noise is larger than stated, or"
+            " the model lacks something (law of friction, air, wear)"
+        )
+    for one, table in zip(model.measurements, residuals, strict=True):
+        for label, column in zip(one.observation.labels, table.T, strict=True):
+            series = column[np.isfinite(column)]
+            if len(series) < 20 or not np.any(series):
+                continue
+            statistic = float(np.sum(np.diff(series) ** 2) / np.sum(series**2))
+            if statistic < CORRELATED_RESIDUALS:
+                words.append(
+                    f"the residuals of {label} are not random (Durbin-Watson {statistic:.2f}): the"
+                    " model lacks something, and the errors are too small"
+                )
+    return tuple(words)
+
+
+class Comparison(NamedTuple):
+    """Models compared by Schwarz's criterion."""
+
+    differences: dict[str, float]
+    """BIC above the least, by name of the model; least first."""
+    weights: dict[str, float]
+    """Akaike weights: how likely each is the best of these."""
+    preferred: str | None
+    """Name of the model that the data prefer; None if they cannot tell."""
+    verdict: str
+    """The same in words."""
+
+
+def compare_fits(fits: Mapping[str, FitResult]) -> Comparison:
+    """Return which of several models of the same data is preferred, if the data can tell.
+
+    Parameters
+    ----------
+    fits
+        Results of `tt.fit` by name, such as {"viscous": ..., "coulomb": ...}.
+
+    Raises
+    ------
+    InvalidInput
+        If there are fewer than two, or they are of different data.
+    """
+    if not isinstance(fits, Mapping) or len(fits) < 2:
+        raise InvalidInput("fits", fits, "at least two fits by name")
+    first, *others = fits.values()
+    data = [one.values for one in first.measurements]
+    for one in others:
+        values = [measurement.values for measurement in one.measurements]
+        if len(values) != len(data) or not all(
+            np.array_equal(a, b, equal_nan=True) for a, b in zip(values, data, strict=True)
+        ):
+            raise InvalidInput("fits", ", ".join(fits), "fits of the same data")
+    order = sorted(fits, key=lambda name: fits[name].bic)
+    differences = {name: fits[name].bic - fits[order[0]].bic for name in order}
+    least = min(one.aic for one in fits.values())
+    weights = {name: float(np.exp(-0.5 * (fits[name].aic - least))) for name in order}
+    total = sum(weights.values())
+    weights = {name: weight / total for name, weight in weights.items()}
+    second = order[1]
+    clear = differences[second] >= CLEAR
+    verdict = (
+        f"the data prefer {order[0]}: BIC is {differences[second]:.3g} less than with {second}"
+        if clear
+        else f"the data cannot tell {order[0]} from {second}: BIC differs by"
+        f" {differences[second]:.2g} alone"
+    )
+    return Comparison(differences, weights, order[0] if clear else None, verdict)

@@ -1,0 +1,188 @@
+"""Fits return what made the data, with errors that are right, and say what they cannot tell."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import tippetop as tt
+from tippetop.cli.commands import app
+from tippetop.fit.fitted import Minimum
+from tippetop.fit.least_squares import Search
+from tippetop.fit.model import Model
+
+TRUE = tt.presets.report_problem(spin=155.0)
+TIMES = np.arange(0.0, 1.0, 1.0 / 60.0)
+PIXEL = 2e-4
+
+
+@pytest.fixture(scope="module")
+def run():
+    return tt.simulate(TRUE, 1.0, times=np.append(TIMES, 1.0)).isel(time=slice(0, -1))
+
+
+@pytest.fixture(scope="module")
+def film(run):
+    """The tip from the side, at an unknown angle, half a pixel of noise, a tenth of frames lost."""
+    rng = np.random.default_rng(1)
+    x, y = run["x"].values, run["height"].values
+    axis = run["axis"].values
+    tip = 0.026  # the report's top: radius 2 cm, centre of mass 0.6 cm below that of the sphere
+    x, y = x + tip * axis[:, 0], y + tip * axis[:, 2]
+    side = run["y"].values + tip * axis[:, 1]
+    across = (np.cos(0.7) * x + np.sin(0.7) * side) / PIXEL + 320.0
+    up = y / PIXEL + 40.0
+    seen = np.stack([across, up], 1) + rng.normal(0.0, 0.5, (len(TIMES), 2))
+    seen[rng.random(len(TIMES)) < 0.1] = np.nan
+    return tt.Measurement.of_point(TIMES, *seen.T, "side", scale=PIXEL, noise=0.5)
+
+
+GUESSED = TRUE.replace({"friction.mu": 0.27, "launch.spin": 150.0})
+
+
+def test_a_film_of_the_tip_gives_friction_and_spin(film):
+    fitted = tt.fit(GUESSED, film, ["friction.mu", "launch.spin"])
+    truth = {"friction.mu": 0.3, "launch.spin": 155.0, "camera.angle": 0.7}
+    truth |= {"camera.x": 320.0, "camera.y": 40.0}
+    distance = np.array([fitted.values[name] - truth[name] for name in fitted.values])
+    squared = distance @ np.linalg.solve(fitted.covariance.values, distance)
+    assert squared < 20.5  # chi² of 5 degrees of freedom, one in a thousand
+    assert abs(fitted.chi2 - fitted.degrees_of_freedom) < 4.0 * np.sqrt(2 * film.count)
+    assert fitted.undetermined == ()
+    assert fitted.cautions == ()
+    low, high = fitted.interval("friction.mu", 0.95)
+    assert high - low == pytest.approx(2 * 1.959964 * fitted.errors["friction.mu"], rel=1e-6)
+
+
+def test_derivatives_are_those_of_the_drop():
+    # Dropped from h with restitution e the ball lands at t = sqrt(2 h/g); in the second flight its
+    # height is R + e g t (T - t) - g (T - t)^2 / 2.
+    ball = tt.presets.report_problem(spin=0.0).replace(
+        {
+            "launch.tilt": 0.0,
+            "launch.gap": 0.1,
+            "contact.liftoff": "fly",
+            "contact.restitution": 0.8,
+        }
+    )
+    g, h, e, late = ball.gravity, 0.1, 0.8, 0.2
+    data = tt.Measurement.of_variables([0.0, 0.1, late], {"height": [0.1, 0.2, 0.3]})
+    model = Model(ball, [data], ["launch.gap", "contact.restitution", "gravity"])
+    jacobian = model.jacobian(model.start, exact=True)[-1]
+    t = np.sqrt(2 * h / g)
+    since, fall = late - t, g * t
+    dt = {"launch.gap": 1 / (g * t), "contact.restitution": 0.0, "gravity": -t / (2 * g)}
+    upward = {"launch.gap": 0.0, "contact.restitution": fall * since, "gravity": 0.0}
+    upward["gravity"] = e * t * since - 0.5 * since**2
+    expected = [
+        upward[name] + dt[name] * (e * g * since - e * fall + g * since) for name in model.fields
+    ]
+    assert jacobian == pytest.approx(expected, rel=1e-8)
+
+
+def test_a_direction_without_effect_is_named():
+    # Of a body without slip and friction's part only the product of mass and nothing else counts:
+    # the mass cancels from the motion when inertias go with it, and the azimuth from the tilt.
+    data = tt.Measurement.of_variables(TIMES[:20], {"theta": 0.1 + 0.001 * np.arange(20)})
+    fitted = tt.fit(TRUE, data, ["friction.mu", "launch.azimuth"])
+    assert fitted.errors["launch.azimuth"] == np.inf
+    assert any("launch.azimuth" in direction for direction in fitted.undetermined)
+    assert np.isfinite(fitted.errors["friction.mu"])
+
+
+def test_unknown_noise_is_estimated(run):
+    rng = np.random.default_rng(3)
+    tilt = run["theta"].values + rng.normal(0.0, 0.01, len(TIMES))
+    data = tt.Measurement.of_variables(TIMES, {"theta": tilt})
+    fitted = tt.fit(TRUE, data, "friction.mu")
+    assert fitted.noise[0][0] == pytest.approx(0.01, rel=4 / np.sqrt(2 * len(TIMES)))
+    stated = tt.fit(TRUE, data, "friction.mu", noise=0.01)
+    ratio = fitted.errors["friction.mu"] / stated.errors["friction.mu"]
+    assert ratio == pytest.approx(fitted.noise[0][0] / 0.01, rel=1e-4)
+
+
+def test_a_profile_agrees_where_the_model_is_linear(run):
+    rng = np.random.default_rng(4)
+    tilt = run["theta"].values + rng.normal(0.0, 1e-4, len(TIMES))
+    data = tt.Measurement.of_variables(TIMES, {"theta": tilt}, noise=1e-4)
+    fitted = tt.fit(TRUE, data, ["friction.mu", "launch.tilt"])
+    assert fitted.profile("friction.mu") == pytest.approx(fitted.interval("friction.mu"), rel=1e-4)
+
+
+def test_events_alone_give_friction():
+    # At small friction mu t is the same for all mu: twice the friction turns over in half the time.
+    slow, fast = TRUE.replace({"friction.mu": 0.02}), TRUE.replace({"friction.mu": 0.04})
+    seen = float(tt.simulate(slow, 100.0, samples=2)["turns_over"])
+    fitted = tt.fit(fast, tt.Measurement.of_events({"turns_over": 0.6 * seen}), "friction.mu")
+    assert fitted.problem.friction.mu == pytest.approx(0.02 / 0.6, rel=0.01)
+
+
+def test_laws_are_told_apart_or_not(run):
+    rng = np.random.default_rng(5)
+    dry = {"friction.kind": "regularized_coulomb", "friction.mu": 0.3}
+
+    def compared(noise):
+        tilt = run["theta"].values + rng.normal(0.0, noise, len(TIMES))
+        data = tt.Measurement.of_variables(TIMES, {"theta": tilt}, noise=noise)
+        fits = {
+            "viscous": tt.fit(TRUE, data, "friction.mu"),
+            "dry": tt.fit(TRUE.replace(dry), data, {"friction.mu": (0.001, 1.0)}),
+        }
+        return tt.compare_fits(fits)
+
+    assert compared(0.005).preferred == "viscous"
+    unclear = compared(30.0)
+    assert unclear.preferred is None
+    assert "cannot tell" in unclear.verdict
+
+
+def test_what_does_not_converge_is_no_fit(monkeypatch, film):
+    def stopped(self, start, *_, **__):
+        return Minimum(start, 1.0, False, "too many steps")
+
+    monkeypatch.setattr(Search, "refine", stopped)
+    with pytest.raises(tt.NotConverged, match="did not reach a minimum"):
+        tt.fit(GUESSED, film, ["friction.mu"])
+
+
+WRONG = {
+    "no such field": ({"vary": "friction.nu"}, "nu"),
+    "a word": ({"vary": "friction.kind"}, "vary"),
+    "a range upside down": ({"vary": {"friction.mu": (0.5, 0.1)}}, "range"),
+    "no fields": ({"vary": []}, "names of fields"),
+    "a noise of zero": ({"vary": "friction.mu", "noise": 0.0}, "noise"),
+    "no starts": ({"vary": "friction.mu", "starts": 0}, "starts"),
+}
+
+
+@pytest.mark.parametrize(("arguments", "sentence"), WRONG.values(), ids=WRONG)
+def test_wrong_arguments_get_a_sentence(film, arguments, sentence):
+    with pytest.raises(tt.InvalidInput, match=sentence):
+        tt.fit(TRUE, film, **arguments)
+
+
+def test_fewer_data_than_numbers_are_refused():
+    data = tt.Measurement.of_events({"turns_over": 3.0})
+    with pytest.raises(tt.InvalidInput, match="at least 2"):
+        tt.fit(TRUE, data, ["friction.mu", "launch.spin"])
+
+
+def test_a_run_without_the_events_is_refused():
+    data = tt.Measurement.of_events({"turns_over": 0.1})
+    with pytest.raises(tt.InvalidInput, match="does not show all that was measured"):
+        tt.fit(TRUE, data, ["friction.mu"])
+
+
+def test_the_command_fits_a_file(tmp_path, run):
+    data, problem, drawn = (tmp_path / name for name in ("film.csv", "mine.toml", "fit.png"))
+    tilt = np.degrees(run["theta"].values) + np.random.default_rng(6).normal(0, 0.5, len(TIMES))
+    rows = [f"{t:.4f};{d:.3f}".replace(".", ",") for t, d in zip(TIMES, tilt, strict=True)]
+    data.write_text("\n".join(["t (s);theta (deg)", *rows]))
+    problem.write_text(GUESSED.to_toml())
+    command = ["fit", str(data), str(problem), "--vary", "friction.mu,launch.spin", "--json"]
+    answer = CliRunner().invoke(app, [*command, "--plot", str(drawn)], catch_exceptions=False)
+    told = json.loads(answer.stdout)
+    assert abs(told["values"]["friction.mu"] - 0.3) < 4 * told["errors"]["friction.mu"]
+    assert told["problem"]["friction"]["mu"] == told["values"]["friction.mu"]
+    assert drawn.read_bytes()[:4] == b"\x89PNG"

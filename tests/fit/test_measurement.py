@@ -1,0 +1,155 @@
+"""Data as people have it become measurements, and what is no data gets one sentence."""
+
+import numpy as np
+import pytest
+
+import tippetop as tt
+from tippetop.fit.observations import Camera, EventTimes, SpinRate, Variables
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Return the path of a file with a text."""
+
+    def write(text, name="data.csv"):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+TABLES = {
+    "commas": "t,theta\n0,0.1\n0.02,0.12\n0.04,0.16\n",
+    "semicolons and decimal commas": "t;theta\n0;0,1\n0,02;0,12\n0,04;0,16\n",
+    "tabs": "t\ttheta\n0\t0.1\n0.02\t0.12\n0.04\t0.16\n",
+    "tabs and decimal commas": "t\ttheta\t\n0,0\t1,0E-1\t\n2,0E-2\t0,12\t\n0,04\t0,16\t\n",
+    "spaces": "t   theta\n0.0  0.1\n0.02 0.12\n0.04 0.16\n",
+    "units in brackets": "Time [ms],tilt (mrad)\n0,100\n20,120\n40,160\n",
+    "units after a slash": "t / ms;theta / mrad\n0;100\n20;120\n40;160\n",
+    "a byte order mark and a comment": "\ufeff# my film\nt,theta\n0,0.1\n0.02,0.12\n0.04,0.16\n",
+    "the name of a track": "mass_A\nt\ttheta\n0\t0.1\n0.02\t0.12\n0.04\t0.16\n",
+    "a column more": "frame,t,theta\n0,0,0.1\n1,0.02,0.12\n2,0.04,0.16\n",
+}
+
+
+@pytest.mark.parametrize("text", TABLES.values(), ids=TABLES)
+def test_one_table_written_in_many_ways(written, text):
+    data = tt.read_measurement(written(text))
+    assert np.allclose(data.times, [0.0, 0.02, 0.04], rtol=1e-14)
+    assert np.allclose(data.values[:, 0], [0.1, 0.12, 0.16], rtol=1e-14)
+    assert isinstance(data.observation, Variables)
+
+
+def test_frames_without_a_mark_are_no_numbers(written):
+    data = tt.read_measurement(
+        written("mass_A\nt\tx\ty\t\n0\t1\t2\t\n0.1\t\t\t\n0.2\t3\t5\t\n"), view="above"
+    )
+    assert np.isnan(data.values[1]).all()
+    assert data.count == 4
+
+
+def test_a_track_of_several_is_chosen_by_its_name(written):
+    text = "#multi:\n\ttip\t\tball\t\t\nt\tx\ty\tx\ty\t\n0\t1\t2\t3\t4\n0.1\t5\t6\t7\t8\n"
+    data = tt.read_measurement(written(text), view="side", track="ball")
+    assert data.values.tolist() == [[3.0, 4.0], [7.0, 8.0]]
+    with pytest.raises(tt.InvalidInput, match="one of tip, ball"):
+        tt.read_measurement(written(text), view="side")
+
+
+def test_numbers_of_pictures_become_times(written):
+    data = tt.read_measurement(written("frame,theta\n10,0.1\n12,0.2\n16,0.3\n"), frame_rate=100.0)
+    assert np.allclose(data.times, [0.0, 0.02, 0.06])
+
+
+def test_the_launch_may_be_later_than_the_film(written):
+    data = tt.read_measurement(written("t,theta\n0,1\n1,0.1\n1.5,0.2\n"), start=1.0)
+    assert data.times.tolist() == [0.0, 0.5]
+
+
+def test_pixels_may_grow_downwards(written):
+    text = "t,x,y\n0,1,2\n0.1,5,6\n"
+    data = tt.read_measurement(written(text), view="above", y_down=True, scale="0.2 mm")
+    assert data.values[:, 1].tolist() == [-2.0, -6.0]
+    assert isinstance(data.observation, Camera)
+    assert data.observation.scale == 2e-4
+
+
+def test_a_unit_of_length_is_the_scale(written):
+    data = tt.read_measurement(written("t,x (cm),y (cm)\n0,1,2\n0.1,5,6\n"), view="above")
+    assert np.allclose(data.values, [[0.01, 0.02], [0.05, 0.06]])
+    assert data.observation.scale == 1.0
+
+
+def test_turns_a_minute_and_events_alone(written):
+    assert isinstance(tt.read_measurement(written("t,rpm\n0,1500\n1,1400\n")).observation, SpinRate)
+    events = tt.read_measurement(written("event,t (ms)\nturns_over,3100\nlift-off,700\n"))
+    assert isinstance(events.observation, EventTimes)
+    assert np.allclose(events.values, [[3.1, 0.7]])
+
+
+BAD = {
+    "empty": ("", "has no numbers"),
+    "no header": ("0,0.1\n0.1,0.2\n", "there is no header"),
+    "shuffled": ("t,theta\n0,0.1\n0.2,0.2\n0.1,0.3\n", "times must increase"),
+    "the same time twice": ("t,theta\n0,0.1\n0.1,0.2\n0.1,0.3\n", "times must increase"),
+    "degrees without a unit": ("t,theta\n0,5\n0.1,90\n", r"theta \(deg\)"),
+    "milliseconds without a unit": ("t,theta\n0,0.1\n5000,0.2\n", r"t \(ms\)"),
+    "a wrong unit": ("t (kg),theta\n0,0.1\n1,0.2\n", "unit of column t"),
+    "one picture": ("t,theta\n0,0.1\n", "at least two"),
+    "constant": ("t,theta\n0,0.1\n0.1,0.1\n", "nothing moves"),
+    "text in a column": ("t,theta\n0,0.1\n0.1,blurred\n0.2,0.3\n", "line 3.*blurred"),
+    "a number missing": ("t,theta\n0,0.1\n0.1\n0.2,0.3\n", "line 3"),
+    "no time": ("theta,theta_dot\n0,0.1\n0.1,0.2\n", "have no time"),
+    "columns of another kind": ("t,price\n0,0.1\n0.1,0.2\n", "t and theta"),
+    "infinite": ("t,theta\n0,0.1\n0.1,inf\n", "line 3"),
+    "points without a view": ("t,x,y\n0,1,2\n1,2,3\n", "'above' or 'side'"),
+    "no such event": ("event,t\nturned,3.1\n", "turns_over"),
+}
+
+
+@pytest.mark.parametrize(("text", "sentence"), BAD.values(), ids=BAD)
+def test_bad_data_get_a_sentence(written, text, sentence):
+    with pytest.raises(tt.InvalidInput, match=sentence) as refusal:
+        tt.read_measurement(written(text))
+    assert "data.csv" in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def still_run(tilt):
+    problem = tt.presets.report_problem(spin=155.0).replace({"launch.tilt": tilt})
+    return tt.simulate(problem, 0.1, samples=50)
+
+
+@pytest.mark.parametrize("view", ["above", "side"])
+@pytest.mark.parametrize("scale", [None, 2e-4])
+def test_a_camera_finds_its_own_place(view, scale):
+    # A point at a height of its own, so that both views show it move.
+    run = still_run(1.0)
+    camera = Camera(view, "tip", scale)
+    numbers = {"camera.angle": 0.7, "camera.x": 30.0, "camera.y": -12.0, "camera.scale": 2e-4}
+    guess = camera.guess(run, camera(run, numbers))
+    for name in camera.parameters:
+        assert guess[name] == pytest.approx(numbers[name], rel=1e-7), name
+
+
+def test_the_tip_and_a_mark_at_its_place_are_the_same():
+    run = still_run(0.5)
+    tip = np.linalg.norm(
+        Camera("above", "tip", 1.0).position(run, {})
+        - Camera("above", "center", 1.0).position(run, {}),
+        axis=1,
+    )
+    mark = Camera("above", (0.0, float(tip[0])), 1.0)
+    same = Camera("above", "tip", 1.0).position(run, {})
+    assert np.allclose(mark.position(run, {"mark.angle": 0.3}), same, atol=1e-15)
+
+
+def test_a_mark_off_the_axis_turns_with_the_body():
+    # At an upright launch the body turns about the vertical: the mark goes round a circle.
+    problem = tt.presets.report_problem(spin=155.0).replace({"launch.tilt": 0.0})
+    run = tt.simulate(problem, 0.02, samples=11)
+    mark = Camera("above", (0.01, 0.0), 1.0).position(run, {"mark.angle": 0.2})
+    angle = 0.2 + 155.0 * run["time"].values
+    assert np.allclose(mark[:, 0], 0.01 * np.cos(angle), atol=1e-12)
+    assert np.allclose(mark[:, 1], 0.01 * np.sin(angle), atol=1e-12)
