@@ -3,6 +3,7 @@ link.
 """
 
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -264,3 +265,25 @@ def test_flights_shade_what_they_fill_once(lab: Lab) -> None:
     one, many = (visitor.ask(shade, count) for count in (1, 5000))
     assert 0 < one < 64
     assert many == one
+
+
+def test_a_graph_with_free_axes_tells_the_values_under_the_pointer(lab: Lab) -> None:
+    visitor = lab("tab=launch&launch.spin=155&t=0&free=theta omega3")
+    page = visitor.page
+    visitor.pause(0.0)
+    graph = page.locator(".free svg")
+    graph.scroll_into_view_if_needed()
+    page.locator(".free select").nth(1).select_option("energy")
+    assert "free=theta+energy" in visitor.ask("() => tippetopLab.link()")
+    box = graph.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.9 * box["width"], box["y"] + 0.8 * box["height"])
+    words = page.locator(".free .hint").inner_text()
+    number = r"([\d.]+)"
+    read = re.search(rf"θ = {number} °, E = {number} mJ, t = {number} s", words)
+    assert read is not None, words
+    tilt, energy, time = map(float, read.groups())
+    at = visitor.ask(
+        "(t) => ['theta', 'energy'].map((name) => tippetopLab.track.value(name, t))", time
+    )
+    assert [tilt, energy] == pytest.approx([math.degrees(at[0]), 1e3 * at[1]], rel=2e-3)

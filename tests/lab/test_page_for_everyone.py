@@ -100,7 +100,33 @@ def test_every_text_is_in_every_language() -> None:
     assert english == {name for name in german if not name.startswith(("/patterns", "/account"))}
 
 
-@pytest.mark.parametrize("tab", ["story", "launch", "own", "compare", "map", "keep"])
+SIZES = [(360, 640), (390, 844), (667, 375), (844, 390), (1024, 768)]
+
+BESIDE = """(tab) => {
+  tippetopLab.set({ tab });
+  for (const one of document.querySelectorAll(".panel details")) one.open = true;
+  return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() =>
+    done(document.documentElement.scrollWidth - document.documentElement.clientWidth))));
+}"""
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_no_page_is_wider_than_its_screen(lab: Lab, size: tuple[int, int]) -> None:
+    width, height = size
+    is_phone = width < 1000
+    for language in ("en", "de"):
+        visitor = lab(
+            f"lang={language}",
+            viewport={"width": width, "height": height},
+            has_touch=is_phone,
+            is_mobile=is_phone,
+        )
+        visitor.ask("() => tippetopLab.pin()")
+        for tab in ("story", "launch", "own", "compare", "map", "class", "keep"):
+            assert visitor.ask(BESIDE, tab) <= 0, (tab, language)
+
+
+@pytest.mark.parametrize("tab", ["story", "launch", "own", "compare", "map", "class", "keep"])
 def test_axe_finds_nothing_above_minor(lab: Lab, tab: str) -> None:
     axe = pytest.importorskip(
         "axe_playwright_python.sync_playwright", reason="axe comes with the test extra"

@@ -7,6 +7,7 @@ import { createPlayer } from "../player/player.js";
 import { Classroom } from "./classroom.jsx";
 import { Compare } from "./compare.jsx";
 import { Launch } from "./controls.jsx";
+import { Free } from "./free.jsx";
 import { Help } from "./help.jsx";
 import { LANGUAGES, part, t } from "./i18n.js";
 import { Keep } from "./keep.jsx";
@@ -244,6 +245,7 @@ function PlotSection({ lab, dark }) {
       <PlotsBar lab={lab} names={names} />
       <p class="veil">{t("plots.veiled")}</p>
       <div class="plots-host" ref={host} />
+      <Free lab={lab} />
     </section>
   );
 }

@@ -1,7 +1,7 @@
 // The link is the document: launch, time, view, units, curves and pins, after the # of the page's address.
 
 import { changed, differences, FIRST, fields, inSi } from "./setup.js";
-import { CHOICES, FIRST as FIRST_UNITS } from "./units.js";
+import { AXES, CHOICES, FIRST as FIRST_UNITS } from "./units.js";
 
 // Longer than any profile that a body may have; addresses may be as long.
 const LONGEST_VALUE = 100_000;
@@ -11,6 +11,7 @@ const PLAIN = ["gravity", "rolling_resistance", "duration"];
 // What the player shows where all that can be shown is off.
 const NO_ARROWS = "none";
 
+const isAxis = (name) => AXES.includes(name);
 const isOfLaunch = (field) => TABLES.test(field) || PLAIN.includes(field);
 
 // A launch as a query: what is not as in the first launch. Laws and shapes are named with all they have.
@@ -53,7 +54,7 @@ function parsed(text) {
   }
 }
 
-export function writeLink({ setup, pins, units, view, tab, step, plots, lang, theme }) {
+export function writeLink({ setup, pins, units, view, tab, step, plots, free, lang, theme }) {
   const query = launchQuery(setup);
   if (view.time > 0.0005) query.set("t", view.time.toFixed(4));
   if (view.camera) query.set("camera", view.camera.map((v) => v.toFixed(3)).join(" "));
@@ -62,6 +63,7 @@ export function writeLink({ setup, pins, units, view, tab, step, plots, lang, th
     query.set("units", `${units.spin} ${units.angle}`);
   if (tab !== "story") query.set("tab", tab);
   if (plots) query.set("plots", plots.join(" "));
+  if (free) query.set("free", free.join(" "));
   if (lang) query.set("lang", lang);
   if (theme !== "auto") query.set("theme", theme);
   for (const pin of pins) query.append("pin", launchQuery(pin).toString());
@@ -75,6 +77,7 @@ export function readLink(text) {
   const words = (name) => query.get(name)?.split(" ").filter(Boolean);
   const camera = words("camera")?.map(Number);
   const [spin, angle] = words("units") ?? [];
+  const axes = words("free");
   const right = camera?.length === 3 && camera.every(Number.isFinite);
   return {
     setup: readLaunch(query),
@@ -94,6 +97,7 @@ export function readLink(text) {
     tab: query.get("tab") ?? (isOfStory(query) ? "story" : "launch"),
     step: Math.max(Math.trunc(Number(query.get("step")) || 0), 0),
     plots: words("plots") ?? null,
+    free: axes?.length === 2 && axes.every(isAxis) ? axes : null,
     lang: query.get("lang"),
     theme: ["light", "dark"].includes(query.get("theme")) ? query.get("theme") : "auto",
     timed: query.has("t"),
@@ -103,4 +107,4 @@ export function readLink(text) {
 // Whether a link without a tab is one to the story: it names a step, or says nothing of a launch.
 const isOfStory = (query) => query.has("step") || ![...query.keys()].some(isShown);
 const isShown = (name) =>
-  isOfLaunch(name) || ["t", "pin", "camera", "show", "plots"].includes(name);
+  isOfLaunch(name) || ["t", "pin", "camera", "show", "plots", "free"].includes(name);

@@ -164,7 +164,7 @@ export class Plots {
     const cursor = document.createElement("i");
     cursor.className = "plot-now";
     chart.over.append(cursor);
-    this.seekByPointer(chart);
+    this.seekByPointer(chart, name, value);
     return { name, chart, cursor, value, title: `${title} ${label}` };
   }
 
@@ -224,13 +224,22 @@ export class Plots {
     ctx.fill();
   }
 
-  seekByPointer({ over }) {
+  // Move through time by dragging; otherwise the value under the pointer is read, unless it is still to be seen.
+  seekByPointer({ over }, name, value) {
     over.style.touchAction = "pan-y";
-    const seek = (event) => {
+    const timeOf = (event) => {
       const box = over.getBoundingClientRect();
       const share = clamp((event.clientX - box.left) / box.width, 0, 1);
       const [begin, end] = this.span;
-      this.seek(begin + share * (end - begin));
+      return begin + share * (end - begin);
+    };
+    const seek = (event) => this.seek(timeOf(event));
+    const read = (event) => {
+      if (!this.isTold() || this.playing()) return;
+      const time = timeOf(event);
+      const { size } = unitOf(QUANTITIES[name], this.units);
+      const text = digits(this.track.value(name, time) / size, 4);
+      value.textContent = `${text} (${digits(time, 3)} s)`;
     };
     over.addEventListener("pointerdown", (event) => {
       over.setPointerCapture(event.pointerId);
@@ -238,7 +247,9 @@ export class Plots {
     });
     over.addEventListener("pointermove", (event) => {
       if (event.buttons) seek(event);
+      else read(event);
     });
+    over.addEventListener("pointerleave", () => this.move());
   }
 
   fill() {

@@ -10,6 +10,19 @@ const SPINS = { "rad/s": 1, "turns/s": 2 * Math.PI, rpm: (2 * Math.PI) / 60 };
 const ANGLES = { rad: 1, deg: DEGREE };
 
 export const CHOICES = { spin: Object.keys(SPINS), angle: Object.keys(ANGLES) };
+/** What may be an axis of a graph. */
+export const AXES = [
+  "time",
+  "theta",
+  "omega3",
+  "phi_dot",
+  "slip",
+  "energy",
+  "normal_force",
+  "jellett_error",
+  "height",
+];
+
 export const FIRST = { spin: "rad/s", angle: "deg" };
 
 // The unit in which a quantity of a kind is shown, and its size in SI.
