@@ -2,6 +2,7 @@
 begins.
 """
 
+import math
 from functools import cache
 
 import numpy as np
@@ -212,9 +213,7 @@ def test_slip_that_begins_at_the_limit_grows_with_the_square_of_time() -> None:
 
 @pytest.mark.parametrize("seed", [SLIPS_AGAIN, BEYOND_THE_LIMIT])
 def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
-    """From early in its series on, by an implicit method and in other numbers; it has no digits to
-    lose.
-    """
+    """From early in its first step on, by an implicit method and in other numbers."""
     begin = next(
         segment for segment in followed(seed) if isinstance(segment.mode, SlipBeginningOnTwo)
     )
@@ -225,11 +224,32 @@ def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
     start = early, np.array(slides.numbers(mode.state(first)))
     (arc,) = make_integrator("collocation").integrate(slides.motion, slides.parameters, start, late)
     assert arc.end_state == pytest.approx(slides.numbers(mode.state(last)), abs=1e-11)
+    part = (late - knots[-2]) / (knots[-1] - knots[-2])
     assert mode.found(last)[0].rate == pytest.approx(
         [
-            np.polynomial.polynomial.polyval(0.9, np.polynomial.polynomial.polyder(row))
-            / (knots[-1] - knots[0])
-            for row in begin.solution.terms[0, 6:]
+            np.polynomial.polynomial.polyval(part, np.polynomial.polynomial.polyder(row))
+            / (knots[-1] - knots[-2])
+            for row in begin.solution.terms[-1, 6:]
         ],
         abs=1e-10,
     )
+
+
+def test_slip_that_begins_on_the_contact_that_sticks_goes_on_and_sticks_again() -> None:
+    """Slip begins on either surface; the body then slides on both, and not on one of them twice."""
+    shape = (
+        tt.Sphere(radius=0.0121534314, center=-0.00423612465),
+        tt.Sphere(radius=0.0150357072, center=0.0241527012),
+    )
+    touching = (shape[0].radius - shape[1].radius) / (shape[0].center - shape[1].center)
+    launch = tt.Launch(
+        tilt=math.acos(touching), spin=-38.64, azimuth=0.06, precession=2.95,
+        velocity=(0.2977, -0.2258, 0.0),
+    )  # fmt: skip
+    body = tt.Body(mass=0.02, shape=shape, I1=7.283e-6, I3=8.0905e-6)
+    friction = tt.CoulombFriction(mu=0.343)
+    problem = tt.Problem(body=body, friction=friction, launch=launch, gravity=9.81)
+    run = followed_by_steps(problem, 0.35)
+    assert run.attrs["outcome"] == "completed"
+    assert times(run, "stick")[1] == pytest.approx(0.3327, abs=1e-4)
+    assert float(run["energy_error"]) < 1e-12

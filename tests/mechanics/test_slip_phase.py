@@ -1,4 +1,4 @@
-"""Slip by collocation from its beginning to its end, against series, clocks and Runge and Kutta's
+"""Slip by collocation from its beginning to its end, against its clock and Runge and Kutta's
 method.
 """
 
@@ -18,8 +18,9 @@ from tippetop.contact.slipping import change_over, dips, parts_left
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import iteration, make_integrator
 from tippetop.mechanics.coulomb import CoulombLaw
+from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.gauss_points import STAGES, gauss_points
 from tippetop.mechanics.motion import on_table, sliding_rates
-from tippetop.mechanics.slip_phase import STAGES, gauss_points
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
@@ -79,10 +80,10 @@ def test_a_phase_solves_the_equations_of_sliding(name):
 
 
 @pytest.mark.parametrize("name", LAUNCHES)
-def test_series_and_clocks_tell_the_same_of_it(name, monkeypatch):
+def test_a_first_step_and_the_clock_tell_the_same_of_it(name, monkeypatch):
     kinds, times = told(followed(name, 30.0)[1])
     assert kinds.count(EventKind.SLIP) > 1
-    monkeypatch.setattr(Loosening, "slips", lambda *_: None)
+    monkeypatch.setattr(Vanishing, "recurs", lambda *_: False)
     others, seconds = told(followed(name, 30.0)[1])
     assert kinds == others
     assert times == pytest.approx(seconds, abs=1e-11)
@@ -91,12 +92,12 @@ def test_series_and_clocks_tell_the_same_of_it(name, monkeypatch):
 def test_it_is_the_same_where_nothing_is_compiled(monkeypatch):
     kinds, times = told(followed("sphere", 6.0)[1])
     monkeypatch.setattr(iteration, "has_llvm", lambda: False)
-    for cached in (slip_step.compiled_step, slip_step.machinery_of):
+    for cached in (slip_step.compiled_step, slip_step.parameters_of):
         cached.cache_clear()
     try:
         others, seconds = told(followed("sphere", 6.0)[1])
     finally:
-        for cached in (slip_step.compiled_step, slip_step.machinery_of):
+        for cached in (slip_step.compiled_step, slip_step.parameters_of):
             cached.cache_clear()
     assert kinds == others
     assert times == pytest.approx(seconds, abs=1e-12)

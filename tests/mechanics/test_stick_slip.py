@@ -12,9 +12,12 @@ from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.closed import SLIP, ContactMode, split
-from tippetop.contact.growth import growth
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
+from tippetop.contact.onset_motion import BOTH as TOGETHER
+from tippetop.contact.onset_motion import onset_motion
+from tippetop.contact.slip_step import SlipStep
+from tippetop.contact.slipping import follow_slip
 from tippetop.contact.stopping import Stopping
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
@@ -26,13 +29,11 @@ from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.friction import NO_TORQUE, Traction
+from tippetop.mechanics.gauss_points import PARTS, STAGES
 from tippetop.mechanics.motion import angular_velocity, on_table, sliding_rates
 from tippetop.mechanics.rolling import contact_motion, velocity_without_slip, without_drilling
-from tippetop.mechanics.series import horner
-from tippetop.mechanics.slip_onset import Growing, Onset, onset, rates_of
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import (
-    inner,
     plus,
     scaled,
     size,
@@ -240,14 +241,17 @@ def at_the_limit(family, shape=SPHERE):
             low, high = (low, middle) if held else (middle, high)
         top = family(high, shape)
         direction, _ = direction_of_slip(axis, momentum, top)
-        if onset(growing(axis, momentum, direction, top), 2, 1).speed[0] > 0.0:
+        if began(top, axis, momentum, direction, 1e-6).least_speed > 0.0:
             return top, axis, momentum
     raise AssertionError("it comes to its limit, and does not leave it")
 
 
-def growing(axis, momentum, direction, top):
-    """The series of slip that begins in a direction."""
-    return Growing((*axis, *momentum), direction, rates_of(top, Vanishing(slip=True)))
+def began(top, axis, momentum, direction, length):
+    """A step of slip that begins in a direction."""
+    step = SlipStep(onset_motion(top.kind, (Vanishing(slip=True),), False), top.numbers)
+    none = [0.0 for _ in direction]
+    assert step.solve([*axis, *momentum, *none], [direction], length)
+    return step
 
 
 def starting(family, power, shape=SPHERE):
@@ -258,12 +262,6 @@ def starting(family, power, shape=SPHERE):
     return top, *swinging(top)
 
 
-def grown(begin, time):
-    """Axis, angular momentum and zeta of an onset at a time since it."""
-    y = [horner(row, time) for row in begin.rows]
-    return y[:3], y[3:6], y[6:]
-
-
 FAMILIES = {
     "coulomb": lambda mu, shape: report(CoulombLaw(mu), shape),
     "ellipsoidal": lambda mu, shape: report(EllipsoidalLaw(mu, 0.5), shape),
@@ -272,37 +270,70 @@ FAMILIES = {
 }
 
 
+class Followed:
+    """The first step of velocities that begin, as functions of time, and its direction."""
+
+    def __init__(self, top, axis, momentum, directions, begins):
+        motion = onset_motion(top.kind, begins, False)
+        none = [0.0 for way in directions for _ in way]
+        self.begin = np.array([*axis, *momentum, *none])
+        phase = follow_slip(motion, top, (self.begin.tolist(), directions), 1e9)
+        assert len(phase.knots) == PARTS + 1
+        self.end, self.last = phase.knots[-1], phase.last
+        self.terms = phase.rows[0].reshape(PARTS, len(self.begin), STAGES)
+
+    def __call__(self, part):
+        """Numbers and rates at a part of the step."""
+        place = PARTS * part
+        whole = min(int(place), PARTS - 1)
+        powers = (place - whole) ** np.arange(STAGES + 1)
+        numbers = self.begin + self.terms[:whole].sum(axis=(0, 2))
+        rates = self.terms[whole] @ (powers[:-1] * np.arange(1, STAGES + 1))
+        return numbers + self.terms[whole] @ powers[1:], rates * PARTS / self.end
+
+
 @pytest.mark.parametrize(
     "shape", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 1.4)], ids=["sphere", "egg"]
 )
 @pytest.mark.parametrize("power", [1, 2])
 @pytest.mark.parametrize("family", FAMILIES)
-def test_the_beginning_of_slip_solves_the_equations_to_its_order(family, power, shape):
-    """The defect of zeta' = A and y' = Y falls like the power of time that is left out."""
+def test_the_beginning_of_slip_solves_the_equations(family, power, shape):
+    """At any instant, in long steps and short ones; slip grows with its power of time."""
     top, axis, momentum = starting(family, power, shape)
     direction, rate = direction_of_slip(axis, momentum, top)
     assert (rate < 1e-12) is (power == 2)
-    order = 6
-    begin = onset(growing(axis, momentum, direction, top), power, order)
-    assert begin.speed[0] > 0.0
-    first, second, third = (tuple(row[k] for row in begin.direction) for k in range(3))
-    assert inner(first, second) == pytest.approx(0.0, abs=1e-9 * size(second))
-    assert 2.0 * inner(first, third) == pytest.approx(-inner(second, second), rel=1e-9)
-
-    def defect(time):
-        def state(t):
-            return np.concatenate(grown(begin, t))
-
-        step = 0.02 * time
-        weights = ((-3, -1 / 60), (-2, 3 / 20), (-1, -3 / 4), (1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
-        slope = sum(w * state(time + i * step) for i, w in weights) / step
-        n, L, zeta = grown(begin, time)
+    begun = Followed(top, axis, momentum, [direction], (Vanishing(slip=True),))
+    assert begun.end > 0.01
+    for part in (1e-3, 0.02, 0.3, 0.5, 0.77, 0.99):
+        numbers, rates = begun(part)
+        n, L, zeta = (tuple(row.tolist()) for row in np.split(numbers, [3, 6]))
         true = creep_rates(n, L, zeta, top)
-        return np.abs(slope - np.array([*true.axis, *true.momentum, *true.slip])).max()
+        assert rates == pytest.approx([*true.axis, *true.momentum, *true.slip], abs=1e-8)
+        slip = size(zeta)
+        assert slip / size(begun(2.0 * part if part < 0.01 else part)[0][6:].tolist()) == (
+            pytest.approx(0.5**power, rel=0.1 if power == 2 else 0.05) if part < 0.01 else 1.0
+        )
 
-    time = begin.valid_until(1e-5)
-    assert defect(time) < 1e-3
-    assert defect(time) / defect(0.5 * time) > 0.8 * 2.0**order
+
+@pytest.mark.parametrize("family", ["resisted", "resisted ellipsoidal"])
+def test_slip_and_rolling_begin_together(family):
+    """Each in its direction, by the equations; the rolling beside the momentum is its own."""
+    top = FAMILIES[family](0.02, SPHERE)._replace(rolling_resistance=RollingResistance(1e-3))
+    axis, momentum = (0.48, 0.64, 0.6), (0.0, 0.0, 0.0)
+    point = ContactPoint.of(axis, momentum, top)
+    begin = beginning(point, None, None, (True, True))
+    begun = Followed(top, axis, momentum, [begin.slip, begin.rolling], TOGETHER)
+    count = len(begin.slip)
+    for part in (1e-3, 0.1, 0.5, 0.9):
+        numbers, rates = begun(part)
+        n, L, zeta, rolling = (tuple(row.tolist()) for row in np.split(numbers, [3, 6, 6 + count]))
+        assert rolling == pytest.approx(angular_velocity(n, L, top)[:2], abs=1e-15)
+        here = ContactPoint.of(n, L, top)
+        wrench, acceleration = contact_motion(here, zeta, rolling)
+        change = Vanishing(slip=True).rate(acceleration, top)
+        assert rates[3:] == pytest.approx(
+            [*here.moment(wrench), *change, *acceleration.turning[:2]], abs=1e-9
+        )
 
 
 @pytest.mark.parametrize("mode", [Stopping, Loosening], ids=["clock", "phase"])
@@ -311,7 +342,7 @@ def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
     it.
     """
     if mode is Stopping:
-        monkeypatch.setattr(Loosening, "slips", lambda *_: None)
+        monkeypatch.setattr(Vanishing, "recurs", lambda *_: False)
     top, axis, momentum, velocity = launched(report(CoulombLaw(0.2)), 1.0, 50.0 / SECOND)
     start = on_table(SlidingState(axis, momentum, velocity), top)
     automaton = Automaton(top, "ignore", 0.0)
@@ -333,32 +364,13 @@ def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
     np.testing.assert_allclose(numbers[-1, :6], (*last.axis, *last.momentum), rtol=0, atol=1e-15)
 
 
-@pytest.mark.parametrize("power", [1, 2])
-@pytest.mark.parametrize("family", FAMILIES)
-def test_a_driven_motion_gives_the_same_beginning(family, power):
-    """Expanded by an integrator, with the direction given order by order, instead of in plain
-    operators.
-    """
-    order = 10
-    top, axis, momentum = starting(family, power)
-    start = axis, momentum, direction_of_slip(axis, momentum, top)[0]
-    degree, integrator = order + power - 1, make_integrator()
-    driven = growth(start, top, Vanishing(slip=True), (), degree, integrator)
-    assert not isinstance(driven, Growing)
-    ends = [onset(known, power, order) for known in (driven, growing(*start, top))]
-    time = ends[1].valid_until(1e-6)
-    for one, other in zip(ends[0].rows, ends[1].rows, strict=True):
-        terms = [[term * time**k for k, term in enumerate(row)] for row in (one, other)]
-        assert terms[0] == pytest.approx(terms[1], rel=1e-9, abs=1e-13)
-
-
 @pytest.mark.parametrize("family", FAMILIES)
 def test_the_table_pulls_from_the_first_instant_on_as_it_does_where_slip_begins(family):
     """However small slip and drilling still are: as small as rounding, and nothing at all."""
     top, axis, momentum = starting(family, 1)
     velocity = velocity_without_slip(axis, momentum, top)
     state = on_table(SlidingState(axis, momentum, velocity), top)
-    (segment,) = Loosening(top, Vanishing(slip=True), pulls=True, power=1).segments(
+    (segment,) = Loosening(top, Vanishing(slip=True), pulls=True).segments(
         0.0, state, 1.0, make_integrator()
     )
     point = ContactPoint.of(axis, momentum, top)
@@ -370,42 +382,30 @@ def test_the_table_pulls_from_the_first_instant_on_as_it_does_where_slip_begins(
         assert np.broadcast_to(found.torque[i], 4) == pytest.approx(true.torque[i], abs=1e-7)
 
 
-def test_series_are_left_before_the_speed_that_they_begin_vanishes():
-    """It is 1 - 3 t: past a third the friction would be the other way."""
-    one, none = [1.0, *[0.0] * 8], [0.0] * 9
-    begin = Onset((one, none, none), (one, none, none), (), (one, none), [1.0, -3.0, *none[2:]], 1)
-    assert 0.1 < begin.valid_until(1e-13) <= 1.0 / 6.0
-
-
 def test_slip_starts_against_the_force_that_held_it():
     top, axis, momentum = starting("coulomb", 2)
     direction, _ = direction_of_slip(axis, momentum, top)
     force = contact_motion(ContactPoint.of(axis, momentum, top), None)[0].force[:2]
     assert direction == pytest.approx(scaled(-1.0 / size(force), force), abs=1e-12)
-    begin = onset(growing(axis, momentum, direction, top), 2, 8)
-    # s = s_0 t^2: the doubling of time quadruples the slip
-    short, long = (size(grown(begin, t)[2]) for t in (1e-6, 2e-6))
+    # Slip grows as t^2: twice the time, four times the slip.
+    short, long = (size(began(top, axis, momentum, direction, t).changes[6:]) for t in (1e-6, 2e-6))
     assert long / short == pytest.approx(4.0, rel=1e-5)
 
 
-def test_where_the_series_is_left_does_not_matter():
-    """Two orders, and two times at which an integrator takes over, lead to the same slip."""
+def test_where_the_first_step_ends_does_not_matter():
+    """An integrator that takes over sooner, or later, comes to the same slip."""
     top, axis, momentum = starting("coulomb", 2)
     direction, _ = direction_of_slip(axis, momentum, top)
     ends = []
-    for order, error in ((12, 1e-13), (12, 1e-15), (9, 1e-13)):
-        begin = onset(growing(axis, momentum, direction, top), 2, order)
-        time = begin.valid_until(error)
-        n, L, zeta = grown(begin, time)
+    for length in (0.02, 0.05, 0.1):
+        step = began(top, axis, momentum, direction, length)
+        begin = np.array([*axis, *momentum, 0.0, 0.0]) + step.changes
 
         def rates(_, y):
             r = creep_rates(tuple(y[:3]), tuple(y[3:6]), tuple(y[6:]), top)
             return [*r.axis, *r.momentum, *r.slip]
 
-        ends.append(
-            solve_ivp(rates, (time, 0.2), [*n, *L, *zeta], "DOP853", rtol=1e-12, atol=1e-15).y[
-                :, -1
-            ]
-        )
+        run = solve_ivp(rates, (length, 0.2), begin, "DOP853", rtol=1e-12, atol=1e-15)
+        ends.append(run.y[:, -1])
     assert ends[1] == pytest.approx(ends[0], abs=1e-11)
     assert ends[2] == pytest.approx(ends[0], abs=1e-11)

@@ -280,7 +280,7 @@ class Automaton:
     ) -> Transition:
         """Return the mode in which slip, or rolling, begins from the limit of what can be held."""
         event = self.event(EventKind.SLIP if begins.slip else EventKind.ROLL, time)
-        return Transition((event,), Loosening(self.top, begins, self.pulls, 2, wrench), state)
+        return Transition((event,), Loosening(self.top, begins, self.pulls, wrench), state)
 
     def settled(
         self,
@@ -324,7 +324,7 @@ class Automaton:
             return Transition(events, BothLoosening(self.top, pulls=self.pulls), state)
         if any(begins):
             ending = Vanishing(begins[0], held=ended[1] if begins[0] else ended[0])
-            return Transition(events, Loosening(self.top, ending, self.pulls, 1), state)
+            return Transition(events, Loosening(self.top, ending, self.pulls), state)
         mode = self.mode_for(state, slips=not ended[0])
         at, turning = resolved.acceleration
         if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
@@ -574,14 +574,14 @@ class Automaton:
             what = "The direction in which slip, or rolling, begins on two surfaces"
             return failed(what, error, state)
         events = here.changes((time, time), resolved, Before.of(mode))
-        return replace(self._slip_begins(here, resolved, 2), events=events)
+        return replace(self._slip_begins(here, resolved), events=events)
 
     def _mode_on_two(self, here: TwoClosed, resolved: Resolution) -> Transition:
         """Return the mode in which both contacts go on."""
         if resolved.rolls != here.rolls:
-            return self._mode_on_two(here.where_rolling_begins(resolved.rolls), resolved)
+            return self._mode_on_two(replace(here, rolls=resolved.rolls), resolved)
         if resolved.begins is not None:
-            return self._slip_begins(here, resolved, 1)
+            return self._slip_begins(here, resolved)
         if not any(resolved.sticks):
             return Transition((), on_two(here.state, here.tops, here.rolls), here.state)
         if all(resolved.sticks):
@@ -597,22 +597,18 @@ class Automaton:
         sense = 1.0 if zeta >= 0.0 else -1.0
         return TwoContactMode(tops[0], tops[1], (True, False), rolls, sense)
 
-    def _slip_begins(self, here: TwoClosed, resolved: Resolution, growing: int) -> Transition:
-        """Return the mode in which slip begins on two contacts, with some power of time."""
+    def _slip_begins(self, here: TwoClosed, resolved: Resolution) -> Transition:
+        """Return the mode in which slip begins on two contacts."""
         begins: Slip = resolved.begins or ()
         if any(resolved.sticks):
             tops = here.tops if resolved.sticks[0] else here.tops[::-1]
             sign = begins[2] if resolved.sticks[0] else -begins[2]
-            turning = self._turning(tops, sign, here.rolls)
-            momentum = here.momentum_of_first_slip(begins)
-            return Transition((), turning, turning.state((*here.state.axis, *momentum)))
+            return Transition((), self._turning(tops, sign, here.rolls), here.state)
         begin = (*here.state.axis, *here.state.momentum, 0.0, 0.0, here.xi[2])
         slips = slips_of(here.pair, begins)
         one, other = (on_branch(top, slip) for top, slip in zip(here.tops, slips, strict=True))
         way = begins if all(here.ended) else begins[:2]
-        mode = SlipBeginningOnTwo(
-            one, other, rolls=here.rolls, begin=begin, direction=way, growing=growing
-        )
+        mode = SlipBeginningOnTwo(one, other, rolls=here.rolls, begin=begin, direction=way)
         return Transition((), mode, mode.state(begin))
 
 

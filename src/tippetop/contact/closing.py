@@ -37,7 +37,7 @@ LONGEST = 100.0
 
 SOON = (0.3, 2.0)
 """Parts of the clock after which friction that takes thousands of steps to slip's end may have
-turned it as far as it does: what it turns so fast is then told by power series (see `arriving`).
+turned it as far as it does: what it turns so fast is then followed by collocation (see `arriving`).
 """
 
 FEW = 16

@@ -1,43 +1,42 @@
 """The first moments of slip at one of two closed contacts, or at both."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import ClassVar
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, Self
 
-from tippetop.contact.closed import GuardValue, split
+from tippetop.contact.closed import split
 from tippetop.contact.double import TwoContactMode
-from tippetop.contact.loosening import ACCURACY, ORDER, nothing, piece
-from tippetop.contact.mode import Segment, explanation
-from tippetop.contact.passing import LOOKS
+from tippetop.contact.loosening import BEGUN, TINY, UNSEEN, nothing, solution_of
+from tippetop.contact.mode import COMPLETED, ModeEnd, Segment
+from tippetop.contact.slipping import follow_slip
 from tippetop.integrators.base import Integrator
+from tippetop.mechanics.branches import is_branched
 from tippetop.mechanics.contact_pair import ContactPair, slips_of
 from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.pair_motion import PairMotion, pair_motion
-from tippetop.mechanics.slip_onset import Growing, onset
+from tippetop.mechanics.slip_collocation import SlipMotion
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import velocity_of
-from tippetop.mechanics.vectors import Row
+from tippetop.mechanics.stick_slip import branch_guard, scaled, velocity_of
+from tippetop.mechanics.top import Kind
+from tippetop.mechanics.vectors import Row, Scalar
 from tippetop.mechanics.wrench import Slip
+
+NUMBERS = 9
+"""How many numbers such a motion has."""
 
 
 @dataclass(frozen=True)
 class SlipBeginningOnTwo(TwoContactMode):
-    """The first moments of slip at a contact, or at both, as power series in time.
+    """The first moments of slip at one of two contacts, or at both.
 
-    Slip itself is told, and loses no digits.
+    Its numbers are axis, angular momentum and xi (see `tippetop.mechanics.contact_pair`).
     """
 
     begin: tuple[float, ...] = ()
-    """Its numbers at the start: axis, angular momentum, and xi (see
-    `tippetop.mechanics.contact_pair`).
-    """
+    """The numbers at the start."""
     direction: Slip = ()
     """Direction of what begins: of the slip of the first contact, or of xi."""
-    growing: int = 1
-    """With which power of time it does; see `tippetop.mechanics.slip_onset`."""
-
-    free: ClassVar[int] = 6
-    """How many numbers come before what begins."""
 
     def state(self, y: Row) -> State:
         """The state, with its height."""
@@ -52,33 +51,64 @@ class SlipBeginningOnTwo(TwoContactMode):
         slips = slips_of(pair, (y[6], y[7], y[8]))
         return pair_motion(pair, slips, self.rolls), slips
 
-    def growth(self, y: Row, way: Slip) -> tuple[Row, Row]:
-        """How its numbers, and what begins, change where that goes this way."""
+    def without_tops(self) -> Self:
+        """Without the numbers of one state, too."""
+        none = tuple([0.0 for _ in self.direction])
+        return replace(super().without_tops(), begin=(), direction=none)
+
+    def onset_rates(self, y: Row, way: Slip) -> tuple[Row, Row]:
+        """Return the rates of the numbers, and margins, where what begins has a direction."""
         axis, momentum = split(y)
         pair = ContactPair.of(axis, momentum, self.tops)
-        slips = (
-            slips_of(pair, way) if len(way) == 3 else (way, slips_of(pair, (y[6], y[7], y[8]))[1])
-        )
+        slips = slips_of(pair, way if len(way) == 3 else (y[6], y[7], y[8]))
+        if len(way) == 2:
+            slips = way, slips[1]
         now = pair_motion(pair, slips, self.rolls)
-        return (*axis_rate(axis, momentum, self.top), *now.moment, *now.rate), now.rate[: len(way)]
-
-    def endings(self) -> list[GuardValue]:
-        """It has just begun."""
-        return []
-
-    def goes_on(self, at: Callable[[int], Row], pressed: Sequence[int]) -> bool:
-        """Whether no guard has fallen at any look."""
-        looks = [at(look) for look in range(1, LOOKS + 1)]
-        return all(value(self, y) > 0.0 for _, value in self.guard_values() for y in looks)
+        margins = [*now.normal]
+        if self.stopped:
+            margins.append(now.rolling_reserve)
+        elif self.top.resists_rolling:
+            margins.append(self.rolls * now.rolling)
+        if is_branched(self.top.friction):
+            margins += [branch_guard(slip, top) for slip, top in zip(slips, self.tops, strict=True)]
+        return (*axis_rate(axis, momentum, self.top), *now.moment, *now.rate), margins
 
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
     ) -> Iterator[Segment]:
-        """Evaluate the series."""
-        try:
-            begun = onset(Growing(self.begin, self.direction, self.growth), self.growing, ORDER)
-            rows = [*begun.axis, *begun.momentum, *begun.velocity]
-            duration = min(begun.valid_until(ACCURACY), end - time)
-            yield piece(self, rows, self.direction, (time, duration, end))
-        except ArithmeticError as error:
-            yield nothing(self, time, state, explanation("How slip begins on two surfaces", error))
+        """Follow what begins for a step."""
+        kinds = self.top.kind, self.other.kind
+        phase = follow_slip(
+            onset_motion_on_two(self.without_tops(), kinds),
+            self.top,
+            (self.begin, [self.direction]),
+            end - time,
+            numbers=self.parameters,
+        )
+        if not phase.rows:
+            yield nothing(self, time, state, UNSEEN)
+            return
+        first = scaled(TINY, self.direction)
+        start = [*self.begin[:6], *first, *self.begin[6 + len(first) :]]
+        solution = solution_of(phase, start, (time, end))
+        last = self.state(phase.last)
+        how = ModeEnd(COMPLETED if solution.end >= end else BEGUN, last)
+        yield Segment(self, solution, last, how, len(phase.knots) - 1, phase.sweeps)
+
+
+@lru_cache
+def onset_motion_on_two(form: Any, kinds: tuple[Kind, Kind]) -> SlipMotion:
+    """Return the equations of motion of a mode without tops, for tops of these kinds."""
+    one, other = kinds
+
+    def rates(
+        numbers: Sequence[Scalar], ways: Sequence[Any], parameters: Sequence[Scalar]
+    ) -> tuple[Sequence[Any], Sequence[Any]]:
+        first, second = parameters[: one.numbers], parameters[one.numbers :]
+        mode = form.with_tops((one.top(tuple(first)), other.top(tuple(second))), ())
+        changes: tuple[Sequence[Any], Sequence[Any]] = mode.onset_rates(numbers, ways[0])
+        return changes
+
+    margins = 2 + int(one.resists_rolling) + 2 * int(is_branched(one.example.friction))
+    velocities = ((6, len(form.direction)),)
+    return SlipMotion(rates, NUMBERS, velocities, one.numbers + other.numbers, margins)

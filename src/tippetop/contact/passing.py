@@ -1,16 +1,14 @@
 """The moments in which slip, or rolling, ends or begins, under friction that is set-valued."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 from tippetop.contact.closed import ContactMode, split
 from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment
-from tippetop.contact.surfaces import passes_flat, stays_open
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.ending import Closing, Vanishing, rates_in_time, slip_beside
-from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.motion import angular_velocity, on_table
 from tippetop.mechanics.rolling import velocity_without_slip, without_rolling
 from tippetop.mechanics.state import SlidingState, State
@@ -85,20 +83,6 @@ class Passing(Mode):
         if slip is not None:
             power = power + (force[0] * slip[0] + force[1] * slip[1])
         return Reaction(force, torque, power)
-
-    def goes_on(self, at: Callable[[int], Row], pressed: Sequence[int]) -> bool:
-        """Whether no other surface touches, nor a face, and the table does not pull that may not.
-
-        Whether it pulls is told at some of the looks.
-        """
-        looks = range(1, LOOKS + 1)
-        if isinstance(self.top.surface, Hull) and not all(
-            stays_open(self.top, at(look)) for look in looks
-        ):
-            return False
-        if passes_flat(self.top, [at(look) for look in range(LOOKS + 1)]):
-            return False
-        return self.pulls or all(self.reaction(at(look)).force[2] > 0.0 for look in pressed)
 
     @property
     def free(self) -> int:

@@ -1,4 +1,4 @@
-"""Steps of collocation along slip, compiled once for a kind of top."""
+"""One step of collocation along slip that begins or ends, compiled once for a motion."""
 
 import math
 from collections.abc import Sequence
@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tippetop.contact.surfaces import clearance, passes_flat
 from tippetop.integrators.base import Array
+from tippetop.integrators.falls import brackets
 from tippetop.integrators.iteration import (
     Iteration,
     copied,
@@ -18,162 +18,203 @@ from tippetop.integrators.iteration import (
     put_rows,
     room,
 )
-from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.roots import crossing
-from tippetop.mechanics.series import horner
-from tippetop.mechanics.slip_phase import (
+from tippetop.mechanics.gauss_points import (
     CONSTANTS,
     GAUSS,
     PARTS,
     STAGES,
     TERMS,
+    interpolated,
+)
+from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.series import horner
+from tippetop.mechanics.slip_collocation import (
+    LaneValues,
+    SlipMotion,
     StepRows,
-    Values,
+    frame_of,
     step_terms,
     sweep,
 )
 from tippetop.mechanics.stick_slip import inner
-from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.wrench import Slip
 
-ENOUGH, MOST = 1e-28, 50
-"""Sum of the squares of changes that are rounding, and sweeps of a step at most."""
-
-PRESSED, CLEAR = 0.1, 1e-2
-"""Normal force, and gap of another surface, in natural units, at points of a step, which neither
-falls to zero between.
+SETTLED, MOST = 1e-28, 50
+"""Sum of the squares of changes, in natural units, that is rounding; and sweeps of a step at most.
 """
 
+PROBES = 16
+"""Intervals of a step at whose ends a margin's polynomial, of degree 15, is searched for a fall."""
 
-class _Machinery(NamedTuple):
-    """What steps are made with."""
 
-    better: Iteration
+class _Compiled(NamedTuple):
+    """The compiled sweep of a motion and the compiled polynomials of its steps."""
+
+    improve: Iteration
     terms: Iteration
-    given: Any
-    measured: Any
-    """What they are given, but for the numbers of a step."""
 
 
 @lru_cache(maxsize=64)
-def compiled_step(kind: Kind, ending: Vanishing) -> tuple[Iteration, Iteration]:
-    """What makes steps of a kind of top better, and their polynomials."""
-    layout = StepRows.of(ending)
+def compiled_step(motion: SlipMotion, from_end: bool) -> _Compiled:
+    """Compile the sweep of a motion, or take it from those compiled."""
+    rows = StepRows.of(motion)
 
-    def better(y: Sequence[Scalar], p: Sequence[Scalar], points: Values) -> list[Scalar]:
-        return sweep(y, p, ending, kind, points)
+    def improve(y: Sequence[Scalar], p: Sequence[Scalar], points: LaneValues) -> list[Scalar]:
+        return sweep(y, p, motion, points, from_end=from_end)
 
-    def terms(y: Sequence[Scalar], p: Sequence[Scalar], points: Values) -> list[Scalar]:
+    def terms(y: Sequence[Scalar], p: Sequence[Scalar], points: LaneValues) -> list[Scalar]:
         return [*y, *step_terms(y, p, points)]
 
-    given = layout.given + kind.numbers + len(CONSTANTS) // STAGES
-    return (
-        iterated(better, layout.size, given, STAGES),
-        iterated(terms, layout.size, 1 + len(TERMS) // STAGES, STAGES),
+    parameters = rows.parameters + motion.parameters + len(CONSTANTS) // STAGES
+    return _Compiled(
+        iterated(improve, rows.unknowns + int(from_end), parameters, STAGES),
+        iterated(terms, rows.size, 1 + len(TERMS) // STAGES, STAGES),
     )
 
 
 @lru_cache(maxsize=64)
-def machinery_of(top: Top, ending: Vanishing) -> _Machinery:
-    """What steps of a top are made with."""
-    first, numbers = StepRows.of(ending).given, top.numbers
-    given = room((first + len(numbers)) * STAGES + len(CONSTANTS))
-    put_rows(given, first, numbers, STAGES)
-    put_from(given, (first + len(numbers)) * STAGES, CONSTANTS)
-    measured = room(STAGES + len(TERMS))
-    put_from(measured, STAGES, TERMS)
-    return _Machinery(*compiled_step(top.kind, ending), given, measured)
+def parameters_of(motion: SlipMotion, numbers: tuple[float, ...]) -> tuple[Any, Any]:
+    """Return the parameters of a sweep and of its polynomials, but for those of one step."""
+    first = StepRows.of(motion).parameters
+    sweeping = room((first + motion.parameters) * STAGES + len(CONSTANTS))
+    put_rows(sweeping, first, numbers, STAGES)
+    put_from(sweeping, (first + motion.parameters) * STAGES, CONSTANTS)
+    measuring = room(STAGES + len(TERMS))
+    put_from(measuring, STAGES, TERMS)
+    return sweeping, measuring
 
 
 def row_of(numbers: Sequence[float], row: int) -> list[float]:
-    """What a number is at every point, by its row."""
+    """Return the values of a row at every point."""
     return [*numbers[row * STAGES : (row + 1) * STAGES]]
 
 
 class SlipStep:
-    """A step of collocation."""
+    """A step of collocation of a motion whose top has some numbers.
 
-    def __init__(self, top: Top, ending: Vanishing) -> None:
-        self.machinery, self.layout = machinery_of(top, ending), StepRows.of(ending)
+    With `from_end`, the velocity is zero at the end of the step, see `slip_collocation.sweep`.
+    """
+
+    def __init__(
+        self, motion: SlipMotion, numbers: tuple[float, ...], *, from_end: bool = False
+    ) -> None:
+        self.motion, self.layout = motion, StepRows.of(motion)
+        self.compiled = compiled_step(motion, from_end)
+        sweeping, measuring = parameters_of(motion, numbers)
+        self.sweeping, self.measuring = copied(sweeping), copied(measuring)
         layout = self.layout
-        self.given, self.measured = copied(self.machinery.given), copied(self.machinery.measured)
-        self.unknowns, self.found = room(layout.size * STAGES), room(layout.found * STAGES)
+        self.unknowns = room((layout.unknowns + int(from_end)) * STAGES)
+        self.results = room(layout.results * STAGES)
         self.rows = room(((PARTS + 1) * layout.size + 1) * STAGES)
         self.sweeps = 0
 
-    def solve(self, now: Sequence[float], way: Slip, length: float) -> bool:
-        """Find what solves the equations of a step of some length; tell whether that is found."""
-        put_rows(self.given, 0, [*now, length], STAGES)
-        put_rows(self.unknowns, 0, [*now[: self.layout.free], *way], STAGES)
-        self.sweeps += self.machinery.better(self.unknowns, self.given, self.found, ENOUGH, MOST)
-        if not self.found[len(self.found) - 1] < ENOUGH:
+    def solve(
+        self,
+        start: Sequence[float],
+        directions: Sequence[Slip],
+        extent: float,
+        guess: Sequence[float] = (),
+    ) -> bool:
+        """Solve the equations of a step; return whether the sweeps converged.
+
+        Parameters
+        ----------
+        start
+            Numbers at its start.
+        directions
+            Where the search for the directions begins.
+        extent
+            Its length, or, from the end, the speed at its start.
+        guess
+            From the end, a guess of the length.
+        """
+        frames = [number for way in directions for number in frame_of(way)]
+        ways = [number for way in directions for number in way]
+        put_rows(self.sweeping, 0, [*start, extent, *frames], STAGES)
+        put_rows(self.unknowns, 0, [*start, *ways, *guess], STAGES)
+        improve, terms = self.compiled
+        self.sweeps += improve(self.unknowns, self.sweeping, self.results, SETTLED, MOST)
+        if not self.results[len(self.results) - 1] < SETTLED:
             return False
-        put_rows(self.measured, 0, [length], STAGES)
-        self.machinery.terms(self.found, self.measured, self.rows, 0.0, 1)
+        put_rows(self.measuring, 0, [self.length], STAGES)
+        terms(self.results, self.measuring, self.rows, 0.0, 1)
         return True
 
     @property
+    def length(self) -> float:
+        """Length of the step."""
+        return row_of(self.results, self.layout.length)[0]
+
+    @property
     def error(self) -> float:
-        """A measure of its error."""
+        """Sum of the squares of the last coefficients of the rates, times the length."""
         return float(self.rows[len(self.rows) - 1])
 
     @property
     def speeds(self) -> list[float]:
-        """S at its points."""
-        return row_of(self.found, self.layout.speed)
+        """Speed of the first velocity at the points."""
+        return row_of(self.results, self.layout.first_speed)
 
     @property
-    def last_way(self) -> Slip:
-        """The direction at its last point."""
-        free = self.layout.free
-        return row_of(self.unknowns, free)[STAGES - 1], row_of(self.unknowns, free + 1)[STAGES - 1]
+    def least_speed(self) -> float:
+        """The least speed of any velocity at a point."""
+        first = self.layout.first_speed
+        return min([min(row_of(self.results, first + i)) for i in range(self.layout.velocities)])
+
+    @property
+    def last_direction(self) -> Slip:
+        """Direction of the first velocity at the last point."""
+        first, count = self.layout.size, self.motion.velocities[0][1]
+        return tuple([row_of(self.unknowns, first + i)[STAGES - 1] for i in range(count)])
 
     @property
     def changes(self) -> list[float]:
-        """By how much y and xi change."""
+        """Changes of the numbers over the step."""
         size = self.layout.size
         return [row_of(self.rows, row)[0] for row in range(PARTS * size, (PARTS + 1) * size)]
 
+    @property
+    def axes(self) -> list[list[float]]:
+        """The horizontal part of the axis at the points."""
+        pairs = zip(row_of(self.unknowns, 0), row_of(self.unknowns, 1), strict=True)
+        return [[x, y] for x, y in pairs]
+
+    def margin_falls(self) -> bool:
+        """Whether a margin falls to zero anywhere within the step, dips between points included."""
+        for number in range(self.layout.margins):
+            values = row_of(self.results, self.layout.first_margin + number)
+            if 2.0 * min(values) > max(values):
+                continue
+            value = interpolated(values)
+            probes = [probe / PROBES for probe in range(PROBES + 1)]
+            probed = [value(probe) for probe in probes]
+            if min(values) <= 0.0 or next(brackets(probes, probed, value, value), None) is not None:
+                return True
+        return False
+
     def pieces(self, parts: float) -> Array:
-        """Coefficients of y and xi in so many of its parts, of the last of which it may be a
-        share.
-        """
+        """Return coefficients of the numbers in some parts; the last may be a fraction."""
         return pieces_of(self.rows, self.layout.size, parts)
 
-    def goes_on(
-        self, top: Top, ends: tuple[Sequence[float], Sequence[float]], *, pulls: bool
-    ) -> bool:
-        """Whether nothing else comes near the table, and that is far from pulling if it may not.
-
-        By its points, and the numbers at its ends.
-        """
-        several = isinstance(top.surface, Hull)
-        if several and not min([clearance(top, c) for c in row_of(self.unknowns, 2)]) > CLEAR:
-            return False
-        points = zip(row_of(self.unknowns, 0), row_of(self.unknowns, 1), strict=True)
-        if passes_flat(top, [ends[0], *points, ends[1]]):
-            return False
-        return pulls or bool(min(row_of(self.found, self.layout.normal)) > PRESSED)
-
     def speed(self, number: int, begin: float, way: Slip) -> list[float]:
-        """Coefficients of s in a part of it, at whose start it is this; beyond slip s is less than
-        zero.
+        """Return coefficients of the first velocity along a direction in a part of the step.
+
+        `begin` is the value at the start of the part. Beyond the end of slip it is negative.
         """
-        first = number * self.layout.size + self.layout.free
-        x, y = row_of(self.rows, first), row_of(self.rows, first + 1)
-        return [begin, *[way[0] * a + way[1] * b for a, b in zip(x, y, strict=True)]]
+        first = number * self.layout.size + self.motion.velocities[0][0]
+        rows = [row_of(self.rows, first + i) for i in range(len(way))]
+        return [begin, *[inner(way, terms) for terms in zip(*rows, strict=True)]]
 
     def end_of_slip(self, xi: Slip, speeds: Sequence[float]) -> float | None:
-        """After how many parts of it slip ends, that is xi at its start; None if that is not
-        told.
+        """Return after how many parts slip ends that is xi at the start; None where no bracket of
+        the end is found.
         """
         below = [number for number, speed in enumerate(speeds) if speed <= 0.0]
         point = below[0] if below else STAGES
         if point == 0:
             return None
-        way, polynomials = self.last_way, list[list[float]]()
+        way, polynomials = self.last_direction, list[list[float]]()
         begin = inner(xi, way)
         for number in range(PARTS):
             polynomials.append(self.speed(number, begin, way))
@@ -188,8 +229,8 @@ class SlipStep:
 
 
 def pieces_of(rows: Any, size: int, parts: float) -> Array:
-    """Polynomials of so many numbers in the first parts of a step, of the last of which it may be a
-    share.
+    """Return polynomials of numbers in the first parts of a step, the last of which may be a
+    fraction.
 
     Part after part, and one number after the other: coefficients from the first power on.
     """

@@ -1,5 +1,5 @@
-"""Slip from its beginning to its end, step by step of collocation (see
-`tippetop.mechanics.slip_phase`).
+"""Slip, or rolling, followed from its beginning by steps of collocation (see
+`tippetop.mechanics.slip_collocation`).
 """
 
 import math
@@ -7,140 +7,162 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tippetop.contact.slip_step import SlipStep
+from tippetop.contact.surfaces import passes_flat
 from tippetop.integrators.base import Array
-from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.slip_phase import PARTS, STAGES
+from tippetop.mechanics.gauss_points import PARTS, STAGES
+from tippetop.mechanics.slip_collocation import SlipMotion
 from tippetop.mechanics.stick_slip import APART, inner, scaled, size
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.wrench import Slip
 
-FIRST, LEAST = 0.5, 0.005
-"""The first step, in natural units of time, and the least that a step is shortened to: where
-shorter ones are asked for, slip does not follow what drives it, and other methods are quicker.
+FIRST, LEAST, LEAST_FIRST = 0.5, 0.005, 1e-13
+"""Length of the first step that is tried, in natural units of time; the shortest one, below which
+slip does not follow what drives it and other methods are quicker; and the shortest first one, below
+which rounding of the numbers hides what begins.
 """
 
 ACCURACY = 1e-22
-"""Sum of the squares of the last coefficients of a step, in natural units, that is small: in the
-solution they are divided by thirty and more, and the error of what a step ends with is of the order
-of their product.
+"""Largest sum of the squares of the last coefficients of a step, in natural units. The solution
+divides them by thirty and more, and the error at the end of a step is of the order of their
+product.
 """
 
 BEYOND = 1.05
-"""How much longer a step is than slip seems to last, so that its end lies within."""
+"""Length of a step over the time that slip seems to last, so that the end lies within."""
 
 DIP, NONE = 0.1, 1e-11
-"""Slip within a step, as part of the most in it, that may be none between two points; and slip, in
-natural units, that is none where it ends.
+"""Fraction of the largest speed in a step below which the speed may vanish between two points; and
+the speed, in natural units, that counts as zero at the end of slip.
 """
 
-LONGER, SHORTER, SHORTEST, SAFETY = 1.5, 0.8, 0.3, 0.9
-"""How much longer the next step may be; how much shorter one is at most, and at least, that is
-tried again; and how much shorter than it should.
+LONGER, SHORTER, SHORTEST, HALF = 1.5, 0.8, 0.3, 0.5
+"""Largest ratio of a step to the one before; largest and smallest ratio of a step to the one that
+failed; and the ratio where a margin falls.
 """
+
+SAFETY = 0.9
+"""Ratio of a step to the one that the error allows."""
 
 TINY = 1e-300
 """Added to an error that may be zero."""
 
 
 class SlipPhase(NamedTuple):
-    """Slip that began, and how far it was followed."""
+    """Motion since velocities began, as far as it was followed."""
 
     knots: list[float]
-    """Ends of pieces since then."""
+    """Ends of its polynomials since then."""
     rows: list[Array]
-    """Of the pieces of every step the coefficients of y and xi in powers of what has passed of
-    each, from the first on, in a row.
+    """For every step, coefficients of the numbers in powers of the elapsed fraction of each
+    polynomial, from the first power on, in a row.
     """
     last: list[float]
-    """y and xi where that ends."""
+    """The numbers where it ends."""
     ended: bool
     """Whether slip has ended there."""
     sweeps: int
-    """Sweeps that it took."""
+    """Sweeps of all its steps."""
 
 
-def slip_phase(
-    y: Sequence[float], way: Slip, top: Top, ending: Vanishing, longest: float, *, pulls: bool
+def follow_slip(
+    motion: SlipMotion,
+    top: Top,
+    start: tuple[Sequence[float], Sequence[Slip]],
+    longest: float,
+    *,
+    to_end: bool = False,
+    numbers: tuple[float, ...] | None = None,
 ) -> SlipPhase:
-    """Follow slip, or rolling, that begins, as far as the method goes, which may be nowhere.
+    """Follow velocities that begin: for one step, or as far as the method goes.
+
+    No polynomials are returned where no step succeeds.
 
     Parameters
     ----------
-    y
-        Axis, angular momentum, and velocity where that is free.
-    way
-        The direction in which it begins.
+    motion
+        The equations of motion.
     top
         The body.
-    ending
-        What begins.
+    start
+        The numbers where the velocities, the last of them, are zero; and their directions.
     longest
-        How long it is followed at most, in natural units of time.
-    pulls
-        Whether the table may pull.
+        For how long they are followed at most, in natural units of time.
+    to_end
+        Whether the one velocity, in a plane, is followed to its end if it stays slow.
+    numbers
+        The parameters of the motion, if they are not the numbers of the top.
     """
-    step = SlipStep(top, ending)
-    now, length, free = [*y, *[0.0 for _ in way]], FIRST, len(y)
+    step = SlipStep(motion, top.numbers if numbers is None else numbers)
+    now, directions, length = [*start[0]], [*start[1]], FIRST
+    first, count = motion.velocities[0]
     knots, rows, ended = [0.0], list[Array](), False
-    while not ended and knots[-1] < longest and size(tuple(now[free:])) < APART:
-        begin, known, before = knots[-1], len(knots), now
+
+    def velocity(numbers: Sequence[float]) -> Slip:
+        return tuple(numbers[first : first + count])
+
+    while (
+        knots[-1] < longest
+        and not ended
+        and (not rows or (to_end and length >= LEAST and size(velocity(now)) < APART))
+    ):
+        begin, finished, before = knots[-1], len(knots), now
         length = min(length, longest - begin)
-        solved = step.solve(now, way, length)
+        solved = step.solve(now, directions, length)
         factor = SAFETY * (ACCURACY / (step.error + TINY)) ** (0.5 / STAGES) if solved else 0.0
-        after = [a + b for a, b in zip(now, step.changes, strict=True)]
-        last, speeds = step.last_way, step.speeds
-        lasts = min(speeds) > 0.0 and after[free] * last[0] + after[free + 1] * last[1] > 0.0
-        part = (
-            float(PARTS)
-            if lasts or factor < SAFETY
-            else step.end_of_slip(tuple(now[free:]), speeds)
-        )
-        if factor < SAFETY or part is None or dips(speeds):
-            length *= max(min(factor, SHORTER), SHORTEST)
-            if length < LEAST:
+        after, part = [a + b for a, b in zip(now, step.changes, strict=True)], float(PARTS)
+        last, speeds = step.last_direction, step.speeds
+        lasts = step.least_speed > 0.0 and inner(velocity(after), last) > 0.0
+        bad = factor < SAFETY or (not lasts and not to_end) or (to_end and dips(speeds))
+        ratio = max(min(factor, SHORTER), SHORTEST)
+        if not bad and not lasts:
+            end = step.end_of_slip(velocity(now), speeds)
+            bad, part = end is None, part if end is None else end
+        if not bad and (step.margin_falls() or passes_flat(top, [now, *step.axes, after])):
+            bad, ratio = True, HALF
+        if bad:
+            length *= ratio
+            if length < (LEAST if rows else LEAST_FIRST):
                 break
             continue
-        if not step.goes_on(top, (now, after), pulls=pulls):
-            break
         ended = not lasts
         pieces = step.pieces(part)
         ends = [min(part, number + 1.0) / PARTS for number in range(PARTS) if part > number]
         knots += [begin + length * end for end in ends]
         if ended:
             now = [a + b for a, b in zip(now, change_over(pieces, len(now)), strict=True)]
-            if not size(tuple(now[free:])) < NONE:
+            if not size(velocity(now)) < NONE:
                 # Its direction turned by so much that it ends elsewhere.
-                return SlipPhase(knots[:known], rows, before, False, step.sweeps)
+                return SlipPhase(knots[:finished], rows, before, False, step.sweeps)
         else:
             if length == longest - begin:
                 knots[len(knots) - 1] = longest
-            now, way = after, scaled(1.0 / size(tuple(after[free:])), tuple(after[free:]))
+            now, directions = after, [scaled(1.0 / size(velocity(after)), velocity(after))]
             speed = step.speed(PARTS - 1, 0.0, last)
-            speed[0] = inner(tuple(after[free:]), last) - sum(speed)
+            speed[0] = inner(velocity(after), last) - sum(speed)
             length = min(length * min(factor, LONGER), BEYOND * length / PARTS * parts_left(speed))
         rows.append(pieces)
     return SlipPhase(knots, rows, now, ended, step.sweeps)
 
 
 def change_over(pieces: Array, size: int) -> list[float]:
-    """By how much so many numbers change over these polynomials."""
+    """Return the changes of so many numbers over polynomials."""
     terms = pieces.tolist()
     places = [range(number * STAGES, len(terms), size * STAGES) for number in range(size)]
     return [sum([sum(terms[first : first + STAGES]) for first in each]) for each in places]
 
 
 def parts_left(terms: Sequence[float]) -> float:
-    """How far beyond 1 a polynomial is zero, by its value and two derivatives there."""
+    """Return how far beyond 1 a polynomial is zero, by its value and two derivatives there."""
     value = sum(terms)
     slope = sum([k * term for k, term in enumerate(terms)])
     bend = sum([k * (k - 1) * term for k, term in enumerate(terms)])
-    rest = slope * slope - 2.0 * bend * value
+    square = slope * slope - 2.0 * bend * value
     if slope >= 0.0 and bend >= 0.0:
         return math.inf
-    return 2.0 * value / (-slope + rest**0.5) if rest > 0.0 else -slope / bend
+    return 2.0 * value / (-slope + square**0.5) if square > 0.0 else -slope / bend
 
 
 def dips(speeds: Sequence[float]) -> bool:
-    """Whether s comes near zero within a step, perhaps to it between two points."""
+    """Return whether the speed comes near zero within a step, perhaps to it between two points."""
     least = min(speeds[1 : STAGES - 1])
     return min(speeds[0], speeds[STAGES - 1]) > least and 0.0 < least < DIP * max(speeds)

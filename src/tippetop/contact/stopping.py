@@ -15,7 +15,7 @@ from tippetop.contact.closing import (
     followed,
 )
 from tippetop.contact.mode import COMPLETED, FAILURE, ModeEnd, Segment
-from tippetop.contact.passing import DEGREE, LOOKS, SETTLED, Passing, in_one_step, shown, straight
+from tippetop.contact.passing import DEGREE, LOOKS, SETTLED, Passing, shown, straight
 from tippetop.contact.surfaces import passes_flat
 from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
@@ -89,7 +89,7 @@ class Stopping(Passing):
         else:
             last, onwards = (
                 self.state(arrival.at(0.0)),
-                in_one_step(arrival.onwards, until, arrival.left),
+                arrival.solution(until),
             )
         solution = self._in_time(arcs, until, onwards).moved(time, time + onwards.end)
         how, steps = self._end(arc, last), sum(one.steps for one in arcs)
@@ -128,12 +128,12 @@ class Stopping(Passing):
         )
 
     def _arrival(self, here: Closing, longest: float, integrator: Integrator) -> Arrival | None:
-        """The end of slip by power series, if its direction has come to rest and nothing else
+        """The end of slip by collocation, if its direction has come to rest and nothing else
         happens.
         """
         if not self.ending.slip or slip_length(self.top.friction) is None:
             return None
-        found = arriving(here, self.ending, self.top, integrator)
+        found = arriving(here, self.ending, self.top, getattr(integrator, "tolerance", 0.0))
         if found is None or here.time + found.left > longest:
             return None
         numbers = (*self.top.numbers, longest, 0.0)

@@ -1,6 +1,6 @@
 """The resolver of two contacts that are closed and have no normal velocities: what they do."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from tippetop.contact.double import SLOWEST_SLIP, TwoContactMode
@@ -11,7 +11,6 @@ from tippetop.mechanics.branches import off_branch
 from tippetop.mechanics.contact_pair import (
     ContactPair,
     Tops,
-    apart,
     at_rest,
     slip_apart,
     turning_along,
@@ -28,11 +27,10 @@ from tippetop.mechanics.pair_resolver import (
     rolling_of_slip,
     turning_about,
 )
-from tippetop.mechanics.rolling import directions_of, is_set_valued, slip_length, spun_up
+from tippetop.mechanics.rolling import is_set_valued, slip_length
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import inner, is_rolling, least_slip, size, slip_of
+from tippetop.mechanics.stick_slip import inner, is_rolling, size, slip_of
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Vector, scale
 from tippetop.mechanics.wrench import Slip
 
 TOGETHER = 30.0
@@ -177,22 +175,6 @@ class TwoClosed:
         """The |omega_e| at which patches slip that stick while the body rolls; -1 for none."""
         patches = self.rolls and slip_length(self.tops[0].friction) is not None
         return rolling_of_slip(self.pair, self.rolls) if patches else -1.0
-
-    def where_rolling_begins(self, rolls: float) -> "TwoClosed":
-        """Return the same where rolling has begun."""
-        least = 2.0 * least_slip(*along_table(self.state), self.tops[0])
-        change = scale(rolls * least, directions_of(self.state.axis)[0])
-        state = self.state._replace(
-            momentum=spun_up(self.state.axis, self.state.momentum, change, self.tops[0])
-        )
-        pair = ContactPair.of(state.axis, state.momentum, self.tops)
-        return replace(self, state=state, rolls=rolls, pair=pair)
-
-    def momentum_of_first_slip(self, begins: Slip) -> Vector:
-        """Return the angular momentum where turning about one contact has begun in a direction."""
-        least = 2.0 * least_slip(*along_table(self.state), self.tops[0])
-        change = (0.0, 0.0, begins[2] * least / apart(self.pair))
-        return spun_up(self.state.axis, self.state.momentum, change, self.tops[0])
 
     def changes(
         self, times: tuple[float, float], resolved: Resolution, before: Before

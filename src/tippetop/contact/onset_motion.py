@@ -1,0 +1,84 @@
+"""Equations of motion of one contact while slip, rolling, or both, begin or end."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+from tippetop.contact.closed import split
+from tippetop.contact.surfaces import surface_guards
+from tippetop.mechanics.branches import has_limit_branches, limit_guard
+from tippetop.mechanics.contacts.contact_point import ContactPoint
+from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.motion import axis_rate
+from tippetop.mechanics.rolling import contact_motion, rolling_reserve, slip_reserve
+from tippetop.mechanics.slip_collocation import SlipMotion
+from tippetop.mechanics.stick_slip import branch_guard, scaled, slip_of
+from tippetop.mechanics.top import Kind
+from tippetop.mechanics.vectors import Scalar
+
+BOTH = (Vanishing(slip=True), Vanishing(slip=False))
+"""Slip and rolling, which begin together."""
+
+
+@lru_cache
+def onset_motion(kind: Kind, begins: tuple[Vanishing, ...], guarded: bool) -> SlipMotion:
+    """Return the equations of motion for tops of a kind.
+
+    Their numbers are axis, angular momentum, the horizontal velocity of the centre of mass where
+    that is free, and the velocities that begin. Their margins are what would end the mode in which
+    that happens: if `guarded`, the normal force; a reserve of what is held; the branch of the law;
+    and the gaps of other surfaces.
+
+    Parameters
+    ----------
+    kind
+        The kind of top.
+    begins
+        One component, or `BOTH`.
+    guarded
+        Whether the table cannot pull.
+    """
+    first, top = begins[0], kind.example
+    free = 8 if first.moves else 6
+    counts = [len(component.wrenches(top)) for component in begins]
+    velocities = tuple([(free + sum(counts[:i]), count) for i, count in enumerate(counts)])
+    holds_rolling = first.slip and first.held and top.resists_rolling
+    holds_slip = not first.slip and first.held
+    branches = not holds_slip and hasattr(top.friction, "branch_guard")
+    limits = holds_slip and has_limit_branches(top.friction)
+    surfaces = surface_guards(top)
+
+    def rates(
+        numbers: Sequence[Scalar], ways: Sequence[Any], parameters: Sequence[Scalar]
+    ) -> tuple[Sequence[Any], Sequence[Any]]:
+        body = kind.top(tuple(parameters))
+        axis, momentum = split(numbers)
+        point = ContactPoint.of(axis, momentum, body)
+        slip, rolling = None, None
+        if first.slip:
+            slip = ways[0]
+            rolling = None if first.held else point.turning[:2]
+        elif first.moves:
+            slip = slip_of(axis, momentum, (numbers[6], numbers[7]), body)
+        if not begins[-1].slip:
+            rolling = ways[-1]
+        wrench, acceleration = contact_motion(point, slip, rolling)
+        changes = [*axis_rate(axis, momentum, body), *point.moment(wrench)]
+        if first.moves:
+            changes += [*scaled(1.0 / body.mass, wrench.force[:2])]
+        for component in begins:
+            changes += [*component.rate(acceleration, body)]
+        margins = [wrench.force[2]] if guarded else []
+        if holds_rolling:
+            margins.append(rolling_reserve(point, wrench, slip))
+        if holds_slip:
+            margins.append(slip_reserve(body, wrench))
+        if branches:
+            margins.append(branch_guard(slip, body))
+        if limits:
+            margins.append(limit_guard(body, wrench))
+        margins += [value(body, axis) for _, value in surfaces]
+        return changes, margins
+
+    count = sum([guarded, holds_rolling, holds_slip, branches, limits]) + len(surfaces)
+    return SlipMotion(rates, free + sum(counts), velocities, kind.numbers, count)
