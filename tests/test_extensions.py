@@ -220,7 +220,7 @@ def pinned_motion(kind: Kind) -> Motion:
 class PinAutomaton(Automaton):
     """As for any top that may fly, once it is released."""
 
-    left: float
+    left: float = 0.0
 
     def launch(self, state: State) -> Transition:
         return Transition((), Pinned(self.top, self.left), state)
@@ -238,7 +238,7 @@ class PinnedAtFirst(tt.Contact):
     until: Annotated[Positive, Quantity("s", "when the pin is drawn")]
 
     def rules(self, top: Top, units: Units) -> PinAutomaton:
-        return PinAutomaton(top, self.liftoff, self.restitution, self.until / units.time)
+        return PinAutomaton(top, self.liftoff, self.restitution, left=self.until / units.time)
 
 
 DRAWN = 0.2037

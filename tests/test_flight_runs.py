@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import tippetop as tt
 from campaigns import examples
 from independent_flights import Toy, slide_and_fly
+from tippetop.mechanics.motion import along_table, contact
 from tippetop.problem.presets import REPORT, report_problem
 
 FIRST_LIFT_OFF = {175.0: 5.361332, 170.0: 5.85182}
@@ -200,6 +201,35 @@ def test_a_launch_in_painleves_paradox_starts_with_an_impact():
     assert np.hypot(run.slip_x, run.slip_y).values[0] <= 10.0
     with pytest.raises(tt.InvalidInput, match="Painleve"):
         paradox.replace({"contact.liftoff": "stop"})
+
+
+def test_an_indeterminate_contact_force_is_reported_and_what_follows_can_be_chosen():
+    """A < 0 < b: the contact opens without a force, or is struck, and both are consistent."""
+    paradox = report_problem(100.0, tilt=1.5, mu=100.0).replace(
+        {"launch.slip": (10.0, 0.0), "launch.precession": 60.0}
+    )
+    touch = contact(*along_table(paradox.start()), paradox.top)
+    assert touch.delassus < 0.0 < touch.free_acceleration
+    struck = tt.simulate(paradox, 1e-4)
+    assert struck.event_kind[:2].values.tolist() == ["indeterminate force", "impact"]
+    assert float(struck.event_impulse[1]) > 0
+    opened = tt.simulate(paradox.replace({"contact.indeterminate": "lift_off"}), 1e-4, samples=3)
+    assert opened.event_kind.values.tolist() == ["indeterminate force", "lift-off"]
+    rise = 0.5 * float(touch.free_acceleration) * opened.time.values**2
+    assert opened.gap.values == pytest.approx(rise, rel=1e-2)
+    for run in (struck, opened):
+        assert "indeterminate" in run.attrs["outcome_advice"]
+
+
+def test_a_force_that_friction_makes_inconsistent_is_not_called_indeterminate():
+    paradox = report_problem(0.0, tilt=1.5, mu=100.0).replace({"launch.slip": (10.0, 0.0)})
+    touch = contact(*along_table(paradox.start()), paradox.top)
+    assert touch.delassus < 0.0
+    assert touch.free_acceleration < 0.0
+    for choice in ("impact", "lift_off"):
+        run = tt.simulate(paradox.replace({"contact.indeterminate": choice}), 1e-4)
+        assert run.event_kind[0] == "impact"
+        assert "indeterminate" not in run.attrs["outcome_advice"]
 
 
 @pytest.mark.parametrize("friction", [tt.ViscousFriction(mu=0.3), tt.CoulombFriction(mu=0.3)])

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tippetop import __version__
 from tippetop.contact.choice import automaton_of
-from tippetop.contact.mode import Event, Outcome, Segment
+from tippetop.contact.mode import Event, Outcome, Segment, ambiguity_of
 from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
 from tippetop.graph.own_parts import require_recordable
 from tippetop.integrators import Integrator, make_integrator
@@ -212,7 +212,15 @@ def simulate(
         "problem": problem.to_json(),
         "outcome": outcome.name.lower(),
         "outcome_advice": " ".join(
-            filter(None, (outcome.value, trajectory.detail, method.caution))
+            filter(
+                None,
+                (
+                    outcome.value,
+                    trajectory.detail,
+                    ambiguity_of(trajectory.events),
+                    method.caution,
+                ),
+            )
         ),
         **_method_attributes([method, *tally.methods.values()], units),
         "tippetop_version": __version__,

@@ -98,6 +98,8 @@ class Automaton:
     """Where the table would have to pull: "ignore" (it pulls), "stop" (the run ends) or "fly"."""
     restitution: float
     """Ratio of the normal impulses of restitution and compression."""
+    indeterminate: str = "impact"
+    """Where the contact force is indeterminate: "impact" or "lift_off"."""
 
     @property
     def pulls(self) -> bool:
@@ -380,8 +382,10 @@ class Automaton:
     def resting_alone(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Go on on the active surface, whatever else touches: slide, stick, leave or lie flat.
 
-        Where no normal force is consistent with the friction (Painleve's paradox), an impact
-        without approach takes as much slip away as it needs to: Darboux's and Keller's way out.
+        With a Delassus number A <= 0 friction presses the contact as it is pressed (Painleve's
+        paradox). If the contact would close without a force, no force is consistent, and an impact
+        without approach takes as much slip away as it needs to: Darboux's and Keller's way out. If
+        it would open, the case is indeterminate: the contact may open, too.
         """
         if lies_flat(self.top, state.axis):
             return Transition(events, Outcome.LYING_FLAT, state)
@@ -392,6 +396,10 @@ class Automaton:
             return self.settled(time, state, (stuck, held), events=events)
         touch = contact(sliding.axis, sliding.momentum, sliding.velocity, self.top)
         if touch.delassus <= 0 and not self.pulls:
+            if touch.free_acceleration > 0:
+                events = (*events, self.event(EventKind.INDETERMINATE, time))
+                if self.indeterminate == "lift_off":
+                    return self._let_go(time, state, events)
             return self.inconsistent(time, state, events)
         if touch.free_acceleration < 0 or self.pulls:
             return Transition(events, self.mode_for(state, slips=True), state)

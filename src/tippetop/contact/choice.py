@@ -19,7 +19,9 @@ def automaton_of(way: Contact, top: Top, units: Units) -> Automaton:
     the usual.
     """
     own: Automaton | None = way.rules(top, units)
-    return Automaton(top, way.liftoff, way.restitution) if own is None else own
+    if own is not None:
+        return own
+    return Automaton(top, way.liftoff, way.restitution, way.indeterminate)
 
 
 def as_begun(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:

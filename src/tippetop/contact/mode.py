@@ -7,7 +7,7 @@ sweeps many; neither knows mechanics.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, ClassVar, NamedTuple, Self
@@ -80,6 +80,7 @@ class EventKind(Enum):
     IMPACT = "impact"
     OPENING = "opening"
     DOUBLE_CONTACT = "double contact"
+    INDETERMINATE = "indeterminate force"
 
 
 @dataclass(frozen=True)
@@ -116,6 +117,19 @@ class Transition:
     def energy_lost(self) -> float:
         """Energy that went with what happened."""
         return sum([event.energy_lost for event in self.events])
+
+
+def ambiguity_of(events: Sequence[Event]) -> str:
+    """Return a sentence on indeterminate contact forces among events; empty if there are none."""
+    count = len([event for event in events if event.kind is EventKind.INDETERMINATE])
+    if not count:
+        return ""
+    instants = "one instant" if count == 1 else f"{count} instants"
+    return (
+        f"At {instants} the contact force was indeterminate (Painleve's paradox): an impact and a"
+        " lift-off both agree with the laws of rigid bodies and friction. The run took the one"
+        " that contact.indeterminate names, 'impact' or 'lift_off'."
+    )
 
 
 COMPLETED, FAILURE = "completed", "failure"

@@ -54,7 +54,8 @@ def onset_motion(kind: Kind, begins: tuple[Vanishing, ...], guarded: bool) -> Sl
         body = kind.top(tuple(parameters))
         axis, momentum = split(numbers)
         point = ContactPoint.of(axis, momentum, body)
-        slip, rolling = None, None
+        slip: Any = None
+        rolling: Any = None
         if first.slip:
             slip = ways[0]
             rolling = None if first.held else point.turning[:2]

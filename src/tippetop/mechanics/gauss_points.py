@@ -69,7 +69,7 @@ def interpolated(values: Sequence[float]) -> Callable[[float], float]:
     terms = [sum(map(mul, row, values)) for row in GAUSS.terms]
 
     def value(place: float) -> float:
-        return sum(map(mul, terms, legendre(STAGES - 1, 2.0 * place - 1.0)))
+        return float(sum(map(mul, terms, legendre(STAGES - 1, 2.0 * place - 1.0))))
 
     return value
 

@@ -152,8 +152,20 @@ export class DenseSolution {
   /** Solutions that go on where the one before ends, as one. */
   static joined(parts) {
     const knots = parts.flatMap((part, i) => Array.from(part.knots).slice(i ? 1 : 0));
-    const terms = parts.flatMap((part) => Array.from(part.terms));
-    return new DenseSolution(knots, Float64Array.from(terms), parts[0].size);
+    const rows = parts.flatMap((part) => part.rows_of_terms());
+    const degree = Math.max(...rows.map((row) => row.length));
+    const terms = new Float64Array(rows.length * degree);
+    rows.forEach((row, i) => {
+      terms.set(row, i * degree);
+    });
+    return new DenseSolution(knots, terms, parts[0].size);
+  }
+
+  /** The coefficients of every number in every step. */
+  rows_of_terms() {
+    const degree = this.degree + 1;
+    const rows = Array.from({ length: this.size * this.count }, (_, i) => i * degree);
+    return rows.map((first) => this.terms.subarray(first, first + degree));
   }
 
   /** Of coefficients [step][number][power] in powers of the time since the start of a step. */

@@ -67,7 +67,12 @@ class Run {
     this.start = m.natural_state(problem.start(), this.units);
     m.require_limits(duration, this.units.time, ...limits);
 
-    const automaton = new m.Automaton(this.top, contact.liftoff, contact.restitution);
+    const automaton = new m.Automaton(
+      this.top,
+      contact.liftoff,
+      contact.restitution,
+      contact.indeterminate,
+    );
     const launch = automaton.launch(this.start);
     const end = duration / this.units.time;
     this.trajectory = new m.Trajectory(automaton, launch, end, integrator(tolerance), ...limits);
@@ -185,7 +190,7 @@ class Run {
     const judged = this.monitor.concluded(outcome, state, this.sums[WORK], this.tolerance);
     this.outcome = {
       name: judged.name.toLowerCase(),
-      advice: [judged.value, detail].filter(Boolean).join(" "),
+      advice: [judged.value, detail, m.ambiguity_of(trajectory.events)].filter(Boolean).join(" "),
     };
     this.early = judged !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
     const completed = outcome === m.Outcome.COMPLETED;

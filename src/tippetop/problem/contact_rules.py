@@ -24,16 +24,21 @@ class Contact(Variant):
     restitution
         Ratio of the normal impulses of restitution and compression in an impact (Poisson), in [0,
         1].
+    indeterminate
+        What the table does where strong friction leaves the contact force indeterminate (Painleve's
+        paradox), so that both an impact and a lift-off agree with the laws of mechanics and
+        friction: "impact" or "lift_off".
 
     Examples
     --------
     >>> import tippetop as tt
     >>> tt.Contact()  # it may leave the table, and does not bounce
-    Contact(liftoff='fly', restitution=0.0)
+    Contact(liftoff='fly', restitution=0.0, indeterminate='impact')
     """
 
     liftoff: Literal["fly", "stop", "ignore"] = "fly"
     restitution: Annotated[Fraction, Quantity("1", "coefficient of restitution")] = 0.0
+    indeterminate: Literal["impact", "lift_off"] = "impact"
 
     # translate: skip
     def rules(self, top: Top, units: Units) -> Any:

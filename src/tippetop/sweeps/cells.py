@@ -61,6 +61,7 @@ class Cells:
             np.minimum(duration / spread(self.units.time, count), LONGEST)[which],
             contact_rule.liftoff,
             spread(contact_rule.restitution, count)[which],
+            contact_rule.indeterminate,
             self._own_rules(which),
         )
 

@@ -35,6 +35,8 @@ class Launches:
     """"ignore", "stop" or "fly"."""
     restitution: Array
     """Ratio of the normal impulses of restitution and compression, shape (n,)."""
+    indeterminate: str
+    """What the table does where the contact force is indeterminate: "impact" or "lift_off"."""
     own: Own | None = None
     """For contacts that bring their own rules, what makes them of a top, shape (n,)."""
 
@@ -46,7 +48,9 @@ class Launches:
         state = picked(self.state, which)
         numbers, end, restitution = self.numbers[:, which], self.end[which], self.restitution[which]
         own = None if self.own is None else self.own[which]
-        return Launches(self.kind, numbers, state, end, self.liftoff, restitution, own)
+        return Launches(
+            self.kind, numbers, state, end, self.liftoff, restitution, self.indeterminate, own
+        )
 
     @property
     def top(self) -> Top:
@@ -72,7 +76,7 @@ class Launches:
         if self.own is not None:
             own: Automaton = self.own[launch](top)
             return own
-        return Automaton(top, self.liftoff, float(self.restitution[launch]))
+        return Automaton(top, self.liftoff, float(self.restitution[launch]), self.indeterminate)
 
     def sliding(self, launch: int) -> ContactMode:
         """The mode of one launch that slides."""
