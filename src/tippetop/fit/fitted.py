@@ -118,7 +118,7 @@ class FitResult:
         degrees = count - fitted
         variance = 1.0 if search.is_noise_known else best.cost / max(degrees, 1)
         covariance, undetermined = _covariance(
-            jacobian, model.scales(numbers), model.names, variance
+            jacobian, model.scales(numbers), model.names, len(model.fields), variance
         )
         errors = np.where(smooth, np.sqrt(np.diag(covariance)), np.nan)
         standardised = np.full(len(model.data), np.nan)
@@ -287,21 +287,23 @@ def _crossing(excess: Any, step: float) -> float:
 
 
 def _covariance(
-    jacobian: Array, scales: Array, names: Sequence[str], variance: float
+    jacobian: Array, scales: Array, names: Sequence[str], fields: int, variance: float
 ) -> tuple[Array, tuple[str, ...]]:
-    """Return the covariance, and the directions that are not determined, in words."""
+    """Return the covariance, and the directions that are not determined, in words.
+
+    The first names are those of `fields` of the problem.
+    """
     _, strengths, directions = np.linalg.svd(jacobian * scales, full_matrices=False)
-    directions_count = len(scales)
     singular = strengths <= UNDETERMINED * strengths[0]
-    if len(strengths) < directions_count:  # fewer data than numbers
-        raise InvalidInput("data", f"{len(jacobian)} numbers", f"at least {directions_count}")
     spread = np.where(singular, 0.0, 1.0 / np.where(singular, 1.0, strengths))
     relative = (directions.T * spread**2) @ directions * variance
     covariance = scales[:, None] * relative * scales
     words = list[str]()
     for direction, strength, null in zip(directions, strengths, singular, strict=True):
         error = np.inf if null else np.sqrt(variance) / strength
-        if error >= WEAK:
+        # The origin of a picture may be near zero: its relative error means nothing.
+        strongest = np.argmax(np.abs(direction))
+        if null or (error >= WEAK and strongest < fields):
             words.append(_direction(direction, names, error))
         if null:
             involved = np.abs(direction) > UNDETERMINED**0.5
