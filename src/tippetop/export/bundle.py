@@ -21,8 +21,8 @@ def built(name: str) -> str:
         return (BUILT / name).read_text(encoding="utf-8")
     except FileNotFoundError:
         raise Unavailable(
-            "the page and the player are not built: run `make page` in the folder of the source "
-            "(released packages contain them)"
+            "the page and the player were not built when tippetop was installed, which takes a"
+            " network for npm: install it again, or run `make page` in the folder of the source"
         ) from None
 
 

@@ -11,6 +11,7 @@ from tippetop.lathe.profile import Profile
 from tippetop.lathe.workpiece import Workpiece
 from tippetop.support.errors import Described, InvalidInput, Unavailable, is_whole, require
 from tippetop.support.files import path_of, require_ending, written_beside
+from tippetop.support.installation import install_command
 
 FACETS = 180
 """Default number of facets around the axis: 3 micrometres inside a ball of 20 mm."""
@@ -115,7 +116,7 @@ def _trimesh() -> Any:
     """Return the module trimesh; raise `Unavailable` if it is not installed."""
     if not all(find_spec(name) for name in ("trimesh", "lxml", "networkx")):
         raise Unavailable(
-            'solids are written with trimesh, which is not installed: pip install "tippetop[lathe]"'
+            f"solids are written with trimesh, which is not installed: {install_command('lathe')}"
         )
     import trimesh.creation  # noqa: PLC0415 - optional
 

@@ -9,6 +9,7 @@ import xarray as xr
 from tippetop.results.dataframes import to_dataframe
 from tippetop.support.errors import Unavailable
 from tippetop.support.files import written_beside
+from tippetop.support.installation import install_command
 
 
 def write_csv(
@@ -81,7 +82,7 @@ def need_parquet() -> None:
     """Raise `Unavailable` if pyarrow is not installed."""
     if find_spec("pyarrow") is None:
         raise Unavailable(
-            "Parquet is written by pyarrow; install it with: pip install 'tippetop[parquet]'"
+            f"Parquet is written by pyarrow; install it with: {install_command('parquet')}"
         )
 
 

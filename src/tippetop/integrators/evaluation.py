@@ -11,7 +11,6 @@ import numpy as np
 from tippetop.graph.llvm import ABREAST
 from tippetop.graph.recording import recordable
 from tippetop.integrators.base import Array, Rows
-from tippetop.integrators.machine_code import machine_code
 
 Evaluation: TypeAlias = Callable[[Array, Sequence[Any]], Array]
 """From n states, shape (size, ...), and parameters, each of a shape that becomes theirs, to numbers
@@ -25,6 +24,8 @@ def compiled_evaluation(function: Rows, size: int, parameters: int) -> Evaluatio
     recorded = recordable(function, size, parameters)
     if recorded is None:
         return None
+    from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - slow to import
+
     compiled, count = machine_code({"values": recorded}, ABREAST)["values"], len(recorded.outputs)
 
     def evaluate(y: Array, given: Sequence[Any]) -> Array:

@@ -9,6 +9,7 @@ from tippetop.export.bundle import built
 from tippetop.export.track import pack_run
 from tippetop.results.dataset import require_run
 from tippetop.support.errors import InvalidInput, Unavailable, is_whole
+from tippetop.support.installation import install_command
 from tippetop.support.suggestions import not_one_of
 
 THEMES = ("auto", "light", "dark")
@@ -54,7 +55,7 @@ def _widget() -> Any:
         import traitlets  # noqa: PLC0415 - comes with anywidget
     except ImportError:
         raise Unavailable(
-            "a run is shown in a notebook by anywidget: pip install 'tippetop[lab]'"
+            f"a run is shown in a notebook by anywidget: {install_command('lab')}"
         ) from None
 
     def show(self: Any, run: xr.Dataset) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 from tippetop.lathe.sheet import Sheet
 from tippetop.lathe.strokes import Path, Stroke, ellipse, line
 from tippetop.support.errors import InvalidInput, Unavailable
+from tippetop.support.installation import install_command
 
 MM = {1: 25.4, 4: 1.0, 5: 10.0, 6: 1000.0, 13: 1e-3, 14: 100.0}
 """Sizes of the units that a DXF file may state, by its code for them, mm."""
@@ -27,7 +28,7 @@ def read_dxf(path: FilePath, unit: str | None, name: str) -> Sheet:
         import ezdxf.filemanagement  # noqa: PLC0415
     except ImportError:
         raise Unavailable(
-            'DXF files are read with ezdxf, which is not installed: pip install "tippetop[lathe]"'
+            f"DXF files are read with ezdxf, which is not installed: {install_command('lathe')}"
         ) from None
     try:
         document = ezdxf.filemanagement.readfile(path)

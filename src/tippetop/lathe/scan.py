@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tippetop.lathe.sheet import Reading, nested
 from tippetop.support.errors import Described, InvalidInput, Unavailable
+from tippetop.support.installation import install_command
 
 NOT_ROUND = 0.01
 """How far a surface may be from one of revolution, in sizes of the body."""
@@ -91,7 +92,7 @@ def read_stl(path: Path, axis: str | None, tolerance: float, name: str) -> Readi
 def _mesh(path: Path, name: str) -> Any:
     if not all(find_spec(one) for one in ("trimesh", "networkx")):
         raise Unavailable(
-            'STL files are read with trimesh, which is not installed: pip install "tippetop[lathe]"'
+            f"STL files are read with trimesh, which is not installed: {install_command('lathe')}"
         )
     import trimesh  # noqa: PLC0415 - optional
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from tippetop import __version__
 from tippetop.support.errors import RESUME, InvalidInput, Unavailable, is_whole
+from tippetop.support.installation import install_command
 from tippetop.support.processes import RESTARTS, Job, shared
 from tippetop.support.validation import Variant
 from tippetop.sweeps.definition import Sweep, Task
@@ -167,7 +168,7 @@ def _pickled(kinds: Sequence[type]) -> tuple[bytes | None, str]:
     be.
     """
     if find_spec("cloudpickle") is None:
-        return None, "only cloudpickle sends to other processes (pip install 'tippetop[sweep]')"
+        return None, f"only cloudpickle sends to other processes ({install_command('sweep')})"
     import cloudpickle  # noqa: PLC0415 - optional
 
     try:
@@ -259,7 +260,7 @@ def _workers(client: Any) -> int:
 def _cluster(address: str) -> Iterator[Cluster]:
     """A running cluster that has workers."""
     if find_spec("distributed") is None:
-        raise Unavailable("a scheduler needs dask.distributed: pip install 'tippetop[sweep]'")
+        raise Unavailable(f"a scheduler needs dask.distributed: {install_command('sweep')}")
     from distributed import Client  # noqa: PLC0415 - optional, and slow to import
     from distributed.comm.addressing import get_address_host_port  # noqa: PLC0415
     from distributed.utils import silence_logging_cmgr  # noqa: PLC0415

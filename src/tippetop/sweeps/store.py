@@ -25,6 +25,7 @@ from tippetop.results.catalogue import SWEPT
 from tippetop.results.flags import decoded
 from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable, require
 from tippetop.support.files import in_words, path_of, require_ending
+from tippetop.support.installation import install_command
 from tippetop.support.interrupts import deferred
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.store_layout import (
@@ -282,7 +283,7 @@ def need_zarr() -> None:
     """Raise `Unavailable` if zarr is not installed."""
     if find_spec("zarr") is None:
         raise Unavailable(
-            "a sweep is kept in a Zarr store; install it with: pip install 'tippetop[sweep]'"
+            f"a sweep is kept in a Zarr store; install it with: {install_command('sweep')}"
         )
 
 
