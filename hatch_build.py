@@ -61,7 +61,13 @@ def build_page(root: Path) -> None:
     source = {**os.environ, "PYTHONPATH": str(root / "src"), "TIPPETOP_CACHE": "off"}
     subprocess.run([sys.executable, "-m", "tippetop.page_engine"], cwd=root, env=source, check=True)
     node, npm = commands()
-    options = ["--no-package-lock", "--no-audit", "--no-fund", "--ignore-scripts"]
+    options = [
+        "--no-package-lock",
+        "--no-audit",
+        "--no-fund",
+        "--ignore-scripts",
+        "--fetch-retries=1",
+    ]
     subprocess.run([*npm, "install", *options], cwd=root / "web", check=True)
     subprocess.run([node, "build.mjs"], cwd=root / "web", check=True)
 

@@ -15,7 +15,7 @@ import pytest
 from campaigns import among
 from children import ended, started
 from tippetop.support.errors import InvalidInput, Unavailable
-from tippetop.support.processes import RESTARTS, Job, Worker, shared
+from tippetop.support.processes import RESTARTS, Job, Worker, processors, shared
 
 
 def jobs(*calls: tuple[Any, ...]) -> Callable[[], Job | None]:
@@ -180,3 +180,9 @@ def test_processes_cannot_hear_ctrl_c_from_their_first_moment() -> None:
         [sys.executable, "-c", BLOCKED], capture_output=True, text=True, check=True
     )
     assert (done.stdout, done.stderr) == ("True\nTrue\n", "")
+
+
+def test_no_more_workers_than_the_container_is_given_processors(monkeypatch):
+    """Where a group of processes has the time of one processor, there is one worker."""
+    monkeypatch.setattr("loky.backend.context._cpu_count_cgroup", lambda count: 1)
+    assert processors() == 1

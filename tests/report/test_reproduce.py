@@ -206,7 +206,7 @@ def test_unknown_name_is_refused_before_any_work(tmp_path: Path) -> None:
 
 
 def test_command_prints_json_for_programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("os.cpu_count", lambda: 1)
+    monkeypatch.setattr("tippetop.report.reproduce.processors", lambda: 1)
     app = Typer()
     app.command()(command)
     out = tmp_path / "out"

@@ -1,7 +1,6 @@
 """Procedure that redoes the report: compute, judge, draw, and write a folder with a page."""
 
 import json
-import os
 import time
 import warnings
 from collections.abc import Callable, Iterator
@@ -24,6 +23,7 @@ from tippetop.report.tasks import Task, carry_out
 from tippetop.results.netcdf import write_run
 from tippetop.support.errors import FileTrouble
 from tippetop.support.files import in_words, put_in_place, refuse_overwriting
+from tippetop.support.processes import processors
 
 PAGE, CLAIMS_FILE, FIGURES, DATA = "index.html", "claims.json", "figures", "data"
 
@@ -89,7 +89,7 @@ def reproduce(
         tasks = _tasks(chosen, quick, stage)
         if only is None:
             tasks.append(Task(_PLAYER, 1.0, playable, (quick,)))
-        processes = min(2, os.cpu_count() or 1) if workers is None else max(1, workers)
+        processes = min(2, processors()) if workers is None else max(1, workers)
         results = carry_out(tasks, processes, progress)
         data = {experiment.id: results[experiment.id] for experiment in chosen.experiments}
         judgements = tuple(claim.judge(data, quick) for claim in chosen.claims)

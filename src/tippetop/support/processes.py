@@ -28,6 +28,13 @@ _SPAWN = multiprocessing.get_context("spawn")
 _starting = threading.Lock()
 
 
+def processors() -> int:
+    """Return how many processors this process may use: no more than its container is given."""
+    from loky import cpu_count  # noqa: PLC0415 - slow to import
+
+    return int(cpu_count())
+
+
 class Job(NamedTuple):
     """A call to be made in another process: importable, with arguments that can be sent."""
 

@@ -2,7 +2,6 @@
 
 import json
 import logging
-import os
 import threading
 import time
 from collections import deque
@@ -20,7 +19,7 @@ from numpy.typing import NDArray
 from tippetop import __version__
 from tippetop.support.errors import RESUME, InvalidInput, Unavailable, is_whole
 from tippetop.support.installation import install_command
-from tippetop.support.processes import RESTARTS, Job, shared
+from tippetop.support.processes import RESTARTS, Job, processors, shared
 from tippetop.support.validation import Variant
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.ensemble import follow_cells
@@ -175,11 +174,6 @@ def _pickled(kinds: Sequence[type]) -> tuple[bytes | None, str]:
         return cloudpickle.dumps(kinds), ""
     except Exception as error:  # noqa: BLE001 - whatever it is of a user's that cannot be pickled
         return None, f"cannot be sent to other processes ({error})"
-
-
-def processors() -> int:
-    """How many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _share_with_cluster(
