@@ -8,7 +8,7 @@ import pytest
 import tippetop as tt
 from tippetop.export import bundle
 
-SENTENCE = "the page and the player are not built: run `make page` in the folder of the source"
+SENTENCE = "the page and the player were not built when tippetop was installed"
 
 LAB = """
 import sys
