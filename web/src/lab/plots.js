@@ -59,6 +59,9 @@ const PRECESSION_BINS = 200;
 const SHORTEST_WINDOW = 0.01;
 const LEAD = 0.02;
 
+// How long plots stay before they are put into words, ms.
+const QUIET = 300;
+
 // What stands for a ghost that is not there.
 const NO_CURVE = [[0], [null]];
 // How uPlot joins curves: what a curve has none of also blanks the times near it that only others have.
@@ -255,20 +258,25 @@ export class Plots {
   fill() {
     if (!this.charts.length) return;
     const count = this.colours.ghosts.length;
-    const isTold = this.isTold();
-    for (const { name, chart, title } of this.charts) {
+    for (const { name, chart } of this.charts) {
       const curves = Array.from({ length: count }, (_, k) => {
         const ghost = this.ghosts[k];
         return ghost ? this.curve(ghost, name) : NO_CURVE;
       });
-      const curve = this.curve(this.track, name);
-      chart.setData(joined([...curves, curve]));
-      chart.root.setAttribute(
-        "aria-label",
-        [title, ...(isTold ? [inWords(curve)] : [])].join(". "),
-      );
+      chart.setData(joined([...curves, this.curve(this.track, name)]));
     }
     this.move();
+    clearTimeout(this.describing);
+    this.describing = setTimeout(() => this.describe(), QUIET);
+  }
+
+  // Say in words what the plots show, once they stay for a while.
+  describe() {
+    const isTold = this.isTold();
+    for (const { name, chart, title } of this.charts) {
+      const words = isTold ? [inWords(this.curve(this.track, name))] : [];
+      chart.root.setAttribute("aria-label", [title, ...words].join(". "));
+    }
   }
 
   // Times and values of a curve in the visitor's units, as finely as can be seen.
