@@ -64,6 +64,7 @@ lint: $(VENV)/.installed-dev
 	$(BIN)/ruff format --check .
 	web/run.sh $(BIN)/python biome check --error-on-warnings
 	$(BIN)/codespell
+	$(BIN)/python tools/plain_words.py
 
 types: $(VENV)/.installed-dev
 	$(BIN)/mypy

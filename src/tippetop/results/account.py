@@ -117,8 +117,8 @@ def _slip_at_launch(problem: Problem) -> float:
 
 
 def _motion(facts: Facts) -> list[Clause]:
-    """Return what happened on the way: passing the horizontal, flights, rocking, sticking, a
-    fall.
+    """Return what happened on the way, in order of time: passing the horizontal, flights, rocking,
+    sticking, a fall.
     """
     clauses = list[Clause]()
     turned, final = facts.metrics["turns_over"], facts.metrics["final_theta"]
@@ -158,7 +158,12 @@ def _motion(facts: Facts) -> list[Clause]:
         name = "rises" if highest - final < RISE else "has_come_down"
         numbers = {"highest": highest, "time": when, "tilt": final}
         clauses.append(Clause(name, numbers, "motion"))
-    return clauses
+    return sorted(clauses, key=_time_of)
+
+
+def _time_of(clause: Clause) -> float:
+    """Return when the event of a clause is, s; 0 where it has no time."""
+    return clause.numbers.get("time", 0.0)
 
 
 def _flights(facts: Facts) -> list[Clause]:

@@ -64,29 +64,29 @@ def assemble(
     for. Single numbers are those of `METRICS` and `MONITORS`, lists those of `LISTED`; the
     attributes are the provenance.
     """
-    found: dict[Any, xr.Variable] = {}
+    variables: dict[Any, xr.Variable] = {}
     for name, values in samples.items():
         variable = SAMPLED.get(name) or DERIVED[name]
         dimensions = "time", *variable.dimensions
-        found[name] = xr.Variable(dimensions, values, variable.attributes, fastpath=True)
+        variables[name] = xr.Variable(dimensions, values, variable.attributes, fastpath=True)
     described = Variable("contact mode", dtype="int8", flags=tuple(modes[1]))
-    found["mode"] = xr.Variable(("time",), modes[0], described.attributes, fastpath=True)
+    variables["mode"] = xr.Variable(("time",), modes[0], described.attributes, fastpath=True)
     for name, value in numbers.items():
         variable = METRICS.get(name) or MONITORS[name]
         number = np.array(value, dtype=variable.dtype)
-        found[name] = xr.Variable((), number, variable.attributes, fastpath=True)
+        variables[name] = xr.Variable((), number, variable.attributes, fastpath=True)
     lengths = {"time": len(times), **{name: len(index.index) for name, index in NAMED.items()}}
     for name, values in lists.items():
         dimension = name.partition("_")[0]
-        found[name] = xr.Variable((dimension,), values, LISTED[name].attributes, fastpath=True)
+        variables[name] = xr.Variable((dimension,), values, LISTED[name].attributes, fastpath=True)
         lengths[dimension] = len(values)
     # What xarray would find out about the times is known.
     instants = PandasIndex(pd.Index(times, name="time"), "time", times.dtype, fastpath=True)
     indexes: dict[Any, Index] = {"time": instants, **NAMED}
-    found |= instants.create_variables()
-    found |= {name: labels.copy(deep=False) for name, labels in LABELS.items()}
-    found["time"].attrs = dict(TIME)
+    variables |= instants.create_variables()
+    variables |= {name: labels.copy(deep=False) for name, labels in LABELS.items()}
+    variables["time"].attrs = dict(TIME)
     # The public constructor would align and merge what is aligned: it takes five times as long.
     return xr.Dataset._construct_direct(
-        found, set(indexes), lengths, {"Conventions": CONVENTIONS, **attributes}, indexes
+        variables, set(indexes), lengths, {"Conventions": CONVENTIONS, **attributes}, indexes
     )

@@ -36,15 +36,15 @@ class Account(NamedTuple):
     @property
     def headline(self) -> str:
         """What it does and where it ends, as one phrase without its subject."""
-        told = [clause for clause in self.clauses if clause.part in ("motion", "end")]
-        return "; ".join(phrase(clause) for clause in told)
+        clauses = [clause for clause in self.clauses if clause.part in ("motion", "end")]
+        return "; ".join(phrase(clause) for clause in clauses)
 
     @property
     def details(self) -> tuple[str, ...]:
         """How it begins and what theory says, as sentences."""
         pronoun = _english()["pronoun"]
-        told = [clause for clause in self.clauses if clause.part in ("launch", "theory")]
-        return tuple(f"{pronoun} {phrase(clause)}." for clause in told)
+        clauses = [clause for clause in self.clauses if clause.part in ("launch", "theory")]
+        return tuple(f"{pronoun} {phrase(clause)}." for clause in clauses)
 
     def plain(self) -> list[dict[str, Any]]:
         """Return the clauses as plain dictionaries of name and numbers."""
@@ -102,8 +102,8 @@ def phrase(clause: Clause) -> str:
 @lru_cache
 def _english() -> dict[str, Any]:
     text = resources.files("tippetop.results").joinpath("account_en.json").read_text("utf-8")
-    found: dict[str, Any] = json.loads(text)
-    return found
+    texts: dict[str, Any] = json.loads(text)
+    return texts
 
 
 def written(gap: str, value: float, units: Mapping[str, str]) -> str:

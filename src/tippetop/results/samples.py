@@ -42,15 +42,15 @@ class Samples(NamedTuple):
 
 def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     """Return every variable of `catalogue.SAMPLED` in SI, by name, of a top in natural units."""
-    told, state = samples.instants, samples.instants.state
+    instants, state = samples.instants, samples.instants.state
     axis, momentum = state.axis, state.momentum
-    sine, (slip_x, slip_y), tilting = axis_sine(axis), told.slip, told.tilting
+    sine, (slip_x, slip_y), tilting = axis_sine(axis), instants.slip, instants.tilting
     upright = sine == 0.0
     if np.any(upright):
         # Where the axis is vertical it leans nowhere; X is then the space axis x, and theta' the
         # rate at which the axis leaves the pole.
         slip_x, slip_y = (
-            np.where(upright, *both) for both in zip(told.point, told.slip, strict=True)
+            np.where(upright, *both) for both in zip(instants.point, instants.slip, strict=True)
         )
         leaving = np.hypot(momentum[0], momentum[1]) / top.transverse_inertia
         tilting = np.where(upright, np.copysign(leaving, axis[2]), tilting)
@@ -58,22 +58,22 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "theta": np.arctan2(sine, axis[2]),
         "theta_dot": tilting / units.time,
         "phi": np.arctan2(axis[1], axis[0]),
-        "phi_dot": told.precession / units.time,
-        "omega3": told.spin / units.time,
+        "phi_dot": instants.precession / units.time,
+        "omega3": instants.spin / units.time,
         "slip_x": slip_x * units.speed,
         "slip_y": slip_y * units.speed,
-        "normal_force": told.force[2] * units.force,
-        "contact_force": np.stack(scale(units.force, told.force), -1),
-        "contact_torque": np.stack(scale(units.energy, told.torque), -1),
-        "energy": told.energy * units.energy,
+        "normal_force": instants.force[2] * units.force,
+        "contact_force": np.stack(scale(units.force, instants.force), -1),
+        "contact_torque": np.stack(scale(units.energy, instants.torque), -1),
+        "energy": instants.energy * units.energy,
         "work": samples.work * units.energy,
         "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled)
         * units.energy,
         "drilling_loss": samples.drilled * units.energy,
         "rolling_loss": samples.rolled * units.energy,
-        "jellett": told.jellett * units.jellett,
+        "jellett": instants.jellett * units.jellett,
         "height": state.height * units.length,
-        "gap": told.gap * units.length,
+        "gap": instants.gap * units.length,
         "x": samples.x * units.length,
         "y": samples.y * units.length,
         "axis": np.stack(axis, -1),
@@ -84,7 +84,7 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
 
 
 def event_in_si(event: Event, units: Units) -> Event:
-    """An event with its numbers in SI."""
+    """Return an event with its numbers in SI."""
     return replace(
         event,
         time=event.time * units.time,

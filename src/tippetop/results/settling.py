@@ -38,8 +38,8 @@ HALVINGS = 44
 
 def tilt(state: State) -> Array:
     """Return the tilts, rad."""
-    found: Array = np.arctan2(axis_sine(state.axis), state.axis[2])
-    return found
+    angles: Array = np.arctan2(axis_sine(state.axis), state.axis[2])
+    return angles
 
 
 def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) -> float:
@@ -48,26 +48,26 @@ def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) 
     It is told as by `settled_tilts`. What came to rest or lies flat stays where it is; what rolls
     on two surfaces stays at the tilt at which both touch. All numbers are floats in natural units.
     """
-    here = math.atan2(axis_sine(state.axis), state.axis[2])
+    theta = math.atan2(axis_sine(state.axis), state.axis[2])
     if outcome in (Outcome.AT_REST, Outcome.LYING_FLAT):
-        return here
+        return theta
     if outcome is not Outcome.COMPLETED:
         return math.nan
-    settled = _settled_spin_tilt(here, state, start, top) if top.torque_free else math.nan
-    return settled if math.isfinite(settled) else _tilt_of_rest(here, state, top)
+    settled = _settled_spin_tilt(theta, state, start, top) if top.torque_free else math.nan
+    return settled if math.isfinite(settled) else _tilt_of_rest(theta, state, top)
 
 
-def _settled_spin_tilt(here: float, state: State, start: State, top: Top) -> float:
+def _settled_spin_tilt(theta: float, state: State, start: State, top: Top) -> float:
     """Return the tilt at which a motion under friction without torque goes on spinning, rad, or
     nan.
     """
     if isinstance(top.surface, Hull):
         lowest = lowest_surface(top.surface, state.axis[2])
-        if not _only_touches(lowest, here):
+        if not _only_touches(lowest, theta):
             return math.nan
         top = top._replace(surface=lowest)
     if acting(top.surface).spherical:
-        return _steady_tilt_near(here, state, top) if is_held(state, top, NEAR_FINAL) else math.nan
+        return _steady_tilt_near(theta, state, top) if is_held(state, top, NEAR_FINAL) else math.nan
     if not _has_come_to_steady_spin(state, start, top):
         return math.nan
     if has_level_spin(top) and abs(state.axis[2]) < axis_sine(state.axis):
@@ -75,16 +75,16 @@ def _settled_spin_tilt(here: float, state: State, start: State, top: Top) -> flo
     return 0.0 if state.axis[2] > 0.0 else math.pi
 
 
-def _tilt_of_rest(here: float, state: State, top: Top) -> float:
+def _tilt_of_rest(theta: float, state: State, top: Top) -> float:
     """Return the tilt within `NEAR_FINAL` at which the body lies at rest, rad; nan where the energy
     that is left suffices to leave its neighbourhood.
 
     There the centre of mass is lowest: on one surface or, where two meet, on both.
     """
-    low, high = here - NEAR_FINAL, here + NEAR_FINAL
-    left, weight = float(energy(state, top)), float(top.mass * top.gravity)
+    low, high = theta - NEAR_FINAL, theta + NEAR_FINAL
+    total, weight = float(energy(state, top)), float(top.mass * top.gravity)
     for at in (low, high):
-        if 0.0 < at < math.pi and weight * float(outer_height(top.surface, math.cos(at))) <= left:
+        if 0.0 < at < math.pi and weight * float(outer_height(top.surface, math.cos(at))) <= total:
             return math.nan
 
     def slope(at: float) -> float:
@@ -97,7 +97,7 @@ def _tilt_of_rest(here: float, state: State, top: Top) -> float:
     return math.pi if slope(high) <= 0.0 else crossing(slope, low, high)
 
 
-def _steady_tilt_near(here: float, state: State, top: Top) -> float:
+def _steady_tilt_near(theta: float, state: State, top: Top) -> float:
     """Return the tilt of the least energy within `NEAR_FINAL` of a sphere's tilt, rad.
 
     There the moments balance; without such a tilt it is the pole within reach.
@@ -107,16 +107,16 @@ def _steady_tilt_near(here: float, state: State, top: Top) -> float:
     def balance(at: float) -> float:
         return float(balance_of_moments(at, integral, top, math))
 
-    low, high = max(here - NEAR_FINAL, 0.0), min(here + NEAR_FINAL, math.pi)
+    low, high = max(theta - NEAR_FINAL, 0.0), min(theta + NEAR_FINAL, math.pi)
     if balance(low) * balance(high) < 0.0:
         return crossing(balance, low, high)
-    return 0.0 if low == 0.0 else math.pi if high == math.pi else here
+    return 0.0 if low == 0.0 else math.pi if high == math.pi else theta
 
 
 def _has_come_to_steady_spin(state: State, start: State, top: Top) -> Scalar:
     """Return whether a body has come near a spin about a vertical or level axis since launch."""
-    left = deviation(state, top)
-    return (left <= NEAR_STEADY) & (left <= APPROACHED * deviation(start, top))
+    remaining = deviation(state, top)
+    return (remaining <= NEAR_STEADY) & (remaining <= APPROACHED * deviation(start, top))
 
 
 def _only_touches(active: Surface, at: float) -> bool:
@@ -141,13 +141,13 @@ def settled_tilts(state: State, start: State, top: Top) -> Array:
     `start` has the states at launch; every number is of shape (n,), in natural units, and so are
     those of the top, which has one surface.
     """
-    here = tilt(state)
-    resting = _tilts_of_rest(here, state, top)
+    theta = tilt(state)
+    resting = _tilts_of_rest(theta, state, top)
     if not top.torque_free:
         return resting
     if top.surface.spherical:
         held = is_held(state, top, NEAR_FINAL)
-        return np.where(held, _steady_tilts_near(here, state, top), resting)
+        return np.where(held, _steady_tilts_near(theta, state, top), resting)
     come = _has_come_to_steady_spin(state, start, top)
     vertical = np.where(state.axis[2] > 0.0, 0.0, math.pi)
     leans = np.abs(state.axis[2]) < axis_sine(state.axis)
@@ -156,20 +156,20 @@ def settled_tilts(state: State, start: State, top: Top) -> Array:
 
 
 # translate: skip
-def _tilts_of_rest(here: Array, state: State, top: Top) -> Array:
+def _tilts_of_rest(theta: Array, state: State, top: Top) -> Array:
     """Return for many bodies of one surface what `_tilt_of_rest` returns for one."""
     surface = top.surface
 
     def slope(at: Array) -> Array:
-        found: Array = -np.sin(at) * surface.slope(np.cos(at))
-        return found
+        rise: Array = -np.sin(at) * surface.slope(np.cos(at))
+        return rise
 
-    low, high = here - NEAR_FINAL, here + NEAR_FINAL
-    left, weight = energy(state, top), top.mass * top.gravity
-    held = np.full(here.shape, True)
+    low, high = theta - NEAR_FINAL, theta + NEAR_FINAL
+    total, weight = energy(state, top), top.mass * top.gravity
+    held = np.full(theta.shape, True)
     for at in (low, high):
         inside = (at > 0.0) & (at < math.pi)
-        held &= ~inside | (weight * surface.height(np.cos(at)) > left)
+        held &= ~inside | (weight * surface.height(np.cos(at)) > total)
     low, high = np.maximum(low, BESIDE_POLE), np.minimum(high, math.pi - BESIDE_POLE)
     pole = np.where(slope(low) >= 0.0, 0.0, np.where(slope(high) <= 0.0, math.pi, np.nan))
     for _ in range(HALVINGS):
@@ -180,11 +180,11 @@ def _tilts_of_rest(here: Array, state: State, top: Top) -> Array:
 
 
 # translate: skip
-def _steady_tilts_near(here: Array, state: State, top: Top) -> Array:
+def _steady_tilts_near(theta: Array, state: State, top: Top) -> Array:
     """Return for many spheres what `_steady_tilt_near` returns for one."""
     integral = jellett(state, top)
-    low, high = np.maximum(here - NEAR_FINAL, 0.0), np.minimum(here + NEAR_FINAL, math.pi)
-    pole = np.where(low == 0.0, 0.0, np.where(high == math.pi, math.pi, here))
+    low, high = np.maximum(theta - NEAR_FINAL, 0.0), np.minimum(theta + NEAR_FINAL, math.pi)
+    pole = np.where(low == 0.0, 0.0, np.where(high == math.pi, math.pi, theta))
     before = balance_of_moments(low, integral, top, np)
     crosses = before * balance_of_moments(high, integral, top, np) < 0.0
     for _ in range(HALVINGS):

@@ -75,5 +75,5 @@ NUMBERS = [name for name in (*METRICS, *MONITORS) if name not in _OTHERWISE]
 
 
 def _number(value: xr.DataArray) -> int | float | None:
-    found = value.item()
-    return found if np.isfinite(found) else None
+    number = value.item()
+    return number if np.isfinite(number) else None

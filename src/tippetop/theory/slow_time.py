@@ -26,7 +26,7 @@ from tippetop.theory.nutation_decay import (
 )
 from tippetop.theory.steady import jellett_of_launch
 
-TOLERANCE = 1e-6
+LOG_TOLERANCE = 1e-6
 """Error of the logarithms of the amplitudes in a step: the time is told in two digits."""
 
 MOST_STEPS = 200
@@ -91,10 +91,10 @@ def time_to_end(problem: Problem, goal: float, distance: float) -> float:
     jellett = jellett_of_launch(problem) / float(units.jellett)
     nutation, passed = launched(angles, numbers), 0.0
     for _ in range(MOST_STAGES):
-        own = numbers.turned if nutation.turned else numbers
-        path = SlowPath(jellett, own, nutation.turned, goal, distance)
-        taken, end = _follow(path, nutation, problem.contact.liftoff != "ignore")
-        passed += taken
+        seen_numbers = numbers.turned if nutation.turned else numbers
+        path = SlowPath(jellett, seen_numbers, nutation.turned, goal, distance)
+        elapsed, end = _follow(path, nutation, problem.contact.liftoff != "ignore")
+        passed += elapsed
         if end is None:
             return passed / (float(top.gravity) * float(law.mu))
         nutation = end.turn(numbers)
@@ -115,7 +115,7 @@ def _follow(path: SlowPath, begin: Nutation, unilateral: bool) -> tuple[float, N
     size = 1.0 / fastest if fastest > 0.0 else 1.0
     for _ in range(MOST_STEPS):
         step = step_from(point, slope, size, path.rates)
-        error = step.doubt(largest) / TOLERANCE
+        error = step.doubt(largest) / LOG_TOLERANCE
         if not (all(math.isfinite(value) for value in step.there) and error <= 1.0):
             size *= 0.5 if not error > 1.0 else max(0.2, 0.9 * error**POWER)
             continue

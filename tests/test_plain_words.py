@@ -1,0 +1,48 @@
+"""What the check of plain words finds, and that the package passes it."""
+
+import ast
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+TOOL = Path(__file__).parents[1] / "tools" / "plain_words.py"
+
+
+@pytest.fixture(scope="module")
+def tool() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("plain_words", TOOL)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize(
+    ("code", "faults"),
+    [
+        ('def speed(v):\n    "Return the speed."\n    length = v\n    return length', 0),
+        ('def speed(v):\n    "The speed."', 1),
+        ('def speed(given):\n    "Return the speed."\n    found = given', 2),
+        ('class A:\n    @property\n    def speed(self):\n        "The speed."', 0),
+        ("def speed(self):\n    self._kept = 1", 1),
+        ("for thing in range(3):\n    pass", 1),
+    ],
+)
+def test_names_and_docstrings_that_say_nothing_are_found(
+    tool: ModuleType, code: str, faults: int
+) -> None:
+    assert len(list(tool.faults_of(Path("a.py"), ast.parse(code)))) == faults
+
+
+def test_constants_with_several_values_in_a_folder_are_found(tool: ModuleType) -> None:
+    texts = {"a/b.py": "LOOKS = 3", "a/c.py": "LOOKS = 4", "d/e.py": "LOOKS = 5\nFEW = 1"}
+    trees = {Path(path): ast.parse(text) for path, text in texts.items()}
+    assert list(tool.clashes(trees)) == ["a: LOOKS is 3 and 4"]
+
+
+def test_the_package_passes() -> None:
+    done = subprocess.run([sys.executable, TOOL], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout

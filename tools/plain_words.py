@@ -1,0 +1,104 @@
+"""Check that names, docstrings and constants of the package are plain.
+
+It counts names that say nothing (`BANNED`), first lines of docstrings of functions that state
+neither what is returned nor what is done, and constants of one name with several values within a
+folder. `plain_words.json` beside this file has how many each room is still allowed. The numbers may
+only fall: `python tools/plain_words.py --lower` writes lower ones.
+"""
+
+import ast
+import json
+import sys
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+SOURCE = ROOT / "src" / "tippetop"
+ALLOWED = Path(__file__).with_suffix(".json")
+
+BANNED = {
+    *("found", "given", "known", "taken", "told", "said", "own", "kept", "left", "here", "there"),
+    *("then", "rest", "way", "whole", "more", "other", "alone", "begun", "wanted", "heard"),
+    *("played", "piece", "thing", "look", "looks", "nothing"),
+}
+"""Names that say nothing of what they stand for."""
+
+NO_STATEMENT = {
+    *("A", "All", "An", "As", "How", "In", "It", "Its", "One", "Some", "That", "The", "Those"),
+    *("What", "When", "Where", "Whether", "Which", "Why"),
+}
+"""Words that begin no statement of what a function returns or does."""
+
+
+def faults_of(path: Path, tree: ast.Module) -> Iterator[str]:
+    """Yield the faults of a module, each with its line."""
+    for node in ast.walk(tree):
+        for name in _names(node):
+            if name.strip("_") in BANNED:
+                yield f"{path}:{node.lineno}: the name '{name}' says nothing"
+        if isinstance(node, ast.FunctionDef) and not _is_property(node):
+            first = (ast.get_docstring(node) or "").partition(" ")[0]
+            if first in NO_STATEMENT:
+                yield f"{path}:{node.lineno}: the docstring of {node.name} begins with '{first}'"
+
+
+def _names(node: ast.AST) -> Iterator[str]:
+    """Yield the names that a node defines."""
+    match node:
+        case ast.FunctionDef(name=name) | ast.ClassDef(name=name) | ast.arg(arg=name):
+            yield name
+        case ast.Name(id=name, ctx=ast.Store()) | ast.Attribute(attr=name, ctx=ast.Store()):
+            yield name
+
+
+def _is_property(node: ast.FunctionDef) -> bool:
+    marks = {mark.id for mark in node.decorator_list if isinstance(mark, ast.Name)}
+    return bool(marks & {"property", "cached_property"})
+
+
+def clashes(trees: dict[Path, ast.Module]) -> Iterator[str]:
+    """Yield the constants of one name that have several values within a folder."""
+    values: dict[tuple[Path, str], dict[str, Path]] = defaultdict(dict)
+    for path, tree in trees.items():
+        for node in tree.body:
+            if not (isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)):
+                continue
+            for target in node.targets:
+                if isinstance(target, ast.Name) and target.id.isupper():
+                    places = values[path.parent, target.id]
+                    places.setdefault(repr(node.value.value), path)
+    for (folder, name), places in values.items():
+        if len(places) > 1:
+            yield f"{folder}: {name} is {' and '.join(sorted(places))}"
+
+
+def main() -> int:
+    """Print the faults of files that have more than they are allowed; return the exit code."""
+    trees = {
+        path.relative_to(ROOT): ast.parse(path.read_text(encoding="utf-8"))
+        for path in sorted(SOURCE.rglob("*.py"))
+    }
+    faults = [fault for path, tree in trees.items() for fault in faults_of(path, tree)]
+    faults += clashes(trees)
+    counts = Counter(room_of(fault) for fault in faults)
+    allowed = json.loads(ALLOWED.read_text(encoding="utf-8"))
+    if "--lower" in sys.argv:
+        allowed = {room: min(counts[room], most) for room, most in allowed.items() if counts[room]}
+        ALLOWED.write_text(json.dumps(allowed, indent=1) + "\n", encoding="utf-8")
+    over = {room for room, count in counts.items() if count > allowed.get(room, 0)}
+    for fault in faults:
+        if room_of(fault) in over:
+            print(fault)
+    for room in sorted(over):
+        print(f"{room}: {counts[room]} faults, {allowed.get(room, 0)} allowed")
+    return int(bool(over))
+
+
+def room_of(fault: str) -> str:
+    """Return the room of the package, or its module, that a fault is in."""
+    return Path(fault.partition(":")[0]).parts[2]
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
