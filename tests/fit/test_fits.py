@@ -186,3 +186,21 @@ def test_the_command_fits_a_file(tmp_path, run):
     assert abs(told["values"]["friction.mu"] - 0.3) < 4 * told["errors"]["friction.mu"]
     assert told["problem"]["friction"]["mu"] == told["values"]["friction.mu"]
     assert drawn.read_bytes()[:4] == b"\x89PNG"
+
+
+COMMANDS = {
+    "no fields": ([], "--vary"),
+    "a range of one end": (["--vary", "friction.mu=3"], "LOW:HIGH"),
+    "noise of a word": (["--vary", "friction.mu", "--noise", "much"], "--noise: 'much'"),
+    "a drawing of another kind": (["--vary", "friction.mu", "--plot", "fit.txt"], "--plot"),
+    "an unknown field": (["--vary", "friction.nu"], "vary: 'friction.nu'"),
+}
+
+
+@pytest.mark.parametrize(("options", "sentence"), COMMANDS.values(), ids=COMMANDS)
+def test_the_command_refuses_in_a_sentence(tmp_path, options, sentence):
+    data = tmp_path / "film.csv"
+    data.write_text("t,theta\n0,0.1\n0.1,0.12\n0.2,0.2\n")
+    with pytest.raises(tt.InvalidInput, match=sentence) as refusal:
+        CliRunner().invoke(app, ["fit", str(data), *options], catch_exceptions=False)
+    assert "\n" not in str(refusal.value)

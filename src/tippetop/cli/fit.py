@@ -75,7 +75,7 @@ def fit(
         view=view,  # type: ignore[arg-type]
         point=point,
         scale=number_of("--scale", scale, "m"),
-        noise=None if noise is None else [_number(part) for part in noise.split(",")],
+        noise=None if noise is None else [_number("--noise", part) for part in noise.split(",")],
         frame_rate=frame_rate,
         start=number_of("--start", start, "s") or 0.0,
         y_down=y_down,
@@ -115,12 +115,12 @@ def _vary(text: str) -> dict[str, tuple[float, float] | None]:
         low, colon, high = ends.partition(":")
         if equals and not colon:
             raise InvalidInput("--vary", part, "FIELD or FIELD=LOW:HIGH")
-        fields[field] = (_number(low), _number(high)) if equals else None
+        fields[field] = (_number("--vary", low), _number("--vary", high)) if equals else None
     return fields
 
 
-def _number(text: str) -> float:
+def _number(option: str, text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise InvalidInput("number", text, "a number") from None
+        raise InvalidInput(option, text, "a number") from None

@@ -204,7 +204,8 @@ class Search:
         try:
             values = self.model.predict(numbers).values
         except InvalidInput:
-            return np.full(int(self.measured.sum()), np.nan)
+            guesses = 0 if self.guess is None else len(self.guess)
+            return np.full(int(self.measured.sum()) + guesses, np.nan)
         residuals: Array = ((values - self.model.data) / self.deviations)[self.measured]
         if self.average is not None:
             residuals = self.average @ residuals

@@ -73,7 +73,12 @@ class Model:
         self.problem, self.measurements = problem, tuple(measurements)
         self.fields, self.runs, self.reasons = tuple(fields), 0, dict[str, str]()
         for field in fields:
-            if not is_number(get(problem, field)):
+            try:
+                number = get(problem, field)
+            except InvalidInput as error:
+                hint = error.hint
+                raise InvalidInput("vary", field, error.accepted, hint=hint) from None
+            if not is_number(number):
                 accepted = "the name of a field with a number, such as friction.mu"
                 raise InvalidInput("vary", field, accepted)
         several = len(self.measurements) > 1
