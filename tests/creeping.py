@@ -5,7 +5,7 @@ from typing import NamedTuple
 from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.contacts.contact_point import ContactPoint, flat
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import contact_motion, slip_length
+from tippetop.mechanics.rolling import forces_and_accelerations, slip_length
 from tippetop.mechanics.stick_slip import slip_part
 
 
@@ -20,7 +20,7 @@ class CreepRates(NamedTuple):
 def creep_rates(axis, momentum, slip, top):
     """Rates of a slipping body; `slip` may be its direction only."""
     point = ContactPoint.of(axis, momentum, top)
-    wrench, acceleration = contact_motion(point, slip, point.turning[:2])
+    wrench, acceleration = forces_and_accelerations(point, slip, point.turning[:2])
     rate = slip_part(flat(acceleration), slip_length(top.friction))
     return CreepRates(axis_rate(axis, momentum, top), point.moment(wrench), rate)
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tippetop.contact.closed import ContactMode, sliding_motion
 from tippetop.contact.closing import closing_motion
-from tippetop.contact.double import TwoContactMode
+from tippetop.contact.contact_mode import ContactMode, sliding_motion
+from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzBranch, HertzDrillingLaw, HertzSlidingLaw

@@ -11,14 +11,14 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.closed import STOPPING, ContactMode
+from tippetop.contact.contact_mode import STOPPING, ContactMode
 from tippetop.contact.mode import ModeEnd
 from tippetop.contact.stopping import Stopping
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
-from tippetop.mechanics.rolling import contact_motion, slip_reserve, velocity_without_slip
+from tippetop.mechanics.rolling import forces_and_accelerations, slip_reserve, velocity_without_slip
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_state, natural_units
@@ -242,7 +242,7 @@ def test_what_could_be_held_by_a_pull_only_slips():
         top = Top(1.0, across, along, surface, law, 1.0)
         way, momentum = rng.normal(size=3), tuple(rng.normal(size=3))
         axis = tuple(way / np.linalg.norm(way))
-        held = contact_motion(ContactPoint.of(axis, momentum, top), None)[0]
+        held = forces_and_accelerations(ContactPoint.of(axis, momentum, top), None)[0]
         if held.force[2] > 0.0 or slip_reserve(top, held) < 0.0 or not presses(axis, momentum, top):
             continue
         state = on_table(

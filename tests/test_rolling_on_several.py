@@ -10,7 +10,9 @@ from scipy.spatial.transform import Rotation
 import moreau
 import tippetop as tt
 from lying import R, lying, resisted
-from tippetop.contact import closed, double, touching, two_closed
+from tippetop.contact import contact_mode as closed
+from tippetop.contact import touching, two_closed
+from tippetop.contact import two_contact_mode as double
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator

@@ -9,9 +9,9 @@ import xarray as xr
 import tippetop as tt
 from tippetop.contact import automaton, collision, touching
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.double import TwoContactMode, on_two
 from tippetop.contact.mode import EventKind, Mode
 from tippetop.contact.passing import Resting
+from tippetop.contact.two_contact_mode import TwoContactMode, on_two
 from tippetop.mechanics.contact_pair import ContactPair
 from tippetop.mechanics.contacts.system import rates_added
 from tippetop.mechanics.motion import on_table

@@ -12,9 +12,9 @@ import xarray as xr
 import tippetop as tt
 from lying import lying
 from tippetop.contact.choice import automaton_of
-from tippetop.contact.double import TwoContactMode
 from tippetop.contact.double_sticking import SlipBeginningOnTwo
 from tippetop.contact.trajectory import Trajectory
+from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contact_pair import ContactPair, slip_apart
 from tippetop.mechanics.flight import gap_rate

@@ -12,7 +12,7 @@ import pytest
 from campaigns import among
 from every_motion import CASES, SURFACES, everything, states
 from node import NODE
-from tippetop.contact.closed import sliding_motion
+from tippetop.contact.contact_mode import sliding_motion
 from tippetop.graph import graph, llvm
 from tippetop.graph.graph import NotRecordable
 from tippetop.graph.hoisting import hoisted, played

@@ -16,7 +16,12 @@ from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.motion import axis_rate, contact, sliding_rates
 from tippetop.mechanics.pair_motion import pair_motion
-from tippetop.mechanics.rolling import constraints_of, contact_motion, directions_of, sum_at
+from tippetop.mechanics.rolling import (
+    constraints_of,
+    directions_of,
+    forces_and_accelerations,
+    sum_at,
+)
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import velocity_of
 from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
@@ -114,7 +119,7 @@ def test_one_contact(surface, law, resists, seed):
             scale = np.abs(found).max()
             expected = by_centre_of_mass((point,), held)
             np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8 * scale)
-            wrench, acceleration = contact_motion(point, slip, rolling)
+            wrench, acceleration = forces_and_accelerations(point, slip, rolling)
             np.testing.assert_allclose(
                 total((point,), [(0, wrench)]), found, rtol=0, atol=1e-12 * scale
             )
@@ -130,7 +135,7 @@ def test_the_fast_paths_of_one_contact(surface, law, seed):
     top = top_of(SURFACES[surface], LAWS[law], resists=False)
     point, slip = ContactPoint.of(axis, momentum, top), (0.3, -0.2)
     slides = SlidingState(axis, momentum, velocity_of(axis, momentum, slip, top))
-    wrench, _ = contact_motion(point, slip)
+    wrench, _ = forces_and_accelerations(point, slip)
     assert contact(*slides, top).normal_force == pytest.approx(wrench.force[2], rel=1e-11)
     rates = sliding_rates(slides, top)
     np.testing.assert_allclose(rates.momentum, point.moment(wrench), rtol=1e-10, atol=1e-11)

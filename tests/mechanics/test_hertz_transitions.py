@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun
-from tippetop.contact.closed import split
 from tippetop.contact.closing import closing_of
+from tippetop.contact.contact_mode import split
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contensou_hertz import BRANCH_TORQUE, HertzLaw
@@ -18,7 +18,7 @@ from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.ending import Vanishing, closing_rates
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.rolling import (
-    contact_motion,
+    forces_and_accelerations,
     spun_up,
     velocity_without_slip,
     without_drilling,
@@ -91,7 +91,7 @@ def test_a_patch_sticks_while_its_limit_surface_admits_it_on_either_piece(seed, 
     def held(y):
         axis, momentum = split([float(x) for x in y])
         point = ContactPoint.of(axis, momentum, top)
-        return point, contact_motion(point, None)[0]
+        return point, forces_and_accelerations(point, None)[0]
 
     def rates(_, y):
         point, wrench = held(y)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from strategies import numbers, slides
-from tippetop.contact.closed import ContactMode
+from tippetop.contact.contact_mode import ContactMode
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contensou import EllipsoidalLaw
 from tippetop.mechanics.contensou_hertz import HertzDrillingLaw
@@ -17,7 +17,11 @@ from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, axis_rate, contact, on_table, sliding_rates
-from tippetop.mechanics.rolling import contact_motion, velocity_without_slip, without_drilling
+from tippetop.mechanics.rolling import (
+    forces_and_accelerations,
+    velocity_without_slip,
+    without_drilling,
+)
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import HORIZON, rolling_stopping_guard, size, slip_of
 from tippetop.mechanics.surface import SphereSurface, contact_vector
@@ -70,7 +74,7 @@ def test_what_is_held_stays(slide, mode):
     top = top._replace(friction=laws[mode], rolling_resistance=resistance)
     point = ContactPoint.of(state.axis, state.momentum, top)
     slip = (0.6, -0.8) if mode == "slip" else None
-    wrench, told = contact_motion(point, slip, None)
+    wrench, told = forces_and_accelerations(point, slip, None)
     rates = np.concatenate(newton_euler(top, state.axis, point.turning, wrench))
     size = scale_of(top, point)
     units = np.array([1.0] * 3 + [length] * 3) / size
@@ -85,7 +89,7 @@ def test_sliding_has_the_normal_force_of_the_equations_of_sliding(slide):
     top, state = slide
     touch = contact(state.axis, state.momentum, state.velocity, top)
     point = ContactPoint.of(state.axis, state.momentum, top)
-    wrench = contact_motion(point, touch.slip)[0]
+    wrench = forces_and_accelerations(point, touch.slip)[0]
     size = top.mass * scale_of(top, point)
     assert wrench.force[2] == pytest.approx(touch.normal_force, rel=1e-12, abs=1e-13 * size)
     assert wrench.force[0] == pytest.approx(
@@ -101,7 +105,7 @@ def test_a_body_that_rolls_with_resistance_keeps_its_contact_point_at_rest(slide
     top = top._replace(friction=CoulombLaw(0.3), rolling_resistance=resistance)
     point = ContactPoint.of(state.axis, state.momentum, top)
     rolling = (math.cos(angle), math.sin(angle))
-    wrench = contact_motion(point, None, rolling)[0]
+    wrench = forces_and_accelerations(point, None, rolling)[0]
     rate, _ = newton_euler(top, state.axis, point.turning, wrench)
     assert rate == pytest.approx(np.zeros(3), abs=1e-11 * scale_of(top, point))
     couple = -resistance.length * wrench.force[2]
@@ -134,7 +138,10 @@ def roll(top, tilt, spin, end):
     def rates(_, y):
         axis, momentum = tuple(y[:3]), tuple(y[3:])
         point = ContactPoint.of(axis, momentum, top)
-        return [*axis_rate(axis, momentum, top), *point.moment(contact_motion(point, None)[0])]
+        return [
+            *axis_rate(axis, momentum, top),
+            *point.moment(forces_and_accelerations(point, None)[0]),
+        ]
 
     scales = [1.0] * 3 + [top.axial_inertia * spin] * 3
     times = np.linspace(0.0, end, 11)

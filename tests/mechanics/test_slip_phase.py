@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from dry_runs import launched
 from tippetop.contact import slip_step
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.closed import STICKS
+from tippetop.contact.contact_mode import STICKS
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.slipping import change_over, dips, parts_left

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.closed import SLIP, ContactMode, split
+from tippetop.contact.contact_mode import SLIP, ContactMode, split
 from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.onset_motion import BOTH as TOGETHER
@@ -31,7 +31,11 @@ from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.friction import NO_TORQUE, Traction
 from tippetop.mechanics.gauss_points import PARTS, STAGES
 from tippetop.mechanics.motion import angular_velocity, on_table, sliding_rates
-from tippetop.mechanics.rolling import contact_motion, velocity_without_slip, without_drilling
+from tippetop.mechanics.rolling import (
+    forces_and_accelerations,
+    velocity_without_slip,
+    without_drilling,
+)
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.stick_slip import (
     plus,
@@ -329,7 +333,7 @@ def test_slip_and_rolling_begin_together(family):
         n, L, zeta, rolling = (tuple(row.tolist()) for row in np.split(numbers, [3, 6, 6 + count]))
         assert rolling == pytest.approx(angular_velocity(n, L, top)[:2], abs=1e-15)
         here = ContactPoint.of(n, L, top)
-        wrench, acceleration = contact_motion(here, zeta, rolling)
+        wrench, acceleration = forces_and_accelerations(here, zeta, rolling)
         change = Vanishing(slip=True).rate(acceleration, top)
         assert rates[3:] == pytest.approx(
             [*here.moment(wrench), *change, *acceleration.turning[:2]], abs=1e-9
@@ -385,7 +389,7 @@ def test_the_table_pulls_from_the_first_instant_on_as_it_does_where_slip_begins(
 def test_slip_starts_against_the_force_that_held_it():
     top, axis, momentum = starting("coulomb", 2)
     direction, _ = direction_of_slip(axis, momentum, top)
-    force = contact_motion(ContactPoint.of(axis, momentum, top), None)[0].force[:2]
+    force = forces_and_accelerations(ContactPoint.of(axis, momentum, top), None)[0].force[:2]
     assert direction == pytest.approx(scaled(-1.0 / size(force), force), abs=1e-12)
     # Slip grows as t^2: twice the time, four times the slip.
     short, long = (size(began(top, axis, momentum, direction, t).changes[6:]) for t in (1e-6, 2e-6))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sweep_cases import lively, problem_of, same, truth
 
-from tippetop.contact.closed import sliding_motion
+from tippetop.contact.contact_mode import sliding_motion
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.series import horner
 from tippetop.problem.bodies import Body

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from strategies import numbers
-from tippetop.contact.closed import sliding_motion
+from tippetop.contact.contact_mode import sliding_motion
 from tippetop.integrators import make_integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.friction import ViscousLaw

@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import tippetop as tt
-from tippetop.contact.closed import ContactMode
+from tippetop.contact.contact_mode import ContactMode
 from tippetop.mechanics.coulomb import CoulombLaw
 from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top

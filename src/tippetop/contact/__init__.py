@@ -1,8 +1,9 @@
 """Contact modes: how the top moves in each, what ends it, and what follows.
 
-Read `mode` first: what a mode states. `closed` and `double` are the modes of one and of two closed
-contacts, by the status of each; `flight` is free flight; `loosening` and `stopping` are the first
-and the last moments of slip, or of rolling. `automaton` decides which mode follows: it asks
-`touching`, `collision`, `soonest_end` and `two_closed` (the resolver of two contacts), and it alone
-names next modes. `trajectory` follows one launch; `readings` and `block` read results off modes.
+Read `mode` first: what a mode states. `contact_mode` and `two_contact_mode` are the modes of one
+and of two closed contacts, by the status of each; `flight` is free flight; `loosening` and
+`stopping` are the first and the last moments of slip, or of rolling. `automaton` decides which mode
+follows: it asks `touching`, `collision`, `soonest_end` and `two_closed` (the resolver of two
+contacts), and it alone names next modes. `trajectory` follows one launch; `readings` and `block`
+read results off modes.
 """

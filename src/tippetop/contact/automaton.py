@@ -9,7 +9,9 @@ contact (`Automaton.settled`) or of two (`Automaton.settled_on_two`).
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tippetop.contact.closed import (
+from tippetop.contact.closing import JAMMED, LANDED, OVERTAKEN, REOPENING
+from tippetop.contact.collision import collision
+from tippetop.contact.contact_mode import (
     BRANCH,
     LIFT_OFF,
     LIMIT_BRANCH,
@@ -21,9 +23,6 @@ from tippetop.contact.closed import (
     STOPPING,
     ContactMode,
 )
-from tippetop.contact.closing import JAMMED, LANDED, OVERTAKEN, REOPENING
-from tippetop.contact.collision import collision
-from tippetop.contact.double import BRANCHING, OPENING, TwoContactMode, on_two
 from tippetop.contact.double_sticking import (
     SlipBeginningOnTwo,
 )
@@ -53,6 +52,7 @@ from tippetop.contact.touching import (
     stays_closed,
 )
 from tippetop.contact.two_closed import BOTH, SECOND, Before, TwoClosed, rolling_of, time_to_end
+from tippetop.contact.two_contact_mode import BRANCHING, OPENING, TwoContactMode, on_two
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.beginning import Beginning, settling
 from tippetop.mechanics.branches import off_branch, on_branch, on_other_branch

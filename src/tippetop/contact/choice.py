@@ -1,7 +1,7 @@
 """Which automaton follows a top, and what is told of one that ends as it begins."""
 
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.closed import ContactMode
+from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Mode
 from tippetop.mechanics.hull import lowest_surface
@@ -24,7 +24,7 @@ def automaton_of(way: Contact, top: Top, units: Units) -> Automaton:
     return Automaton(top, way.liftoff, way.restitution, way.indeterminate)
 
 
-def as_begun(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
+def initial_mode(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
     """The mode that a launch is told in that ends as it begins, and its numbers.
 
     It slides, but where the table would have to pull: then it lets go.

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Self
 
-from tippetop.contact.closed import split
-from tippetop.contact.double import TwoContactMode
+from tippetop.contact.contact_mode import split
 from tippetop.contact.loosening import BEGUN, TINY, UNSEEN, nothing, solution_of
 from tippetop.contact.mode import COMPLETED, ModeEnd, Segment
 from tippetop.contact.slipping import follow_slip
+from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.branches import is_branched
 from tippetop.mechanics.contact_pair import ContactPair, slips_of

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from tippetop.contact.closed import split
+from tippetop.contact.contact_mode import split
 from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Reaction, Segment, explanation
 from tippetop.contact.onset_motion import BOTH, onset_motion
 from tippetop.contact.passing import Passing
@@ -15,7 +15,7 @@ from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.branches import on_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.rolling import contact_motion, is_set_valued
+from tippetop.mechanics.rolling import forces_and_accelerations, is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import size, slip_of
 from tippetop.mechanics.vectors import Row, Vector, dot
@@ -63,7 +63,7 @@ class Loosening(Passing):
             mode, directions, longest = self._directed(state)
         except ArithmeticError as error:
             why = explanation(f"The direction in which {self.what}", error)
-            yield nothing(self.told, time, state, why)
+            yield nothing(self.reported_mode, time, state, why)
             return
         top = mode.top
         velocity = state.velocity[:2] if self.ending.moves else ()
@@ -77,7 +77,7 @@ class Loosening(Passing):
             to_end=len(self.begins) == 1 and self.ending.recurs(top),
         )
         if not phase.rows:
-            yield nothing(self.told, time, state, UNSEEN)
+            yield nothing(self.reported_mode, time, state, UNSEEN)
             return
         last = mode.state([*phase.last[: len(numbers)], 0.0, 0.0] if phase.ended else phase.last)
         first = [TINY * number for way in directions for number in way]
@@ -145,7 +145,7 @@ class BothLoosening(Loosening):
         axis, momentum, _, slip = self._parts(y)
         rolling = y[len(y) - 2 :]
         point = ContactPoint.of(axis, momentum, self.top)
-        (force, torque), _ = contact_motion(point, slip, (rolling[0], rolling[1]))
+        (force, torque), _ = forces_and_accelerations(point, slip, (rolling[0], rolling[1]))
         turning: Vector = (rolling[0], rolling[1], point.turning[2])
         power = dot(torque, turning) + (force[0] * slip[0] + force[1] * slip[1])
         return Reaction(force, torque, power)

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
-from tippetop.contact.closed import split
+from tippetop.contact.contact_mode import split
 from tippetop.contact.surfaces import surface_guards
 from tippetop.mechanics.branches import has_limit_branches, limit_guard
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import contact_motion, rolling_reserve, slip_reserve
+from tippetop.mechanics.rolling import forces_and_accelerations, rolling_reserve, slip_reserve
 from tippetop.mechanics.slip_collocation import SlipMotion
 from tippetop.mechanics.stick_slip import branch_guard, scaled, slip_of
 from tippetop.mechanics.top import Kind
@@ -63,7 +63,7 @@ def onset_motion(kind: Kind, begins: tuple[Vanishing, ...], guarded: bool) -> Sl
             slip = slip_of(axis, momentum, (numbers[6], numbers[7]), body)
         if not begins[-1].slip:
             rolling = ways[-1]
-        wrench, acceleration = contact_motion(point, slip, rolling)
+        wrench, acceleration = forces_and_accelerations(point, slip, rolling)
         changes = [*axis_rate(axis, momentum, body), *point.moment(wrench)]
         if first.moves:
             changes += [*scaled(1.0 / body.mass, wrench.force[:2])]

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from tippetop.contact.closed import ContactMode, split
+from tippetop.contact.contact_mode import ContactMode, split
 from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
@@ -36,7 +36,7 @@ DEGREE = 14
 
 @dataclass(frozen=True)
 class Passing(Mode):
-    """A moment between two modes, which is told as the one of them in which something moves."""
+    """A moment between two modes; a result reports the one of them in which something moves."""
 
     ending: Vanishing
     """Which velocity ends or begins, and whether the other is held."""
@@ -46,15 +46,15 @@ class Passing(Mode):
     name: ClassVar[str] = "passing"
 
     @property
-    def told(self) -> ContactMode:
-        """The mode as which it is told."""
+    def reported_mode(self) -> ContactMode:
+        """The mode that a result reports for it."""
         slip, held = self.ending
         return ContactMode(self.top, not slip and held, slip and held)
 
     @property
     def label(self) -> str:
-        """The name of the mode as which it is told."""
-        return self.told.label
+        """The name of the reported mode."""
+        return self.reported_mode.label
 
     @property
     def form(self) -> str:
@@ -97,22 +97,22 @@ class Passing(Mode):
 class Resting(Mode):
     """Every velocity has ended: an instant, so that a result has it, and then the run is over."""
 
-    told: IntegratedMode
-    """The mode as which it is told."""
+    reported_mode: IntegratedMode
+    """The mode that a result reports for it."""
 
     name: ClassVar[str] = "resting"
 
     def state(self, y: Row) -> State:
-        """As in the mode as which it is told."""
-        return self.told.state(y)
+        """As in the reported mode."""
+        return self.reported_mode.state(y)
 
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
     ) -> Iterator[Segment]:
         """Stay as it is."""
-        numbers = self.told.numbers(state)
+        numbers = self.reported_mode.numbers(state)
         still = straight(numbers, numbers, time, time + SHORT * max(1.0, time))
-        yield Segment(self.told, still, state, ModeEnd(AT_REST, state))
+        yield Segment(self.reported_mode, still, state, ModeEnd(AT_REST, state))
 
 
 def straight(

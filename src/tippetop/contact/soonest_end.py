@@ -4,7 +4,7 @@ from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import contact_motion, is_set_valued
+from tippetop.mechanics.rolling import forces_and_accelerations, is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import inner, is_rolling, slip_of
 from tippetop.mechanics.top import Top
@@ -23,7 +23,7 @@ def on_present_branch(top: Top, state: State, slips: bool) -> Top:
         return on_branch(top, slip_of(*along_table(state), top))
     point = ContactPoint.of(state.axis, state.momentum, top)
     rolling = point.turning[:2] if rolls_freely(top, state) else None
-    return on_limit_branch(top, contact_motion(point, None, rolling)[0])
+    return on_limit_branch(top, forces_and_accelerations(point, None, rolling)[0])
 
 
 def soonest_end(top: Top, state: State, slips: bool) -> tuple[Vanishing | None, float]:
@@ -39,7 +39,7 @@ def soonest_end(top: Top, state: State, slips: bool) -> tuple[Vanishing | None, 
     sliding, branched = along_table(state), on_present_branch(top, state, slips)
     point = ContactPoint.of(state.axis, state.momentum, branched)
     slip = slip_of(*sliding, branched) if slips else None
-    acceleration = contact_motion(point, slip, point.turning[:2] if rolls else None)[1]
+    acceleration = forces_and_accelerations(point, slip, point.turning[:2] if rolls else None)[1]
     soonest, least = None, float("inf")
     for ending in possible:
         xi = ending.of(*sliding, branched)

@@ -8,7 +8,7 @@ knows.
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 
-from tippetop.contact.closed import BRANCH, NEARING
+from tippetop.contact.contact_mode import BRANCH, NEARING
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.integrators.dense import as_array
 from tippetop.mechanics.branches import is_branched, on_branch, on_other_branch

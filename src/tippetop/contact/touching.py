@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from tippetop.contact.double import SLOWEST_SLIP
 from tippetop.contact.flight import TOUCHING
+from tippetop.contact.two_contact_mode import SLOWEST_SLIP
 from tippetop.mechanics.contact_pair import ContactPair, Tops
 from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.flight import gap, gap_rate
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import contact_motion, is_set_valued
+from tippetop.mechanics.rolling import forces_and_accelerations, is_set_valued
 from tippetop.mechanics.state import State
 from tippetop.mechanics.stick_slip import size, slip_of
 from tippetop.mechanics.surface import support_at
@@ -41,7 +41,7 @@ def stays_closed(top: Top, other: Top, state: State) -> bool:
     if _both_slip(top, other, state):
         point = ContactPair.of(state.axis, state.momentum, (top, other)).first
         slip = slip_of(*along_table(state), top)
-        wrench = contact_motion(point, slip, point.turning[:2])[0]
+        wrench = forces_and_accelerations(point, slip, point.turning[:2])[0]
         back = float(abs(gap_acceleration(top, other, state, wrench)))
     slowest = max(SLOWEST_ROCKING * max(1.0, back) ** 0.5, (2.0 * back * depth) ** 0.5)
     return bool(gap_rate(state, other) <= slowest)

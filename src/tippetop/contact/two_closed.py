@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from tippetop.contact.double import SLOWEST_SLIP, TwoContactMode
 from tippetop.contact.mode import Event, EventKind
 from tippetop.contact.surfaces import number_of
+from tippetop.contact.two_contact_mode import SLOWEST_SLIP, TwoContactMode
 from tippetop.mechanics.beginning import settling
 from tippetop.mechanics.branches import off_branch
 from tippetop.mechanics.contact_pair import (

@@ -7,7 +7,12 @@ from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
 from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.motion import presses
-from tippetop.mechanics.rolling import contact_motion, rolling_reserve, slip_length, slip_reserve
+from tippetop.mechanics.rolling import (
+    forces_and_accelerations,
+    rolling_reserve,
+    slip_length,
+    slip_reserve,
+)
 from tippetop.mechanics.stick_slip import inner, scaled, size
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.wrench import Slip, Wrench
@@ -41,7 +46,7 @@ def beginning(
     rolling: Slip | None,
     begins: tuple[bool, bool],
     held: Wrench | None = None,
-    moved: Moved = contact_motion,
+    moved: Moved = forces_and_accelerations,
 ) -> Beginning:
     """Directions in which slip, or rolling, or both, begin.
 
@@ -109,7 +114,10 @@ def beginning(
 
 
 def settling(
-    point: ContactPoint, slip: Slip | None, rolling: Slip | None, moved: Moved = contact_motion
+    point: ContactPoint,
+    slip: Slip | None,
+    rolling: Slip | None,
+    moved: Moved = forces_and_accelerations,
 ) -> tuple[Beginning, tuple[bool, bool]]:
     """How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin
     again.

@@ -18,7 +18,12 @@ from typing import NamedTuple
 
 from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint, flat
 from tippetop.mechanics.motion import angular_velocity, axis_rate
-from tippetop.mechanics.rolling import contact_motion, pressing_wrench, slip_length, slip_wrenches
+from tippetop.mechanics.rolling import (
+    forces_and_accelerations,
+    pressing_wrench,
+    slip_length,
+    slip_wrenches,
+)
 from tippetop.mechanics.stick_slip import HORIZON, inner, plus, scaled, size, slip_of, slip_part
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, dot, scale
@@ -101,7 +106,7 @@ class Vanishing(NamedTuple):
 
         The slip is asked for only where rolling ends or begins and the contact slips meanwhile.
         """
-        return contact_motion(point, *self.beside(point, xi, slip))
+        return forces_and_accelerations(point, *self.beside(point, xi, slip))
 
     def beside(
         self, point: ContactPoint, xi: Slip | None, slip: Slip | None

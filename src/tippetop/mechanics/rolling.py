@@ -30,7 +30,7 @@ Slips: TypeAlias = Sequence[Slip | None]
 """Slip of every contact, or its direction; None where the contact sticks."""
 
 
-def contact_motion(
+def forces_and_accelerations(
     point: ContactPoint, slip: Slip | None, rolling: Horizontal | None = None
 ) -> tuple[Wrench, Acceleration]:
     """What the table does to a body in contact, and how that accelerates.
@@ -146,9 +146,10 @@ def sum_at(contact: int, wrenches: Sequence[At]) -> Wrench:
 
 
 def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None) -> Wrench:
-    """Return a unit normal impulse, with what goes with it; of floats, as for `contact_motion`.
+    """Return a unit normal impulse, with what goes with it; of floats.
 
-    The configuration is fixed, nothing falls, and velocities that are held stay as they are.
+    Arguments are those of `forces_and_accelerations`. The configuration is fixed, nothing falls, and
+    velocities that are held stay as they are.
     """
     if slip is not None:
         point = point._replace(top=on_branch(point.top, slip))

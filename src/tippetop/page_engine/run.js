@@ -264,7 +264,7 @@ class Run {
 
   /** Let a run that ended at its launch be sampled there, as if it slid. */
   addLaunch() {
-    const [mode, numbers] = m.as_begun(this.start, this.top);
+    const [mode, numbers] = m.initial_mode(this.start, this.top);
     const still = DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]);
     const segment = new SegmentReader(mode, still, "sliding");
     segment.sums.set(this.sums);

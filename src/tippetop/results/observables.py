@@ -5,8 +5,8 @@ keep.
 import numpy as np
 
 from tippetop.contact.block import NODES, WEIGHTS, Block
-from tippetop.contact.choice import as_begun
-from tippetop.contact.closed import SLIPS
+from tippetop.contact.choice import initial_mode
+from tippetop.contact.contact_mode import SLIPS
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Mode, Outcome
 from tippetop.contact.readings import TOLD, Instants, instants, read
@@ -123,7 +123,7 @@ class Recorder:
 
     def _single(self, state: State) -> Array:
         """The sample of a launch that ended as it began."""
-        mode, numbers = as_begun(state, self.top)
+        mode, numbers = initial_mode(state, self.top)
         told = read(instants, mode, np.array([numbers]).T)[:, 0]
         sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole]
         return np.array([[0.0, 0.0, *sums, *told]]).T

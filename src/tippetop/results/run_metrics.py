@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from tippetop.contact.block import WEIGHTS, Block, ModeSteps
-from tippetop.contact.closed import STICKS
+from tippetop.contact.contact_mode import STICKS
 from tippetop.contact.flights import Flights
 from tippetop.contact.mode import Event, Outcome
 from tippetop.contact.readings import Rates

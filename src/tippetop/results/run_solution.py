@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tippetop.contact.block import Block
-from tippetop.contact.choice import as_begun
+from tippetop.contact.choice import initial_mode
 from tippetop.contact.mode import Segment
 from tippetop.contact.readings import Instants, instants, read
 from tippetop.integrators.base import Array
@@ -106,7 +106,7 @@ class RunSolution:
         """Return the states at times, s, shape (n,)."""
         block, begin = self._block, self._begin
         if not len(block.starts):
-            mode, numbers = as_begun(begin.state, begin.top)
+            mode, numbers = initial_mode(begin.state, begin.top)
             rows = read(instants, mode, np.repeat(np.array([numbers]).T, len(seconds), axis=1))
             return MotionState.of(seconds, Instants.unpack(rows), begin.units)
         times = np.minimum(seconds / begin.units.time, block.ends[-1])

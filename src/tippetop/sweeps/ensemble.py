@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.contact.closed import sliding_motion
+from tippetop.contact.contact_mode import sliding_motion
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.invariants import energy

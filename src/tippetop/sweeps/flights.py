@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tippetop.contact.closed import ContactMode
+from tippetop.contact.contact_mode import ContactMode
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.flight import fly

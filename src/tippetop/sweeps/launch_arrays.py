@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.closed import ContactMode
+from tippetop.contact.contact_mode import ContactMode
 from tippetop.integrators.base import Array
 from tippetop.mechanics.branches import is_branched, off_branch, on_numbered_branch
 from tippetop.mechanics.motion import along_table

@@ -8,7 +8,7 @@ to its end.
 
 import numpy as np
 
-from tippetop.contact.closed import BRANCH, LIFT_OFF, ContactMode, sliding_motion
+from tippetop.contact.contact_mode import BRANCH, LIFT_OFF, ContactMode, sliding_motion
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import EventKind, Mode, ModeEnd, Outcome, Transition
 from tippetop.contact.surfaces import lies_flat

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tippetop.contact.closed import sliding_motion
+from tippetop.contact.contact_mode import sliding_motion
 from tippetop.integrators.classical import classical_step
 from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.motion import along_table

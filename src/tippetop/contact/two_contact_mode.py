@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
-from tippetop.contact.closed import (
+from tippetop.contact.contact_mode import (
     ROLLING,
     ROLLING_STOPPING,
     SLIP,

@@ -13,7 +13,7 @@ from tippetop.mechanics.branches import has_limit_branches, limit_guard
 from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint, flat
 from tippetop.mechanics.motion import along_table, axis_rate, on_table, sliding_rates
 from tippetop.mechanics.rolling import (
-    contact_motion,
+    forces_and_accelerations,
     is_set_valued,
     rolling_reserve,
     slip_length,
@@ -166,7 +166,7 @@ class ContactMode(StatedMode):
         point = ContactPoint.of(*split(y), self.top)
         slip = None if self.sticks else slip_of(*split(y), (y[6], y[7]), self.top)[:2]
         rolling = None if self.holds_rolling else point.turning[:2]
-        return point, slip, *contact_motion(point, slip, rolling)
+        return point, slip, *forces_and_accelerations(point, slip, rolling)
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """Axis, angular momentum, and velocity if it slips."""
