@@ -21,7 +21,14 @@ from test_sticking_on_two import (
     lying,
     times,
 )
+from tippetop.contact.two_closed import rolling_of
+from tippetop.mechanics import pair_resolver
+from tippetop.mechanics.contact_pair import ContactPair
 from tippetop.mechanics.contensou_hertz import HertzLaw
+from tippetop.mechanics.pair_motion import pair_motion
+from tippetop.mechanics.pair_resolver import moments_hold, patches_letting_go
+from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.mechanics.unsolved import Unsolved
 
 RADIUS = 0.004
 """A patch nearly as large as the dumbbell's balls: drilling counts."""
@@ -216,6 +223,39 @@ def test_patches_slip_when_rolling_has_become_too_slow_for_what_holds_them() -> 
     run = followed_by_steps(problem, expected + 1e-4)
     assert times(run, "slip") == pytest.approx([expected] * 2, rel=1e-7)
     assert float(run["energy_error"]) < 1e-11
+
+
+def resting_pair(problem: tt.Problem) -> tuple[ContactPair, float]:
+    """Both contacts at launch, in natural units, and which way the body rolls."""
+    top = natural(problem.top)
+    state = natural_state(problem.start(), natural_units(problem.top))
+    return ContactPair.of(state.axis, state.momentum, top.each), rolling_of(state, top)
+
+
+@pytest.mark.parametrize(
+    ("turning", "arm"), [(6.0, 0.0076), (9.0, 0.00775), (0.5, 0.00775), (1.0, 0.0076)]
+)
+def test_what_moments_of_drilling_can_hold_follows_from_virtual_power(
+    turning: float, arm: float
+) -> None:
+    """Against the least of the same function, found in other coordinates by another method."""
+    problem = rolling(turning, arm)
+    pair, rolls = resting_pair(problem)
+    held = pair_motion(pair, (None, None), rolls)
+    assert moments_hold(held) is (spared(problem, turning) > 0.0)
+
+
+def test_a_search_that_fails_does_not_prove_that_patches_are_held(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def fail(*_: object) -> None:
+        raise Unsolved("no direction is found")
+
+    monkeypatch.setattr(pair_resolver, "both_letting_go", fail)
+    assert spared(rolling(0.5, 0.00775), 0.5) < 0.0
+    with pytest.raises(Unsolved):
+        patches_letting_go(*resting_pair(rolling(0.5, 0.00775)))
+    assert patches_letting_go(*resting_pair(rolling(6.0, 0.0076))) is None
 
 
 def test_what_holds_hertz_s_patch_without_drilling_is_an_expression():

@@ -9,6 +9,7 @@ from tippetop.mechanics.direction import Resisted, directions
 from tippetop.mechanics.friction import NO_TORQUE
 from tippetop.mechanics.pair_motion import PairMotion, pair_motion
 from tippetop.mechanics.rolling import Slips, directions_of, slip_length
+from tippetop.mechanics.roots import dip
 from tippetop.mechanics.stick_slip import plus, scaled, size
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import scale
@@ -168,18 +169,46 @@ def against(held: PairMotion) -> Slip:
 
 
 def patches_letting_go(pair: ContactPair, rolls: float) -> Resolution | None:
-    """How patches begin to slip that both stick; None where they can be held.
+    """Return how patches begin to slip that both stick; None where they can be held.
 
-    They can where forces alone do, without moments of drilling. If not, moments may help: either
-    there are some that do, or there is a direction in which slip begins, as both limit surfaces are
-    convex.
+    They can where forces alone hold them, without moments of drilling. If not, moments may help:
+    either some do, or there is a direction in which slip begins, as both limit surfaces are convex.
+
+    Raises
+    ------
+    ArithmeticError
+        If nothing can hold them, and the search for such a direction fails.
     """
-    if pair_motion(pair, (None, None), rolls).is_held:
+    held = pair_motion(pair, (None, None), rolls)
+    if held.is_held:
         return None
     try:
         return both_letting_go(pair, rolls)
     except ArithmeticError:
-        return None
+        if moments_hold(held):
+            return None
+        raise Unsolved("nothing holds two patches, and no direction is found") from None
+
+
+def moments_hold(held: PairMotion) -> bool:
+    """Return whether the table can hold two patches, with moments of drilling too; of floats.
+
+    By the principle of virtual power it can if friction can take, in every direction xi of slip, at
+    least the power of the forces that hold them. What it can take beyond that (`PairMotion.spare`)
+    is convex in xi and grows with its size: on every face of a cube it has one least value.
+    """
+
+    def least_on(face: int, side: float) -> float:
+        def least_beside(first: float) -> float:
+            def spare(second: float) -> float:
+                beside = [first, second]
+                return float(held.spare((*beside[:face], side, *beside[face:])))
+
+            return dip(spare, -1.0, 1.0)[1]
+
+        return dip(least_beside, -1.0, 1.0)[1]
+
+    return all(least_on(face, side) > 0.0 for face in range(3) for side in (1.0, -1.0))
 
 
 def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
