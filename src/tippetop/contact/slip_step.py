@@ -198,13 +198,13 @@ class SlipStep:
         return pieces_of(self.rows, self.layout.size, parts)
 
     def speed(self, number: int, begin: float, way: Slip) -> list[float]:
-        """Return coefficients of the first velocity along a direction in a part of the step.
+        """Return coefficients of the velocity, in a plane, along a direction in a part of the step.
 
         `begin` is the value at the start of the part. Beyond the end of slip it is negative.
         """
         first = number * self.layout.size + self.motion.velocities[0][0]
-        rows = [row_of(self.rows, first + i) for i in range(len(way))]
-        return [begin, *[inner(way, terms) for terms in zip(*rows, strict=True)]]
+        x, y = row_of(self.rows, first), row_of(self.rows, first + 1)
+        return [begin, *[way[0] * a + way[1] * b for a, b in zip(x, y, strict=True)]]
 
     def end_of_slip(self, xi: Slip, speeds: Sequence[float]) -> float | None:
         """Return after how many parts slip ends that is xi at the start; None where no bracket of

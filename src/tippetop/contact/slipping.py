@@ -137,9 +137,11 @@ def follow_slip(
             if length == longest - begin:
                 knots[len(knots) - 1] = longest
             now, directions = after, [scaled(1.0 / size(velocity(after)), velocity(after))]
-            speed = step.speed(PARTS - 1, 0.0, last)
-            speed[0] = inner(velocity(after), last) - sum(speed)
-            length = min(length * min(factor, LONGER), BEYOND * length / PARTS * parts_left(speed))
+            if to_end:
+                speed = step.speed(PARTS - 1, 0.0, last)
+                speed[0] = inner(velocity(after), last) - sum(speed)
+                longer, left = min(factor, LONGER), parts_left(speed)
+                length = min(length * longer, BEYOND * length / PARTS * left)
         rows.append(pieces)
     return SlipPhase(knots, rows, now, ended, step.sweeps)
 
