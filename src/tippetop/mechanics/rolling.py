@@ -148,8 +148,8 @@ def sum_at(contact: int, wrenches: Sequence[At]) -> Wrench:
 def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None) -> Wrench:
     """Return a unit normal impulse, with what goes with it; of floats.
 
-    Arguments are those of `forces_and_accelerations`. The configuration is fixed, nothing falls, and
-    velocities that are held stay as they are.
+    The arguments are those of `forces_and_accelerations`. The configuration is fixed, nothing
+    falls, and velocities that are held stay as they are.
     """
     if slip is not None:
         point = point._replace(top=on_branch(point.top, slip))
