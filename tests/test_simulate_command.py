@@ -168,7 +168,7 @@ def test_critical_says_what_is_known_where_a_dry_point_sticks() -> None:
     done = CliRunner().invoke(app, ["critical", "--set", "friction.kind=coulomb"])
     assert done.exit_code == 0, done.output
     said = " ".join(done.output.split())
-    assert "sticks wherever the table can hold it, and the top then rolls without loss" in said
+    assert "sticks as soon as friction can hold it, and the top then rolls without loss" in said
     assert "no critical spins" in said
     assert "ω_c1" not in said
     assert "Group" not in said

@@ -135,7 +135,7 @@ STATEMENTS = {
     "return rows.extend(rows)": "a list has no 'extend'",
     "return rows.sort()": "a list has no 'sort'",
     "return word.replace('a', 'b')": "a str has no 'replace'",
-    "return word.split()": "a str has no 'split'",
+    "return word.title()": "a str has no 'title'",
     "return names.union(names)": "a set has no 'union'",
     "return table.setdefault('a', 1)": "a dict has no 'setdefault'",
     "return Kind.SQUARE": "class Kind has no 'SQUARE'",

@@ -1,4 +1,4 @@
-"""`tippetop body`: what a body turned on a lathe weighs, stands on and will do."""
+"""`tippetop body`: mass properties, surfaces and prospects of a body turned on a lathe."""
 
 import math
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.files import place_for, require_ending
 
 ENDINGS = {"plot": DRAWINGS, "stl": (".stl",), "3mf": (".3mf",)}
-"""How the names of files may end."""
+"""Accepted suffixes of files."""
 
 
 def body(
@@ -74,90 +74,95 @@ def body(
     """
     from tippetop.lathe.files import read_with_remarks  # noqa: PLC0415 - slow to import
 
-    wanted = {"plot": plot, "stl": stl, "3mf": three_mf}
-    files = {kind: path for kind, path in wanted.items() if path is not None}
+    requested = {"plot": plot, "stl": stl, "3mf": three_mf}
+    files = {kind: path for kind, path in requested.items() if path is not None}
     for kind, path in files.items():
         require_ending(f"--{kind}", path, ENDINGS[kind])
         place_for(path, force)
-    given = {
+    options = {
         "density": number_of("--density", density, "kg m-3"),
         "unit": unit,
         "tolerance": tolerance,
     }
-    stated = {name: value for name, value in given.items() if value is not None}
-    piece, remarks = read_with_remarks(file, axis=axis, **stated)
+    stated = {name: value for name, value in options.items() if value is not None}
+    workpiece, remarks = read_with_remarks(file, axis=axis, **stated)
     if as_toml and as_json:
         raise InvalidInput(
             "--toml", Described("beside --json"), "one of the two", "asks for two formats"
         )
     if as_toml:
-        turned = tt.Body.turned(piece, whole=whole)
+        turned = tt.Body.turned(workpiece, whole=whole)
         written = commented_toml(tt.presets.report_problem().model_copy(update={"body": turned}))
     else:
-        told = {"remarks": [*remarks, *_fit(piece)], **_told(piece, whole)}
+        summary = {"remarks": [*remarks, *_fit(workpiece)], **_summary(workpiece, whole)}
     for path in files.values():
-        _write(piece, path, force)
+        _write(workpiece, path, force)
     if as_toml:
         typer.echo(written.rstrip())
     elif as_json:
         names = {kind: str(path) for kind, path in files.items()}
-        show_json({**told, "files": names})
+        show_json({**summary, "files": names})
     else:
-        show(*_sentences(told), files=files.values())
-    if not as_toml and told["trouble"]:
+        show(*_sentences(summary), files=files.values())
+    if not as_toml and summary["trouble"]:
         raise typer.Exit(2)
 
 
-def _fit(piece: "tt.Workpiece") -> list[str]:
-    """How the profile was fitted to points, if it was."""
-    fit = piece.fit
+def _fit(workpiece: "tt.Workpiece") -> list[str]:
+    """Return a remark on the fit of the profile to points, if there was one."""
+    fit = workpiece.fit
     if fit.edges == fit.stated and not fit.deviation:
         return []
     return [
         f"{fit.edges} arcs and lines for the {fit.stated} edges of the profile, at most"
-        f" {1e3 * piece.deviation:.2g} mm from its points."
+        f" {1e3 * workpiece.deviation:.2g} mm from its points."
     ]
 
 
-def _told(piece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
-    """What is told of a body; what it cannot be simulated for is the trouble with it."""
+def _summary(workpiece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
+    """Return the mass properties, surfaces and prospects of a body.
+
+    `trouble` is the reason for which it cannot be simulated, or None.
+    """
     from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415 - slow to import
 
     trouble = None
     try:
-        turned = tt.Body.turned(piece, whole=whole)
+        turned = tt.Body.turned(workpiece, whole=whole)
         warn_if_implausible(tt.presets.report_problem().model_copy(update={"body": turned}))
     except InvalidInput as error:
         trouble = str(error)
-    mass, center, I1, I3 = piece.mass_properties
-    hull = piece.hull
+    mass, center, I1, I3 = workpiece.mass_properties
+    hull = workpiece.hull
     return {
         "mass": mass,
         "center": center,
         "I1": I1,
         "I3": I3,
         "inertia_ratio": I1 / I3,
-        "surfaces": _surfaces(piece),
+        "surfaces": _surfaces(workpiece),
         "lies_on_lines_at_tilts": hull.flats,
         "trouble": trouble,
-        **_expected(piece),
+        **_prospects(workpiece),
     }
 
 
-def _surfaces(piece: "tt.Workpiece") -> list[dict[str, Any]]:
-    """What a body stands on by its tilt; arcs that stand for one smooth curve together."""
+def _surfaces(workpiece: "tt.Workpiece") -> list[dict[str, Any]]:
+    """Return the surfaces on which a body stands, by tilt; arcs of one smooth curve are one
+    surface.
+    """
     from tippetop.problem.turned import allowance  # noqa: PLC0415 - slow to import
 
-    hull, center = piece.hull, piece.mass_properties.center
-    reach = allowance(piece)
+    hull, center = workpiece.hull, workpiece.mass_properties.center
+    reach = allowance(workpiece)
     spheroid = hull.spheroid(reach) if len(hull.zones) > 2 else None
     if spheroid is not None:
         across, along, height = spheroid
         numbers = {"radius": across, "along": along, "center": height - center}
         return [{"kind": "spheroid", **numbers, "from_tilt": 0.0, "to_tilt": math.pi}]
     smooth = hull.smooth_parts(reach)
-    found = [{"kind": "oval", "from_tilt": low, "to_tilt": high} for low, high in smooth]
-    found += [
+    surfaces = [{"kind": "oval", "from_tilt": low, "to_tilt": high} for low, high in smooth]
+    surfaces += [
         {
             "kind": zone.name,
             "radius": zone.radius or zone.tube,
@@ -170,20 +175,22 @@ def _surfaces(piece: "tt.Workpiece") -> list[dict[str, Any]]:
         for zone in hull.zones
         if not any(low <= zone.low and zone.high <= high for low, high in smooth)
     ]
-    return sorted(found, key=lambda one: one["from_tilt"])
+    return sorted(surfaces, key=lambda surface: surface["from_tilt"])
 
 
-def _expected(piece: "tt.Workpiece") -> dict[str, Any]:
-    """What the theory says of it; nothing but None where it does not lie on a sphere."""
+def _prospects(workpiece: "tt.Workpiece") -> dict[str, Any]:
+    """Return what theory predicts for the body; every value is None unless it stands on a
+    sphere.
+    """
     from tippetop.problem.turned import touching  # noqa: PLC0415 - slow to import
     from tippetop.theory.prospects import prospects  # noqa: PLC0415
 
-    mass, _, I1, I3 = piece.mass_properties
-    found = None
+    mass, _, I1, I3 = workpiece.mass_properties
+    outlook = None
     with suppress(InvalidInput):
-        shapes = touching(piece, whole=True)
-        found = prospects(tt.Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
-    if found is None:
+        shapes = touching(workpiece, whole=True)
+        outlook = prospects(tt.Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
+    if outlook is None:
         sphere = (
             "eccentricity",
             "group",
@@ -193,50 +200,50 @@ def _expected(piece: "tt.Workpiece") -> dict[str, Any]:
             "omega_c_tilt",
         )
         return dict.fromkeys((*sphere, "touch", "stem"))
-    spins, touch, stem = found.critical_spins, found.touch, found.stem
-    # Where something else touches before the stem, nothing is known of launches that reach it.
+    spins, touch, stem = outlook.critical_spins, outlook.touch, outlook.stem
+    # If another surface touches before the stem, no launch is known to reach the stem.
     reached = {} if stem is None or math.isnan(stem.launch) else {"least_launch_spin": stem.launch}
     return {
-        "eccentricity": found.eccentricity,
-        "group": found.group,
-        "group_description": found.group.description,
+        "eccentricity": outlook.eccentricity,
+        "group": outlook.group,
+        "group_description": outlook.group.description,
         "omega_c1": spins.upright,
         "omega_c2": spins.inverted,
-        "omega_c_tilt": found.tilt,
+        "omega_c_tilt": outlook.tilt,
         "touch": touch
         and {"surface": touch.surface, "tilt": touch.tilt, "least_launch_spin": touch.spin},
         "stem": stem and {"least_jellett": stem.jellett, "least_spin": stem.spin, **reached},
     }
 
 
-def _write(piece: "tt.Workpiece", path: Path, force: bool) -> None:
+def _write(workpiece: "tt.Workpiece", path: Path, force: bool) -> None:
     if path.suffix.lower() in ENDINGS["plot"]:
         from tippetop.figures.section import section  # noqa: PLC0415 - slow to import
 
-        write_figure(section(piece), path, force)
+        write_figure(section(workpiece), path, force)
     else:
-        tt.write_solid(piece, path, force)
+        tt.write_solid(workpiece, path, force)
 
 
-def _sentences(told: dict[str, Any]) -> Iterator[Any]:
+def _sentences(summary: dict[str, Any]) -> Iterator[Any]:
     from rich.markup import escape  # noqa: PLC0415 - slow to import
 
-    if told["group"]:
-        upto = told["surfaces"][0]["to_tilt"]
+    if summary["group"]:
+        upto = summary["surfaces"][0]["to_tilt"]
         within = (
             f" That is on its sphere, up to a tilt of {upto:.6g} rad." if upto < math.pi else ""
         )
-        yield f"[bold]Group {told['group']}[/]: {told['group_description']}.{within}"
-    for remark in told["remarks"]:
+        yield f"[bold]Group {summary['group']}[/]: {summary['group_description']}.{within}"
+    for remark in summary["remarks"]:
         yield escape(remark)
-    yield facts(_rows(told))
+    yield facts(_rows(summary))
     names = ("surface", "radius", "tube", "along the axis", "height of its centre")
     headings = (*names, "from tilt", "to tilt")
-    rows = (_surface_row(one) for one in told["surfaces"])
+    rows = (_surface_row(one) for one in summary["surfaces"])
     yield listing("Stands on", headings, rows, words=("surface",))
     yield "[dim]mm, from the centre of mass; rad.[/]"
-    if told["trouble"]:
-        yield escape(f"Cannot be simulated: {told['trouble']}")
+    if summary["trouble"]:
+        yield escape(f"Cannot be simulated: {summary['trouble']}")
 
 
 def _surface_row(one: dict[str, Any]) -> tuple[str, ...]:
@@ -247,45 +254,55 @@ def _surface_row(one: dict[str, Any]) -> tuple[str, ...]:
     return (one["kind"], *lengths, f"{one['from_tilt']:.6g}", f"{one['to_tilt']:.6g}")
 
 
-def _rows(told: dict[str, Any]) -> list[tuple[str, str, str]]:
+def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
     rows = [
-        ("mass", f"{told['mass']:.7g}", "kg"),
-        ("height of the centre of mass, as in the profile", f"{1e3 * told['center']:.7g}", "mm"),
-        ("I1, transverse to the axis", f"{told['I1']:.7g}", "kg m²"),
-        ("I3, along the axis", f"{told['I3']:.7g}", "kg m²"),
-        ("γ = I1/I3", f"{told['inertia_ratio']:.7g}", ""),
+        ("mass", f"{summary['mass']:.7g}", "kg"),
+        (
+            "height of the centre of mass, as in the profile",
+            f"{1e3 * summary['center']:.7g}",
+            "mm",
+        ),
+        ("I1, transverse to the axis", f"{summary['I1']:.7g}", "kg m²"),
+        ("I3, along the axis", f"{summary['I3']:.7g}", "kg m²"),
+        ("γ = I1/I3", f"{summary['inertia_ratio']:.7g}", ""),
     ]
-    if told["group"]:
+    if summary["group"]:
         rows += [
             (
                 "α, the centre of mass below the sphere's centre",
-                f"{told['eccentricity']:.7g}",
+                f"{summary['eccentricity']:.7g}",
                 "radii",
             ),
-            ("upright spin is left above ω_c1", spelled(told["omega_c1"], 7), "rad/s"),
-            ("inverted spin holds above ω_c2", spelled(told["omega_c2"], 7), "rad/s"),
+            ("upright spin unstable above ω_c1", spelled(summary["omega_c1"], 7), "rad/s"),
+            ("inverted spin stable above ω_c2", spelled(summary["omega_c2"], 7), "rad/s"),
         ]
-    if told["touch"]:
-        spin = spelled(told["touch"]["least_launch_spin"], 7)
+    if summary["touch"]:
+        spin = spelled(summary["touch"]["least_launch_spin"], 7)
         rows.append(
             (
-                f"surface {told['touch']['surface']} comes down to the table, launched above",
+                f"surface {summary['touch']['surface']} comes down to the table, launched above",
                 spin,
                 "rad/s",
             )
         )
-    if told["stem"]:
-        rows.append(("stands on its stem above", spelled(told["stem"]["least_spin"], 7), "rad/s"))
-        if "least_launch_spin" in told["stem"]:
+    if summary["stem"]:
+        rows.append(
+            ("stands on its stem above", spelled(summary["stem"]["least_spin"], 7), "rad/s")
+        )
+        if "least_launch_spin" in summary["stem"]:
             rows.append(
-                ("that is, launched above", spelled(told["stem"]["least_launch_spin"], 7), "rad/s")
+                (
+                    "that is, launched above",
+                    spelled(summary["stem"]["least_launch_spin"], 7),
+                    "rad/s",
+                )
             )
-    between = [tilt for tilt in told["lies_on_lines_at_tilts"] if 0.0 < tilt < math.pi]
+    between = [tilt for tilt in summary["lies_on_lines_at_tilts"] if 0.0 < tilt < math.pi]
     rows += [("touches in two points or a line at tilt", f"{tilt:.7g}", "rad") for tilt in between]
     ends = {0.0: "below", math.pi: "above"}
     rows += [
         ("lies flat", f"on its end {ends[tilt]}", "")
-        for tilt in told["lies_on_lines_at_tilts"]
+        for tilt in summary["lies_on_lines_at_tilts"]
         if tilt in ends
     ]
     return rows

@@ -1,6 +1,4 @@
-"""The command line: collects the commands and turns what goes wrong into one sentence and an exit
-code.
-"""
+"""The commands, and the report of errors in one sentence with an exit code."""
 
 import sys
 import warnings
@@ -24,27 +22,28 @@ from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, TippetopError
 from tippetop.support.interrupts import INTERRUPTED, asked_to_end, let_end, let_raise
 
 MISUSE = 2
+"""Exit code of a command line that is not accepted."""
 
 WORDS = {OVERWRITE: "--force", RESUME: "--resume", OTHER_OUT: "another --out"}
-"""What is asked for here, by how it is asked for in Python."""
+"""Options of the command line, by the words for them in messages of the package."""
 
 
 UsageError: Any = typer.BadParameter.__base__
-"""What typer says of a command line that is none."""
+"""Error of typer for a command line that it does not accept."""
 
 
 class Commands(TyperGroup):
-    """Commands that say so when Ctrl-C ends them: typer alone ends them without a word."""
+    """Group of commands that reports an interruption, on which typer alone ends silently."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Take what stands before the command."""
+        """Parse the arguments before the command."""
         try:
             return super().parse_args(ctx, args)
         except UsageError as error:
             raise _in_a_sentence(error) from None
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command asked for."""
+        """Run the command."""
         try:
             let_raise()
             return super().invoke(ctx)
@@ -62,17 +61,17 @@ class Commands(TyperGroup):
 
 
 def _in_a_sentence(error: Any) -> Exception:
-    """What typer says of a command line, in the words of all other sentences; help that it shows as
-    it is.
-    """
+    """Return typer's error as one of the package's; help texts stay as they are."""
     cause = error.__cause__
     if isinstance(cause, ValidationError):
         detail, option = cause.errors()[0], error.param
         bounds = {"ge": getattr(option, "min", None), "le": getattr(option, "max", None)}
         detail["ctx"] = {limit: value for limit, value in bounds.items() if value is not None}
         return refusal_of(detail, {}).within(option.opts[0])
-    told: str = error.format_message()
-    return TippetopError(told[0].lower() + told[1:].removesuffix(".")) if told else error
+    message: str = error.format_message()
+    if not message:
+        return error
+    return TippetopError(message[0].lower() + message[1:].removesuffix("."))
 
 
 app = typer.Typer(
@@ -109,12 +108,12 @@ def _show_warning(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    """Show a warning in one line, without the place in the code that Python shows."""
+    """Print a warning in one line, without the place in the code."""
     typer.echo(f"tippetop: {message}", err=True)
 
 
 def run() -> None:
-    """Run the command that is asked for; misuse ends with one sentence and exit code 2."""
+    """Run the command line; misuse ends with one sentence and exit code 2."""
     warnings.showwarning = _show_warning
     try:
         app()
@@ -122,5 +121,5 @@ def run() -> None:
         typer.echo(f"tippetop: {error.told(WORDS)}", err=True)
         sys.exit(MISUSE)
     except BrokenPipeError:
-        # Whoever was reading has read enough (`tippetop ... | head`).
+        # The reader has closed the pipe, as in `tippetop ... | head`.
         sys.stderr.close()

@@ -1,4 +1,4 @@
-"""`tippetop critical`: what the theory says of a launch, without simulating it."""
+"""`tippetop critical`: predictions of theory for a launch, without a simulation."""
 
 import math
 from collections.abc import Iterator
@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from tippetop.theory.stability import Spectrum
     from tippetop.theory.steady import SteadyState
 
-TOLD = (
+FIELDS = (
     *("inertia_ratio", "eccentricity", "group", "lambda_up", "lambda_down", "jellett", "swings"),
     *("mu_flip_time", "flip_time", "flip_time_needs", "standing_time", "surface", "tilts"),
     *("creeps", "sticks", "standing", "lying", "resting_center"),
 )
-"""What programs are told under the names that it has."""
+"""Fields of the outlook that JSON has under the same names."""
 
 
 @of_a_problem
@@ -31,25 +31,25 @@ def critical(
 
     problem = choice.problem()
     warn_if_implausible(problem)
-    found = outlook(problem)
+    result = outlook(problem)
     if as_json:
-        told = {"critical_spins_tilt": problem.launch.tilt, "problem": problem.model_dump()}
-        show_json({**_plain(found), **told})
+        launch = {"critical_spins_tilt": problem.launch.tilt, "problem": problem.model_dump()}
+        show_json({**_plain(result), **launch})
     else:
-        show(*_sentences(found))
+        show(*_sentences(result))
 
 
-def _plain(found: "Outlook") -> dict[str, Any]:
-    """Return the record for programs."""
-    prediction, stays = found.prediction, found.stays
+def _plain(outlook: "Outlook") -> dict[str, Any]:
+    """Return the outlook as plain data."""
+    prediction, stays = outlook.prediction, outlook.stays
     final = stays.state if stays else prediction and prediction.final
     possible = [stays.state] if stays else prediction and prediction.reachable
     return {
-        **{name: getattr(found, name) for name in TOLD},
-        "group_description": found.group and found.group.description,
-        "omega_c1": found.critical_spins and found.critical_spins.upright,
-        "omega_c2": found.critical_spins and found.critical_spins.inverted,
-        "omega_c_tilt": found.tilt,
+        **{name: getattr(outlook, name) for name in FIELDS},
+        "group_description": outlook.group and outlook.group.description,
+        "omega_c1": outlook.critical_spins and outlook.critical_spins.upright,
+        "omega_c2": outlook.critical_spins and outlook.critical_spins.inverted,
+        "omega_c_tilt": outlook.tilt,
         "stays": (None if stays is None else "stable" if stays.stable else "until disturbed"),
         "final": final,
         "final_certain": possible and len(possible) == 1,
@@ -59,14 +59,14 @@ def _plain(found: "Outlook") -> dict[str, Any]:
                 **vars(judged.state),
                 **_plain_spectrum(judged.spectrum),
             }
-            for judged in found.steady
+            for judged in outlook.steady
         ],
-        "jellett_conserved": found.conserved,
+        "jellett_conserved": outlook.conserved,
     }
 
 
 def _plain_spectrum(spectrum: "Spectrum | None") -> dict[str, Any]:
-    """Return the stability of a steady state for programs: null where nothing is linear."""
+    """Return the stability of a steady state as plain data; null where no linear motion exists."""
     if spectrum is None:
         return dict.fromkeys(("stable", "growth_rate", "frame_rate", "eigenvalues", "neutral"))
     return {
@@ -79,48 +79,48 @@ def _plain_spectrum(spectrum: "Spectrum | None") -> dict[str, Any]:
 
 
 STICKS = (
-    "Dry friction of a point: the contact sticks wherever the table can hold it, and the top then"
+    "Dry friction at a point: the contact sticks as soon as friction can hold it, and the top then"
     " rolls without loss. Stability does not decide where it ends, so there are no critical spins."
-    " Under friction that creeps, of a patch or viscous, there are: try"
+    " Friction that creeps, viscous or of a patch, has critical spins: try"
     " --set friction.kind=contensou --set friction.patch_radius=0.0005."
 )
 RESISTED = (
-    "Rolling resistance holds an axis that hardly moves, and takes energy from every precession:"
+    "Rolling resistance stops an axis that moves slowly, and takes energy from every precession:"
     " there are no critical spins. Without it there are: try --set rolling_resistance=0."
 )
 FLAT = "This body lies flat when its axis is vertical: it has no vertical spin."
 
 
-def _sentences(found: "Outlook") -> Iterator[Any]:
-    """Yield the record for people."""
-    if found.group is not None and found.creeps:
-        yield f"[bold]Group {found.group.value}[/]: {found.group.description}."
-    if not found.creeps:
-        yield STICKS if found.sticks else RESISTED if found.steady else FLAT
-    yield facts(_rows(found))
-    if found.tilts != (0.0, math.pi):
-        low, high = found.tilts
+def _sentences(outlook: "Outlook") -> Iterator[Any]:
+    """Yield the sentences and tables that describe the outlook."""
+    if outlook.group is not None and outlook.creeps:
+        yield f"[bold]Group {outlook.group.value}[/]: {outlook.group.description}."
+    if not outlook.creeps:
+        yield STICKS if outlook.sticks else RESISTED if outlook.steady else FLAT
+    yield facts(_rows(outlook))
+    if outlook.tilts != (0.0, math.pi):
+        low, high = outlook.tilts
         yield (
-            f"Of its surface {found.surface} alone, from θ = {low:.6g} to {high:.6g} rad: beyond,"
-            " another touches."
+            f"For surface {outlook.surface} alone, from θ = {low:.6g} to {high:.6g} rad: beyond"
+            " these tilts another surface touches."
         )
-    if found.group is not None and found.creeps:
+    if outlook.group is not None and outlook.creeps:
         yield (
-            f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {found.tilt:.6g} rad, and"
+            f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {outlook.tilt:.6g} rad, and"
             " rates.[/]"
         )
-    if found.flip_time is not None:
+    if outlook.flip_time is not None:
         yield (
-            "[dim]The last is the limit over μ: far off where friction is strong, or where a"
-            " nutation brings the axis round the vertical just once.[/]"
+            "[dim]The last row is the limit of μ t over μ. It is far off for strong friction, or if"
+            " a nutation takes the axis round the vertical just once.[/]"
         )
-    if found.flip_time_needs is not None:
-        yield f"[dim]Of launches, the flip time is known only of {found.flip_time_needs}.[/]"
-    if found.steady:
+    if outlook.flip_time_needs is not None:
+        yield f"[dim]The flip time is known only for {outlook.flip_time_needs}.[/]"
+    if outlook.steady:
         headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth time")
-        rows = (_state_row(judged) for judged in found.steady)
+        rows = (_state_row(judged) for judged in outlook.steady)
         yield listing("Steady states of this launch", headings, rows, words=("kind", ""))
-    judged_ones = [judged for judged in found.steady if judged.spectrum is not None]
+    judged_ones = [judged for judged in outlook.steady if judged.spectrum is not None]
     for judged in judged_ones:
         yield f"[dim]{judged.state.kind.value}:[/] {_eigenvalues(judged)}"
     if judged_ones:
@@ -131,66 +131,70 @@ def _sentences(found: "Outlook") -> Iterator[Any]:
         )
 
 
-def _rows(found: "Outlook") -> list[tuple[str, str, str]]:
+def _rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
     rows = []
-    if found.inertia_ratio is not None and found.eccentricity is not None:
-        rows.append(("γ = I1/I3, α", f"{found.inertia_ratio:.6g}, {found.eccentricity:.6g}", ""))
-    rows += [*_critical_rows(found), *_end_rows(found), *_standing_rows(found)]
-    if found.lying is not None and math.isfinite(found.lying.rate):
-        on = " and ".join(map(str, found.lying.surfaces))
-        where = "its waist" if len(found.lying.surfaces) == 1 else f"surfaces {on}"
+    if outlook.inertia_ratio is not None and outlook.eccentricity is not None:
+        rows.append(
+            ("γ = I1/I3, α", f"{outlook.inertia_ratio:.6g}, {outlook.eccentricity:.6g}", "")
+        )
+    rows += [*_critical_rows(outlook), *_end_rows(outlook), *_standing_rows(outlook)]
+    if outlook.lying is not None and math.isfinite(outlook.lying.rate):
+        on = " and ".join(map(str, outlook.lying.surfaces))
+        where = "its waist" if len(outlook.lying.surfaces) == 1 else f"surfaces {on}"
         rows.append(
             (
                 f"lying on {where}, it rises above",
-                spelled(found.lying.rate, 6),
+                spelled(outlook.lying.rate, 6),
                 "rad/s about the vertical",
             )
         )
-    if found.resting_center is not None and not found.conserved:
+    if outlook.resting_center is not None and not outlook.conserved:
         what = "rolls at this tilt about its centre at"
-        rows.append((what, spelled(found.resting_center.precession, 6), "rad/s about the vertical"))
-    if found.standing_time is not None:
-        vertical = found.tilt in (0.0, math.pi)
+        rows.append(
+            (what, spelled(outlook.resting_center.precession, 6), "rad/s about the vertical")
+        )
+    if outlook.standing_time is not None:
+        vertical = outlook.tilt in (0.0, math.pi)
         what = "drilling lets it stand" if vertical else "inverted with this λ it would stand"
-        rows.append((what, spelled(found.standing_time), "s"))
-    if found.mu_flip_time is not None:
-        rows.append(("μ t until 0.01 rad from there, μ → 0", spelled(found.mu_flip_time), "s²/m"))
-    if found.flip_time is not None:
-        rows.append(("so at this friction about", spelled(found.flip_time), "s"))
+        rows.append((what, spelled(outlook.standing_time), "s"))
+    if outlook.mu_flip_time is not None:
+        rows.append(("μ t until 0.01 rad from there, μ → 0", spelled(outlook.mu_flip_time), "s²/m"))
+    if outlook.flip_time is not None:
+        rows.append(("so at this friction about", spelled(outlook.flip_time), "s"))
     return rows
 
 
-def _critical_rows(found: "Outlook") -> list[tuple[str, str, str]]:
-    """Return critical spins and Jellett's integrals, where slip creeps."""
+def _critical_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
+    """Return rows of the critical spins, if slip creeps, and of Jellett's integrals."""
     jellett = (
         "λ of this launch",
-        spelled(found.jellett),
-        "kg m³/s" + ("" if found.conserved else ", not conserved"),
+        spelled(outlook.jellett),
+        "kg m³/s" + ("" if outlook.conserved else ", not conserved"),
     )
-    if found.critical_spins is None or found.lambda_up is None or found.lambda_down is None:
+    if outlook.critical_spins is None or outlook.lambda_up is None or outlook.lambda_down is None:
         return [jellett]
-    sphere = found.group is not None
-    upright, inverted = found.critical_spins.upright, found.critical_spins.inverted
-    names = ("upright spin is left above ω_c1", "inverted spin holds above ω_c2")
+    sphere = outlook.group is not None
+    upright, inverted = outlook.critical_spins.upright, outlook.critical_spins.inverted
+    names = ("upright spin unstable above ω_c1", "inverted spin stable above ω_c2")
     if not sphere:
         names = ("upright changes at", "inverted changes at")
     return [
         _threshold(names[0], upright, "rad/s"),
         _threshold(names[1], inverted, "rad/s"),
-        _threshold("λ_up", found.lambda_up, "kg m³/s"),
-        _threshold("λ_down", found.lambda_down, "kg m³/s"),
+        _threshold("λ_up", outlook.lambda_up, "kg m³/s"),
+        _threshold("λ_down", outlook.lambda_down, "kg m³/s"),
         jellett,
     ]
 
 
 def _threshold(name: str, value: float, unit: str) -> tuple[str, str, str]:
-    """Return a row for a threshold, which may not exist."""
+    """Return a row of a threshold, which may not exist."""
     return (name, spelled(value), unit) if math.isfinite(value) else (name, "no spin", "")
 
 
-def _standing_rows(found: "Outlook") -> list[tuple[str, str, str]]:
-    """What keeps a top-heavy body on end: its gyroscopic thresholds, and how creep undoes it."""
-    standing = found.standing
+def _standing_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
+    """Return rows of the spins above which a top-heavy body stands on its end, and of its fall."""
+    standing = outlook.standing
     if standing is None:
         return []
     rows = [
@@ -221,26 +225,30 @@ def _standing_rows(found: "Outlook") -> list[tuple[str, str, str]]:
     return rows
 
 
-def _end_rows(found: "Outlook") -> list[tuple[str, str, str]]:
-    """Where the launch ends: nowhere, where it is, or where friction takes it."""
+def _end_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
+    """Return rows of the end of a launch: swinging for ever, staying, or a steady state."""
     rows = []
-    if found.swings is not None:
-        low, high = found.swings
+    if outlook.swings is not None:
+        low, high = outlook.swings
         rows.append(("swings for ever in θ", f"{low:.9g} to {high:.9g}", "rad"))
-    if found.stays is not None:
-        state, stable = found.stays.state, found.stays.stable
+    if outlook.stays is not None:
+        state, stable = outlook.stays.state, outlook.stays.stable
         until = "" if stable else " until disturbed"
-        rows.append(("stays exactly on", _told(state), f"rad{until}"))
-    if found.prediction is not None and not (found.stays and found.stays.stable):
+        rows.append(("stays exactly on", _described(state), f"rad{until}"))
+    if outlook.prediction is not None and not (outlook.stays and outlook.stays.stable):
         rows.append(
-            ("and then ends as" if found.stays else "ends as", _told(found.prediction.final), "rad")
+            (
+                "and then ends as" if outlook.stays else "ends as",
+                _described(outlook.prediction.final),
+                "rad",
+            )
         )
-        if not found.prediction.certain:
+        if not outlook.prediction.certain:
             rows.append(("", "of several, by least energy", ""))
     return rows
 
 
-def _told(state: "SteadyState[float]") -> str:
+def _described(state: "SteadyState[float]") -> str:
     return f"{state.kind.value} at θ = {state.tilt:.7g}"
 
 
@@ -255,9 +263,7 @@ def _state_row(judged: "Judged") -> tuple[str, ...]:
 
 
 def _eigenvalues(judged: "Judged") -> str:
-    """Return the eigenvalues in a row; of each pair of conjugates, the one above stands for
-    both.
-    """
+    """Return the eigenvalues as text; one of each conjugate pair stands for both."""
     assert judged.spectrum is not None
     shown = [value for value in judged.spectrum.eigenvalues.tolist() if value.imag >= 0]
     return ", ".join(f"{v.real:.5g} ± {v.imag:.6g}i" if v.imag else f"{v.real:.5g}" for v in shown)

@@ -1,4 +1,4 @@
-"""Where the command line begins: Ctrl-C is heard in time, before the libraries are loaded."""
+"""Entry point of the command line, which handles Ctrl-C before the libraries are loaded."""
 
 import gc
 import os
@@ -8,16 +8,14 @@ from contextlib import suppress
 from tippetop.support.interrupts import INTERRUPTED, let_end
 
 GARBAGE = 50_000
-"""Objects made between two looks for garbage: importing the libraries makes many, and drops hardly
-one.
-"""
+"""Number of new objects between two garbage collections: imports make many objects and free few."""
 
 UNUSED = ("dask",)
-"""What xarray loads wherever it is installed, and no command but `sweep` uses."""
+"""Packages that xarray loads wherever they are installed, and that only `sweep` uses."""
 
 
 def main() -> None:
-    """Run the command line; misuse ends with one sentence and exit code 2, Ctrl-C and its like with
+    """Run the command line; misuse ends with one sentence and exit code 2, Ctrl-C and signals with
     130.
     """
     let_end(at_first=True)

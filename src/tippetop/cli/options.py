@@ -1,4 +1,4 @@
-"""The options that several commands share: how a problem is put together on the command line."""
+"""Options that several commands share: how a problem is stated on the command line."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -22,9 +22,9 @@ ProblemFile = Annotated[
     typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out."),
 ]
 NUMBER = "NUMBER"
-"""What help calls a number that may have a unit."""
+"""Placeholder in the help for a number that may have a unit."""
 
-ASKED = {
+PROBLEM_OPTIONS = {
     "preset": Annotated[
         str | None,
         typer.Option(
@@ -62,7 +62,7 @@ ASKED = {
         ),
     ],
 }
-"""The options beside a file that say which problem a command is for."""
+"""Options that state a problem, beside its file."""
 
 FIELDS = {
     "spin": "launch.spin",
@@ -70,18 +70,18 @@ FIELDS = {
     "mu": "friction.mu",
     "liftoff": "contact.liftoff",
 }
-"""The fields of a problem that have an option of their own."""
+"""Fields of a problem that have an option."""
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for programs.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite results that exist.")]
 
 
 DRAWINGS = (".png", ".svg", ".pdf")
-"""How the names of files with figures may end."""
+"""Accepted suffixes of files with figures."""
 
 
 class Choice(NamedTuple):
-    """Which problem a command is for: what to start from, and what is other than there."""
+    """The problem that a command line states: its base, and the changes to it."""
 
     file: Path | None = None
     preset: str | None = None
@@ -89,15 +89,16 @@ class Choice(NamedTuple):
     changes: Sequence[str] = ()
 
     def problem(self) -> "tt.Problem":
-        """Return the problem of the file, or the report's, with what is other; sentences for what
-        cannot be.
+        """Return the problem of the file, or the report's, with the changes.
+
+        Raises `InvalidInput` if there is no such problem.
         """
         return self.changed(
             tt.presets.report_problem() if self.file is None else tt.Problem.read(self.file)
         )
 
     def changed(self, problem: "tt.Problem") -> "tt.Problem":
-        """Another problem with what is other."""
+        """Return another problem with the changes."""
         if self.preset is not None:
             problem = problem.model_copy(update={"body": tt.presets.body(self.preset)})
         changes = dict(self.settings)
@@ -116,31 +117,36 @@ class Choice(NamedTuple):
 def of_a_problem(
     command: Callable[Concatenate[Choice, ...], None], file: Any = ProblemFile
 ) -> Callable[..., None]:
-    """Return the command with the options that say which problem it is for, as its first argument
-    then tells.
+    """Return a command with the options that state a problem.
+
+    The command gets them as its first argument, a `Choice`; `file` is the annotation of the file.
     """
 
     @wraps(command)
-    def asked(**given: Any) -> None:
-        told = {name: given.pop(name, None) for name in ("file", *ASKED)}
+    def with_choice(**values: Any) -> None:
+        stated = {name: values.pop(name, None) for name in ("file", *PROBLEM_OPTIONS)}
         settings = {
-            field: _value(told[name]) for name, field in FIELDS.items() if told[name] is not None
+            field: _value(stated[name])
+            for name, field in FIELDS.items()
+            if stated[name] is not None
         }
-        command(Choice(told["file"], told["preset"], settings, told["changes"] or ()), **given)
+        choice = Choice(stated["file"], stated["preset"], settings, stated["changes"] or ())
+        command(choice, **values)
 
     _, *parameters = signature(command).parameters.values()
     # Arguments without a default come before the file with the problem.
     required = [one for one in parameters if one.default is Parameter.empty]
-    own = [one for one in parameters if one.default is not Parameter.empty]
-    options = {"file": file, **ASKED}.items()
-    asking = [
+    optional = [one for one in parameters if one.default is not Parameter.empty]
+    of_problem = [
         Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind)
-        for name, kind in options
+        for name, kind in {"file": file, **PROBLEM_OPTIONS}.items()
     ]
-    named = [one.replace(kind=Parameter.KEYWORD_ONLY) for one in (*required, *own)]
-    whole = Signature([*named[: len(required)], *asking, *named[len(required) :]])
-    asked.__signature__ = whole  # type: ignore[attr-defined]
-    return asked
+    in_order = [
+        one.replace(kind=Parameter.KEYWORD_ONLY) for one in (*required, *of_problem, *optional)
+    ]
+    # Typer reads the options from the signature.
+    with_choice.__signature__ = Signature(in_order)  # type: ignore[attr-defined]
+    return with_choice
 
 
 def write_figure(figure: "Figure", path: Path, force: bool) -> None:
@@ -152,9 +158,7 @@ def write_figure(figure: "Figure", path: Path, force: bool) -> None:
 
 
 def _parsed(change: str) -> tuple[str, Any]:
-    """Return field and value of a `--set FIELD=VALUE`: a number or list as in JSON, or else a
-    word.
-    """
+    """Return field and value of `--set FIELD=VALUE`."""
     field, equals, value = change.partition("=")
     if not equals:
         raise InvalidInput("--set", change, "FIELD=VALUE, such as launch.spin=155")
@@ -162,7 +166,7 @@ def _parsed(change: str) -> tuple[str, Any]:
 
 
 def _value(text: str) -> Any:
-    """Return the value that a text states: a number or list as in JSON, or else a word."""
+    """Return the value of a text: a number or list as in JSON, else the text itself."""
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
@@ -170,7 +174,7 @@ def _value(text: str) -> Any:
 
 
 def number_of(option: str, text: str | None, units: str) -> float | None:
-    """Return the number that an option states, in an SI unit unless it has one; None without it."""
+    """Return the number of an option, in SI unless the text has a unit; None without the option."""
     if text is None:
         return None
     number = _value(text)
@@ -178,5 +182,5 @@ def number_of(option: str, text: str | None, units: str) -> float | None:
         return float(number)
     if not isinstance(number, str):
         raise InvalidInput(option, text, "a number")
-    found: float = number_in(option, text, units)
-    return found
+    converted: float = number_in(option, text, units)
+    return converted

@@ -12,7 +12,7 @@ from tippetop.results.catalogue import written_unit
 from tippetop.support.field_paths import part_at
 
 TABLE, FIELD, ITEM = re.compile(r"\[(.+)]"), re.compile(r"([\w-]+) = "), re.compile(r"    -?[\d.]")
-"""Lines of TOML: that begin a table, a field, or hold an item of a list."""
+"""Patterns of lines of TOML: the head of a table, a field, an item of a list."""
 
 
 @of_a_problem
@@ -32,33 +32,34 @@ def problem(
 
 
 def commented_toml(problem: "tt.Problem") -> str:
-    """Return the problem as TOML, with the unit and the meaning of every number beside it."""
+    """Return a problem as TOML, with the unit and the meaning of every number in comments."""
     table = name = ""
     place = 0
     lines = []
     for line in problem.to_toml().splitlines():
-        if begun := TABLE.fullmatch(line):
-            table = f"{begun[1]}."
-        if begun := FIELD.match(line):
-            name, place = table + begun[1], 0
+        if head := TABLE.fullmatch(line):
+            table = f"{head[1]}."
+        field = FIELD.match(line)
+        if field:
+            name, place = table + field[1], 0
         if line.endswith(" = ["):
             remark = ""
         elif ITEM.match(line):
             remark, place = _remark(problem, f"{name}.{place}"), place + 1
         else:
-            remark = _remark(problem, name) if begun else ""
+            remark = _remark(problem, name) if field else ""
         lines.append(f"{line}  # {remark}" if remark else line)
     return "\n".join(lines) + "\n"
 
 
 def _remark(problem: "tt.Problem", name: str) -> str:
-    """What is said beside a field: unit and meaning of a number, or the words that are possible."""
+    """Return the comment beside a field: unit and meaning of a number, or the accepted words."""
     where, _, field = name.rpartition(".")
     part = part_at(problem, where)
-    known = getattr(type(part), "model_fields", {})
-    if field in known:
+    fields = getattr(type(part), "model_fields", {})
+    if field in fields:
         kinds = getattr(part, "kinds", {}) if field == "kind" else {}
-        choice = known[field].annotation
+        choice = fields[field].annotation
         words = list(kinds) or (list(get_args(choice)) if get_origin(choice) is Literal else [])
         if words:
             return " or ".join(map(repr, words)).replace("'", '"')

@@ -1,4 +1,4 @@
-"""`tippetop reproduce`: redo the report, and say what became of its claims."""
+"""`tippetop reproduce`: redo the report, and print the verdicts on its claims."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -41,7 +41,7 @@ def reproduce(
 
 
 def _plain(result: "Reproduction") -> dict[str, object]:
-    """Return the result for programs."""
+    """Return the result as plain data."""
     return {
         "folder": str(result.folder),
         "page": str(result.folder / "index.html"),
@@ -55,7 +55,7 @@ def _plain(result: "Reproduction") -> dict[str, object]:
 
 
 def _show(result: "Reproduction") -> None:
-    """The result for people."""
+    """Print the result."""
     from tippetop.report.claim import in_words  # noqa: PLC0415 - slow to import
     from tippetop.report.page import worded  # noqa: PLC0415 - slow to import
 

@@ -1,4 +1,4 @@
-"""`tippetop simulate`: one run, its summary, its files."""
+"""`tippetop simulate`: one run, with a summary and files."""
 
 import math
 import time
@@ -29,14 +29,16 @@ if TYPE_CHECKING:
 DEFAULT_SAMPLES = 2001
 FILMS = {"mp4", "gif"}
 MOVING = {"glb", "html", *FILMS}
+"""Kinds of files that show the motion, and need enough samples for it."""
+
 TABLES = {"events_table": "events", "flights_table": "flights"}
-"""The tables of a run beside its samples, by the options that ask for them."""
+"""Tables of a run beside its samples, by the options that write them."""
 ENDINGS = {
     "plot": DRAWINGS,
     "html": (".html", ".htm"),
     **dict.fromkeys(TABLES, (".csv", ".parquet")),
 }
-"""How the names of files may end; of the other kinds but `out`, as the kind is called."""
+"""Accepted suffixes of files; other kinds, except `out`, have their name as suffix."""
 
 ROWS = (
     ("simulated", "duration", "s", ".6g", ""),
@@ -53,8 +55,9 @@ ROWS = (
     ("error of the energy balance", "energy_error", "relative", ".1e", "undefined"),
     ("leaves the table first at", "first_lift_off", "s", ".7g", ""),
 )
-"""What is printed of a run: text, key of the summary, unit, format, and what stands for what there
-is not.
+"""Rows printed for a run: text, key of the summary, unit, format, and text for a missing value.
+
+A row without such a text is left out if its value is missing.
 """
 
 LOSS_ROWS = (
@@ -62,7 +65,7 @@ LOSS_ROWS = (
     ("of it to drilling", "energy_lost_drilling", "J", ".7g", ""),
     ("of it to rolling resistance", "energy_lost_rolling", "J", ".7g", ""),
 )
-"""What is printed of a run that loses energy in more ways than by sliding."""
+"""Rows printed for a run that loses energy by drilling or rolling resistance too."""
 
 FLIGHT_ROWS = (
     ("flights", "flights", "", ".7g", ""),
@@ -131,10 +134,10 @@ def simulate(
         "mp4": mp4,
         "gif": gif,
     }
-    wanted = {kind: path for kind, path in files.items() if path is not None}
-    _check_files(wanted, force, seconds)
+    requested = {kind: path for kind, path in files.items() if path is not None}
+    _check_files(requested, force, seconds)
     if samples is None:
-        samples = _enough_samples(chosen, seconds, wanted)
+        samples = _sample_count(chosen, seconds, requested)
     began = time.perf_counter()
     with progress_bar("simulating") as progress:
         run = tt.simulate(
@@ -147,7 +150,7 @@ def simulate(
             callback=lambda part: progress(part, 1.0),
         )
     elapsed = time.perf_counter() - began
-    for kind, path in wanted.items():
+    for kind, path in requested.items():
         _write(run, kind, path, force)
     summary = tt.summarize(run)
     if as_json:
@@ -160,13 +163,13 @@ def simulate(
             *(() if summary["outcome"] == "completed" else (f"[bold]{advice}[/]",)),
             facts(_rows(summary, chosen.top.conserves_jellett)),
             f"[dim]{summary['steps']} steps of {summary['integrator']} in {elapsed:.3g} s[/]",
-            files=wanted.values(),
+            files=requested.values(),
         )
 
 
-def _enough_samples(problem: "tt.Problem", duration: float, wanted: Iterable[str]) -> int:
-    """As many samples as the files that are wanted need, and no fewer than usual."""
-    if not (MOVING & set(wanted) and math.isfinite(duration)):
+def _sample_count(problem: "tt.Problem", duration: float, requested: Iterable[str]) -> int:
+    """Return the number of samples that the requested files need, at least the default."""
+    if not (MOVING & set(requested) and math.isfinite(duration)):
         return DEFAULT_SAMPLES
     from tippetop.results.sampling import sample_count  # noqa: PLC0415 - slow to import
 
@@ -192,12 +195,14 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
                 tt.write_movie(run, path, force, progress=progress)
 
 
-def _check_files(wanted: dict[str, Path], force: bool, duration: float) -> None:
-    """Refuse names that promise another kind of file or are taken, and films that cannot be
-    made.
+def _check_files(requested: dict[str, Path], force: bool, duration: float) -> None:
+    """Raise an error if a file cannot be written.
+
+    Its suffix must fit, no two options may name one file, a file may be replaced only if `force`,
+    and films and Parquet need their programs.
     """
     places = dict[Path, str]()
-    for kind, path in wanted.items():
+    for kind, path in requested.items():
         option = f"--{kind.replace('_', '-')}"
         if kind != "out":
             require_ending(option, path, ENDINGS.get(kind, (f".{kind}",)))
@@ -211,7 +216,6 @@ def _check_files(wanted: dict[str, Path], force: bool, duration: float) -> None:
             from tippetop.export.tables import need_parquet  # noqa: PLC0415 - slow to import
 
             need_parquet()
-    for kind in wanted:
         if kind in FILMS:
             from tippetop.export.movie import require_film  # noqa: PLC0415 - slow to import
 

@@ -1,4 +1,4 @@
-"""`tippetop sweep`: many launches, kept in a store, with maps beside it."""
+"""`tippetop sweep`: many launches in a store, with maps beside it."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -108,13 +108,13 @@ def sweep(
             "overwrites what it goes on with",
         )
     with in_words(out, "read"):
-        kept = kept_sweep(out) if resume and choice.file is None else None
+        stored = kept_sweep(out) if resume and choice.file is None else None
     limits = {
         "duration": number_of("--duration", duration, "s"),
         "tolerance": tolerance,
         "settled": number_of("--settled", settled, "rad"),
     }
-    chosen = _chosen_sweep(choice, kept, _chosen_grid(axis, draw, count, seed), limits)
+    chosen = _chosen_sweep(choice, stored, _chosen_grid(axis, draw, count, seed), limits)
     with need_workers(chosen, workers, scheduler) as cluster:
         if not resume:
             require_ending("--out", out, [".zarr"])
@@ -158,19 +158,19 @@ def sweep(
 
 def _chosen_sweep(
     choice: Choice,
-    kept: "Sweep | None",
+    stored: "Sweep | None",
     grid: "Product | tt.Draws | None",
     limits: dict[str, float | None],
 ) -> "Sweep":
-    """Return the sweep that the file, or the store to be resumed, and the options ask for."""
+    """Return the sweep of the file, or of the store to be resumed, with the options."""
     from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
 
     file = choice.file
-    base = Sweep.read(file) if file is not None and _holds_sweep(file) else kept
-    given = {name: limit for name, limit in limits.items() if limit is not None}
+    base = Sweep.read(file) if file is not None and _holds_sweep(file) else stored
+    stated = {name: limit for name, limit in limits.items() if limit is not None}
     if base is not None:
         cells = {"axes": None, "draws": None, "grid": grid or base.grid}
-        return base.model_copy(update={"problem": choice.changed(base.problem), **cells, **given})
+        return base.model_copy(update={"problem": choice.changed(base.problem), **cells, **stated})
     problem = choice.problem()
     if grid is None:
         raise InvalidInput(
@@ -178,13 +178,13 @@ def _chosen_sweep(
             MISSING,
             "an axis, such as --axis launch.spin=0:250:51, or --draw, or a sweep's file",
         )
-    return Sweep(problem, grid, **given)
+    return Sweep(problem, grid, **stated)
 
 
 def _chosen_grid(
     axis: list[str] | None, draw: list[str] | None, count: int | None, seed: int | None
 ) -> "Product | tt.Draws | None":
-    """Return the grid that the options ask for, if they do."""
+    """Return the grid of the options, or None without one."""
     from tippetop.sweeps import Product  # noqa: PLC0415 - slow to import
 
     if axis and draw:
@@ -204,16 +204,18 @@ def _chosen_grid(
 
 
 def _axis(text: str) -> tuple[str, Any]:
-    """Return an axis of the command line as it stands in a file."""
+    """Return an axis of the command line in the form of a sweep's file."""
     field, equals, values = text.partition("=")
     try:
         match values.split(":"):
             case [listed] if equals:
                 return field.strip(), _numbers(listed.split(","))
-            case [first, last, count, *rest] if equals and len(rest) < 2:
+            case [first, last, count, *spacing] if equals and len(spacing) < 2:
                 low, high = _numbers([first, last])
-                ends = {"from": low, "to": high, "count": int(count)}
-                return field.strip(), ends | ({"spacing": rest[0].strip()} if rest else {})
+                axis: dict[str, Any] = {"from": low, "to": high, "count": int(count)}
+                if spacing:
+                    axis["spacing"] = spacing[0].strip()
+                return field.strip(), axis
     except ValueError:
         pass
     raise InvalidInput(
@@ -222,10 +224,10 @@ def _axis(text: str) -> tuple[str, Any]:
 
 
 def _range(text: str) -> tuple[str, Any]:
-    """Return a draw of the command line as it stands in a file."""
-    field, equals, rest = text.partition("=")
-    low, _, high = rest.removesuffix(":log").partition(":")
-    law = "log-uniform" if rest.endswith(":log") else "uniform"
+    """Return a draw of the command line in the form of a sweep's file."""
+    field, equals, values = text.partition("=")
+    low, _, high = values.removesuffix(":log").partition(":")
+    law = "log-uniform" if values.endswith(":log") else "uniform"
     try:
         if equals:
             first, last = _numbers([low, high])
@@ -236,22 +238,26 @@ def _range(text: str) -> tuple[str, Any]:
 
 
 def _numbers(texts: list[str]) -> list[float | str]:
-    """Numbers, or texts of those with units; the unit of the last is that of those without one.
+    """Return numbers, or texts of numbers with units; a unit of the last holds for those without.
 
-    Raises `ValueError` for what is neither.
+    Raises `ValueError` for other texts.
     """
     parts = [NUMBER_WITH_UNIT.fullmatch(text) for text in texts]
-    found = [
+    pairs = [
         (part[1], part[2]) for part in parts if part and (not part[2] or begins_a_unit(part[2]))
     ]
-    if len(found) < len(texts):
+    if len(pairs) < len(texts):
         raise ValueError(texts)
-    unit = found[-1][1]
-    return [f"{number} {own or unit}" if own or unit else float(number) for number, own in found]
+    last_unit = pairs[-1][1]
+    numbers: list[float | str] = []
+    for number, unit in pairs:
+        unit_of_number = unit or last_unit
+        numbers.append(f"{number} {unit_of_number}" if unit_of_number else float(number))
+    return numbers
 
 
 def _holds_sweep(file: Path) -> bool:
-    """Return whether a file is a sweep's rather than a problem's."""
+    """Return whether a file holds a sweep rather than a problem."""
     from tippetop.support.parsing import parse_toml  # noqa: PLC0415
     from tippetop.sweeps.definition import is_sweep  # noqa: PLC0415 - slow to import
 
@@ -264,7 +270,9 @@ def _holds_sweep(file: Path) -> bool:
 
 
 def _map_files(out: Path, chosen: "Sweep") -> dict[str, Path]:
-    """Return the maps that are drawn beside a store, if they can be: variables and files."""
+    """Return the files of the maps beside a store, by variable; refuse axes that cannot be
+    drawn.
+    """
     from tippetop.figures.maps import MAPPED, require_drawable  # noqa: PLC0415 - slow to import
     from tippetop.sweeps.grid import field_paths  # noqa: PLC0415
 
@@ -275,7 +283,7 @@ def _map_files(out: Path, chosen: "Sweep") -> dict[str, Path]:
 
 
 def _draw_maps(dataset: "xr.Dataset", files: dict[str, Path], overwrite: bool) -> None:
-    """Draw maps beside the store."""
+    """Draw the maps beside a store."""
     from tippetop.figures.maps import phase_map  # noqa: PLC0415 - slow to import
 
     for name, path in files.items():
@@ -295,7 +303,9 @@ def _summary(dataset: "xr.Dataset", progress: "Progress") -> dict[str, Any]:
 
 
 def _refusal(sweep: "Sweep", faults: "NDArray[np.int8]") -> str | None:
-    """Why the first launch that there is no problem for cannot be, if there is one."""
+    """Return why the first launch without a valid problem has none; None if all launches are
+    valid.
+    """
     from tippetop.sweeps.cells import put, single_part  # noqa: PLC0415 - slow to import
 
     bad = faults.ravel().nonzero()[0][:1]

@@ -1,4 +1,4 @@
-"""What the commands show people: tables, sentences, and how far they are."""
+"""Output of the commands on a terminal: tables, sentences, JSON and progress."""
 
 import json
 import math
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def facts(rows: Iterable[Sequence[str]]) -> "Table":
-    """What is told, a name, a number and perhaps a remark to a row, as a table."""
+    """Return a table of rows: a name, a number and perhaps a remark."""
     from rich.table import Table  # noqa: PLC0415 - slow to import, like what follows
 
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
@@ -30,14 +30,14 @@ def facts(rows: Iterable[Sequence[str]]) -> "Table":
 
 
 def spelled(value: float, digits: int = 10) -> str:
-    """Return a number, or that what it is of never comes."""
+    """Return a number as text, or "never" for an infinite time or spin."""
     return f"{value + 0.0:.{digits}g}" if math.isfinite(value) else "never"
 
 
 def listing(
     title: str | None, headings: Sequence[str], rows: Iterable[Sequence[str]], words: Sequence[str]
 ) -> "Table":
-    """Return rows of numbers under headings, but for the columns of words."""
+    """Return a table of numbers under headings; columns in `words` are aligned to the left."""
     from rich.table import Table  # noqa: PLC0415
 
     table = Table(title=title, title_justify="left", title_style="bold", box=None)
@@ -49,7 +49,7 @@ def listing(
 
 
 def show(*parts: Any, files: Iterable[Path] = ()) -> None:
-    """Print sentences, with rich's markup, and tables, and which files were written."""
+    """Print sentences (with rich's markup), tables, and the names of files that were written."""
     from rich.console import Console  # noqa: PLC0415
 
     console = Console(highlight=False)
@@ -59,19 +59,18 @@ def show(*parts: Any, files: Iterable[Path] = ()) -> None:
         console.print(f"wrote {path}", markup=False, soft_wrap=True)
 
 
-def show_json(told: Any) -> None:
-    """Print what is told for programs; what is infinite or undefined is null."""
+def show_json(value: Any) -> None:
+    """Print a value as JSON; infinite and undefined numbers are null."""
     from pydantic_core import to_jsonable_python  # noqa: PLC0415 - slow to import
 
-    typer.echo(json.dumps(to_jsonable_python(told, inf_nan_mode="null"), indent=2))
+    typer.echo(json.dumps(to_jsonable_python(value, inf_nan_mode="null"), indent=2))
 
 
 @contextmanager
 def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
-    """Show on a terminal how far something is, how long it still takes, and how long it has taken.
+    """Yield a callback that shows progress, remaining and elapsed time on a terminal.
 
-    Given is what is to be told of it: how much is done, of how much, and, if that changes, what it
-    is at.
+    The callback takes the work done, the work in total and, if it changes, the text shown.
     """
     if not sys.stderr.isatty():
         yield lambda *_: hear()

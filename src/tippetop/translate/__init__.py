@@ -1,16 +1,17 @@
-"""Python modules translated to JavaScript, statement by statement.
+"""Translation of Python modules to JavaScript, statement by statement.
 
-Read `program` first: the symbol table of the translated modules. `types` and `inference` tell the
-types of expressions, so that a method or field is that of its class. `definitions`, `statements`,
-`calls` and `expressions` translate what their names say, each building on the next; `layout` breaks
-long lines. `runtime_names` lists what the JavaScript runtime has.
+Read `program` first: the symbol table of the translated modules. `types` and `inference` infer the
+types of expressions, so that a method or a field is found in its class. `expressions`, `calls`,
+`statements` and `definitions` translate what their names say, each building on the one before;
+`layout` breaks long lines. `runtime_names` lists the names of the JavaScript runtime.
 
-What has no translation that is known to mean the same is refused with file and line, as `refusal`
-says. Whether JavaScript means the same depends on types; where they are unknown, the runtime looks
-at the values and throws rather than return something else.
+Code without a translation that is known to mean the same is refused with file and line; see
+`refusal`. Whether JavaScript means the same depends on types. Where a type is unknown, the runtime
+checks the values, and throws rather than return a different result.
 
-Modules say in comments how they are translated, see `declarations`: above a function, class, method
-or constant ``# translate: skip`` (it has no counterpart), ``# translate: runtime`` (the runtime has
-it) or ``# translate: drop`` (calls that stand alone are left out); anywhere in the module
-``# translate module: numbers`` (or ``arrays``, ``series``, ``skip``, ``by hand in file.js``).
+Modules state in comments how they are translated; see `declarations`. Above a function, class,
+method or constant: ``# translate: skip`` (it has no counterpart), ``# translate: runtime`` (the
+runtime has it) or ``# translate: drop`` (statements that only call it are left out). Anywhere in
+the module: ``# translate module: numbers`` (or ``arrays``, ``numpy``, ``series``, ``skip``, ``by
+hand in file.js``).
 """

@@ -1,4 +1,4 @@
-"""Python's calls and parameters of functions as JavaScript."""
+"""Translation of calls, and of the parameters of functions."""
 
 import ast
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from tippetop.translate.runtime_names import ERRORS, FUNCTIONS, METHODS
 from tippetop.translate.types import ROWS, Type, alternatives_of, is_only
 
 BY_NAME = {"max": {"key", "default"}, "min": {"key", "default"}, "sorted": {"key"}}
-"""Keyword arguments that the runtime takes in an object at the end."""
+"""Keyword arguments that the runtime takes in an object after the other arguments."""
 
 OF_TWO = {"max": "larger", "min": "smaller"}
 """The runtime's functions of two values."""
@@ -54,7 +54,7 @@ class Calls(Expressions):
         return f"{self.text(node.func, ATOM)}({self._placed(node)})"
 
     def function(self, node: ast.FunctionDef | ast.Lambda) -> str:
-        """Return the parameters of a function, with their defaults, which are seen from outside."""
+        """Return the parameters of a function; defaults are evaluated in the enclosing scope."""
         if node.args.kwarg:
             raise self.refusal(node, "parameters by ** are not translated")
         args = [*node.args.posonlyargs, *node.args.args]
@@ -71,7 +71,7 @@ class Calls(Expressions):
         return f"({', '.join(names)})"
 
     def default(self, node: ast.expr) -> str:
-        """Return a default value; JavaScript makes it anew at every call, and Python once."""
+        """Return a default value; JavaScript evaluates it at every call, Python once."""
         for inner in ast.walk(node):
             mutable = ast.List | ast.Dict | ast.Set | ast.ListComp | ast.DictComp | ast.SetComp
             is_made = isinstance(inner, ast.Call) and not self._makes_record(inner)
@@ -130,7 +130,7 @@ class Calls(Expressions):
 
     def _makes(self, member: Member, receiver: Type) -> bool:
         """Return whether a member is a class."""
-        owner = receiver.cls if receiver.cls and member.owner in _line(receiver.cls) else None
+        owner = receiver.cls if receiver.cls and member.owner in _lineage(receiver.cls) else None
         return self._type_of_member(member, owner or member.owner).kind == "class"
 
     def _builtin_call(self, node: ast.Call, function: ast.Attribute) -> str:
@@ -143,7 +143,7 @@ class Calls(Expressions):
         return template.format(value, self.arguments(node.args)).replace(", )", ")")
 
     def _replacement(self, node: ast.Call, value: ast.expr) -> str:
-        """Return a copy of a record with other values of some fields."""
+        """Return a copy of a record with new values of some fields."""
         kinds = [kind for kind in alternatives_of(self.type_of(value)) if kind.cls is not None]
         for word in node.keywords:
             if kinds and not any(self._has_field(kind.cls, str(word.arg)) for kind in kinds):
@@ -151,6 +151,7 @@ class Calls(Expressions):
         return f"py.replace({self.text(value)}, {self._named(node.keywords)})"
 
     def _has_field(self, one: Class | None, name: str) -> bool:
+        """Return whether records of a class, or of a class derived from it, have a field."""
         return one is not None and (
             name in one.fields
             or any(derived.is_a(one) and name in derived.fields for derived in self.program.classes)
@@ -194,7 +195,7 @@ class Calls(Expressions):
         return parameters(node) if isinstance(node, ast.FunctionDef) else []
 
     def _require_classes(self, node: ast.Call, classes: ast.expr) -> None:
-        """Refuse to tell apart what JavaScript cannot."""
+        """Refuse type checks that JavaScript cannot make."""
         parts = classes.elts if isinstance(classes, ast.Tuple) else [classes]
         names = {ast.unparse(part) for part in parts}
         if isinstance(classes, ast.BinOp):
@@ -207,13 +208,14 @@ class Calls(Expressions):
     # ---- arguments
 
     def _named(self, keywords: Sequence[ast.keyword]) -> str:
+        """Return keyword arguments as an object."""
         return f"{{ {', '.join(f'{word.arg}: {self.text(word.value)}' for word in keywords)} }}"
 
     def _placed(self, node: ast.Call, orders: list[list[str]] | None = None) -> str:
         """Return the arguments of a call in order, those by name in their places.
 
-        The orders are those of the parameters of what may be called; without them they are taken
-        from the type of the function.
+        `orders` has the parameters of each function that may be called; without it they are
+        inferred from the type of the function.
         """
         texts = [self.text(one) for one in node.args]
         words = {str(word.arg): word.value for word in node.keywords}
@@ -239,13 +241,13 @@ class Calls(Expressions):
         return ", ".join(texts)
 
 
-def _line(one: Class) -> list[Class]:
-    """Return a class and its bases."""
-    return [one, *(above for base in one.bases for above in _line(base))]
+def _lineage(one: Class) -> list[Class]:
+    """Return a class with all its bases."""
+    return [one, *(above for base in one.bases for above in _lineage(base))]
 
 
 def are_separate(node: ast.Call) -> bool:
-    """Return whether a call has several arguments by position, none by name or star."""
+    """Return whether a call has several arguments by position, and none by name or star."""
     return (
         len(node.args) > 1
         and not node.keywords

@@ -1,4 +1,4 @@
-"""Declarations that a translated module makes about itself, in comments.
+"""Declarations about the translation of a module, read from its comments.
 
 A comment on a line of its own declares something about the module, or about the function, method,
 class or constant that begins on the next line::
@@ -44,18 +44,18 @@ DEFINITIONS = (ast.FunctionDef, ast.ClassDef, ast.Assign, ast.AnnAssign)
 
 @dataclass
 class Declarations:
-    """What one module declares."""
+    """Declarations of one module."""
 
     words: set[str] = field(default_factory=set)
     """Words of `MODULE_WORDS`."""
     file: str = ""
     """Name of the JavaScript file that is the module's counterpart; "" without one."""
     definitions: dict[ast.stmt, str] = field(default_factory=dict)
-    """A word of `DEFINITION_WORDS` per definition that has one."""
+    """Word of `DEFINITION_WORDS` for each definition that has one."""
 
 
 def declarations_of(text: str, tree: ast.Module, path: str) -> Declarations:
-    """Return what a module declares.
+    """Return the declarations of a module.
 
     Raises
     ------
@@ -81,13 +81,14 @@ def declarations_of(text: str, tree: ast.Module, path: str) -> Declarations:
 
 
 def _require(holds: bool, reason: str, path: str, line: int) -> None:
+    """Raise `Untranslatable` unless a condition holds."""
     if not holds:
         raise Untranslatable(path, line, reason)
 
 
 def _first_lines(tree: ast.Module) -> Iterator[tuple[int, ast.stmt]]:
-    """Yield the first line of every definition of a module and of its classes, decorators
-    included.
+    """Yield the first line, decorators included, of every definition of a module and of its
+    classes.
     """
     for node in tree.body:
         inner = node.body if isinstance(node, ast.ClassDef) else []

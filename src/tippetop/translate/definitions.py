@@ -1,4 +1,4 @@
-"""Python's modules and classes as JavaScript."""
+"""Translation of modules and classes."""
 
 import ast
 import json
@@ -19,10 +19,10 @@ from tippetop.translate.statements import Statements, indented
 
 
 class Definitions(Statements):
-    """Translates what a module defines."""
+    """Translates the definitions of a module."""
 
     def module_lines(self) -> Iterator[str]:
-        """Yield all of a module, without its imports."""
+        """Yield a module without its imports."""
         for node in self.program.trees[self.module].body:
             if self.program.word(self.module, node):
                 continue
@@ -106,7 +106,7 @@ class Definitions(Statements):
                 raise self.refusal(node, "such a statement of a class is not translated")
 
     def _constructor(self, one: Class) -> Iterator[str]:
-        """Yield the constructor of a record: the fields of its bases come first."""
+        """Yield the constructor of a record, with the fields of its bases first."""
         arguments = [
             safe(name) if value is None else f"{safe(name)} = {self.default(value)}"
             for name, value in one.fields.items()

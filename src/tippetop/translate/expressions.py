@@ -1,4 +1,4 @@
-"""Python's expressions as JavaScript."""
+"""Translation of expressions."""
 
 import ast
 import json
@@ -28,19 +28,19 @@ ARITHMETIC = {
 }
 COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 COMPARING = {ast.Lt: "lt", ast.LtE: "le", ast.Gt: "gt", ast.GtE: "ge"}
-"""The runtime's functions of comparison, for what may be an array."""
+"""The runtime's functions of comparison, for operands that may be arrays."""
 
 LARGEST = 2**53
-"""Integers beyond this are not exact in JavaScript."""
+"""Largest integer that is exact in JavaScript."""
 
 PURE = {"abs", "float", "len"}
 """Functions that may be called twice where Python calls them once."""
 
 ORDERED = ("any", "bool", "int", "float", "str", "instance", "array")
-"""Kinds whose order JavaScript's operators tell: instances have a runtime check."""
+"""Kinds of types that JavaScript compares as Python does; instances have a check at run time."""
 
 ROW_MAKERS = ("py.zip(", "py.zip_equal(", "py.range(", "py.enumerate(", "py.list(", "[")
-"""Beginnings of expressions that make a new array."""
+"""Beginnings of JavaScript expressions that make a new array."""
 
 
 class Expressions(Inference):
@@ -51,7 +51,7 @@ class Expressions(Inference):
     program
         All modules.
     module
-        The name of this one.
+        Name of the module.
     """
 
     def __init__(self, program: Program, module: str) -> None:
@@ -71,7 +71,7 @@ class Expressions(Inference):
         """Return the parameters of a function, with their defaults."""
 
     def name(self, node: ast.Name) -> str:
-        """Return JavaScript's name of a name; one that nothing defines is refused."""
+        """Return the JavaScript name of a name; refuse a name that nothing defines."""
         name = node.id
         if self.is_local(name):
             return safe(name)
@@ -86,7 +86,7 @@ class Expressions(Inference):
         raise self.refusal(node, f"no translated module and not the runtime has '{name}'")
 
     def text(self, node: ast.expr, binds: int = ARROW) -> str:
-        """Return an expression, in parentheses where its operator binds looser than `binds`."""
+        """Return an expression, in parentheses if its operator binds looser than `binds`."""
         text, precedence = self._text(node)
         return f"({text})" if precedence < binds else text
 
@@ -108,7 +108,7 @@ class Expressions(Inference):
         return f"py.truth({self.text(node)})"
 
     def pattern(self, node: ast.expr) -> str:
-        """Return what is bound, or assigned to."""
+        """Return a target of an assignment or of a loop."""
         match node:
             case ast.Tuple(elts=parts):
                 if any(isinstance(part, ast.Starred) for part in parts[:-1]):
@@ -227,7 +227,7 @@ class Expressions(Inference):
             if not (attr in ("name", "value") and is_enumeration):
                 raise self.refusal(node, f"{self._described(receiver)} has no '{attr}'")
         if any(member.is_method for member in members):
-            # Where the class decides whether it is a method, the runtime looks at the object.
+            # If the class decides whether it is a method, the runtime inspects the object.
             return f'py.member({self.text(value)}, "{attr}")'
         return f"{self.text(value, ATOM)}.{attr}"
 
@@ -262,7 +262,7 @@ class Expressions(Inference):
                     raise self.refusal(node, "JavaScript's integers are exact up to 2**53 only")
 
     def _is_of_numbers(self, node: ast.BinOp) -> bool:
-        """Return whether JavaScript's operator means the same, where operands are numbers.
+        """Return whether JavaScript's operator means the same for the operands of an operation.
 
         Lists have operators too, and division by zero is an error in Python.
         """
@@ -430,7 +430,9 @@ class Expressions(Inference):
         return rows
 
     def _require_no_late_function(self, first: ast.comprehension, element: ast.expr) -> None:
-        """Refuse functions that are collected: in Python all of them read the last value."""
+        """Refuse functions collected in a comprehension: in Python all of them read its last
+        value.
+        """
         parts = element.elts if isinstance(element, ast.Tuple | ast.List) else [element]
         bound = set(names_in(first.target))
         for part in parts:
@@ -442,7 +444,9 @@ class Expressions(Inference):
 
 
 def is_list(node: ast.expr) -> bool:
-    """Return whether an expression is a list that is written out, a part of one, or their sum."""
+    """Return whether an expression is a list that is written out, a part of one, or a sum of
+    such.
+    """
     if isinstance(node, ast.BinOp):
         return is_list(node.left) or is_list(node.right)
     if isinstance(node, ast.Subscript):

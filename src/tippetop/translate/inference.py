@@ -1,4 +1,4 @@
-"""Types of a module's expressions: who is the receiver of a method, and what has which fields."""
+"""Type inference for the expressions of a module."""
 
 import ast
 from collections.abc import Callable, Iterator
@@ -38,11 +38,13 @@ from tippetop.translate.types import (
 Deferred: TypeAlias = Callable[[], Type]
 
 PASSES = 8
-"""Passes after which names whose types still change, as those of loops may, have any type."""
+"""Number of passes after which a name whose type still changes, as in a loop, may have any type."""
 
 
 class Scope(dict[str, list[Deferred]]):
-    """Names of a function or comprehension, with the types of what each is bound to."""
+    """Names of a function or comprehension, each with functions that return the types bound to
+    it.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -64,7 +66,7 @@ RETURNS = {
     "dict": Type("dict"),
     "set": Type("set"),
 }
-"""Types of what Python's functions return."""
+"""Types that Python's functions return."""
 
 RETURNS_OF_METHODS = {
     "index": INT,
@@ -79,22 +81,22 @@ RETURNS_OF_METHODS = {
 
 
 class Inference:
-    """Tells the types of a module's expressions.
+    """Infers the types of a module's expressions.
 
     Parameters
     ----------
     program
         All modules.
     module
-        The name of this one.
+        Name of the module.
     """
 
     def __init__(self, program: Program, module: str) -> None:
         self.program, self.module = program, module
         self.scopes = [Scope()]
         self.owner: Class | None = None
-        # Expressions whose types are being inferred, how often one depended on itself, and how
-        # many scopes are being entered.
+        # Expressions whose types are being inferred, the number of times that one depended on
+        # itself, and the number of scopes that are being entered.
         self._pending, self._cuts, self._unsettled = set[ast.expr](), 0, 0
         self._types: dict[ast.expr, Type] = {}
 
@@ -105,7 +107,7 @@ class Inference:
     # ---- names
 
     def is_local(self, name: str) -> bool:
-        """Return whether a name is one of a function or comprehension around."""
+        """Return whether a name belongs to an enclosing function or comprehension."""
         return any(name in scope for scope in self.scopes)
 
     def function_scope(self, node: ast.FunctionDef | ast.Lambda) -> Scope:
@@ -147,10 +149,11 @@ class Inference:
         return scope
 
     def _deferred(self, node: ast.expr, *, iterated: bool = False) -> Deferred:
-        """Return a function that tells the type of an expression, or of its items."""
+        """Return a function that infers the type of an expression, or of its items."""
         return lambda: self.item(self.type_of(node)) if iterated else self.type_of(node)
 
     def _bind(self, scope: Scope, target: ast.expr, kind: Deferred) -> None:
+        """Enter the names of a target, whose value has the type that `kind` returns."""
         match target:
             case ast.Name(id=name):
                 scope.setdefault(name, []).append(kind)
@@ -167,19 +170,19 @@ class Inference:
         return self.item(kind(), place)
 
     def item(self, kind: Type, place: int | None = None) -> Type:
-        """Return the type of an item of a collection, or of a tuple with names."""
+        """Return the type of an item of a collection, or of a field of a named tuple."""
         items = list[Type]()
         for part in alternatives_of(kind):
             if part.kind == "instance" and part.cls and part.cls.kind == "py.NamedTuple":
                 types = [self.member_type(part.cls, name) for name in part.cls.fields]
-                is_known = place is not None and -len(types) <= place < len(types)
-                items.append(types[place or 0] if is_known else union(types))
+                has_place = place is not None and -len(types) <= place < len(types)
+                items.append(types[place or 0] if has_place else union(types))
             else:
                 items.append(item_of(part, place))
         return union(items)
 
     def enter(self, scope: Scope) -> None:
-        """Begin a scope: infer the types of its names, which may depend on one another."""
+        """Enter a scope and infer the types of its names, which may depend on each other."""
         self.scopes.append(scope)
         scope.types = dict.fromkeys(scope, NEVER)
         before: dict[str, Type] = {}
@@ -225,7 +228,7 @@ class Inference:
     def _elsewhere(
         self, module: str, owner: Class | None, method: ast.FunctionDef | None, node: ast.expr
     ) -> Type:
-        """Return the type of an expression of another module, or of a method of a class."""
+        """Return the type of an expression in another module, or in a method of a class."""
         if node in self._types:
             return self._types[node]
         if node in self._pending:
@@ -244,7 +247,7 @@ class Inference:
     # ---- annotations
 
     def annotated(self, node: ast.expr | None, module: str, owner: Class | None) -> Type:
-        """Return the type that an annotation in a module, or in a class there, names."""
+        """Return the type that an annotation in a module, or in one of its classes, denotes."""
         match node:
             case ast.Constant(value=str(text)):
                 return self.annotated(ast.parse(text, mode="eval").body, module, owner)
@@ -316,8 +319,9 @@ class Inference:
     def members(self, kind: Type, name: str) -> list[Member]:
         """Return the members of this name that an object of a type may have.
 
-        Where its class has none, it is one of the classes derived from it: code asks with
-        `isinstance` first. Where the class is unknown, it is any that has such a member.
+        If the class has none, these are members of its derived classes, since code asks with
+        `isinstance` before it uses them. If the class is unknown, these are the members of all
+        classes.
         """
         members = list[Member]()
         for part in alternatives_of(kind) or (ANY,):
@@ -500,7 +504,7 @@ class Inference:
         )
 
     def _runtime_type(self, name: str, args: list[ast.expr]) -> Type:
-        """Return the type of what one of Python's functions returns."""
+        """Return the type of the value of one of Python's functions."""
         if name in RETURNS:
             return RETURNS[name]
         types = [self.type_of(one) for one in args if not isinstance(one, ast.Starred)]

@@ -1,18 +1,20 @@
-"""Lines of JavaScript broken where they are long."""
+"""Line breaks in generated JavaScript."""
 
 import re
 from collections.abc import Iterator
 from itertools import pairwise
 
 WIDTH = 110
-"""Longer lines are broken, where they have brackets."""
+"""Length above which a line with brackets is broken."""
 
 TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|`(?:[^`\\]|\\.)*`|, | [+?:] |.')
-"""Strings, where a line may be broken, and any other character."""
+"""Strings, places where a line may be broken, and any other character."""
 
 
 def laid_out(line: str) -> Iterator[str]:
-    """Yield a line, or several: what is in its longest brackets further in, part by part."""
+    """Yield the lines of a line: the contents of its longest brackets are indented, a part a
+    line.
+    """
     begin, end = _longest_brackets(line)
     if len(line) <= WIDTH or begin == end or line.lstrip().startswith("/**"):
         yield line
@@ -25,24 +27,26 @@ def laid_out(line: str) -> Iterator[str]:
 
 
 def _longest_brackets(line: str) -> tuple[int, int]:
-    """Where what is in them begins and ends; of brackets that are all there is in others, the inner
-    ones.
+    """Return the begin and the end of the contents of a line's longest brackets.
+
+    Of brackets that contain only other brackets, the inner ones count.
     """
-    opened, found = list[int](), [(0, 0)]
+    opened, spans = list[int](), [(0, 0)]
     for token in TOKEN.finditer(line):
         if token[0] in "([{":
             opened.append(token.end())
         elif token[0] in ")]}" and opened:
-            found.append((opened.pop(), token.start()))
-    begin, end = max(found, key=lambda pair: pair[1] - pair[0])
-    while (begin + 1, end - 1) in found:
+            spans.append((opened.pop(), token.start()))
+    begin, end = max(spans, key=lambda pair: pair[1] - pair[0])
+    while (begin + 1, end - 1) in spans:
         begin, end = begin + 1, end - 1
     return begin, end
 
 
 def _parts(text: str) -> Iterator[str]:
-    """What stands between commas, or else between the signs of operations, with which a line
-    begins.
+    """Yield the parts of a text between commas.
+
+    Without commas, these are the parts between operators, each with the operator before it.
     """
     depth, commas, signs = 0, list[int](), list[int]()
     for token in TOKEN.finditer(text):

@@ -23,7 +23,7 @@ KINDS = {
     "ValueError": "py.ValueError",
     "Protocol": "protocol",
 }
-"""JavaScript's class per base class in Python; a protocol is not translated."""
+"""JavaScript's class for each base class in Python; a protocol is not translated."""
 
 RECORDS = ("py.NamedTuple", "py.Record")
 """Kinds of classes whose constructor takes the fields by position."""
@@ -52,24 +52,24 @@ OPERATORS = {
 
 @dataclass(eq=False)
 class Class:
-    """A class of a translated module, of one with a counterpart by hand, or a protocol."""
+    """A class of a translated module, or of a module with a counterpart by hand, or a protocol."""
 
     name: str
-    """Its name in JavaScript."""
+    """Name in JavaScript."""
     module: str
     node: ast.ClassDef
     bases: list["Class"]
-    """Its bases among the translated classes."""
+    """Bases among the translated classes."""
     kind: str
     """A value of `KINDS`, "py.Record", "py.Thing" or "by hand"."""
     fields: dict[str, ast.expr | None] = field(default_factory=dict)
     """Names and defaults of the constructor's parameters, those of its bases first."""
     members: dict[str, "Member"] = field(default_factory=dict)
-    """Fields, properties, methods and constants, without those of its bases."""
+    """Fields, properties, methods and constants, without those of the bases."""
 
     @property
     def is_enumeration(self) -> bool:
-        """Whether its instances are named constants."""
+        """Whether the instances are named constants."""
         return self.kind in ENUMERATIONS
 
     def member(self, name: str) -> "Member | None":
@@ -78,9 +78,9 @@ class Class:
             return self.members[name]
         return next((member for base in self.bases if (member := base.member(name))), None)
 
-    def is_a(self, other: "Class") -> bool:
+    def is_a(self, ancestor: "Class") -> bool:
         """Return whether the class is another one or derives from it."""
-        return self is other or any(base.is_a(other) for base in self.bases)
+        return self is ancestor or any(base.is_a(ancestor) for base in self.bases)
 
 
 @dataclass(eq=False)
@@ -91,11 +91,11 @@ class Member:
     form: str
     """"field", "property", "method", "class method", "static method" or "constant"."""
     annotation: ast.expr | None = None
-    """Type of a field, property or constant where one is written."""
+    """Annotated type of a field, property or constant, or None."""
     node: ast.FunctionDef | None = None
-    """The method, or the one that assigns to the field."""
+    """The method, or the method that assigns to the field."""
     value: ast.expr | None = None
-    """Value of a constant, or the one first assigned to a field."""
+    """Value of a constant, or the value first assigned to a field."""
 
     @property
     def is_method(self) -> bool:
@@ -117,9 +117,9 @@ class Program:
     Parameters
     ----------
     sources
-        The modules' texts by their names, each after those it imports.
+        Texts of the modules by their names, each after the modules that it imports.
     paths
-        Their files, for messages; a module without one is called by its name.
+        Files of the modules, for messages; a module without one is called by its name.
 
     Raises
     ------
@@ -135,7 +135,7 @@ class Program:
             for name, tree in parsed.items()
         }
         self.trees = {name: tree for name, tree in parsed.items() if self._is_translated(name)}
-        # JavaScript's name per module and name there.
+        # JavaScript's name for each module and name.
         self.names: dict[tuple[str, str], str] = {}
         self.made: list[str] = []
         # Names imported from JavaScript written by hand, by its file.
@@ -153,11 +153,11 @@ class Program:
             self._describe(one)
 
     def word(self, module: str, node: ast.stmt) -> str:
-        """Return what a definition declares about itself, "" if nothing."""
+        """Return the declaration of a definition, "" without one."""
         return self.declared[module].definitions.get(node, "")
 
     def symbol(self, module: str, name: str) -> Symbol | None:
-        """Return what a name at the top of a module stands for, through imports."""
+        """Return the symbol of a name at the top of a module, through imports."""
         place = (module, name)
         while place in self.aliases and place not in self.symbols:
             place = self.aliases[place]
@@ -282,7 +282,9 @@ class Program:
         return "py.Record" if marked or "py.Record" in inherited else "py.Thing"
 
     def _describe(self, one: Class) -> None:
-        """Enter the members and the constructor's parameters of a class, after its bases'."""
+        """Enter the members and the constructor's parameters of a class, after those of its
+        bases.
+        """
         written = [base for base in one.bases if base.kind not in UNWRITTEN]
         if len(written) > 1 and one.kind not in UNWRITTEN:
             raise self.refusal(one.module, one.node, f"class {one.node.name} has several bases")
@@ -339,7 +341,7 @@ FORMS_OF_METHODS = {
 
 
 def _parts(target: ast.expr, value: ast.expr) -> Iterator[tuple[ast.expr, ast.expr | None]]:
-    """Yield what an assignment binds, each with its value where that is written by itself."""
+    """Yield the targets of an assignment, each with its value if that is written separately."""
     if isinstance(target, ast.Tuple):
         values = value.elts if isinstance(value, ast.Tuple) else [None] * len(target.elts)
         is_plain = len(values) == len(target.elts) and not any(
@@ -351,14 +353,14 @@ def _parts(target: ast.expr, value: ast.expr) -> Iterator[tuple[ast.expr, ast.ex
 
 
 def parameters(node: ast.FunctionDef | ast.Lambda) -> list[str]:
-    """Return the names of the parameters, without the object or class itself and those in `*`."""
+    """Return the names of the parameters, without self or cls and without starred ones."""
     args = (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)
     names = [one.arg for one in args]
     return names[1:] if names[:1] in (["self"], ["cls"]) else names
 
 
-def parameters_and_rest(node: ast.FunctionDef | ast.Lambda) -> set[str]:
-    """Return the names of all parameters."""
+def all_parameters(node: ast.FunctionDef | ast.Lambda) -> set[str]:
+    """Return the names of all parameters, the starred one included."""
     return {*parameters(node), *([node.args.vararg.arg] if node.args.vararg else [])}
 
 
@@ -381,7 +383,7 @@ def marks_of(node: ast.FunctionDef | ast.ClassDef) -> list[str]:
 
 
 def targets_of(node: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
-    """Return what an assignment binds."""
+    """Return the targets of an assignment."""
     return node.targets if isinstance(node, ast.Assign) else [node.target]
 
 

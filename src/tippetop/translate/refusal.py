@@ -1,4 +1,4 @@
-"""The error by which the translator refuses what it cannot translate."""
+"""Error by which the translator refuses code."""
 
 
 class Untranslatable(SyntaxError):

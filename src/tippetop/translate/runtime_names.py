@@ -34,7 +34,7 @@ FUNCTIONS: dict[str, tuple[str, ...]] = {
     "type": (),
     "zip": (),
 }
-"""Python's functions, with the parameters that may be passed by name."""
+"""Python's functions that the runtime has, with the parameters that may be passed by name."""
 
 IMPORTED = {
     "dataclasses": ("replace",),
@@ -42,7 +42,7 @@ IMPORTED = {
     "itertools": ("pairwise",),
     "operator": ("mul",),
 }
-"""Functions of Python's library by their modules."""
+"""Functions of Python's library that the runtime has, by their modules."""
 
 ERRORS = (
     "ArithmeticError",

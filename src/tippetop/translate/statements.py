@@ -1,4 +1,4 @@
-"""Python's statements and functions as JavaScript."""
+"""Translation of statements and functions."""
 
 import ast
 from collections.abc import Iterator, Sequence
@@ -9,28 +9,28 @@ from tippetop.translate.expressions import ATOM, LESS, is_list
 from tippetop.translate.program import (
     FORMS_OF_FUNCTION,
     all_of,
+    all_parameters,
     marks_of,
     names_in,
-    parameters_and_rest,
     targets_of,
     within,
 )
 from tippetop.translate.types import NUMBERS, is_only, kinds_of
 
 ONCE = ("map", "zip", "enumerate", "reversed", "pairwise")
-"""Functions whose result can be gone through once in Python, and again in JavaScript."""
+"""Functions whose result can be iterated only once in Python, and again in JavaScript."""
 
 
 class Statements(Calls):
     """Translates the statements and functions of a module."""
 
     _function: ast.FunctionDef | None = None
-    """The function whose statements are translated."""
+    """Function whose statements are being translated."""
     _views: frozenset[str] = frozenset()
-    """Names of parts of arrays in it."""
+    """Names of array slices in that function."""
 
     def function_lines(self, node: ast.FunctionDef, head: str) -> Iterator[str]:
-        """Yield a function or method; one that yields becomes a generator."""
+        """Yield a function or method; a function that yields becomes a generator."""
         unknown = set(marks_of(node)) - FORMS_OF_FUNCTION
         if unknown:
             raise self.refusal(node, f"decorator {unknown.pop()} is not translated")
@@ -47,19 +47,20 @@ class Statements(Calls):
         yield "});" if is_cached else "}"
 
     def _body(self, node: ast.FunctionDef) -> Iterator[str]:
-        outer, self.declared = self.declared, parameters_and_rest(node)
+        outer, self.declared = self.declared, all_parameters(node)
         function, self._function, views = self._function, node, self._views
         self.enter(self.function_scope(node))
-        self._look_through(node)
+        self._enter_views(node)
         if node.name == "__init__" and "super().__init__" not in ast.unparse(node):
             yield "super();"
         yield from self._block(node.body)
         self.scopes.pop()
         self.declared, self._function, self._views = outer, function, views
 
-    def _look_through(self, node: ast.FunctionDef) -> None:
-        """Enter the names of parts of arrays; refuse a name for values that can be gone through
-        once, if it is read twice.
+    def _enter_views(self, node: ast.FunctionDef) -> None:
+        """Enter the names of array slices, and refuse iterators that are read twice.
+
+        A second reading of an iterator has no values in Python, but has them in JavaScript.
         """
         views = set[str]()
         for one in within(node):
@@ -141,15 +142,15 @@ class Statements(Calls):
                 raise self.refusal(node, "such a statement is not translated")
 
     def _var(self, *names: str) -> str:
-        """Return what declares names in a function, as Python does, before they are first
-        written.
+        """Return "var " if one of the names is not yet declared in the function, and declare
+        all.
         """
         new = not self.declared.issuperset(names)
         self.declared.update(names)
         return "var " if new else ""
 
     def _assignment(self, targets: list[ast.expr], value: ast.expr) -> Iterator[str]:
-        """Yield an assignment; where several targets share the value, it is made once."""
+        """Yield an assignment; a value that several targets share is computed once."""
         names = [target for target in targets if isinstance(target, ast.Name)]
         if len(targets) == 1 or isinstance(value, ast.Constant):
             for target in targets:
@@ -177,12 +178,12 @@ class Statements(Calls):
         return f"{self._var(*names_in(target))}{self.pattern(target)} = {value};"
 
     def _require_no_view(self, target: ast.expr, row: ast.expr) -> None:
-        """Refuse to write to a part of an array: in Python it shares the array's numbers."""
+        """Refuse an assignment to an array slice, which in Python shares the array's numbers."""
         if isinstance(row, ast.Name) and row.id in self._views:
             raise self.refusal(target, "a part of an array shares its numbers in Python")
 
     def _augmented(self, node: ast.AugAssign) -> str:
-        """Return an assignment with an operator: lists are extended in place, as in Python."""
+        """Return an augmented assignment; lists are extended in place, as in Python."""
         target, value = node.target, node.value
         if any(isinstance(one, ast.Call) for one in ast.walk(target)):
             raise self.refusal(node, "the call in the target would be made twice; name its value")
@@ -256,9 +257,10 @@ class Statements(Calls):
     def _counted(self, node: ast.For, target: ast.Name, args: list[ast.expr]) -> Iterator[str]:
         """Yield a loop over a range.
 
-        Python evaluates its end once, and sets the variable anew in every turn: where the loop may
-        change what the end depends on, or the variable is read after the loop, changed in it or by
-        a function made in it, they have variables of their own.
+        Python evaluates the end of the range once and sets the variable at the start of every turn.
+        If the loop may change what the end depends on, the end gets a variable. If the loop's
+        variable is read after the loop, changed in it or captured by a function, the count gets
+        another variable.
         """
         start = self.text(args[0]) if len(args) > 1 else "0"
         stop = args[1] if len(args) > 1 else args[0]
@@ -295,8 +297,9 @@ class Statements(Calls):
         yield "}"
 
     def _sign_of(self, step: ast.expr) -> str:
-        """Return how a loop's variable compares with the end of its range: its step is a number
-        that is written out, or a constant of a module.
+        """Return the comparison of a loop's variable with the end of its range.
+
+        The step must be a number that is written out, or a constant of a module.
         """
         match step:
             case ast.Constant(value=int(number)) if number > 0:
@@ -324,7 +327,7 @@ class Statements(Calls):
         return False
 
     def _counts_alone(self, loop: ast.For, name: str) -> bool:
-        """Return whether a loop's variable is read in the loop alone, and never changed there."""
+        """Return whether a loop's variable is read only in the loop and never changed in it."""
         function = self._function
         if function is None or name == "_":
             return True
@@ -357,13 +360,13 @@ class Statements(Calls):
         )
 
     def _reads(self, function: ast.FunctionDef | ast.Lambda, name: str) -> bool:
-        if name in parameters_and_rest(function):
+        if name in all_parameters(function):
             return False
         return any(isinstance(one, ast.Name) and one.id == name for one in ast.walk(function))
 
 
 def is_consumed(node: ast.expr) -> bool:
-    """Return whether the values of an expression can be gone through only once in Python."""
+    """Return whether the values of an expression can be iterated only once in Python."""
     match node:
         case ast.GeneratorExp():
             return True
@@ -373,8 +376,8 @@ def is_consumed(node: ast.expr) -> bool:
 
 
 def are_independent(places: ast.Tuple, values: ast.Tuple) -> bool:
-    """Return whether names are bound, one after the other, to values in which none of them
-    occurs.
+    """Return whether an assignment of a tuple can be made name by name: no name occurs in the
+    values.
     """
     names = {
         node.id for place in places.elts for node in ast.walk(place) if isinstance(node, ast.Name)
@@ -388,7 +391,7 @@ def are_independent(places: ast.Tuple, values: ast.Tuple) -> bool:
 
 
 def is_row(node: ast.Subscript, index: str) -> bool:
-    """Return whether an expression is a number, of this index, of a row of an array."""
+    """Return whether an expression is the number at this index of a row of an array."""
     match node.slice:
         case ast.Tuple(elts=[ast.Constant(), ast.Name(id=name)]):
             return name == index

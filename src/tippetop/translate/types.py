@@ -1,4 +1,4 @@
-"""Types of expressions, as far as annotations and constructors tell them."""
+"""Types of expressions, as far as annotations and constructors determine them."""
 
 import ast
 from typing import NamedTuple
@@ -10,12 +10,12 @@ class Type(NamedTuple):
     """The type of an expression."""
 
     kind: str
-    """"any" where it is unknown, "union", "none", "bool", "int", "float", "str", "list", "tuple",
+    """"any" if it is unknown, "union", "none", "bool", "int", "float", "str", "list", "tuple",
     "sequence", "set", "dict", "iterator", "array", "instance", "class", "function" or "module".
     """
     parts: tuple["Type", ...] = ()
-    """Alternatives of a union, items of a tuple, the item of another collection, the key and the
-    value of a dict, what a function returns.
+    """Alternatives of a union, items of a tuple, the item of another collection, key and value of a
+    dict, or the value that a function returns.
     """
     cls: Class | None = None
     """The class of an instance, or the class itself, or the owner of a method."""
@@ -29,7 +29,7 @@ ANY, NONE, BOOL, INT, FLOAT, STR, ARRAY = map(
     Type, ("any", "none", "bool", "int", "float", "str", "array")
 )
 NEVER = Type("union")
-"""The type of a value that never occurs, as far as is known yet."""
+"""Type of a value that does not occur as far as inference has come."""
 
 BASIC = {
     "bool": BOOL,
@@ -82,13 +82,13 @@ def kinds_of(one: Type) -> set[str]:
 
 
 def is_only(one: Type, *kinds: str) -> bool:
-    """Return whether a type is known to be of some kinds."""
+    """Return whether a type is certainly one of some kinds."""
     possible = kinds_of(one)
     return bool(possible) and possible <= set(kinds)
 
 
 def item_of(one: Type, place: int | None = None) -> Type:
-    """Return the type of an item of a collection, at a place where that is known."""
+    """Return the type of an item of a collection, at a place if it is given."""
     items = list[Type]()
     for part in alternatives_of(one):
         if part.kind == "tuple" and place is not None and -len(part.parts) <= place:
