@@ -15,15 +15,16 @@ from tippetop.lathe.edges import Edge
 Array = NDArray[np.complex128]
 
 LARGEST_TURN = 0.9 * math.pi
-"""Largest turn of one arc, rad: a half circle's centre is on its chord, and loses digits."""
+"""Largest turn of one arc, rad: the centre of half a circle is on its chord, and inexact."""
 
 STRAIGHT = 1e-14
-"""Square of the width of points, in lengths, below which they are on a line."""
+"""Square of the relative width below which points count as collinear."""
 
 
 def circle_through(points: Array) -> tuple[complex, float] | None:
-    """Return the centre and radius of the circle closest to points, in the sense of least squares
-    of its equation; None where they are on a line.
+    """Return centre and radius of the circle closest to points; None if they are on a line.
+
+    The circle minimises the sum of squares of its equation.
     """
     base = complex(points.mean())
     arms = points - base
@@ -41,7 +42,7 @@ def circle_through(points: Array) -> tuple[complex, float] | None:
 
 
 def circle_on_axis(points: Array) -> tuple[complex, float] | None:
-    """Return the centre and radius of the circle closest to points whose centre is on the axis."""
+    """Return centre and radius of the circle closest to points, with its centre on the axis."""
     base = 1j * points.imag.mean()
     arms = points - base
     columns = [2.0 * arms.imag, np.ones(len(arms))]
@@ -53,8 +54,10 @@ def circle_on_axis(points: Array) -> tuple[complex, float] | None:
 
 
 def ellipse_on_axis(points: Array) -> tuple[float, float, float, float] | None:
-    """Return the semi-axes across and along the axis and height of the centre of the ellipse
-    closest to points, and their largest distance from it; None if no ellipse is close.
+    """Return semi-axes across and along the axis, height of the centre, and largest distance from
+    points.
+
+    None is returned if no ellipse is close to the points.
     """
     base = points.imag.mean()
     size = float(np.abs(points - 1j * base).max())
@@ -80,10 +83,10 @@ def least_squares(
 
 
 def biarc(start: complex, along: complex, end: complex, towards: complex) -> list[Edge] | None:
-    """Return two arcs that meet smoothly, from a point with a unit tangent to another; None where
-    they would turn back.
+    """Return two arcs, tangent to each other, from a point with a unit tangent to another one.
 
-    Of all such pairs it is the one whose control polygon has equal legs.
+    Of all such pairs it is the one whose control polygon has equal legs. None is returned if the
+    arcs would turn back.
     """
     chord = end - start
     both = along + towards
@@ -107,8 +110,10 @@ def biarc(start: complex, along: complex, end: complex, towards: complex) -> lis
 
 
 def tangents_along(points: Array, within: float) -> Array:
-    """Return the unit tangents of the smooth curve through points: those of circles through as many
-    of them around each as are within a distance of one.
+    """Return the unit tangents at points of a smooth curve.
+
+    Each is the tangent of a circle through neighbouring points, as many as lie within a distance of
+    one circle.
     """
     tangents = np.full(len(points), 0j)
     last = len(points) - 1
@@ -142,7 +147,7 @@ def _tangent(points: Array, low: int, high: int, k: int) -> complex:
 def arcs_around(
     center: complex, radius: float, start: complex, end: complex, about: float
 ) -> list[Edge]:
-    """Return the arcs around a centre from one point to another that turn by about an angle."""
+    """Return the arcs around a centre between two points that turn by about the angle `about`."""
     first, second = (cmath.phase(point - center) for point in (start, end))
     turn = about + (second - first - about + math.pi) % math.tau - math.pi
     parts = math.ceil(abs(turn) / LARGEST_TURN)
@@ -154,7 +159,7 @@ def arcs_around(
 def circles_meet(
     one: tuple[complex, float], other: tuple[complex, float], near: complex
 ) -> complex | None:
-    """Return where two circles meet, closest to a point; None where they do not."""
+    """Return the intersection of two circles that is closest to a point; None if there is none."""
     (center, radius), (other_center, other_radius) = one, other
     between = other_center - center
     apart = abs(between)

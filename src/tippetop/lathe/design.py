@@ -1,6 +1,4 @@
-"""Bodies to order: the cavity, weight, or bowl and stem that give a wanted eccentricity and I1 /
-I3.
-"""
+"""Design of bodies: a cavity, weight, or bowl and stem for a wanted eccentricity and I1 / I3."""
 
 import math
 from collections.abc import Callable
@@ -15,11 +13,11 @@ from tippetop.lathe.workpiece import DENSEST, UNITS, Insert, Workpiece
 from tippetop.support.errors import Described, InvalidInput, is_number, require
 from tippetop.support.units import number_in
 
-LOOKS = 96
-"""Sizes that are tried before the one that is wanted is looked for between two of them."""
+SIZES_TRIED = 96
+"""Number of sizes that are tried to bracket the solution."""
 
 LONGEST = 3.0
-"""How far a stem may reach from the centre of the sphere, in radii."""
+"""Largest distance of the stem's end from the centre of the sphere, in radii."""
 
 
 def design_insert(
@@ -30,8 +28,8 @@ def design_insert(
     density: float = 0.0,
     wall: float | None = None,
 ) -> Workpiece:
-    """Return a turned body with a round cavity or weight more, on its axis, that makes it stand as
-    wanted.
+    """Return a turned body with one more spherical cavity or weight on its axis, of wanted
+    properties.
 
     Parameters
     ----------
@@ -78,7 +76,7 @@ def design_insert(
     radius, base = sphere.tube, piece.mass_properties
     least = _wall(radius, wall)
     points = piece.outline.points(2)
-    heights = np.linspace(points.imag.min(), points.imag.max(), 16 * LOOKS + 1)
+    heights = np.linspace(points.imag.min(), points.imag.max(), 16 * SIZES_TRIED + 1)
     room = np.array([_room(piece, height) for height in heights]) - least
 
     def made(size: float, height: float) -> Workpiece:
@@ -92,28 +90,28 @@ def design_insert(
         return (density - piece.density) * 4.0 / 3.0 * math.pi * size**3
 
     def height(size: float) -> float | None:
-        wanted = sphere.height - eccentricity * radius
-        found = wanted + (wanted - base.center) * base.mass / mass(size)
-        return found if _room(piece, found) - least >= size else None
+        center = sphere.height - eccentricity * radius
+        place = center + (center - base.center) * base.mass / mass(size)
+        return place if _room(piece, place) - least >= size else None
 
     def extremes(size: float) -> list[float]:
         within = heights[room >= size]
         centers = (base.mass * base.center + mass(size) * within) / (base.mass + mass(size))
         return [float(sphere.height - center) / radius for center in centers]
 
-    sizes = np.linspace(0.0, room.max(), LOOKS + 2)[1:-1].tolist()
-    return _found(sizes, height, extremes, made, eccentricity, inertia_ratio)
+    sizes = np.linspace(0.0, room.max(), SIZES_TRIED + 2)[1:-1].tolist()
+    return _solve(sizes, height, extremes, made, eccentricity, inertia_ratio)
 
 
 def _room(piece: Workpiece, height: float) -> float:
-    """Return the distance of a point of the axis from all surfaces, m; 0 outside of the body, and
-    in what is let in.
+    """Return the distance of a point of the axis from all surfaces, m; 0 outside the body and in
+    inserts.
     """
     point, profiles = 1j * height, (piece.outline, *piece.insides)
     away = min(profile.distance(point) for profile in profiles)
     if away <= ROUNDING * piece.outline.size:
         return 0.0
-    # From the axis one sees half of what is around.
+    # From the axis, half of a profile around a point is seen.
     around = [
         abs(sum(edge.angle_seen(point) for edge in profile.edges)) > 1.0 for profile in profiles
     ]
@@ -129,8 +127,7 @@ def design_bowl(
     stem: float | None = None,
     wall: float | None = None,
 ) -> Workpiece:
-    """Return the bowl with a stem inside, of one material, that stands on its sphere as wanted, and
-    on its stem.
+    """Return a bowl with a stem inside, of one material, with wanted properties on its sphere.
 
     The sphere is cut off just where the stem takes over. The thickness of the bowl and the length
     of the stem, which is round at its end, are found.
@@ -194,9 +191,9 @@ def design_bowl(
             return None
         return _root(lambda size: _alpha(piece(tip, size), radius) - eccentricity, *ends(tip))
 
-    tips = np.linspace(radius, LONGEST * radius, LOOKS // 2 + 1)[1:].tolist()
+    tips = np.linspace(radius, LONGEST * radius, SIZES_TRIED // 2 + 1)[1:].tolist()
     possible = [tip for tip in tips if ends(tip)[0] < ends(tip)[1]]
-    return _found(possible, hollow, extremes, piece, eccentricity, inertia_ratio)
+    return _solve(possible, hollow, extremes, piece, eccentricity, inertia_ratio)
 
 
 def _wall(radius: float, wall: float | None) -> float:
@@ -209,7 +206,7 @@ def _wall(radius: float, wall: float | None) -> float:
 
 
 def _positive(field: str, value: Any, units: str = "1") -> float:
-    """Return a number greater than 0, in an SI unit."""
+    """Return a positive number in an SI unit."""
     number = _number(field, value, units)
     if number <= 0.0:
         raise InvalidInput(field, value, "a number greater than 0")
@@ -217,7 +214,9 @@ def _positive(field: str, value: Any, units: str = "1") -> float:
 
 
 def _number(field: str, value: Any, units: str = "1") -> float:
-    """Return a finite number in an SI unit, from one, a text with a unit, or a quantity of pint."""
+    """Return a finite number in an SI unit, from a number, a text with a unit or a pint
+    quantity.
+    """
     number = number_in(field, value, units)
     if not is_number(number):
         raise InvalidInput(field, value, "a finite number")
@@ -225,11 +224,11 @@ def _number(field: str, value: Any, units: str = "1") -> float:
 
 
 def _alpha(piece: Workpiece, radius: float) -> float:
-    """How far the centre of mass is below the origin, in radii."""
+    """Return the depth of the centre of mass below the origin, in radii."""
     return -piece.mass_properties.center / radius
 
 
-def _found(
+def _solve(
     sizes: list[float],
     partner: Callable[[float], float | None],
     extremes: Callable[[float], list[float]],
@@ -237,15 +236,17 @@ def _found(
     eccentricity: float,
     inertia_ratio: float,
 ) -> Workpiece:
-    """Return the body with the wanted ratio, among those with the wanted eccentricity: one a size,
-    or none.
+    """Return the body with the wanted ratio I1 / I3 and the wanted eccentricity.
+
+    `partner` gives, for a size, the second length with which the eccentricity is as wanted, or
+    None.
     """
 
     def ratio(size: float) -> float:
-        other = partner(size)
-        if other is None:
+        second = partner(size)
+        if second is None:
             return math.nan
-        properties = piece(size, other).mass_properties
+        properties = piece(size, second).mass_properties
         return properties.I1 / properties.I3
 
     ratios = [ratio(size) for size in sizes]
@@ -258,9 +259,9 @@ def _found(
     for (low, below), (high, above) in pairwise(zip(sizes, ratios, strict=True)):
         if min(below, above) <= inertia_ratio <= max(below, above):
             size = _root(lambda size: ratio(size) - inertia_ratio, low, high)
-            other = partner(size)
-            if other is not None:
-                return piece(size, other)
+            second = partner(size)
+            if second is not None:
+                return piece(size, second)
     runs = [list(run) for finite, run in groupby(ratios, math.isfinite) if finite]
     longer = [run for run in runs if len(run) > 1] or runs
     between = " or ".join(f"{min(run):.5g} to {max(run):.5g}" for run in longer)

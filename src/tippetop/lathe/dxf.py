@@ -11,17 +11,17 @@ from tippetop.support.errors import InvalidInput, Unavailable
 from tippetop.support.installation import install_command
 
 MM = {1: 25.4, 4: 1.0, 5: 10.0, 6: 1000.0, 13: 1e-3, 14: 100.0}
-"""Sizes of the units that a DXF file may state, by its code for them, mm."""
+"""Units that a DXF file may state, by their codes, mm."""
 
 MM_CODE = 4
-"""The code of mm, which a file without a unit is in."""
+"""Code of mm, which a file without a unit is in."""
 
 
 def read_dxf(path: FilePath, unit: str | None, name: str) -> Sheet:
-    """Return what a DXF file shows, in mm or, with a unit stated, in the file's numbers, which are
-    in that unit.
+    """Return the sheet of a DXF file.
 
-    Raises `InvalidInput` if it is no DXF, `Unavailable` if ezdxf is not installed.
+    Its numbers are mm or, if a unit is stated, the file's own numbers in that unit. Raises
+    `InvalidInput` if the file is no DXF, `Unavailable` if ezdxf is not installed.
     """
     try:
         import ezdxf  # noqa: PLC0415 - optional
@@ -44,7 +44,7 @@ def read_dxf(path: FilePath, unit: str | None, name: str) -> Sheet:
 
 
 def _simple(entities: Any) -> Any:
-    """Yield the entities, with polylines and blocks in their parts."""
+    """Yield the entities, with polylines and blocks resolved into theirs."""
     for entity in entities:
         if entity.dxftype() in ("LWPOLYLINE", "POLYLINE", "INSERT"):
             yield from _simple(entity.virtual_entities())
@@ -53,7 +53,9 @@ def _simple(entities: Any) -> Any:
 
 
 def _paths(entity: Any, scale: float, ezdxf: Any) -> list[Path]:
-    """Return the paths of an entity; none of what is no line, such as texts and dimensions."""
+    """Return the paths of an entity; none for texts, dimensions and other entities without
+    lines.
+    """
 
     def place(point: Any) -> complex:
         return scale * complex(point[0], point[1])

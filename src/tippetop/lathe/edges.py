@@ -1,4 +1,4 @@
-"""The edges of a profile: straight, or arcs of circles, in the half-plane through the axis.
+"""Edges of profiles: straight lines and arcs of circles in the half-plane through the axis.
 
 A point is a complex number: its distance from the axis and, times i, its height along it, m.
 """
@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 Points = NDArray[np.complex128]
 
 NEWTON = 3
-"""Steps of Newton's method for where two edges meet."""
+"""Number of Newton steps that refine the meeting of two edges."""
 
 TANGENT = 1e-12
-"""Sine of the angle below which edges that meet are not told from edges that touch."""
+"""Sine of the angle below which edges that meet count as touching."""
 
 
 # translate: runtime
@@ -36,15 +36,13 @@ class Edge(NamedTuple):
 
     start: complex
     end: complex
-    """Where it begins and ends."""
+    """Start and end."""
     turn: float = 0.0
-    """Angle by which it turns to the left along the way, rad, between -pi and pi; 0 where it is
-    straight.
-    """
+    """Angle by which the edge turns to the left, rad, between -pi and pi; 0 for a straight edge."""
 
     @property
     def chord(self) -> complex:
-        """From its start to its end."""
+        """Vector from the start to the end."""
         return self.end - self.start
 
     @property
@@ -61,7 +59,7 @@ class Edge(NamedTuple):
 
     @property
     def sagitta(self) -> float:
-        """How far the arc is from its chord at most, m."""
+        """Largest distance of the arc from its chord, m."""
         return 0.5 * abs(self.chord) * math.tan(abs(self.turn) / 4.0)
 
     @property
@@ -70,11 +68,11 @@ class Edge(NamedTuple):
         return Edge(self.end, self.start, -self.turn)
 
     def direction(self, share: float) -> complex:
-        """Return the unit vector along it, after this share of it."""
+        """Return the unit tangent at a share of the edge."""
         return self.chord / abs(self.chord) * cmath.exp(1j * (share - 0.5) * self.turn)
 
     def points(self, share: ArrayLike) -> Points:
-        """Return points after these shares of it, from 0 at its start to 1 at its end."""
+        """Return points at shares of the edge, from 0 at its start to 1 at its end."""
         t = np.asarray(share)
         half = self.turn / 2.0
         # The chord of a part of an arc: no digits are lost however straight the arc is.
@@ -105,7 +103,7 @@ class Edge(NamedTuple):
         gone, left = point - self.start, self.end - point
         if not self.turn:
             return (gone / self.chord).real
-        # The angle at the end that is further away: the other is less exact.
+        # The angle at the farther end is the more exact one.
         if abs(gone) < abs(left):
             return 2.0 * cmath.phase(left / self.chord) / self.turn
         return 1.0 + 2.0 * cmath.phase(gone / self.chord) / self.turn
@@ -124,21 +122,22 @@ class Edge(NamedTuple):
         return abs(on_circle - point) if 0.0 < share < 1.0 else ends
 
     def angle_seen(self, point: complex) -> float:
-        """Return the angle by which the direction from a point that is not on it turns along the
-        way, rad.
+        """Return the angle (rad) by which the direction from a point off the edge turns along the
+        edge.
         """
         seen = cmath.phase((self.end - point) / (self.start - point))
         if not self.turn:
             return seen
-        # Between the chord and the arc one sees the arc on the other side of the chord.
+        # From between the chord and the arc, the arc is seen on the other side of the chord.
         within = abs(point - self.center) < abs(self.radius)
         beyond = ((point - self.start) / self.chord).imag * self.turn < 0.0
         return seen + math.copysign(math.tau, self.turn) if within and beyond else seen
 
 
 def meetings(one: Edge, other: Edge, within: float) -> list[complex]:
-    """Where two edges meet to this distance, m; of edges that lie on each other, the ends that they
-    share.
+    """Return the points where two edges meet to within a distance, m.
+
+    Of edges that overlap, these are the ends that they share.
     """
     ends = [one.start, one.end, other.start, other.end]
     if one.turn and other.turn:
@@ -154,8 +153,9 @@ def meetings(one: Edge, other: Edge, within: float) -> list[complex]:
 
 
 def _polished(one: Edge, other: Edge, point: complex) -> complex:
-    """Return a meeting as found along the edges: seen from the centres of arcs nearly straight it
-    is far off.
+    """Return a meeting refined by Newton's method along both edges.
+
+    The intersection of circles is inexact for arcs that are nearly straight.
     """
     t, u = one.share(point), other.share(point)
     for _ in range(NEWTON):

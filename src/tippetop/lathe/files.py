@@ -1,6 +1,4 @@
-"""Workpieces read from files: whole from TOML, or their profile from points, drawings and
-meshes.
-"""
+"""Workpieces read from files: from TOML, or their profiles from points, drawings and meshes."""
 
 from contextlib import ExitStack
 from itertools import pairwise
@@ -18,10 +16,10 @@ from tippetop.support.parsing import parse_toml
 ACCEPTED = "a workpiece in TOML, or a profile in CSV, SVG, DXF or STL"
 
 DRAWINGS = (".svg", ".dxf", ".stl")
-"""How the names of drawings and meshes end, which have a unit of their own."""
+"""Suffixes of drawings and meshes, which have a unit of their own."""
 
 STARTS = "0123456789+-."
-"""What numbers begin with, also those with a slip further on: no cell of a heading begins so."""
+"""First characters of numbers, also of mistyped ones: no cell of a heading begins so."""
 
 
 def read_workpiece(path: Path | str, *, axis: str | None = None, **fields: Any) -> Workpiece:
@@ -69,7 +67,7 @@ def read_with_remarks(
     inserts = content.get("inserts")
     parts = {"": content}
     if isinstance(inserts, list):
-        # What is read is put in, and not into what was given.
+        # The inserts are copied, so that the caller's are not changed.
         content["inserts"] = inserts = [
             dict(part) if isinstance(part, dict) else part for part in inserts
         ]
@@ -106,10 +104,10 @@ def _add_cavities(content: dict[str, Any], reading: Reading, field: str) -> None
 def _read(
     path: Path, axis: str | None, content: dict[str, Any], field: str, is_in_toml: bool
 ) -> Reading:
-    """Return the profile in a file; what it is measured in is the workpiece's unit after this.
+    """Return the profile in a file, and set the unit of the workpiece to its unit.
 
-    The numbers of a drawing are physical lengths, and of a mesh mm, unless a unit is stated; then
-    they are in this unit.
+    Numbers of a drawing are physical lengths and those of a mesh mm, unless a unit is stated for
+    them.
     """
     suffix = path.suffix.lower()
     if suffix not in (".csv", *DRAWINGS):
@@ -119,7 +117,7 @@ def _read(
     unit = content.get("unit")
     tolerance = content.get("tolerance", TOLERANCE)
     if not isinstance(tolerance, float | int) or not 0.0 <= tolerance <= 1.0:
-        tolerance = TOLERANCE  # What is wrong with it, the workpiece says.
+        tolerance = TOLERANCE  # The workpiece refuses the stated one.
     if suffix == ".csv":
         points = _from_csv(read_text(path, ACCEPTED), path)
         if axis is None and not _are_on_both_sides(points):
@@ -160,15 +158,13 @@ def _scaled(points: list[tuple[float, ...]], scale: float) -> list[tuple[float, 
 
 
 def _are_on_both_sides(points: list[tuple[float, ...]]) -> bool:
-    """Return whether points are those of a whole outline, to the left and to the right of the
-    axis.
-    """
+    """Return whether points are a full outline, on both sides of the axis."""
     across = [point[0] for point in points]
     return all(len(point) == 2 for point in points) and min(across, default=0.0) < 0.0 < max(across)
 
 
 def _from_csv(text: str, path: Path) -> list[tuple[float, ...]]:
-    """Return the points in rows of numbers with commas, semicolons, tabs or spaces between them."""
+    """Return the points in rows of numbers separated by commas, semicolons, tabs or spaces."""
     lines = [line.partition("#")[0].strip() for line in text.splitlines()]
     between = next((mark for mark in ";\t," if any(mark in line for line in lines)), None)
     cells = [[cell.strip(' "') for cell in line.split(between)] for line in lines]
@@ -179,7 +175,7 @@ def _from_csv(text: str, path: Path) -> list[tuple[float, ...]]:
 
 
 def _numbers(number: int, row: list[str], path: Path) -> tuple[float, ...]:
-    """Return the numbers of a row, which may end in empty cells, but has none between others."""
+    """Return the numbers of a row; empty cells are accepted at its end only."""
     cells = list(row)
     while not cells[-1]:
         cells.pop()

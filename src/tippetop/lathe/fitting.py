@@ -1,5 +1,4 @@
-"""Profiles as they are meant: arcs and lines through the points of polylines, without the rounding
-of the numbers that state them.
+"""Fitting of profiles: arcs and lines through stated points, without the rounding of their numbers.
 
 Runs of straight edges become lines and arcs of circles where the points are on them, tangent arcs
 along other smooth curves, and edges as drawn between corners.
@@ -31,38 +30,36 @@ from tippetop.lathe.profile import LARGEST
 from tippetop.lathe.rounding import unrounded, usual_rounding
 
 TOLERANCE = 1e-4
-"""How far the fitted profile may be from the points, in sizes of the profile, unless stated."""
+"""Default distance of the fitted profile from the points, in sizes of the profile."""
 
 COARSEST = math.radians(29.0)
-"""Angle between edges of a polyline that may still stand for an arc, rad: a polygon of 12 edges or
-fewer is meant as one.
+"""Largest angle between edges that stand for an arc, rad: a polygon of 12 edges or fewer stays
+one.
 """
 
 SMOOTH = math.radians(12.0)
-"""Angle between edges of a polyline that may still stand for a smooth curve that is no arc, rad."""
+"""Largest angle between edges that stand for a smooth curve other than an arc, rad."""
 
 UNEVEN = 4.0
-"""Ratio of the lengths of neighbouring edges up to which they may stand for one smooth curve."""
+"""Largest ratio of the lengths of neighbouring edges on one smooth curve."""
 
 FEWEST_ON_ARC = 4
-"""Fewest edges that stand for an arc: four points of any symmetric chamfer are on a circle."""
+"""Smallest number of edges on an arc: four points of any symmetric chamfer are on a circle."""
 
 FEWEST_ON_CURVE = 6
-"""Fewest edges that stand for a smooth curve."""
+"""Smallest number of edges on a smooth curve."""
 
 WIDE = math.radians(60.0)
-"""Angle from which on points within the tolerance of a circle are an arc, rad: no other smooth
-curve is so close to its circle of curvature for so long.
+"""Turn from which points within the tolerance of a circle are an arc, rad: no other smooth curve
+stays so close to its circle of curvature for so long.
 """
 
 NARROW = math.radians(20.0)
-"""Angle from which on points within `CLOSE` of a circle are an arc where the line goes on smoothly,
-rad.
-"""
+"""Turn from which points within `CLOSE` of a circle are an arc in a smooth line, rad."""
 
 CLOSE = 0.1
-"""Share of the tolerance within which the points of a shorter arc must be on its circle, unless
-they are rounded to fewer digits.
+"""Share of the tolerance within which points of a short arc lie on its circle, unless they are
+rounded to fewer digits.
 """
 
 ABRUPT = 0.75
@@ -71,7 +68,7 @@ curve leaves its circle of curvature with the third power of the length, and has
 """
 
 COARSEST_ROUNDING = 1e-3
-"""Largest rounding of points that are meant to be on smooth curves, in sizes of the profile."""
+"""Largest rounding of points on smooth curves, in sizes of the profile."""
 
 FLAT = 1e-9
 """Sagitta below which an edge is straight, in sizes of the profile."""
@@ -84,17 +81,17 @@ class Fit(NamedTuple):
     """A profile fitted to points."""
 
     points: Points
-    """The points that state it."""
+    """Points that state the fitted profile."""
     stated: int
-    """How many edges were stated."""
+    """Number of edges that were stated."""
     edges: int
-    """How many edges it has."""
+    """Number of edges of the fitted profile."""
     deviation: float
-    """Largest distance of a stated point from it, in the unit of the points."""
+    """Largest distance of a stated point from the fitted profile, in the unit of the points."""
 
 
 def fit(points: Sequence[Sequence[float]], tolerance: float = TOLERANCE) -> Fit:
-    """Return the profile that points stand for, to within a tolerance in sizes of the profile.
+    """Return the profile fitted to points, to within a tolerance in sizes of the profile.
 
     With the tolerance 0 every edge is as stated.
 
@@ -144,7 +141,7 @@ def _point(edge: Edge, flat: float) -> tuple[float, ...]:
 
 
 def _fit_run(points: Array, within: float, rounding: float) -> tuple[list[Edge], float]:
-    """Return the edges fitted to a run of straight ones, and the largest distance of a point from
+    """Return the edges fitted to a run of straight edges, and the largest distance of a point from
     them.
     """
     polyline = Polyline(points, within, rounding)
@@ -160,13 +157,13 @@ def _fit_run(points: Array, within: float, rounding: float) -> tuple[list[Edge],
 
 
 class CurvePiece(NamedTuple):
-    """A part of a polyline, and what it stands for."""
+    """A part of a polyline, with the curve that it stands for."""
 
     kind: str
-    """"line", "arc" or "curve"; or "near arc": an arc unless the line goes on smoothly from it."""
+    """"line", "arc", "curve" or "near arc": an arc unless the line continues smoothly beyond it."""
     begin: int
     end: int
-    """Numbers of its first and its last point."""
+    """Indices of its first and its last point."""
     circle: Circle = (0j, 0.0)
     """Centre and radius of an arc."""
 
@@ -188,13 +185,13 @@ class Polyline:
         self.is_soft[1:-1] = (np.abs(turns) <= SMOOTH) & is_even
         self.curvature = np.zeros(len(points))
         self.curvature[1:-1] = np.abs(turns) / np.minimum(lengths[1:], lengths[:-1])
-        # Short edges turn anyhow, by the scatter of their ends.
+        # The directions of short edges scatter with their ends.
         is_long = np.minimum(lengths[1:], lengths[:-1]) > 10.0 * within
         self.is_sharp = np.full(len(points), False)
         self.is_sharp[1:-1] = (np.abs(turns) > COARSEST) & is_long
 
     def pieces(self) -> list[CurvePiece]:
-        """Return the parts, one after the other."""
+        """Return the parts in their order."""
         if self._is_ellipse():
             return [CurvePiece("curve", 0, self.count)]
         first, last = self._arc_at_start(), self._arc_at_end()
@@ -214,7 +211,7 @@ class Polyline:
         return self._with_curves([*pieces, *([last] if last else [])])
 
     def _with_curves(self, pieces: list[CurvePiece]) -> list[CurvePiece]:
-        """Return the parts, with neighbouring edges of one smooth curve put together."""
+        """Return the parts, with neighbouring edges of one smooth curve merged."""
         found: list[CurvePiece] = []
         for k, stated in enumerate(pieces):
             piece = stated
@@ -234,7 +231,9 @@ class Polyline:
         return [single for piece in found for single in _as_drawn_if_short(piece)]
 
     def _is_ellipse(self) -> bool:
-        """Return whether it is half an ellipse from the axis to the axis, and no half circle."""
+        """Return whether the run is half an ellipse from the axis to the axis, but no half
+        circle.
+        """
         ends = self.points[[0, -1]]
         if ends.real.any() or self.count < 2 * FEWEST_ON_CURVE or not self.is_soft[1:-1].all():
             return False
@@ -245,16 +244,16 @@ class Polyline:
         return circle is None or not self._are_on(self.points, circle, self.within)
 
     def _arc_at_start(self) -> CurvePiece | None:
-        """Return the arc around a point of the axis with which it begins, if it does."""
+        """Return the arc, centred on the axis, at the start of the run, or None."""
         return self._arc_at_axis(self.points, self.is_sharp)
 
     def _arc_at_end(self) -> CurvePiece | None:
-        """Return the arc around a point of the axis with which it ends, if it does."""
+        """Return the arc, centred on the axis, at the end of the run, or None."""
         piece = self._arc_at_axis(self.points[::-1], self.is_sharp[::-1])
         return piece and piece._replace(begin=self.count - piece.end, end=self.count)
 
     def _arc_at_axis(self, points: Array, is_sharp: np.ndarray) -> CurvePiece | None:
-        # On the axis the line meets its mirror image.
+        # On the axis the line continues as its mirror image.
         if points[0].real or 2.0 * abs(_slope(points[1] - points[0])) > COARSEST:
             return None
 
@@ -267,7 +266,7 @@ class Polyline:
         return self._longest_arc(circle, 0, FEWEST_ON_ARC // 2, limit, points, is_soft, 0.5)
 
     def _arc_from(self, begin: int, end: int) -> CurvePiece | None:
-        """Return the longest arc from a point, if there is one."""
+        """Return the longest arc from a point, or None."""
 
         def circle(last: int, within: float) -> Circle | None:
             points = self.points[begin : last + 1]
@@ -296,9 +295,9 @@ class Polyline:
         is_soft: np.ndarray,
         share: float,
     ) -> CurvePiece | None:
-        """Return the longest arc up to a point, if it is one rather than a part of another curve.
+        """Return the longest arc up to the point `limit`; None if it may be part of another curve.
 
-        It is a share of the arc: half of one that goes on beyond the axis.
+        The points are a `share` of the arc: half of it, if it continues beyond the axis.
         """
         if limit < fewest:
             return None
@@ -315,7 +314,7 @@ class Polyline:
         return None
 
     def _are_on(self, points: Array, circle: Circle, within: float) -> bool:
-        """Return whether points follow each other along a circle, to within a distance."""
+        """Return whether points follow each other along a circle to within a distance."""
         center, radius = circle
         arms = points - center
         if np.abs(np.abs(arms) - radius).max() > within:
@@ -325,13 +324,13 @@ class Polyline:
         return bool(forward.min() > -2.0 * within / radius and forward.max() <= COARSEST)
 
     def _line_from(self, begin: int, end: int) -> CurvePiece | None:
-        """Return the longest straight line of several edges from a point, if there is one."""
+        """Return the longest straight line of several edges from a point, or None."""
         last = self._straight_to(begin, end, self.close)
         if last - begin < 2:
             return None
         length = abs(self.points[last] - self.points[begin])
         for place in (begin, last):
-            # A smooth curve of the curvature around would have left the line.
+            # A smooth curve with the neighbouring curvature would leave the line.
             if self.is_soft[place] and self.curvature[place] * length**2 < 8.0 * self.within:
                 return None
         nearly = self._straight_to(begin, end, self.within)
@@ -339,7 +338,7 @@ class Polyline:
         return CurvePiece("line", begin, last) if is_abrupt else None
 
     def _straight_to(self, begin: int, end: int, within: float) -> int:
-        """Return the last point up to which a line is straight, to within a distance."""
+        """Return the last point up to which the polyline is straight to within a distance."""
 
         def is_straight(last: int) -> bool:
             chord = self.points[last] - self.points[begin]
@@ -352,7 +351,7 @@ class Polyline:
         return _last_true(is_straight, begin + 1, end)
 
     def edges(self, pieces: list[CurvePiece]) -> list[list[Edge]]:
-        """Return the edges that state each part."""
+        """Return the edges of each part."""
         joints = [complex(self.points[piece.begin]) for piece in pieces]
         joints.append(complex(self.points[-1]))
         for k, joint in enumerate(joints):
@@ -415,7 +414,7 @@ class Polyline:
 
 
 def _beside_axis(edge: Edge) -> Edge:
-    """Return the edge, or its chord if it crosses the axis, as an arc along the axis may."""
+    """Return an edge, or its chord if the arc crosses the axis."""
     if not edge.turn:
         return edge
     innermost = edge.center - abs(edge.radius)
@@ -425,7 +424,7 @@ def _beside_axis(edge: Edge) -> Edge:
 
 
 def _with_poles(points: Array) -> Array:
-    """Return the points, with poles of round ends that begin or end with an edge across the axis.
+    """Return the points, with a pole on the axis if the run begins or ends with an edge across it.
 
     A polygon around a ball may have the middle of an edge on the axis rather than a corner.
     """
@@ -452,16 +451,14 @@ def _slope(chord: complex) -> float:
 
 
 def _as_drawn_if_short(piece: CurvePiece) -> list[CurvePiece]:
-    """Return a curve, or its edges as drawn if these are too few for one; other parts as they
-    are.
-    """
+    """Return a curve of few edges as these edges; other parts unchanged."""
     if piece.kind != "curve" or piece.end - piece.begin >= FEWEST_ON_CURVE:
         return [piece]
     return [CurvePiece("line", k, k + 1) for k in range(piece.begin, piece.end)]
 
 
 def _joint(point: complex, circles: list[Circle], within: float) -> complex:
-    """Return the place near a point where arcs meet, or where an arc ends."""
+    """Return the place near a point where two arcs meet, or the nearest place on one arc."""
     if len(circles) == 2:
         meeting = circles_meet(circles[0], circles[1], point)
         if meeting is not None and abs(meeting - point) <= within:
@@ -476,7 +473,7 @@ def _joint(point: complex, circles: list[Circle], within: float) -> complex:
 
 
 def _tangents(piece: CurvePiece, points: Array, within: float) -> Array:
-    """Return the unit tangents of a part: at its points if it is a curve, else at its ends."""
+    """Return the unit tangents of a part: at all its points for a curve, otherwise at its ends."""
     if piece.kind == "curve":
         return tangents_along(points, within)
     chord = points[-1] - points[0]
@@ -494,12 +491,12 @@ def _turn(points: Array, center: complex) -> float:
 
 
 def _across_axis(point: complex) -> complex:
-    """Return the direction of a smooth line at a point of the axis; none at another point."""
+    """Return the direction of a smooth line at a point of the axis; 0 at another point."""
     return 0j if point.real else 1.0 + 0j
 
 
 def _common(tangent: complex, neighbour: complex) -> complex:
-    """Return the unit tangent where two parts meet: the neighbour's, if the line is smooth
+    """Return the unit tangent where two parts meet; the neighbour's, if the line is smooth
     there.
     """
     if not neighbour.real and not neighbour.imag:
@@ -509,15 +506,15 @@ def _common(tangent: complex, neighbour: complex) -> complex:
 
 
 def _first(holds: np.ndarray, begin: int, otherwise: int) -> int:
-    """Return the first number from one on for which something holds."""
+    """Return the first index from `begin` on at which an array is true."""
     numbers = np.flatnonzero(holds[begin:])
     return begin + int(numbers[0]) if len(numbers) else otherwise
 
 
 def _last_true(holds: Callable[[int], bool], low: int, high: int) -> int:
-    """Return the last number between two up to which something holds, or the first number.
+    """Return the last number between two up to which a condition holds, or the first number.
 
-    It may fail for some numbers in between, as points that are few and scattered do.
+    The condition may fail at some numbers between, as with few and scattered points.
     """
     tried, step = [low], 1
     while tried[-1] < high:

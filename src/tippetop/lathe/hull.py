@@ -1,9 +1,9 @@
-"""What a turned body touches the table with: the surfaces that its convex hull is made of.
+"""Convex hull of a turned body: the surfaces on which it stands, by tilt.
 
-At tilt theta the table is a line in the half-plane through the axis, whose normal, away from the
-body, is (sin(theta), -cos(theta)). Of a point or the centre of an arc (rho, zeta), tube its radius,
-the support function is rho sin(theta) - zeta cos(theta) + tube. The largest one is that of the
-body: the surface on which it stands.
+At tilt theta the table is a line in the half-plane through the axis, with the normal (sin(theta),
+-cos(theta)) away from the body. The support function of a circle with centre (rho, zeta) and radius
+tube, or of a point (tube = 0), is rho sin(theta) - zeta cos(theta) + tube. The body stands on the
+surface with the largest support function.
 """
 
 # translate module: numpy
@@ -20,47 +20,47 @@ from tippetop.lathe.arcs import least_squares
 from tippetop.lathe.profile import ROUNDING, Profile
 
 ON_AXIS = 1e-4
-"""How far off the axis the centre of a sphere's arc may be, in radii of it and in sizes of the
-body.
+"""Distance of a sphere arc's centre from the axis that counts as rounding, in radii and in body
+sizes.
 """
 
 NARROWEST = 1e-9
-"""Least range of tilts of a surface, rad."""
+"""Smallest range of tilts of a surface, rad."""
 
 FEWEST_ON_CURVE = 2
-"""Fewest arcs in a row that stand for another smooth curve."""
+"""Smallest number of successive arcs that can stand for another smooth curve."""
 
 _CLOSE = 1e-7
-"""How far rounding may move a tilt at which one surface follows another that it touches nearly,
+"""Error of the tilt at which one surface follows another that it almost touches, by rounding,
 rad.
 """
 
 
 class Zone(NamedTuple):
-    """A surface of revolution that a body touches the table with."""
+    """A surface of revolution on which a body stands, with its range of tilts."""
 
     radius: float
-    """Radius of the circle in the middle of its tube, m: 0 for a sphere, or a tip."""
+    """Radius of the circle in the middle of the tube, m: 0 for a sphere or a tip."""
     height: float
     """Height of that circle, in the profile's own coordinates, m."""
     tube: float
-    """Radius of the tube, m: 0 for a sharp edge; of a sphere its radius."""
+    """Radius of the tube, m: 0 for a sharp edge; the radius of a sphere."""
     low: float
     high: float
-    """Tilts between which the body stands on it, rad."""
+    """Smallest and largest tilt at which the body stands on it, rad."""
 
     def support(self, tilt: float) -> float:
         """Return the height above the table of the origin of the profile's coordinates, m."""
         return self.radius * math.sin(tilt) - self.height * math.cos(tilt) + self.tube
 
     def apart(self, other: "Zone") -> float:
-        """Largest difference of its three lengths from those of another, m."""
+        """Return the largest difference of the three lengths from those of another zone, m."""
         across, along = abs(self.radius - other.radius), abs(self.height - other.height)
         return max(across, along, abs(self.tube - other.tube))
 
     @property
     def name(self) -> str:
-        """What such a surface is called."""
+        """Kind of the surface."""
         if self.radius:
             return "ring" if self.tube else "edge"
         return "sphere" if self.tube else "tip"
@@ -70,10 +70,10 @@ class ConvexHull(NamedTuple):
     """The convex hull of a body."""
 
     zones: tuple[Zone, ...]
-    """The surfaces it touches the table with, by the tilt."""
+    """The surfaces on which the body stands, by tilt."""
     flats: tuple[float, ...]
-    """Tilts at which it lies on a circle or a line rather than on a point: 0 and pi on a flat end,
-    between them on a cylinder or a cone.
+    """Tilts at which the body rests on a circle or a line: 0 and pi on a flat end, between them on
+    a cylinder or a cone.
     """
 
     def support(self, tilt: float) -> float:
@@ -81,7 +81,7 @@ class ConvexHull(NamedTuple):
         return max(zone.support(tilt) for zone in self.zones if zone.low <= tilt <= zone.high)
 
     def protrusion(self, zone: Zone) -> tuple[float, float]:
-        """How far one of its surfaces, were it whole, would reach out of it at most, m, and at
+        """Return by how much (m), at most, a complete surface would protrude from the hull, and at
         which tilt.
         """
         found = [(0.0, zone.low)]
@@ -95,10 +95,11 @@ class ConvexHull(NamedTuple):
         return max(found)
 
     def smooth_parts(self, reach: float) -> list[tuple[float, float]]:
-        """Return tilts between which it stands on a smooth curve that is no sphere or ring.
+        """Return ranges of tilts in which the body stands on a smooth curve that is no sphere or
+        ring.
 
-        That is a row of arcs that continue each other, of which some, were they whole, would reach
-        out of it by more than a length, m.
+        Such a curve is a row of arcs that continue each other, at least one of which would protrude
+        from the hull by more than `reach` (m) if it were complete.
         """
         rows: list[list[Zone]] = [[]]
         for zone in self.zones:
@@ -116,13 +117,15 @@ class ConvexHull(NamedTuple):
         ]
 
     def spheroid(self, within: float) -> tuple[float, float, float] | None:
-        """Return the semi-axes across and along the axis and height of the centre of the spheroid
-        that it is to within a length, m; None if it is none.
+        """Return the semi-axes across and along the axis, and the height of the centre, of a
+        spheroid.
+
+        None is returned if the hull is not a spheroid to within a length, m.
         """
         tilts = np.linspace(0.0, math.pi, 181)
         support = np.array([self.support(tilt) for tilt in tilts.tolist()])
         sine, cosine = np.sin(tilts), np.cos(tilts)
-        # (h + height cos)^2 = across^2 sin^2 + along^2 cos^2 is linear in what is looked for.
+        # (h + height cos)^2 = across^2 sin^2 + along^2 cos^2 is linear in the unknowns.
         columns = [sine**2, cosine**2, -2.0 * support * cosine]
         square, remainder, height = least_squares(columns, support**2)
         along = remainder + height**2
@@ -134,10 +137,10 @@ class ConvexHull(NamedTuple):
         return math.sqrt(square), math.sqrt(along), height
 
     def whole(self, reach: float) -> list[Zone]:
-        """Its surfaces, each once, as they make up the body if they are whole.
+        """Return the distinct surfaces that make up the body if each is complete.
 
-        Left out are those that then reach out of the others by less than a length, m, wherever it
-        stands.
+        A surface is left out if, at all its tilts, it then protrudes from the others by less than
+        `reach`, m.
         """
         surfaces: list[Zone] = []
         for zone in self.zones:
@@ -162,8 +165,8 @@ class ConvexHull(NamedTuple):
 def hull_of(profile: Profile) -> ConvexHull:
     """Return the convex hull of a body of revolution.
 
-    It is followed from tilt 0 to pi: each surface until another is further out, or its arc is at
-    its end.
+    The hull is traced from tilt 0 to pi: each surface is followed until another protrudes, or its
+    arc ends.
     """
     pieces = _Pieces(profile)
     within = ROUNDING * profile.size
@@ -180,9 +183,7 @@ def hull_of(profile: Profile) -> ConvexHull:
 
 
 def _is_end_of_sphere(zone: Zone, zones: list[Zone]) -> bool:
-    """Return whether it only seems to be a tip, because the arc of the sphere beside it is a little
-    off the axis.
-    """
+    """Return whether a tip is an artefact of a sphere's arc that ends a little off the axis."""
     ends = (zone.low, zone.high)
     beside = any(
         other.name == "sphere" and (other.low in ends or other.high in ends) for other in zones
@@ -191,8 +192,8 @@ def _is_end_of_sphere(zone: Zone, zones: list[Zone]) -> bool:
 
 
 def _apart(low: Zone, high: Zone) -> float:
-    """Return the distance of the two points that are on the table where one surface follows
-    another, m.
+    """Return the distance of the contact points of two surfaces at the tilt where one follows the
+    other, m.
     """
     sine, cosine = math.sin(high.low), math.cos(high.low)
     across = high.radius - low.radius + (high.tube - low.tube) * sine
@@ -200,7 +201,7 @@ def _apart(low: Zone, high: Zone) -> float:
 
 
 def _merged(zones: list[Zone], within: float) -> list[Zone]:
-    """Return the zones, with neighbours that are parts of one surface put together."""
+    """Return the zones with neighbours of one surface merged."""
     found: list[Zone] = []
     for zone in zones:
         last = found[-1] if found else None
@@ -212,9 +213,7 @@ def _merged(zones: list[Zone], within: float) -> list[Zone]:
 
 
 class _Pieces:
-    """The points and the arcs that are convex of a profile, and between which tilts each can
-    touch.
-    """
+    """Convex points and arcs of a profile, with the tilts at which each can touch the table."""
 
     def __init__(self, profile: Profile) -> None:
         edges = profile.edges
@@ -238,13 +237,13 @@ class _Pieces:
         ]
 
     def zone(self, number: int, low: float, high: float) -> Zone:
-        """Return the surface of a piece."""
+        """Return the surface of a point or arc."""
         radius, height, tube = (float(of[number]) for of in (self.radius, self.height, self.tube))
         on_axis = abs(radius) <= ON_AXIS * min(tube, self.size)
         return Zone(0.0 if on_axis else radius, height, tube, low, high)
 
     def lowest(self) -> int:
-        """Return the piece on which the body stands at tilt 0, or just above it."""
+        """Return the point or arc on which the body stands at tilt 0, or just above it."""
         support = np.where(
             (self.low <= 0.0) & (self.high > 0.0), self.tube - self.height, -math.inf
         )
@@ -252,7 +251,9 @@ class _Pieces:
         return int(max(lowest, key=lambda number: (self.radius[number], self.tube[number])))
 
     def after(self, number: int, tilt: float) -> tuple[float, int]:
-        """Return the tilt up to which the body stands on a piece, and the one after it."""
+        """Return the tilt up to which the body stands on a point or arc, and the one that
+        follows.
+        """
         self.left[number] = tilt
         rises = self._rises(number, tilt)
         if number in self.ends:
@@ -269,8 +270,10 @@ class _Pieces:
         )
 
     def _joined_to(self, number: int) -> list[int]:
-        """Return the arcs that end at a point; the ends of an arc, and the arcs that go on
-        smoothly.
+        """Return the neighbours of a point or an arc.
+
+        Those of a point are the arcs that end at it; those of an arc its ends, and the arcs that
+        continue it smoothly.
         """
         if number not in self.ends:
             return [n for n, ends in self.ends.items() if number in ends]
@@ -282,11 +285,10 @@ class _Pieces:
         return [start, end, *smooth]
 
     def _rises(self, number: int, tilt: float) -> NDArray[np.float64]:
-        """Return the tilts at which the circles and points come to be further out than one of them,
-        from a tilt on.
+        """Return the tilts, from a tilt on, at which the points and arcs begin to protrude beyond
+        one of them.
 
-        Where arcs meet their own ends, or others that go on smoothly, the two are equally far out,
-        and this is not looked for.
+        Neighbours are left out: an arc and its end have the same support function where they meet.
         """
         across, along = self.radius - self.radius[number], self.height - self.height[number]
         apart = np.hypot(across, along)

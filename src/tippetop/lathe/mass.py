@@ -1,4 +1,4 @@
-"""What turned bodies weigh, where their centre of mass is, and how hard they are to turn."""
+"""Mass properties of turned bodies."""
 
 # translate module: numpy
 
@@ -10,7 +10,7 @@ from tippetop.lathe.profile import Profile
 
 
 class MassProperties(NamedTuple):
-    """Mass, kg, and what follows from how it lies."""
+    """Mass (kg), centre of mass and moments of inertia."""
 
     mass: float
     center: float
@@ -21,19 +21,16 @@ class MassProperties(NamedTuple):
 
 
 Filling: TypeAlias = tuple[Profile, float]
-"""A profile filled with a material: its density, less that of what it takes the place of,
-kg/m^3.
-"""
+"""A profile and its density less that of the material it replaces, kg/m^3."""
 
 
 def mass_properties(fillings: Sequence[Filling]) -> MassProperties:
-    """Return the mass properties of bodies of revolution put together, on one axis; exact but for
-    rounding.
+    """Return the mass properties of coaxial bodies of revolution, exact up to rounding.
 
     By Green's theorem the integrals over a profile are integrals along its edges. With r the
-    distance from the axis and z the height along it, that of pi r^2 over dz is the volume, that of
-    pi r^4 / 2 the moment of inertia about the axis, and those of pi r^2 z and pi r^2 z^2 are the
-    moments of the height.
+    distance from the axis and z the height along it, the integral of pi r^2 over dz is the volume,
+    that of pi r^4 / 2 the moment of inertia about the axis, and those of pi r^2 z and pi r^2 z^2
+    are moments of the height.
     """
     mass = _integral(fillings, lambda r, z: math.pi * r**2)
     center = _integral(fillings, lambda r, z: math.pi * r**2 * z) / mass

@@ -1,5 +1,5 @@
-"""Profiles of bodies of revolution: closed lines of edges beside the axis, checked to enclose a
-body.
+"""Profiles of bodies of revolution: closed lines of edges beside the axis, which enclose a
+volume.
 """
 
 # translate module: numpy
@@ -16,24 +16,27 @@ from tippetop.lathe.edges import Edge, Points, meetings
 from tippetop.support.errors import Described, InvalidInput
 
 ROUNDING = 1e-9
-"""What counts as the same place, in sizes of the profile."""
+"""Distance within which two places are the same, in sizes of the profile."""
 
 HALF_CIRCLE = 1e-12
-"""An arc whose radius is this close to half its chord, relative, is half a circle: so its centre is
-exact.
+"""Relative difference of an arc's radius from half its chord within which it is half a circle.
+
+The centre of a half circle is exact.
 """
 
 SHORT = 1e-6
-"""How much too short the radius of half a circle may be, relative: its ends have few digits."""
+"""Relative amount by which the radius of half a circle may be too short: its ends have few
+digits.
+"""
 
 MOST = 2000
-"""Most points of a profile."""
+"""Largest number of points of a profile."""
 
 MOST_STATED = 100_000
-"""Most points of a profile that is fitted to them."""
+"""Largest number of points of a profile that is fitted to them."""
 
 LARGEST = 1e6
-"""Largest number of a profile, and the inverse of the smallest size."""
+"""Largest number in a profile, and inverse of its smallest size."""
 
 
 class Profile:
@@ -51,39 +54,39 @@ class Profile:
 
     @cached_property
     def loop(self) -> tuple[Edge, ...]:
-        """Its edges, and the axis where it closes them."""
+        """Edges, with the part of the axis that closes them."""
         first, last = self.edges[0].start, self.edges[-1].end
         return self.edges if first == last else (*self.edges, Edge(last, first))
 
     @cached_property
     def size(self) -> float:
-        """Its largest extent, m."""
+        """Largest extent, m."""
         points = self.points(8)
         return float(max(np.ptp(points.real), np.ptp(points.imag), points.real.max()))
 
     @cached_property
     def nodes(self) -> tuple[Points, NDArray[np.float64]]:
-        """Points along it and their weights in integrals over dz; see `Edge.nodes`."""
+        """Quadrature points along the profile and their weights in integrals over dz; see
+        `Edge.nodes`.
+        """
         points, weights = zip(*(edge.nodes() for edge in self.edges), strict=True)
         return np.concatenate(points), np.concatenate(weights)
 
     @property
     def reaches_axis(self) -> bool:
-        """Whether the body is on the axis, rather than around it."""
+        """Whether the body contains its axis, rather than lying around it."""
         return len(self.loop) > len(self.edges) or self.edges[0].start.real == 0.0
 
     def points(self, steps: int) -> Points:
-        """Return points along it, `steps` on every arc; the last of a line that closes itself is
-        the first.
+        """Return points along the profile, `steps` on every arc; a closed line repeats its first
+        point.
         """
         shares = [np.arange(steps) / steps if edge.turn else np.zeros(1) for edge in self.edges]
         found = [edge.points(share) for edge, share in zip(self.edges, shares, strict=True)]
         return np.concatenate([*found, [self.edges[-1].end]])
 
     def points_above(self, height: float) -> list[tuple[float, ...]]:
-        """Return the points that state it, as `profile_of` takes them, with heights from another
-        origin, m.
-        """
+        """Return the points that state the profile, with heights (m) above another origin."""
         start = self.edges[0].start
         ends = [(edge.end, (edge.radius,) if edge.turn else ()) for edge in self.edges]
         return [
@@ -91,7 +94,7 @@ class Profile:
         ]
 
     def surrounds(self, point: complex) -> bool:
-        """Return whether a point that is not on it is inside."""
+        """Return whether a point that is not on the profile is inside."""
         return abs(sum(edge.angle_seen(point) for edge in self.loop)) > math.pi
 
     def distance(self, point: complex) -> float:
@@ -99,7 +102,9 @@ class Profile:
         return min(edge.distance(point) for edge in self.edges)
 
     def sides(self, other: "Profile") -> set[str]:
-        """Where the parts of its edges are in another: "in" it, "on" its edges or "out" of it."""
+        """Return where the edges lie in relation to another profile: "in" it, "on" its edges or
+        "out".
+        """
         within = ROUNDING * other.size
         found = set()
         for edge in self.edges:
@@ -116,15 +121,14 @@ class Profile:
 def profile_of(
     points: Sequence[Sequence[float]], unit: float = 1.0, field: str = "profile"
 ) -> Profile:
-    """Return the profile through points, whose numbers are in a unit, m; in sentences they are
-    called a `field`.
+    """Return the profile through points, in metres.
 
-    They are distance from the axis, height along it and, where an arc ends, its radius: positive if
-    it turns to the left. In a row either way round, from the axis to the axis or from one to
-    itself.
+    The points are distance from the axis, height along it and, where an arc ends, its radius, which
+    is positive if the arc turns to the left. They go either way round, from the axis to the axis or
+    from a point to itself. Their numbers are in a `unit` (m), and messages call them `field`.
 
     Raises `InvalidInput` if they are not the edge of a body: an open line, one that meets itself or
-    crosses the axis, an arc too tight for its ends, or nothing inside.
+    crosses the axis, an arc too tight for its ends, or no volume inside.
     """
     require_points(points, field, MOST)
     size = max(max(abs(point[0]), abs(point[1] - points[0][1])) for point in points)
@@ -143,22 +147,22 @@ def profile_of(
 
 
 def area_of(edges: Sequence[Edge]) -> float:
-    """Return the area between edges and the axis, m^2: positive to the left of them, by Green's
+    """Return the area between edges and the axis, m^2, positive on their left, by Green's
     theorem.
     """
     return sum(float(points.real @ weights) for points, weights in (edge.nodes() for edge in edges))
 
 
 def require_points(points: Sequence[Sequence[float]], field: str, most: int = MOST_STATED) -> None:
-    """Raise `InvalidInput` unless points beside the axis are stated, and neither too few nor too
+    """Raise `InvalidInput` unless there are points beside the axis, and neither too few nor too
     many.
     """
     if not 2 <= len(points) <= most:
         raise InvalidInput(field, Described(f"{len(points)} points"), f"2 to {most} points")
     for number, point in enumerate(points):
         if len(point) not in (2, 3):
-            wanted = "a point: distance from the axis, height and, at the end of an arc, its radius"
-            raise InvalidInput(f"{field}.{number}", list(point), wanted)
+            accepted = "a point: distance from the axis, height and, where an arc ends, its radius"
+            raise InvalidInput(f"{field}.{number}", list(point), accepted)
         if max(map(abs, point)) > LARGEST:
             raise InvalidInput(
                 f"{field}.{number}", list(point), f"made of numbers of at most {LARGEST:g}"
@@ -246,9 +250,7 @@ def _on_axis(point: complex, within: float) -> complex:
 
 
 def _innermost(edge: Edge) -> complex:
-    """Return the point of an arc closest to the axis between its ends; its middle where that is at
-    an end.
-    """
+    """Return the point of an arc closest to the axis between its ends, or its middle."""
     if edge.turn:
         point = edge.center - abs(edge.radius)
         share = edge.share(point)
@@ -258,7 +260,7 @@ def _innermost(edge: Edge) -> complex:
 
 
 def _refuse_meetings(edges: list[Edge], within: float, field: str) -> None:
-    """Refuse a line that meets itself elsewhere than where an edge follows another."""
+    """Raise `InvalidInput` if a line meets itself except where an edge follows another."""
     reach = np.array([edge.sagitta + within for edge in edges])
     starts = np.array([edge.start for edge in edges])
     ends = np.array([edge.end for edge in edges])
@@ -278,7 +280,7 @@ def _refuse_meetings(edges: list[Edge], within: float, field: str) -> None:
 
 
 def _refuse_meeting(edges: list[Edge], one: int, other: int, within: float, field: str) -> None:
-    """Refuse two edges that meet elsewhere than where one follows the other."""
+    """Raise `InvalidInput` if two edges meet except where one follows the other."""
     shared = _shared_ends(edges, one, other)
     for point in meetings(edges[one], edges[other], within):
         if all(abs(point - end) > 10.0 * within for end in shared):

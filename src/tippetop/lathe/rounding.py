@@ -1,6 +1,4 @@
-"""Numbers of profiles as they were meant: rounded when they were written, and seen to be so by
-their digits.
-"""
+"""Rounding of the numbers in profiles, found from their digits and undone where arcs allow it."""
 
 # translate module: numpy
 
@@ -12,17 +10,13 @@ from decimal import Decimal
 from tippetop.lathe.edges import Edge
 
 COARSEST = 1e-4
-"""Largest rounding that is undone, in sizes of the profile: a profile of two digits is meant as it
-is.
-"""
+"""Largest rounding that is undone, in sizes of the profile: two digits are taken as they are."""
 
 FINEST = 1e-9
-"""Smallest one: computed numbers."""
+"""Smallest rounding, in sizes of the profile: that of computed numbers."""
 
 EXACT = 1e-14
-"""How far a place on a circle may be from it by the rounding of floating-point numbers,
-relative.
-"""
+"""Relative distance of a place from its circle by floating-point rounding."""
 
 Point = tuple[float, ...]
 RoundingAt = Callable[[Point], float]
@@ -42,7 +36,7 @@ def rounding_of(number: float) -> float:
 
 
 def usual_rounding(points: Sequence[Point]) -> float:
-    """Return the rounding that half of the numbers of points do not exceed, but for whole ones."""
+    """Return the median rounding of the numbers of points, whole numbers left out."""
     roundings = sorted(
         rounding for point in points for rounding in map(rounding_of, point) if rounding
     )
@@ -50,10 +44,10 @@ def usual_rounding(points: Sequence[Point]) -> float:
 
 
 def unrounded(points: Sequence[Point], rounding: float | None = None) -> tuple[Point, ...]:
-    """Return the points of a profile with arcs around the axis where the digits allow it, and
-    without edges shorter than the digits.
+    """Return the points of a profile with arcs centred on the axis where their digits allow it.
 
-    The rounding of every number follows from its digits unless it is stated.
+    Straight edges shorter than the rounding are left out. The rounding of every number follows from
+    its digits unless it is stated.
     """
     heights = [point[1] for point in points]
     size = max(*(abs(point[0]) for point in points), max(heights) - min(heights))
@@ -63,26 +57,26 @@ def unrounded(points: Sequence[Point], rounding: float | None = None) -> tuple[P
             return rounding
         return min(COARSEST * size, max(FINEST * size, *map(rounding_of, point)))
 
-    kept = _without_short_edges(list(points), rounding_at)
-    return _around_axis(kept, rounding_at)
+    remaining = _without_short_edges(list(points), rounding_at)
+    return _around_axis(remaining, rounding_at)
 
 
 def _without_short_edges(points: list[Point], rounding_at: RoundingAt) -> list[Point]:
-    """Return the points without straight edges shorter than the rounding of their ends."""
-    kept = [points[0]]
+    """Return the points without straight edges that are shorter than the rounding of their ends."""
+    remaining = [points[0]]
     for k, point in enumerate(points[1:], start=1):
-        before = kept[-1]
+        before = remaining[-1]
         short = math.dist(point[:2], before[:2]) <= rounding_at(point) + rounding_at(before)
         is_straight = len(point) == 2 or not point[2]
         if not (short and is_straight and len(points) > 3):
-            kept.append(point)
-        elif k == len(points) - 1 and len(kept) > 1:
-            kept[-1] = (*point[:2], *before[2:])
-    return kept
+            remaining.append(point)
+        elif k == len(points) - 1 and len(remaining) > 1:
+            remaining[-1] = (*point[:2], *before[2:])
+    return remaining
 
 
 def _around_axis(points: list[Point], rounding_at: RoundingAt) -> tuple[Point, ...]:
-    """Return the points with the centres of arcs on the axis that are there but for rounding."""
+    """Return the points, with arcs centred on the axis if they are so to within rounding."""
     places = [complex(*point[:2]) for point in points]
     roundings = [rounding_at(point) for point in points]
     circles: list[tuple[complex, float] | None] = [None] * len(points)
@@ -116,8 +110,9 @@ def _circle(
     within: float,
     before: tuple[complex, float] | None,
 ) -> tuple[complex, float] | None:
-    """Return the centre on the axis and radius of an arc, that of the arc before if both are on
-    one; None if the centre is elsewhere.
+    """Return centre (on the axis) and radius of an arc; None if its centre is elsewhere.
+
+    The circle of the arc before is returned if both arcs are on it.
     """
     size = abs(radius)
     share = abs(end - start) / (2.0 * size)
@@ -151,7 +146,7 @@ def _are_same(one: tuple[complex, float], other: tuple[complex, float], within: 
 
 
 def _on_circles(place: complex, circles: list[tuple[complex, float]], is_end: bool) -> complex:
-    """Return a place moved to the circle that it is on; where two circles differ, to the last."""
+    """Return a place moved onto its circle; onto the last, if two circles differ."""
     center, radius = circles[-1]
     arm = place - center
     if abs(abs(arm) - radius) <= EXACT * radius:

@@ -1,8 +1,8 @@
-"""Meshes of bodies of revolution, read with trimesh: their axis, meridian, and how round they are.
+"""Meshes of bodies of revolution, read with trimesh: their axis, meridian, and deviation from it.
 
-The meridian is where a half-plane from the axis cuts the mesh, as if its edges were straight in
-cylindrical coordinates: facets around the axis then leave no trace. Vertices lie on the body, so
-the meridian goes through them, and the half-plane only tells how they follow each other.
+The meridian is the section of the mesh by a half-plane from the axis, with edges straight in
+cylindrical coordinates, so that facets around the axis leave no trace. Vertices lie on the body:
+the meridian goes through them, and the section only gives their order.
 """
 
 import math
@@ -19,24 +19,24 @@ from tippetop.support.errors import Described, InvalidInput, Unavailable
 from tippetop.support.installation import install_command
 
 NOT_ROUND = 0.01
-"""How far a surface may be from one of revolution, in sizes of the body."""
+"""Largest distance of a surface from one of revolution, in sizes of the body."""
 
 LARGEST = 2**28
 """Largest file that is read, bytes."""
 
 SLIVER = 1e-7
-"""Angle by which the half-plane misses vertices, rad."""
+"""Angle by which half-planes miss vertices, rad."""
 
 SAME = 1e-5
-"""Distance of vertices that are one point of the meridian, in sizes of the body: single precision
-leaves a tenth of it.
+"""Distance of vertices that are one point of the meridian, in sizes of the body: ten times that of
+single precision.
 """
 
 HALF_PLANES = 5
-"""Half-planes in which the meridian is compared with all vertices."""
+"""Number of half-planes whose sections are compared with all vertices."""
 
 WIDEST = math.radians(30.0)
-"""Angle around the axis up to which an edge stands for an arc around it, rad."""
+"""Largest angle around the axis of an edge that stands for an arc around it, rad."""
 
 BETWEEN = (math.radians(15.0), math.radians(30.0))
 """Angles from a vertex to half-planes that are compared with the one through it, rad: facets of a
@@ -44,7 +44,7 @@ prism with 4, 6, 8 or 12 sides are furthest inside near one of them.
 """
 
 DENSE = 3.0
-"""Ratio of distinct vertices to points of the meridian from which on the vertices are scattered."""
+"""Ratio of distinct vertices to points of the meridian above which the vertices are scattered."""
 
 Vectors = NDArray[np.float64]
 Line = NDArray[np.complex128]
@@ -54,7 +54,7 @@ Line = NDArray[np.complex128]
 def read_stl(path: Path, axis: str | None, tolerance: float, name: str) -> Reading:
     """Return the profile of a body of revolution from its surface, in the numbers of the file.
 
-    The axis is the one stated, x, y or z through the middle of the body; or else the one about
+    The axis is the one stated, x, y or z through the middle of the body, or else the one about
     which the surface is roundest.
 
     Raises `InvalidInput` if the surface is not closed, or differs from one of revolution by more
@@ -114,21 +114,19 @@ def _mesh(path: Path, name: str) -> Any:
 
 
 def _directions(mesh: Any, axis: str | None) -> list[Vectors]:
-    """Return the directions that an axis may have: one stated, or those of the drawing and of
-    inertia.
+    """Return the possible directions of the axis: as stated, or coordinate axes and principal
+    axes.
     """
     unit = np.eye(3)
     if axis is not None:
         return [unit["xyz".index(axis)]]
     principal = np.linalg.eigh(mesh.moment_inertia)[1].T
-    own = [vector * np.sign(vector[np.abs(vector).argmax()]) for vector in principal]
-    return [unit[2], unit[1], unit[0], *own]
+    upwards = [vector * np.sign(vector[np.abs(vector).argmax()]) for vector in principal]
+    return [unit[2], unit[1], unit[0], *upwards]
 
 
 def _origins(mesh: Any, direction: Vectors, size: float) -> list[Vectors]:
-    """Return points that an axis may go through: the origin if it is near, and the centre of
-    mass.
-    """
+    """Return possible points of the axis: the origin if it is near, and the centre of mass."""
     center = np.asarray(mesh.center_mass)
     from_axis = center - (center @ direction) * direction
     near = np.linalg.norm(from_axis) <= NOT_ROUND * size
@@ -136,7 +134,7 @@ def _origins(mesh: Any, direction: Vectors, size: float) -> list[Vectors]:
 
 
 class _Surface:
-    """A closed surface, seen from an axis."""
+    """A closed surface in cylindrical coordinates about an axis."""
 
     def __init__(self, mesh: Any, origin: Vectors, direction: Vectors, size: float) -> None:
         self.direction, self.size = direction, size
@@ -154,11 +152,14 @@ class _Surface:
         self.out_of_round, self.meridian = self._judged()
 
     def _judged(self) -> tuple[float, list[Line]]:
-        """How far the vertices are from the meridian in one of a few half-planes, and it."""
+        """Return the least distance of the vertices from a section, and the lines of that
+        section.
+        """
         angles = np.sort(self.angle[~self.is_on_axis])
         chosen = angles[np.linspace(0, len(angles) - 1, HALF_PLANES).astype(int)] + SLIVER
         sections = [lines for lines in map(self._section, chosen.tolist()) if lines]
-        # Of vertices in a ring one says it all. A prism has all in rings, but is not round between.
+        # One vertex of a ring is enough. All vertices of a prism are in rings, but it is not round
+        # between them: sections between them are compared too.
         _, numbers = np.unique(np.round(self.vertices / (SAME * self.size)), return_index=True)
         between = [line for turn in BETWEEN for line in self._section(float(chosen[0]) + turn)]
         places = np.concatenate([self.vertices[numbers], *between])
@@ -200,7 +201,7 @@ class _Surface:
         ]
 
     def _crossing(self, one: int, other: int, aside: Vectors) -> complex | None:
-        """Where an edge crosses the half-plane, None where it does not."""
+        """Return the intersection of an edge with the half-plane; None if there is none."""
         if self.is_on_axis[one] or self.is_on_axis[other]:
             return None
         before, after = float(aside[one]), float(aside[other])
@@ -216,21 +217,21 @@ class _Surface:
         return complex(x + share * (x_end - x), start.imag + share * (end.imag - start.imag))
 
     def _on_axis(self, face: list[int]) -> complex:
-        """Where the axis goes through a triangle around it."""
+        """Return the intersection of the axis with a triangle around it."""
         matrix = np.stack([self.x[face], self.y[face], np.ones(3)])
         shares = np.linalg.lstsq(matrix, np.array([0.0, 0.0, 1.0]), rcond=None)[0]
         return complex(0.0, float(shares @ self.z[face]))
 
     def through_vertices(self, line: Line) -> list[tuple[float, ...]]:
-        """Return the points of a line of the meridian, moved to the vertices along it."""
+        """Return the points of a line of the meridian, moved onto the vertices along it."""
         distances, places = _distances(self.vertices, line)
         others = [
             _distances(self.vertices, other)[0] for other in self.meridian if other is not line
         ]
-        is_own = np.all([distances <= other for other in others], axis=0) if others else True
-        is_own &= distances <= self.out_of_round + SAME * self.size
-        order = np.argsort(places[is_own], kind="stable")
-        along, points = places[is_own][order], self.vertices[is_own][order]
+        is_nearest = np.all([distances <= other for other in others], axis=0) if others else True
+        is_nearest &= distances <= self.out_of_round + SAME * self.size
+        order = np.argsort(places[is_nearest], kind="stable")
+        along, points = places[is_nearest][order], self.vertices[is_nearest][order]
         is_new = np.append(True, np.diff(along) > SAME * self.size)
         groups = np.cumsum(is_new) - 1
         if groups[-1] > DENSE * len(line):
@@ -254,7 +255,7 @@ class _Surface:
 
 
 def _distances(points: Line, line: Line) -> tuple[Vectors, Vectors]:
-    """Return the distance of points from a line, and how far along it they are."""
+    """Return the distances of points from a line, and their places along it."""
     chords = np.diff(line)
     lengths = np.abs(chords)
     begins = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
@@ -271,17 +272,19 @@ def _distances(points: Line, line: Line) -> tuple[Vectors, Vectors]:
 
 
 def _chains(graph: dict[Any, list[Any]]) -> list[list[Any]]:
-    """Return the paths of a graph whose nodes have one or two neighbours; a loop ends where it
-    begins.
+    """Return the paths of a graph whose nodes have one or two neighbours; a loop repeats its first
+    node.
     """
-    left = dict(graph)
+    unvisited = dict(graph)
     chains = []
-    while left:
-        start = next((node for node, beside in left.items() if len(beside) == 1), next(iter(left)))
+    while unvisited:
+        start = next(
+            (node for node, beside in unvisited.items() if len(beside) == 1), next(iter(unvisited))
+        )
         chain, node = [start], start
         while True:
-            beside = left.pop(node)
-            following = next((other for other in beside if other in left), None)
+            beside = unvisited.pop(node)
+            following = next((other for other in beside if other in unvisited), None)
             if following is None:
                 break
             chain.append(following)
@@ -293,12 +296,12 @@ def _chains(graph: dict[Any, list[Any]]) -> list[list[Any]]:
 
 
 def _without_repeats(line: Line, within: float) -> Line:
-    """Return the line without points next to the ones before."""
-    kept = [line[0]]
+    """Return the line without points close to their predecessors."""
+    remaining = [line[0]]
     for point in line[1:-1]:
-        if abs(point - kept[-1]) > within and abs(point - line[-1]) > within:
-            kept.append(point)
-    return np.array([*kept, line[-1]])
+        if abs(point - remaining[-1]) > within and abs(point - line[-1]) > within:
+            remaining.append(point)
+    return np.array([*remaining, line[-1]])
 
 
 def _area(points: list[tuple[float, ...]]) -> float:

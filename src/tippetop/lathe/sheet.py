@@ -1,4 +1,4 @@
-"""Drawings on a sheet: where the axis is, which half of the outline is turned, what is a bore."""
+"""Profiles read from drawings: the axis, the half of the outline that is turned, the cavities."""
 
 # translate module: numpy
 
@@ -17,34 +17,32 @@ from tippetop.lathe.strokes import Path, is_closed, joined, points_of, right_par
 from tippetop.support.errors import Described, InvalidInput
 
 GAP = 1e-3
-"""Distance of two ends that are taken to meet, in sizes of the drawing: lines drawn by hand without
-snapping miss each other by less.
+"""Distance of two ends that count as meeting, in sizes of the drawing: hand-drawn lines miss by
+less.
 """
 
 ALONG = 1e-4
-"""Distance from the axis at which a line runs along it, in sizes of the drawing."""
+"""Distance from the axis within which a line runs along it, in sizes of the drawing."""
 
 ASYMMETRY = 0.01
-"""How far the two sides of a drawing may differ, in sizes of the drawing: those of bodies of
-revolution do not.
-"""
+"""Largest difference of the two sides of a drawing, in sizes of the drawing."""
 
 AXES = "x=NUMBER or y=NUMBER, a place on the sheet, or x or y alone"
-"""What is accepted as an axis."""
+"""Accepted axes, in messages."""
 
 Point = tuple[float, ...]
 Chords = tuple[NDArray[np.complex128], NDArray[np.complex128]]
 
 
 class Sheet(NamedTuple):
-    """What a drawing shows, y up."""
+    """A drawing, y up."""
 
     paths: list[tuple[str, Path]]
-    """Paths of strokes, and what sentences call them."""
+    """Paths of strokes, with their names in messages."""
     unit: str
-    """The unit of its numbers."""
+    """Unit of the numbers."""
     is_y_down: bool = False
-    """Whether the drawing's own y counts downwards."""
+    """Whether y counts downwards in the drawing's own numbers."""
 
 
 class Reading(NamedTuple):
@@ -53,41 +51,41 @@ class Reading(NamedTuple):
     profile: list[Point]
     cavities: list[list[Point]]
     remarks: list[str]
-    """Sentences that say where the axis is, and how well the drawing is a body of revolution."""
+    """Sentences on the place of the axis, and on the symmetry of the drawing."""
 
 
 class _NoAxis(ValueError):
-    """No axis is found; the text says what the drawing shows instead."""
+    """Raised if no axis is found; the text describes the drawing."""
 
 
 class _Frame(NamedTuple):
-    """How sentences name a place across an axis that was turned upright."""
+    """Names of places across an axis that was turned upright, in messages."""
 
     name: str
     sign: float
     unit: str
 
-    def told(self, x: float) -> str:
+    def place_text(self, x: float) -> str:
         """Return a place in the drawing's own numbers, as "x = 10 mm"."""
         return f"{self.name} = {self.sign * x + 0.0:.6g} {self.unit}"
 
 
 class _Axis(NamedTuple):
-    """An axis upright on the sheet."""
+    """Upright axis on the sheet."""
 
     place: float
-    """Its x."""
+    """x of the axis."""
     remark: str
-    """How it was found."""
+    """Sentence on how it was found."""
 
 
 # translate: skip
 def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> Reading:
-    """Return the profile that a drawing shows, in its own unit.
+    """Return the profile of a drawing, in its unit.
 
-    The axis is upright or level: as stated, x = 10 or y = 10; or a centre line that touches
-    nothing; or the straight edge of a half outline; or the middle of a whole one. What is not the
-    outline around everything is a cavity.
+    The axis is upright or level: as stated, x = 10 or y = 10; or a centre line that touches no
+    other line; or the straight edge of a half outline; or the middle of a full one. Outlines inside
+    the outermost are cavities.
 
     Raises `InvalidInput` if no axis is found, if the two sides differ, or if the outlines are not
     those of one body with cavities in it.
@@ -99,8 +97,8 @@ def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> 
 def read_along(
     sheet: Sheet, directions: str, place: float | None, tolerance: float, field: str
 ) -> Reading:
-    """Return the profile that a drawing shows around an axis along one of some directions, at a
-    place or where it is found; see `read_sheet`.
+    """Return the profile of a drawing around an axis along one of some directions; see
+    `read_sheet`.
     """
     if not sheet.paths:
         raise InvalidInput(
@@ -127,7 +125,7 @@ def read_along(
 
 # translate: skip
 def _stated(axis: str | None) -> tuple[str, float | None]:
-    """Return the directions that an axis may have, and its place."""
+    """Return the possible directions of the axis, and its place or None."""
     if axis is None:
         return "xy", None
     parts = re.fullmatch(r"\s*([xy])\s*(?:=\s*(\S+))?\s*", axis) if isinstance(axis, str) else None
@@ -180,7 +178,7 @@ def _read(
             raise InvalidInput(
                 field,
                 Described(f"an open line from {first} to {last}"),
-                f"lines that end on the axis, {frame.told(axis.place)}, or where they begin",
+                f"lines that end on the axis, {frame.place_text(axis.place)}, or where they begin",
             )
         stated.append((name, unrounded(_ended(points_of(part), GAP * size), ALONG * size)))
     outer, cavities = nested(stated, tolerance, field)
@@ -188,7 +186,7 @@ def _read(
 
 
 def _beside(path: Path, place: float, side: float) -> Path:
-    """Return the path from an axis at a place, mirrored if it is on its left."""
+    """Return a path seen from an axis at a place, mirrored if it is on its left."""
 
     def move(point: complex) -> complex:
         return complex(side * (point.real - place), point.imag)
@@ -197,7 +195,7 @@ def _beside(path: Path, place: float, side: float) -> Path:
 
 
 def _ended(points: list[Point], gap: float) -> list[Point]:
-    """Return the points of a line, exactly from the axis to the axis, or back to the first."""
+    """Return the points of a line with ends moved onto the axis, or onto each other."""
     first, last = points[0], points[-1]
     if max(first[0], last[0]) > gap:
         points[-1] = (*first[:2], *last[2:])
@@ -210,8 +208,8 @@ def _ended(points: list[Point], gap: float) -> list[Point]:
 def _outlines(
     paths: list[tuple[str, Path]], gap: float
 ) -> tuple[list[tuple[str, Path]], list[Path]]:
-    """Return the paths joined to outlines, and the straight lines that touch nothing: centre
-    lines.
+    """Return the paths joined to outlines, and the centre lines: straight lines that touch no
+    other.
     """
     ends = [end for _, path in paths for end in (path[0].first, path[-1].last)]
 
@@ -266,7 +264,7 @@ def _axis(
     middle = 0.5 * (low + high)
     difference = _difference(paths, middle)
     if edges and (not edges[0] or is_open or difference > ASYMMETRY * size):
-        return _Axis(edges[0], f"The axis is the straight edge at {frame.told(edges[0])}.")
+        return _Axis(edges[0], f"The axis is the straight edge at {frame.place_text(edges[0])}.")
     if is_open:
         first, last = next(
             (path[0].first, path[-1].last) for path in paths if not is_closed(path, GAP * size)
@@ -281,27 +279,29 @@ def _axis(
 
 
 def _placed(paths: list[Path], place: float, size: float, frame: _Frame, how: str) -> _Axis:
-    """Return an axis at a place, of a drawing on one side of it, or on both if these agree."""
+    """Return an axis at a place; refuse it if a drawing on both sides of it is not symmetric."""
     points, _ = _chords(paths)
     reach = points.real - place
     if reach.min() >= -GAP * size or reach.max() <= GAP * size:
-        return _Axis(place, f"{how} at {frame.told(place)}.")
+        return _Axis(place, f"{how} at {frame.place_text(place)}.")
     difference = _difference(paths, place) / size
     if difference > ASYMMETRY:
         raise InvalidInput(
             "axis",
-            Described(f"{frame.told(place)}, with sides that differ by {100.0 * difference:.3g} %"),
+            Described(
+                f"{frame.place_text(place)}, with sides that differ by {100.0 * difference:.3g} %"
+            ),
             f"an axis on whose sides the drawing differs by {100.0 * ASYMMETRY:g} % at most, or one"
             " side alone",
         )
     percent = 100.0 * difference if difference > ROUNDING else 0.0
     agreement = f"the two sides differ by {percent:.2g} % of the size at most"
-    return _Axis(place, f"{how} at {frame.told(place)}; {agreement}.")
+    return _Axis(place, f"{how} at {frame.place_text(place)}; {agreement}.")
 
 
 def _is_half(paths: list[Path], edge: float, size: float) -> bool:
-    """Return whether a drawing begins and ends on a line: with open ends there, or straight
-    edges.
+    """Return whether a drawing begins and ends on a line, with open ends or straight edges on
+    it.
     """
     ends = [
         abs(end.real - edge) <= GAP * size
@@ -320,7 +320,7 @@ def _is_half(paths: list[Path], edge: float, size: float) -> bool:
 
 
 def _difference(paths: list[Path], place: float) -> float:
-    """How far a drawing and its mirror image are apart at most."""
+    """Return the largest distance between a drawing and its mirror image."""
     starts, ends = _chords(paths)
     mirrored = (2.0 * place - starts.conjugate(), 2.0 * place - ends.conjugate())
     return max(_apart(mirrored[0], (starts, ends)), _apart(starts, mirrored))
@@ -339,7 +339,7 @@ def _apart(points: NDArray[np.complex128], chords: Chords) -> float:
 
 
 def _chords(paths: Sequence[Path]) -> Chords:
-    """Return the begins and ends of chords along all paths."""
+    """Return starts and ends of chords along all paths."""
     lines = [np.array(stroke.sample(24)) for path in paths for stroke in path]
     return (
         np.concatenate([line[:-1] for line in lines]),
@@ -350,7 +350,7 @@ def _chords(paths: Sequence[Path]) -> Chords:
 def nested(
     outlines: Sequence[tuple[str, Sequence[Point]]], tolerance: float, field: str
 ) -> tuple[list[Point], list[list[Point]]]:
-    """Return the outer outline, and the cavities in it; refuses other outlines."""
+    """Return the outer outline and the cavities in it; refuse other arrangements."""
     profiles: list[tuple[str, Sequence[Point], Profile]] = [
         (name, points, profile_of(fit(points, tolerance).points, field=field))
         for name, points in outlines

@@ -1,4 +1,4 @@
-"""Strokes of drawings: straight lines, arcs of circles and other smooth curves in a plane, y up.
+"""Strokes of drawings: straight lines, arcs of circles and other smooth curves in the plane, y up.
 
 A point is a complex number. Strokes are joined to paths, cut at an axis, and written as points of a
 profile.
@@ -14,18 +14,18 @@ from typing import NamedTuple
 import numpy as np
 
 SAMPLE_TURN = math.radians(2.0)
-"""Angle by which a curve turns between two points that state it, rad: of an arc, points twice as
-far apart would still be told from a polygon.
+"""Turn of a curve between two of its sampled points, rad: half of that below which an arc is
+recognised.
 """
 
 FEWEST_SAMPLES, MOST_SAMPLES = 6, 180
-"""Points on a curve, at least and at most."""
+"""Smallest and largest number of parts in which a curve is sampled."""
 
 PROBES = 64
-"""Parts of a stroke in which its crossings of an axis are looked for."""
+"""Number of parts of a stroke that are searched for crossings of an axis."""
 
 ROUND = 1e-9
-"""How far the conjugate semi-axes of a circle may differ, relative."""
+"""Relative difference of conjugate semi-axes within which an ellipse is a circle."""
 
 
 class Stroke(NamedTuple):
@@ -35,18 +35,18 @@ class Stroke(NamedTuple):
     """Point at a parameter; of an arc of a circle, the parameter is the angle."""
     begin: float
     end: float
-    """The parameters where it begins and ends."""
+    """Parameters of its start and end."""
     radius: float = 0.0
     """Radius of an arc of a circle, infinite of a straight line, 0 of another curve."""
 
     @property
     def first(self) -> complex:
-        """Where it begins."""
+        """Start point."""
         return self.at(self.begin)
 
     @property
     def last(self) -> complex:
-        """Where it ends."""
+        """End point."""
         return self.at(self.end)
 
     @property
@@ -55,20 +55,20 @@ class Stroke(NamedTuple):
         return self._replace(begin=self.end, end=self.begin)
 
     def part(self, low: float, high: float) -> "Stroke":
-        """Return the part between two shares of it."""
+        """Return the part between two shares of the stroke."""
         span = self.end - self.begin
         return self._replace(begin=self.begin + low * span, end=self.begin + high * span)
 
     def sample(self, count: int) -> list[complex]:
-        """Return points at equal steps of the parameter, both ends included; of a line, the
-        ends.
+        """Return points at equal steps of the parameter, both ends included; only the ends of a
+        line.
         """
         steps = 1 if self.radius == math.inf else count
         span = self.end - self.begin
         return [self.at(self.begin + span * k / steps) for k in range(steps + 1)]
 
     def moved(self, place: Callable[[complex], complex], scale: float = 1.0) -> "Stroke":
-        """Return the stroke after a similarity that scales lengths by a factor."""
+        """Return the stroke under a similarity that scales lengths by a factor."""
         at = self.at
         return Stroke(lambda t: place(at(t)), self.begin, self.end, scale * self.radius)
 
@@ -83,9 +83,7 @@ def line(start: complex, end: complex) -> Stroke:
 
 
 def bezier(points: Sequence[complex]) -> Stroke:
-    """Return the Bezier curve of these control points; a straight stroke if all are on its
-    chord.
-    """
+    """Return the Bezier curve of control points; a straight stroke if all are on its chord."""
     start, end = points[0], points[-1]
     chord = end - start
     size = max(abs(point - start) for point in points)
@@ -119,7 +117,7 @@ def ellipse(center: complex, one: complex, other: complex, begin: float, end: fl
 
 
 def joined(paths: Sequence[Path], gap: float) -> list[Path]:
-    """Return the paths with those put together whose ends are closer than a gap."""
+    """Return the paths, joined where their ends are closer than a gap."""
     closed = [path for path in paths if is_closed(path, gap)]
     waiting = [path for path in paths if not is_closed(path, gap)]
     while waiting:
@@ -157,10 +155,9 @@ def reverse(path: Path) -> Path:
 
 
 def right_parts(path: Path, within: float) -> list[Path]:
-    """Return the parts of a path to the right of the imaginary axis, without what runs along it.
+    """Return the parts of a path to the right of the imaginary axis, without strokes along it.
 
-    A part that goes once around is one path; other parts begin and end on the axis, or where the
-    path does.
+    A closed part is one path; other parts begin and end on the axis, or where the path does.
     """
     cut = [part for stroke in path for part in _cut(stroke, within)]
     sides = [_side(stroke, within) for stroke in cut]
@@ -179,7 +176,7 @@ def right_parts(path: Path, within: float) -> list[Path]:
 
 
 def _side(stroke: Stroke, within: float) -> int:
-    """1 to the right of the axis, -1 to the left, 0 along it."""
+    """Return 1 for a stroke to the right of the axis, -1 to the left, 0 along it."""
     across = [point.real for point in stroke.sample(8)]
     if max(map(abs, across)) <= within:
         return 0
@@ -187,7 +184,7 @@ def _side(stroke: Stroke, within: float) -> int:
 
 
 def _cut(stroke: Stroke, within: float) -> list[Stroke]:
-    """Return the stroke in parts that do not cross the axis."""
+    """Return a stroke cut where it crosses the axis."""
     across = [
         stroke.at(stroke.begin + (stroke.end - stroke.begin) * k / PROBES).real
         for k in range(PROBES + 1)
@@ -215,9 +212,7 @@ def _extent(stroke: Stroke) -> float:
 
 
 def points_of(path: Path) -> list[tuple[float, ...]]:
-    """Return the points that state a path as a profile: arcs of circles by their radius, other
-    curves by many points.
-    """
+    """Return the points that state a path as a profile; curves other than circles are sampled."""
     start = path[0].first
     points: list[tuple[float, ...]] = [(start.real, start.imag)]
     for stroke in path:
@@ -241,7 +236,7 @@ def points_of(path: Path) -> list[tuple[float, ...]]:
 
 
 def _samples(stroke: Stroke) -> int:
-    """How many parts of a curve to sample it in."""
+    """Return the number of parts in which a curve is sampled."""
     chords = np.diff(np.array(stroke.sample(PROBES)))
     chords = chords[np.abs(chords) > 0.0]
     turning = float(np.abs(np.angle(chords[1:] / chords[:-1])).sum())

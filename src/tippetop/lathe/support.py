@@ -1,6 +1,4 @@
-"""Smooth parts of hulls as ovals: support functions that are polynomials of the cosine of the
-tilt.
-"""
+"""Support functions of smooth parts of hulls: polynomials of the cosine of the tilt."""
 
 # translate module: by hand in ovals.js
 
@@ -9,21 +7,22 @@ import numpy as np
 from tippetop.lathe.hull import ConvexHull
 
 STEPS = 360
-"""Steps of the tilt between its ends at which support functions are compared."""
+"""Number of steps between tilts 0 and pi at which support functions are compared."""
 
 
 SHARPEST = 1e-3
-"""Least radius of curvature, in sizes of the body: a surface without one is no oval."""
+"""Smallest radius of curvature, in sizes of the body: an oval has a smooth surface."""
 
 
 def polynomial_support(
     hull: ConvexHull, low: float, high: float, center: float, degree: int, whole: bool
 ) -> tuple[list[float], float]:
-    """Return the coefficients of the polynomial that is closest to a hull's support function
-    between two tilts, seen from a height, and how far it is from it at most.
+    """Return the polynomial closest to a hull's support function between two tilts, and its error,
+    m.
 
-    Elsewhere it is below the hull, unless it may reach out of the body as a whole. Everywhere it is
-    the support function of a convex surface.
+    The polynomial is the support function of a convex surface, seen from the height `center`. At
+    other tilts it is below that of the hull unless `whole`: then the surface may protrude from the
+    body.
     """
     from scipy.optimize import linprog  # noqa: PLC0415 - slow to import
 
@@ -43,27 +42,27 @@ def polynomial_support(
     # Radii of curvature around the axis and along the meridian.
     across = basis - c[:, None] * slopes
     along = across + (s**2)[:, None] * curvatures
-    is_own = (tilts >= low - 1e-9) & (tilts <= high + 1e-9)
-    is_bounded = is_own if whole else np.ones(len(tilts), dtype=bool)
+    is_between = (tilts >= low - 1e-9) & (tilts <= high + 1e-9)
+    is_bounded = is_between if whole else np.ones(len(tilts), dtype=bool)
     ones = np.ones((len(tilts), 1))
     rows = [
         np.hstack([basis[is_bounded], -ones[is_bounded]]),
-        np.hstack([-basis[is_own], -ones[is_own]]),
+        np.hstack([-basis[is_between], -ones[is_between]]),
         np.hstack([-across, 0.0 * ones]),
         np.hstack([-along, 0.0 * ones]),
     ]
     bounds = [
         support[is_bounded] / size,
-        -support[is_own] / size,
+        -support[is_between] / size,
         np.full(len(tilts), -SHARPEST),
         np.full(len(tilts), -SHARPEST),
     ]
     cost = np.append(np.zeros(degree + 1), 1.0)
     free = [(None, None)] * (degree + 1) + [(0.0, None)]
-    found = linprog(cost, np.vstack(rows), np.concatenate(bounds), bounds=free).x
-    if found is None:
+    solution = linprog(cost, np.vstack(rows), np.concatenate(bounds), bounds=free).x
+    if solution is None:
         return [], np.inf
     coefficients = np.zeros(degree + 1)
-    powers = chebyshev.cheb2poly(found[:-1])
+    powers = chebyshev.cheb2poly(solution[:-1])
     coefficients[: len(powers)] = size * powers
-    return coefficients.tolist(), size * float(found[-1])
+    return coefficients.tolist(), size * float(solution[-1])

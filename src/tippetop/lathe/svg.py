@@ -1,6 +1,4 @@
-"""Drawings in SVG, read with svgelements: every element with an outline, in its place on the
-sheet.
-"""
+"""Drawings in SVG, read with svgelements: every shape as strokes, in its place on the sheet."""
 
 import math
 import re
@@ -13,7 +11,7 @@ from tippetop.lathe.strokes import Path, Stroke, bezier, ellipse, line
 from tippetop.support.errors import InvalidInput
 
 MM_PER_PIXEL = 25.4 / 96.0
-"""Size of a pixel, mm: a 96th of an inch, as CSS has it."""
+"""Size of a pixel, mm: a 96th of an inch, as in CSS."""
 
 LENGTHS = {
     "": MM_PER_PIXEL,
@@ -29,10 +27,10 @@ LENGTHS = {
 
 
 def read_svg(text: str, unit: str | None, name: str) -> Sheet:
-    """Return what an SVG file shows, in mm of its physical size; or, with a unit stated, in the
-    file's own numbers, which are in that unit.
+    """Return the sheet of an SVG file.
 
-    Raises `InvalidInput` if it is no SVG.
+    Its numbers are mm of the drawing's physical size or, if a unit is stated, the file's own
+    numbers in that unit. Raises `InvalidInput` if the file is no SVG.
     """
     import svgelements  # noqa: PLC0415 - slow to import
 
@@ -60,10 +58,10 @@ def read_svg(text: str, unit: str | None, name: str) -> Sheet:
 
 
 def _in_pixels(root: ElementTree.Element) -> tuple[float, complex]:
-    """Make the numbers of a drawing pixels; return what one is then, mm, and the origin of the
-    drawing's own numbers.
+    """Change the units of a drawing to pixels; return the size of a pixel (mm) and the drawing's
+    origin.
 
-    svgelements knows millimetres to seven digits only. A drawing without a physical size is in
+    svgelements has millimetres to seven digits only. A drawing without a physical size is in
     pixels.
     """
     try:
@@ -85,7 +83,7 @@ def _in_pixels(root: ElementTree.Element) -> tuple[float, complex]:
 
 
 def _length(text: str) -> float | None:
-    """Return a length, mm; None of one that is relative, or none."""
+    """Return a length, mm; None if it is relative or missing."""
     parts = re.fullmatch(r"\s*([-+.\deE]+?)\s*([a-zA-Z]*)\s*", text)
     try:
         return float(parts[1]) * LENGTHS[parts[2].lower()] if parts else None
@@ -94,15 +92,15 @@ def _length(text: str) -> float | None:
 
 
 def _called(element: Any, number: int, count: int) -> str:
-    """What sentences call an element."""
+    """Return the name of an element in messages."""
     kind = type(element).__name__.lower()
-    own = getattr(element, "id", None)
-    return f"{kind} {own!r}" if own else f"{kind} {number} of {count}"
+    name = getattr(element, "id", None)
+    return f"{kind} {name!r}" if name else f"{kind} {number} of {count}"
 
 
 def _paths(path: Any, scale: float, shift: complex, svgelements: Any) -> list[Path]:
     """Return the subpaths of a path, y up."""
-    found: list[Path] = [[]]
+    paths: list[Path] = [[]]
 
     def place(point: complex) -> complex:
         return scale * (point + shift).conjugate()
@@ -110,7 +108,7 @@ def _paths(path: Any, scale: float, shift: complex, svgelements: Any) -> list[Pa
     for segment in path:
         match segment:
             case svgelements.Move():
-                found.append([])
+                paths.append([])
                 continue
             case svgelements.Arc():
                 stroke = _arc(segment).moved(place, scale)
@@ -138,8 +136,8 @@ def _paths(path: Any, scale: float, shift: complex, svgelements: Any) -> list[Pa
                     continue
                 stroke = line(place(_number(segment.start)), place(_number(segment.end)))
         if stroke.first != stroke.last or stroke.radius != math.inf:
-            found[-1].append(stroke)
-    return [path for path in found if path]
+            paths[-1].append(stroke)
+    return [path for path in paths if path]
 
 
 def _number(point: Any) -> complex:

@@ -1,6 +1,4 @@
-"""Bodies turned on a lathe, as users state them: a profile, a density, and what is let into
-them.
-"""
+"""Bodies turned on a lathe, as users state them: a profile, a density, and inserts."""
 
 # translate module: numpy
 
@@ -18,18 +16,18 @@ from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.validation import NO_WORD, NotNegative, Part, Points, Quantity
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
-"""The units of profiles, m."""
+"""Units of profiles, m."""
 
 DENSEST = 1e6
 """Largest density, kg/m^3: far above that of any metal."""
 
 
 LIGHTEST = 1e-6
-"""Least density, kg/m^3: far below that of any gas."""
+"""Smallest density, kg/m^3: far below that of any gas."""
 
 
 class Insert(Part):
-    """Something let into a body, in the place of what is there otherwise.
+    """A part let into a body, which replaces the material in its place.
 
     Attributes
     ----------
@@ -53,7 +51,7 @@ class Insert(Part):
 
 
 class Workpiece(Part):
-    """A body turned on a lathe: what a profile sweeps out about the axis.
+    """A body turned on a lathe: the volume that a profile sweeps about the axis.
 
     Attributes
     ----------
@@ -119,7 +117,7 @@ class Workpiece(Part):
 
     @cached_property
     def fit(self) -> Fit:
-        """The profile that the points of the body stand for, in its unit."""
+        """The profile fitted to the stated points, in their unit."""
         return _fit(self.profile, self.tolerance, "profile")
 
     @property
@@ -146,22 +144,20 @@ class Workpiece(Part):
 
     @cached_property
     def around(self) -> tuple[int | None, ...]:
-        """The number of the insert in which each insert is, the innermost; None in the body
-        itself.
-        """
-        found = []
+        """Index of the innermost insert around each insert; None in the body itself."""
+        innermost = []
         for inner in self.insides:
-            others = [
+            outer = [
                 k
-                for k, other in enumerate(self.insides)
-                if other is not inner and _within(inner, other)
+                for k, insert in enumerate(self.insides)
+                if insert is not inner and _within(inner, insert)
             ]
-            found.append(min(others, key=lambda k: area_of(self.insides[k].edges), default=None))
-        return tuple(found)
+            innermost.append(min(outer, key=lambda k: area_of(self.insides[k].edges), default=None))
+        return tuple(innermost)
 
     @cached_property
     def mass_properties(self) -> MassProperties:
-        """What it weighs, and how: exact but for rounding."""
+        """Mass, centre of mass and moments of inertia, exact up to rounding."""
         fillings = [(self.outline, self.density)]
         for inner, insert, outer in zip(self.insides, self.inserts, self.around, strict=True):
             replaced = self.density if outer is None else self.inserts[outer].density
@@ -170,7 +166,7 @@ class Workpiece(Part):
 
     @cached_property
     def hull(self) -> ConvexHull:
-        """What it touches the table with."""
+        """Surfaces with which the body touches the table."""
         return hull_of(self.outline)
 
 
@@ -180,12 +176,12 @@ def _fit(points: Sequence[Sequence[float]], tolerance: float, field: str) -> Fit
 
 
 def _within(inner: Profile, outer: Profile) -> bool:
-    """Return whether a profile is inside another, though it may touch it."""
+    """Return whether a profile lies inside another; they may touch."""
     sides = inner.sides(outer)
     return "in" in sides and "out" not in sides
 
 
 def _apart(one: Profile, other: Profile) -> bool:
-    """Return whether neither of two profiles has a part inside the other, though they may touch."""
+    """Return whether neither of two profiles has a part inside the other; they may touch."""
     sides = one.sides(other)
     return "out" in sides and "in" not in sides and "in" not in other.sides(one)
