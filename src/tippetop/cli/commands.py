@@ -69,9 +69,10 @@ def _in_a_sentence(error: Any) -> Exception:
         detail["ctx"] = {limit: value for limit, value in bounds.items() if value is not None}
         return refusal_of(detail, {}).within(option.opts[0])
     message: str = error.format_message()
-    if not message:
-        return error
-    return TippetopError(message[0].lower() + message[1:].removesuffix("."))
+    if message:
+        return TippetopError(message[0].lower() + message[1:].removesuffix("."))
+    help_text: Exception = error
+    return help_text
 
 
 app = typer.Typer(
