@@ -22,6 +22,7 @@ ROOMS = {
     "page_engine": "the engine in the page, JavaScript",
     "translate": "Python modules to JavaScript",
     "fit": "data, fits with errors, plans of measurements",
+    "engines": "reference suite; other programs' formats and runs",
     "sweeps": "many launches: grid, lanes, store, schedulers",
     "extend": "what users' laws, surfaces and events need",
     "run": "simulate: one launch from mode to mode",

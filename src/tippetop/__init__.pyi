@@ -2,6 +2,8 @@
 
 from . import extend as extend
 from .contact.mode import Outcome as Outcome
+from .engines.bodies import write_mjcf as write_mjcf
+from .engines.bodies import write_urdf as write_urdf
 from .export.glb import write_glb as write_glb
 from .export.html import write_html as write_html
 from .export.movie import write_movie as write_movie

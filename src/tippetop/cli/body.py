@@ -1,7 +1,7 @@
 """`tippetop body`: mass properties, surfaces and prospects of a body turned on a lathe."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
@@ -15,7 +15,13 @@ from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.files import place_for, require_ending
 
-ENDINGS = {"plot": DRAWINGS, "stl": (".stl",), "3mf": (".3mf",)}
+ENDINGS = {
+    "plot": DRAWINGS,
+    "stl": (".stl",),
+    "3mf": (".3mf",),
+    "mjcf": (".xml",),
+    "urdf": (".urdf",),
+}
 """Accepted suffixes of files."""
 
 
@@ -60,6 +66,12 @@ def body(
     three_mf: Annotated[
         Path | None, typer.Option("--3mf", help="Write all parts for printing, mm.")
     ] = None,
+    mjcf: Annotated[
+        Path | None, typer.Option(help="Write the body for MuJoCo, with table and launch: .xml.")
+    ] = None,
+    urdf: Annotated[
+        Path | None, typer.Option(help="Write the body for other programs: .urdf.")
+    ] = None,
     as_toml: Annotated[
         bool, typer.Option("--toml", help="Print a problem with this body as TOML.")
     ] = False,
@@ -72,9 +84,11 @@ def body(
     bores inside it. A body that cannot be simulated is weighed all the same, and ends with exit
     code 2.
     """
+    from rich.markup import escape  # noqa: PLC0415 - slow to import
+
     from tippetop.lathe.files import read_with_remarks  # noqa: PLC0415 - slow to import
 
-    requested = {"plot": plot, "stl": stl, "3mf": three_mf}
+    requested = {"plot": plot, "stl": stl, "3mf": three_mf, "mjcf": mjcf, "urdf": urdf}
     files = {kind: path for kind, path in requested.items() if path is not None}
     for kind, path in files.items():
         require_ending(f"--{kind}", path, ENDINGS[kind])
@@ -95,15 +109,16 @@ def body(
         written = commented_toml(tt.presets.report_problem().model_copy(update={"body": turned}))
     else:
         summary = {"remarks": [*remarks, *_fit(workpiece)], **_summary(workpiece, whole)}
-    for path in files.values():
-        _write(workpiece, path, force)
+    outputs = [_write(workpiece, path, force, whole) for path in files.values()]
+    not_mapped = list(dict.fromkeys(remark for _, remarks in outputs for remark in remarks))
+    paths = [path for written_paths, _ in outputs for path in written_paths]
     if as_toml:
         typer.echo(written.rstrip())
     elif as_json:
         names = {kind: str(path) for kind, path in files.items()}
-        show_json({**summary, "files": names})
+        show_json({**summary, "files": names, "not_mapped": not_mapped})
     else:
-        show(*_sentences(summary), files=files.values())
+        show(*_sentences(summary), *map(escape, not_mapped), files=paths)
     if not as_toml and summary["trouble"]:
         raise typer.Exit(2)
 
@@ -216,13 +231,23 @@ def _prospects(workpiece: "tt.Workpiece") -> dict[str, Any]:
     }
 
 
-def _write(workpiece: "tt.Workpiece", path: Path, force: bool) -> None:
-    if path.suffix.lower() in ENDINGS["plot"]:
+def _write(
+    workpiece: "tt.Workpiece", path: Path, force: bool, whole: bool
+) -> tuple[Sequence[Path], Sequence[str]]:
+    """Write a file; return those that were written and what they cannot say."""
+    ending = path.suffix.lower()
+    if ending in (*ENDINGS["mjcf"], *ENDINGS["urdf"]):
+        patch = tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal")
+        body = tt.Body.turned(workpiece, whole=whole)
+        problem = tt.Problem(body=body, friction=patch, launch=tt.Launch(tilt=0.1, spin=155.0))
+        return (tt.write_mjcf if ending == ".xml" else tt.write_urdf)(problem, path, force)
+    if ending in ENDINGS["plot"]:
         from tippetop.figures.section import section  # noqa: PLC0415 - slow to import
 
         write_figure(section(workpiece), path, force)
     else:
         tt.write_solid(workpiece, path, force)
+    return [path], []
 
 
 def _sentences(summary: dict[str, Any]) -> Iterator[Any]:

@@ -11,9 +11,11 @@ from typer.core import TyperGroup
 from tippetop import __version__
 from tippetop.cli.body import body
 from tippetop.cli.critical import critical
+from tippetop.cli.engines import engines
 from tippetop.cli.fit import fit
 from tippetop.cli.lab import lab
 from tippetop.cli.problem import problem
+from tippetop.cli.reference import reference
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
@@ -81,7 +83,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (simulate, reproduce, critical, sweep, fit, lab, problem, body):
+for command in (simulate, reproduce, critical, sweep, fit, lab, problem, body, reference, engines):
     app.command()(command)
 
 

@@ -1,0 +1,59 @@
+"""`tippetop reference`: write the reference suite for other programs."""
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tippetop.cli.options import Force, Json
+from tippetop.cli.terminal import listing, progress_bar, show, show_json
+
+
+def reference(
+    out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path("tippetop-suite"),
+    case: Annotated[
+        list[str] | None, typer.Option(help="Write only this case; may be repeated.")
+    ] = None,
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
+    """Write reference problems with numbers that other programs can be held against.
+
+    Each number has the agreement of two methods that share no code. Ends with exit code 1 where
+    they differ by more than 1e-10 s in an event or 1e-8 in a state.
+    """
+    from tippetop.engines.reference import SUITE_VERSION, write_suite  # noqa: PLC0415 - slow to import
+
+    with progress_bar("starting") as progress:
+        found = write_suite(out, case, force, progress)
+    apart = [one.case.name for one in found if not one.agrees]
+    if as_json:
+        cases = {
+            one.case.name: {
+                "events": len(one.events),
+                "event_agreement": one.event_agreement,
+                "state_agreement": one.state_agreement,
+                "energy_error": one.energy_error,
+                "agrees": one.agrees,
+            }
+            for one in found
+        }
+        show_json({"suite": SUITE_VERSION, "folder": str(out), "cases": cases})
+    else:
+        headings = ("case", "events", "agree to (s)", "states agree to", "energy kept to")
+        rows = [
+            (
+                one.case.name,
+                str(len(one.events)),
+                "" if math.isnan(one.event_agreement) else f"{one.event_agreement:.0e}",
+                f"{one.state_agreement:.0e}",
+                f"{one.energy_error:.0e}",
+            )
+            for one in found
+        ]
+        listed = listing(f"Reference suite {SUITE_VERSION}", headings, rows, words=("case",))
+        worse = f"The methods differ by more than the suite promises: {', '.join(apart)}."
+        show(listed, *([worse] if apart else []), files=[out / "README.md"])
+    if apart:
+        raise typer.Exit(1)

@@ -1,0 +1,104 @@
+"""What an adapter of another program is, and helpers for writing one."""
+
+import importlib.metadata
+from importlib.util import find_spec
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tippetop as tt
+from tippetop.engines.cases import Case
+
+Array = NDArray[np.float64]
+
+
+class Setting(NamedTuple):
+    """A way to set a program, with the place in its documentation that recommends it."""
+
+    name: str
+    about: str
+    """What is set, in a few words."""
+    source: str
+    """Where the program's documentation says so."""
+    options: dict[str, Any]
+
+
+class EngineState(NamedTuple):
+    """The state of a body in another program, table frame, SI."""
+
+    axis: Array
+    omega: Array
+    velocity: Array
+    """Velocity of the centre of mass."""
+    height: float
+
+
+class EngineRun(Protocol):
+    """A case that is under way in another program."""
+
+    def advance(self, steps: int) -> None:
+        """Take a number of steps."""
+
+    def read(self) -> EngineState:
+        """Return the state."""
+
+    def close(self) -> None:
+        """Give back what the program holds."""
+
+
+class Adapter(Protocol):
+    """How a program follows cases."""
+
+    name: str
+    """Its name in tables."""
+    package: str | None
+    """The package that is installed for it; None for this one."""
+    module: str | None
+    """The module that is imported; None for this one."""
+    settings: tuple[Setting, ...]
+    """Ways to set it: the first is its defaults."""
+
+    def refusal(self, case: Case) -> str | None:
+        """Return why it cannot state a case; None where it can."""
+
+    def start(self, case: Case, step: float, setting: Setting) -> EngineRun:
+        """Return a case at its launch, with steps of this length, s."""
+
+
+def is_installed(adapter: Adapter) -> bool:
+    """Whether an adapter's program is installed here."""
+    return adapter.module is None or find_spec(adapter.module) is not None
+
+
+def version_of(adapter: Adapter) -> str:
+    """Return the version of an adapter's program."""
+    if adapter.package is None:
+        return tt.__version__
+    return importlib.metadata.version(adapter.package)
+
+
+def dry_only(case: Case) -> str | None:
+    """Return why a program with Coulomb friction at a point cannot state a case."""
+    friction = case.problem.friction
+    if isinstance(friction, tt.ViscousFriction):
+        return "no friction in proportion to slip and normal force"
+    if isinstance(friction, tt.ContensouFriction):
+        return "no drilling friction"
+    return None
+
+
+def no_rolling(case: Case) -> str | None:
+    """Return why a program without rolling friction cannot state a case."""
+    return "no rolling friction" if case.problem.rolling_resistance else None
+
+
+def no_rebound(case: Case) -> str | None:
+    """Return why a program without a coefficient of restitution cannot state a case."""
+    return "no coefficient of restitution" if case.problem.contact.restitution else None
+
+
+def axis_of(quaternion: Array) -> Array:
+    """Return the body's axis from an orientation, scalar first."""
+    w, x, y, z = quaternion
+    return np.array([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])

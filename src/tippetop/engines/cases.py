@@ -1,0 +1,200 @@
+"""The cases of the reference suite: problems, how long they are followed, what they test."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tippetop as tt
+
+SAMPLES = 20
+"""Number of instants at which a case has its state."""
+
+
+class Case(NamedTuple):
+    """A problem of the suite, how long it is followed, and what it tests."""
+
+    name: str
+    """Name in files and tables."""
+    title: str
+    """What the case is, in a line."""
+    tests: str
+    """What a program needs to follow it."""
+    problem: tt.Problem
+    duration: float
+    """Length of the run, s."""
+    cut_off: float = 0.0
+    """How long before its limit an infinite sequence of rebounds may be cut off, s."""
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """The instants of the states, s: evenly spaced, the last at the end."""
+        return self.duration * np.arange(1, SAMPLES + 1) / SAMPLES
+
+
+def _rolling_balls() -> tt.Launch:
+    """Return the launch of the hurricane balls a little off their steady rolling."""
+    tilt, radius, gravity = 1.3, 0.01, 9.81
+    turning = math.sqrt(gravity / (radius * (0.4 - math.cos(tilt))))
+    # The lower ball rolls about the centre of mass at rest: its contact is at rest.
+    spin = turning * (1.0 + math.cos(tilt))
+    return tt.Launch(tilt=tilt, precession=turning, spin=spin, tilt_rate=2.0)
+
+
+_REPORT, _LEINE = tt.presets.REPORT, tt.presets.LEINE_GLOCKER
+_RHO = 3.0 * math.pi / 16.0
+"""Semi-axis of the ellipsoidal limit surface over the radius of the patch."""
+
+_AT_REST = (0.0, 0.0, 0.0)
+
+CASES = (
+    Case(
+        "viscous",
+        "A tippe top on a viscous film",
+        "smooth friction, the turning over, and Jellett's integral",
+        tt.Problem(
+            body=_REPORT,
+            friction=tt.ViscousFriction(mu=0.3),
+            launch=tt.Launch(tilt=0.1, spin=155.0),
+        ),
+        8.0,
+    ),
+    Case(
+        "coulomb-roll",
+        "A top on dry friction slips, sticks and rolls",
+        "the end of slip, and rolling without loss",
+        tt.Problem(
+            body=_REPORT,
+            friction=tt.CoulombFriction(mu=0.3),
+            launch=tt.Launch(tilt=0.1, spin=155.0, velocity=_AT_REST),
+        ),
+        2.0,
+    ),
+    Case(
+        "drilling",
+        "A top on a contact patch turns over (ellipsoidal limit surface)",
+        "slipping and drilling at once",
+        tt.Problem(
+            body=_REPORT,
+            friction=tt.ContensouFriction(mu=0.3, patch_radius=1e-3 / _RHO, pressure="ellipsoidal"),
+            launch=tt.Launch(tilt=0.1, spin=100.0),
+        ),
+        4.0,
+    ),
+    Case(
+        "drilling-hertz",
+        "Leine and Glocker's ball on a contact patch turns over (pressure of Hertz)",
+        "slipping and drilling at once, with two branches of the law",
+        tt.Problem(
+            body=_LEINE,
+            friction=tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="hertz"),
+            launch=tt.Launch(tilt=0.1, spin=180.0, velocity=_AT_REST),
+            gravity=9.81,
+        ),
+        1.3,
+    ),
+    Case(
+        "flights",
+        "A fast top leaves the table and comes down",
+        "lift-off, flights and impacts without rebound",
+        tt.Problem(
+            body=_REPORT,
+            friction=tt.ViscousFriction(mu=0.3),
+            launch=tt.Launch(tilt=0.1, spin=175.0),
+        ),
+        6.0,
+    ),
+    Case(
+        "restitution",
+        "A spinning ball is dropped and rebounds",
+        "impacts with friction and restitution",
+        tt.Problem(
+            body=_REPORT,
+            friction=tt.CoulombFriction(mu=0.1),
+            launch=tt.Launch(tilt=0.6, spin=120.0, gap=0.02, velocity=_AT_REST),
+            contact=tt.Contact(restitution=0.8),
+        ),
+        0.3,
+    ),
+    Case(
+        "stem",
+        "Leine and Glocker's top strikes the table with its stem, stands on it and falls back",
+        "impacts of a second surface, infinite rocking, and contact in two points",
+        tt.Problem(
+            body=tt.presets.LEINE_GLOCKER_STEM,
+            friction=tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal"),
+            launch=tt.Launch(tilt=0.1, spin=180.0, velocity=_AT_REST),
+            gravity=9.81,
+        ),
+        8.0,
+        cut_off=1e-6,
+    ),
+    Case(
+        "egg",
+        "A spinning egg stands up",
+        "a contact whose curvature changes",
+        tt.Problem(
+            body=tt.presets.EGG,
+            friction=tt.ContensouFriction(mu=0.2, patch_radius=1e-3 / _RHO, pressure="ellipsoidal"),
+            launch=tt.Launch(tilt=1.5, spin=0.0, precession=100.0),
+            gravity=9.81,
+        ),
+        3.0,
+    ),
+    Case(
+        "disk",
+        "Euler's disk rolls down with rolling resistance",
+        "a sharp edge, and a motion that grows ever faster",
+        tt.Problem(
+            body=tt.presets.EULER_DISK,
+            friction=tt.CoulombFriction(mu=0.4),
+            launch=tt.Launch(tilt=0.35, spin=3.5, precession=55.0),
+            gravity=9.81,
+            rolling_resistance=5e-4,
+        ),
+        1.4,
+    ),
+    Case(
+        "hurricane",
+        "Hurricane balls roll about their centre",
+        "rolling without loss for many turns",
+        tt.Problem(
+            body=tt.presets.HURRICANE_BALLS,
+            friction=tt.CoulombFriction(mu=0.5),
+            launch=_rolling_balls(),
+            gravity=9.81,
+        ),
+        2.0,
+    ),
+    Case(
+        "rest",
+        "A ball with its centre of mass off the middle rocks to rest",
+        "rolling resistance that holds",
+        tt.Problem(
+            body=_REPORT,
+            friction=tt.CoulombFriction(mu=0.3),
+            launch=tt.Launch(tilt=1.0, spin=0.0),
+            rolling_resistance=5e-4,
+        ),
+        1.6,
+    ),
+    Case(
+        "painleve",
+        "Slip turns until friction jams the contact",
+        "Painleve's paradox: an impact without approach",
+        tt.Problem(
+            body=tt.Body(
+                mass=0.02,
+                shape=tt.EccentricSphere(radius=0.02, eccentricity=0.05),
+                I1=4e-8,
+                I3=4e-8,
+            ),
+            friction=tt.CoulombFriction(mu=0.3),
+            launch=tt.Launch(tilt=1.2, spin=0.0, slip=(0.0, 0.05)),
+            gravity=9.81,
+        ),
+        2e-3,
+    ),
+)
+"""The suite, in the order of its files."""

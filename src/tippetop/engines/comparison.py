@@ -1,0 +1,376 @@
+"""The cases in other programs, held against the reference: errors, order and cost."""
+
+import datetime
+import json
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tippetop as tt
+from tippetop.engines.adapters import ADAPTERS, adapter
+from tippetop.engines.adapters.base import Adapter, EngineState, Setting, is_installed, version_of
+from tippetop.engines.cases import CASES, Case
+from tippetop.engines.reference import SUITE_VERSION, case_of, independent, numbers_of
+from tippetop.support.errors import InvalidInput
+from tippetop.support.files import read_text, written_beside
+from tippetop.support.suggestions import not_one_of
+
+Array = NDArray[np.float64]
+
+STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4)
+"""Lengths of the steps, s; each is shortened to fit the instants of the states."""
+
+GLANCE = 1e-3
+"""How often the tilt is read for the time of turning over, s."""
+
+HOLDS = 0.01
+"""Error of the tilt up to which a run holds, rad."""
+
+LONGEST = 60.0
+"""Longest run, s: where the next shorter step would take longer, it is left out."""
+
+DRAWN = 200
+"""Number of tilts that are stored of the shortest step, for figures."""
+
+FOLDER = "results"
+"""Where stored results are, in this package."""
+
+Told = Callable[[float, float, str], None]
+
+
+class EngineTask(NamedTuple):
+    """A case in a program at a setting."""
+
+    adapter: Adapter
+    case: Case
+    setting: Setting
+
+
+def tasks(names: Sequence[str] | None, cases: Sequence[str] | None) -> Iterator[EngineTask]:
+    """Yield what programs can follow, program by program; `InvalidInput` for unknown names."""
+    for name in names or ():
+        if name not in ADAPTERS:
+            raise not_one_of("engine", name, list(ADAPTERS))
+    chosen = [case_of(name) for name in cases] if cases else list(CASES)
+    for name in names or ADAPTERS:
+        made = adapter(name)
+        for case in chosen:
+            if made.refusal(case) is None:
+                for setting in made.settings:
+                    yield EngineTask(made, case, setting)
+
+
+def installed(names: Sequence[str] | None = None) -> list[str]:
+    """Return the names of the programs installed here, among them the stepping of this one."""
+    return [name for name in names or ADAPTERS if is_installed(adapter(name))]
+
+
+class Exact(NamedTuple):
+    """What a case has to be: states at its instants, and when it turns over."""
+
+    numbers: Mapping[str, Array]
+    turns_over: float
+    """First time at which the tilt passes a right angle, s; nan where it does not."""
+    energy: float
+    """At launch, J."""
+    jellett: float
+    """At launch, kg m^3/s."""
+
+
+def exact(case: Case) -> Exact:
+    """Return the reference of a case, from the independent solver's states and a run here."""
+    rows = np.array(independent(case)["states"])
+    numbers = numbers_of(case.problem, rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[:, 10])
+    run = tt.simulate(case.problem, case.duration, samples=2)
+    energy, jellett = float(run["energy"][0]), float(run["jellett"][0])
+    return Exact(numbers, float(run["turns_over"]), energy, jellett)
+
+
+def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dict[str, Any]:
+    """Follow a task with steps of about this length, and return the row of a table."""
+    case, problem = task.case, task.case.problem
+    between = case.duration / len(case.times)
+    glances = max(1, math.ceil(between / GLANCE))
+    each = max(1, math.ceil(between / glances / step))
+    length = between / glances / each
+    begun = time.perf_counter()
+    stepper = task.adapter.start(case, length, task.setting)
+    readings, tilts, over = list[EngineState](), [problem.launch.tilt], math.nan
+    try:
+        for _ in case.times:
+            for _ in range(glances):
+                stepper.advance(each)
+                reading = stepper.read()
+                x, y, z = reading.axis
+                tilts.append(math.atan2(math.hypot(x, y), z))
+                a, b = tilts[-2:]
+                if math.isnan(over) and a < math.pi / 2 <= b:
+                    at = len(tilts) - 2 + (math.pi / 2 - a) / (b - a)
+                    over = at * between / glances
+            readings.append(reading)
+    finally:
+        stepper.close()
+    took = time.perf_counter() - begun
+    vectors = [np.array([getattr(one, name) for one in readings]) for name in EngineState._fields]
+    found = numbers_of(problem, *vectors)
+    apart = np.abs(found["theta"] - reference.numbers["theta"])
+    early = max(
+        abs(found[f"axis_{letter}"][0] - reference.numbers[f"axis_{letter}"][0]) for letter in "xyz"
+    )
+    past = np.flatnonzero(~(apart <= HOLDS))
+    holds = case.duration if not len(past) else float(case.times[past[0] - 1]) if past[0] else 0.0
+    energies = np.concatenate([[reference.energy], found["energy"]])
+    row = {
+        "case": case.name,
+        "setting": task.setting.name,
+        "step": length,
+        "asked_step": step,
+        "early_error": early,
+        "tilt_error": float(apart.max()),
+        "holds_until": holds,
+        "turns_over": over,
+        "turns_over_exactly": reference.turns_over,
+        "energy_error": float((energies[-1] - reference.numbers["energy"][-1]) / reference.energy),
+        "energy_gain": float(np.diff(energies).max() / reference.energy),
+        "jellett_error": _part(
+            float(found["jellett"][-1] - reference.numbers["jellett"][-1]), reference.jellett
+        ),
+        "seconds": took,
+        "microseconds_per_step": 1e6 * took / (len(case.times) * glances * each),
+    }
+    if drawn:
+        chosen = np.linspace(0, len(tilts) - 1, DRAWN + 1).round().astype(int)
+        row["tilt"] = [round(tilts[k], 4) for k in chosen]
+    return {name: _plain(value) for name, value in row.items()}
+
+
+def _part(value: float, whole: float) -> float:
+    return value / whole if whole else math.nan
+
+
+def _plain(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+# Results in files
+
+
+def result_path(folder: Path, name: str) -> Path:
+    """Return the file of a program's results."""
+    return folder / f"{name}.json"
+
+
+def load(folder: Path, name: str) -> dict[str, Any] | None:
+    """Return a program's results in a folder; None without them."""
+    path = result_path(folder, name)
+    if not path.exists():
+        return None
+    try:
+        found: dict[str, Any] = json.loads(read_text(path, "results of engines"))
+    except ValueError:
+        raise InvalidInput("out", str(path), "a file of results", "cannot be read") from None
+    return found
+
+
+def stored() -> dict[str, dict[str, Any]]:
+    """Return the results that come with this package, by program."""
+    folder = files(__package__) / FOLDER
+    found = {}
+    for name in ADAPTERS:
+        path = folder / f"{name}.json"
+        if path.is_file():
+            found[name] = json.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
+def compare(
+    folder: Path | str,
+    names: Sequence[str] | None = None,
+    cases: Sequence[str] | None = None,
+    steps: Sequence[float] = STEPS,
+    longest: float = LONGEST,
+    progress: Told = lambda *_: None,
+) -> dict[str, dict[str, Any]]:
+    """Run the cases in the programs that are installed, and return and write their results.
+
+    Each run is written when it is done; what a folder has of the same versions is not run again.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such program, case or step.
+    FileTrouble
+        If results cannot be read or written.
+    """
+    if not all(math.isfinite(step) and 0.0 < step <= 0.1 for step in steps):
+        raise InvalidInput("step", list(steps), "lengths above 0 and at most 0.1 s")
+    folder = Path(folder)
+    chosen = list(tasks(installed(names) if names else installed(), cases))
+    folder.mkdir(parents=True, exist_ok=True)
+    steps = sorted(steps, reverse=True)
+    references: dict[str, Exact] = {}
+    results: dict[str, dict[str, Any]] = {}
+    for k, task in enumerate(chosen):
+        name = next(name for name, kind in ADAPTERS.items() if kind == type(task.adapter).__name__)
+        progress(k, len(chosen), f"{task.adapter.name}, {task.case.name}")
+        result = results.get(name) or _opened(folder, name, task.adapter)
+        results[name] = result
+        for number, step in enumerate(steps):
+            if _has(result, task, step):
+                continue
+            before = result["rows"][-1] if number else None
+            if before and _predicted(before, task, step) > longest:
+                continue
+            if task.case.name not in references:
+                references[task.case.name] = exact(task.case)
+            result["rows"].append(_tried(task, step, references[task.case.name], step == steps[-1]))
+            result["date"] = datetime.datetime.now(datetime.UTC).date().isoformat()
+            _save(folder, name, result)
+    progress(len(chosen), len(chosen), "")
+    return results
+
+
+def _tried(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dict[str, Any]:
+    """Return the row of a run, or of what went wrong in it."""
+    try:
+        return measure(task, step, reference, drawn)
+    except (ArithmeticError, AssertionError, RuntimeError, ValueError) as error:
+        told = " ".join(str(error).split())[:200]
+        return {
+            "case": task.case.name,
+            "setting": task.setting.name,
+            "asked_step": step,
+            "failure": told or type(error).__name__,
+        }
+
+
+def _predicted(before: Mapping[str, Any], task: EngineTask, step: float) -> float:
+    """Return how long a run will take by the one before it, s."""
+    same = (before["case"], before["setting"]) == (task.case.name, task.setting.name)
+    if not same or "seconds" not in before:
+        return 0.0
+    return float(before["seconds"] * before["asked_step"] / step)
+
+
+def _opened(folder: Path, name: str, made: Adapter) -> dict[str, Any]:
+    """Return the results of a folder if they are of the same versions, or empty ones."""
+    head = {"engine": made.name, "version": version_of(made), "suite": SUITE_VERSION}
+    found = load(folder, name)
+    if found is not None and all(found.get(key) == value for key, value in head.items()):
+        return found
+    told = [setting._asdict() for setting in made.settings]
+    refused = {case.name: made.refusal(case) for case in CASES if made.refusal(case)}
+    return {**head, "settings": told, "refused": refused, "rows": []}
+
+
+def _has(result: Mapping[str, Any], task: EngineTask, step: float) -> bool:
+    key = (task.case.name, task.setting.name, step)
+    return any((row["case"], row["setting"], row["asked_step"]) == key for row in result["rows"])
+
+
+def _save(folder: Path, name: str, result: Mapping[str, Any]) -> None:
+    """Write results, a run a line."""
+    head = json.dumps({key: value for key, value in result.items() if key != "rows"}, indent=1)
+    rows = ",\n".join(json.dumps(row) for row in result["rows"])
+    with written_beside(result_path(folder, name), True) as beside:
+        beside.write_text(f'{head[:-2]},\n "rows": [\n{rows}\n]}}\n', encoding="utf-8")
+
+
+# What results say
+
+
+class EngineVerdict(NamedTuple):
+    """What a program makes of a case at its best setting."""
+
+    engine: str
+    case: str
+    setting: str
+    step: float
+    early_error: float
+    order: float
+    """Observed order of the early error, of the last two steps; nan where it cannot be said."""
+    holds_until: float
+    turns_over: float
+    turns_over_exactly: float
+    energy_error: float
+    jellett_error: float
+    microseconds_per_step: float
+    step_for_1_percent: float
+    """Largest step from which on the early error is below 0.01; nan if none is."""
+    step_for_0_1_percent: float
+
+
+def verdicts(results: Mapping[str, Mapping[str, Any]]) -> list[EngineVerdict]:
+    """Return what each program makes of each case, at the setting with the least early error."""
+    found = []
+    for result in results.values():
+        rows = [row for row in result["rows"] if "failure" not in row]
+        for case in dict.fromkeys(row["case"] for row in rows):
+            of_case = [row for row in rows if row["case"] == case]
+            finest = _finest(of_case)
+            best = min(finest, key=lambda row: _number(row["early_error"], math.inf))
+            same = [row for row in of_case if row["setting"] == best["setting"]]
+            found.append(_verdict(result["engine"], sorted(same, key=lambda row: -row["step"])))
+    return found
+
+
+def _finest(rows: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Return of each setting the row with the shortest step."""
+    found: dict[str, Mapping[str, Any]] = {}
+    for row in rows:
+        last = found.get(row["setting"])
+        if last is None or row["step"] < last["step"]:
+            found[row["setting"]] = row
+    return list(found.values())
+
+
+def _verdict(engine: str, rows: Sequence[Mapping[str, Any]]) -> EngineVerdict:
+    best = rows[-1]
+    errors = [_number(row["early_error"]) for row in rows]
+    return EngineVerdict(
+        engine,
+        best["case"],
+        best["setting"],
+        best["step"],
+        errors[-1],
+        order_of([row["step"] for row in rows], errors),
+        best["holds_until"],
+        _number(best["turns_over"]),
+        _number(best["turns_over_exactly"]),
+        _number(best["energy_error"]),
+        _number(best["jellett_error"]),
+        best["microseconds_per_step"],
+        _largest_step(rows, errors, 1e-2),
+        _largest_step(rows, errors, 1e-3),
+    )
+
+
+def order_of(steps: Sequence[float], errors: Sequence[float]) -> float:
+    """Return the slope of the logarithms of errors over those of the last three steps."""
+    pairs = [(h, e) for h, e in zip(steps, errors, strict=True) if e > 0.0][-3:]
+    if len(pairs) < 2:
+        return math.nan
+    h, e = np.log(np.array(pairs)).T
+    return float(np.polyfit(h, e, 1)[0])
+
+
+def _largest_step(
+    rows: Sequence[Mapping[str, Any]], errors: Sequence[float], bound: float
+) -> float:
+    """Return the largest step from which on all errors are below a bound."""
+    step = math.nan
+    for row, error in zip(reversed(rows), reversed(errors), strict=True):
+        if not error < bound:
+            break
+        step = row["step"]
+    return step
+
+
+def _number(value: float | None, missing: float = math.nan) -> float:
+    return missing if value is None else float(value)

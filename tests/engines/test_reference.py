@@ -1,0 +1,139 @@
+"""The reference suite: two methods agree on it, and its files say the same in three formats."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+import tippetop as tt
+from independent_reference import computed
+from independent_solver import hertz
+from tippetop.cli.commands import app
+from tippetop.engines import reference as suite
+from tippetop.engines.cases import CASES
+
+BRIEF = ("restitution", "painleve", "rest")
+"""Cases that take about a second."""
+
+WHOLE = [
+    case.name if case.name in BRIEF else pytest.param(case.name, marks=pytest.mark.slow)
+    for case in CASES
+]
+
+LONG = ("viscous", "stick-slip", "flights", "stem")
+AGAIN = [
+    pytest.param(case.name, marks=pytest.mark.campaign)
+    if case.name in LONG
+    else pytest.param(case.name, marks=pytest.mark.slow)
+    if case.name not in BRIEF
+    else case.name
+    for case in CASES
+]
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_the_program_agrees_with_the_independent_solver(name):
+    found = suite.reference(suite.case_of(name))
+    assert found.agrees, (found.event_agreement, found.state_agreement)
+    assert found.energy_error < 1e-12
+    late = [event for event in found.events if math.isnan(event[3])]
+    assert len(late) <= len(found.events) // 2, "events without a second method are few"
+
+
+@pytest.mark.parametrize("name", AGAIN)
+def test_the_stored_numbers_are_the_independent_solvers(name):
+    case = suite.case_of(name)
+    states, events, _ = computed(case)
+    stored = suite.independent(case)
+    scale = np.abs(stored["states"]).max(axis=0) + 1e-300
+    assert np.abs((np.array(states) - stored["states"]) / scale).max() < 1e-8
+    assert [(kind, i) for _, kind, i in events] == [(kind, i) for _, kind, i in stored["events"]]
+    apart = [abs(a[0] - b[0]) for a, b in zip(events, stored["events"], strict=True)]
+    assert max(apart, default=0.0) < 1e-10
+
+
+def test_a_wrong_number_does_not_agree(monkeypatch):
+    case = suite.case_of("painleve")
+    stored = suite.independent(case)
+    stored["states"][7][10] *= 1.0 + 1e-6
+    monkeypatch.setattr(suite, "independent", lambda _: stored)
+    assert not suite.reference(case).agrees
+    stored = json.loads(json.dumps(stored))
+    stored["states"][7][10] /= 1.0 + 1e-6
+    stored["events"][0][0] += 1e-9
+    assert not suite.reference(case).agrees
+
+
+def test_every_case_has_its_independent_numbers():
+    for case in CASES:
+        stored = suite.independent(case)
+        rows = np.array(stored["states"])
+        assert rows.shape == (len(case.times), len(stored["columns"]))
+        assert np.allclose(rows[:, 0], case.times, rtol=1e-14)
+        assert np.allclose(np.linalg.norm(rows[:, 1:4], axis=1), 1.0, atol=1e-11)
+
+
+def test_the_suite_says_the_same_in_all_formats(tmp_path):
+    suite.write_suite(tmp_path / "suite", ["painleve"])
+    folder = tmp_path / "suite"
+    told = json.loads((folder / "painleve.json").read_text())
+    schema = json.loads((folder / "schema.json").read_text())
+    assert set(schema["required"]) <= set(told)
+    assert set(schema["properties"]["states"]["required"]) == set(told["states"])
+    assert tt.Problem(**told["problem"]) == suite.case_of("painleve").problem
+    with (folder / "painleve_states.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    read = xr.open_dataset(folder / "painleve.nc", engine="h5netcdf").load()
+    for name, column in told["states"].items():
+        assert column["values"] == [float(row[name]) for row in rows] == read[name].values.tolist()
+        assert column["agreement"] == [float(row[f"{name}_agreement"]) for row in rows]
+    with (folder / "painleve_events.csv").open() as file:
+        events = [(float(row["time"]), row["kind"]) for row in csv.DictReader(file)]
+    assert events == [(event["time"], event["kind"]) for event in told["events"]]
+    assert read["event_time"].values.tolist() == [time for time, _ in events]
+    assert "| `painleve` |" in (folder / "README.md").read_text()
+    with pytest.raises(tt.FileTrouble, match="exists"):
+        suite.write_suite(folder, ["painleve"])
+
+
+def test_energy_and_jellett_of_states_are_those_of_the_run():
+    case = suite.case_of("rest")
+    found = suite.reference(case).states
+    run = tt.simulate(case.problem, 1.0, times=[0.0, *case.times[case.times <= 1.0]])
+    count = run.sizes["time"] - 1
+    assert np.allclose(found["energy"][:count], run["energy"][1:], rtol=1e-13)
+    spun = suite.case_of("painleve")
+    found, run = (
+        suite.reference(spun).states,
+        tt.simulate(spun.problem, 2e-3, times=[0, *spun.times]),
+    )
+    assert np.allclose(found["jellett"], run["jellett"][1:], rtol=1e-9, atol=1e-18)
+
+
+def test_no_case_of_this_name(tmp_path):
+    result = CliRunner().invoke(app, ["reference", "--out", str(tmp_path / "s"), "--case", "tops"])
+    assert isinstance(result.exception, tt.InvalidInput)
+    assert "painleve" in str(result.exception)
+    assert not (tmp_path / "s").exists()
+
+
+@pytest.mark.parametrize("kappa", [0.3, 0.9, 1.4, 4.0])
+def test_the_second_solvers_patch_is_coulomb_friction_all_over_it(kappa):
+    """Each part slides with its own velocity under the pressure (3/2) sqrt(1 - r^2) / pi."""
+    count = 1500
+    middles = (np.arange(count) + 0.5) / count
+    # r = sin(a) takes the pressure's edge away.
+    a, angle = np.meshgrid(0.5 * math.pi * middles, 2.0 * math.pi * middles)
+    r = np.sin(a)
+    weight = 1.5 / math.pi * np.cos(a) ** 2 * r * math.pi**2 / count**2
+    vx, vy = kappa - r * np.sin(angle), r * np.cos(angle)
+    size = np.hypot(vx, vy)
+    moment = r * (np.cos(angle) * vy - np.sin(angle) * vx)
+    force, torque = hertz(1.0, 1.0)(np.array([kappa, 0.0]), 1.0)
+    assert weight.sum() == pytest.approx(1.0, abs=1e-6)
+    assert (weight * vx / size).sum() == pytest.approx(-force[0], abs=2e-5)
+    assert (weight * moment / size).sum() == pytest.approx(-torque, abs=2e-5)
