@@ -300,12 +300,12 @@ class Search:
             max_nfev=steps,
         )
         inside = (result.active_mask == 0) & (np.abs(result.jac).max(axis=0) > 0.0)
-        left = _step_left(result.jac[:, inside], result.fun, self.is_noise_known)
-        converged = bool(result.status > 0 and left < STATIONARY)
+        remaining = _step_left(result.jac[:, inside], result.fun, self.is_noise_known)
+        converged = bool(result.status > 0 and remaining < STATIONARY)
         message = (
             "too many steps"
             if result.status == 0
-            else f"the last step still moves by {left:.2g} standard errors"
+            else f"the last step still moves by {remaining:.2g} standard errors"
         )
         numbers = all_numbers(result.x * sizes)
         return Minimum(numbers, 2.0 * float(result.cost), converged, message)
@@ -347,8 +347,8 @@ def _step_left(jacobian: Array, residuals: Array, is_noise_known: bool) -> float
     if not free:
         return 0.0
     sizes = np.linalg.norm(jacobian, axis=0)
-    left, strengths, _ = np.linalg.svd(jacobian / sizes, full_matrices=False)
-    projected = (left.T @ residuals)[strengths > 1e-6 * strengths[0]]
+    modes, strengths, _ = np.linalg.svd(jacobian / sizes, full_matrices=False)
+    projected = (modes.T @ residuals)[strengths > 1e-6 * strengths[0]]
     variance = 1.0 if is_noise_known else residuals @ residuals / max(count - free, 1)
     if variance < 1e-16:  # The data are reproduced to rounding.
         return 0.0

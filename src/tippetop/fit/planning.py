@@ -108,7 +108,7 @@ def plan_measurement(
     jacobian = model.jacobian(numbers, exact=True) * model.scales(numbers)
     target = abs(numbers[0]) / model.scales(numbers)[0]
     ends = np.cumsum([one.values.size for one in measurements.values()])[:-1]
-    ways = list[PlannedMeasurement]()
+    plans = list[PlannedMeasurement]()
     for place, (quantity, one) in enumerate(measurements.items()):
         names = [*model.fields, *model.instruments[place].values()]
         columns = [model.names.index(name) for name in names]
@@ -116,7 +116,7 @@ def plan_measurement(
         if not len(one.times):
             error = _error(block) / target
             rate = 0.0 if error <= accuracy else np.inf
-            ways.append(PlannedMeasurement(quantity, float(one.values[0, 0]), rate, error))
+            plans.append(PlannedMeasurement(quantity, float(one.values[0, 0]), rate, error))
             continue
         rows = np.repeat(one.times, one.values.shape[1])
         sparse = len(one.times) / (FRAME_RATE * seconds)
@@ -124,8 +124,8 @@ def plan_measurement(
             # Errors of a film with fewer frames than 60 a second, scaled to that.
             error = _error(block[rows <= part * seconds]) * min(sparse, 1.0) ** 0.5 / target
             rate = FRAME_RATE * (error / accuracy) ** 2
-            ways.append(PlannedMeasurement(quantity, part * seconds, rate, error))
-    return sorted(ways, key=lambda way: (way.frame_rate * way.duration, way.duration))
+            plans.append(PlannedMeasurement(quantity, part * seconds, rate, error))
+    return sorted(plans, key=lambda plan: (plan.frame_rate * plan.duration, plan.duration))
 
 
 def _planned(
