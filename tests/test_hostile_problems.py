@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 import tippetop as tt
 from campaigns import seed_ranges
-from tippetop.contact import closing, several
+from tippetop.contact import closing, collision
 from tippetop.integrators import make_integrator, sampling
 from tippetop.integrators.base import Motion
 from tippetop.mechanics import impact_process
@@ -322,7 +322,7 @@ def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPa
     bounded = tt.simulate(rod, 0.1, samples=3, step_limit=105)
     assert bounded.attrs["outcome"] == "too_many_steps"
     with monkeypatch.context() as uncounted:
-        uncounted.setattr(several, "impact", lambda *given: impact(*given)._replace(steps=0))
+        uncounted.setattr(collision, "impact", lambda *given: impact(*given)._replace(steps=0))
         free = tt.simulate(rod, 0.1, samples=3, step_limit=105)
     assert free.attrs["outcome"] == "completed"
     monkeypatch.setattr(impact_process, "MOST", 50)
