@@ -7,10 +7,9 @@ to.
 """
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.integrate import DOP853, OdeSolution
 
 from tippetop.integrators.base import Array
 from tippetop.mechanics.runge_kutta import Point
@@ -26,6 +25,9 @@ from tippetop.theory.nutation import (
     turning_tilts,
     upside_down,
 )
+
+if TYPE_CHECKING:
+    from scipy.integrate import OdeSolution
 
 
 class Nutation(NamedTuple):
@@ -129,7 +131,7 @@ class Stage(NamedTuple):
 
     knots: Array
     """mu t at the ends of its steps, from 0, shape (n,)."""
-    path: OdeSolution | None
+    path: "OdeSolution | None"
     """`Nutation.point` over mu t; None if there is no step."""
     begin: Nutation
     end: Nutation
@@ -160,6 +162,8 @@ def follow_nutation(
 
     The `tolerance` is the error in a step, of the logarithms.
     """
+    from scipy.integrate import DOP853, OdeSolution  # noqa: PLC0415 - slow to import
+
     turned, seen = begin.turned, begin.orbit
     seen_numbers = numbers.turned if turned else numbers
     point = np.array(begin.point)
