@@ -15,6 +15,7 @@ import pytest
 from pydantic import Field, model_validator
 
 import tippetop as tt
+from campaigns import among
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Transition
 from tippetop.extend import (
@@ -274,7 +275,7 @@ OVER = {
 EACH = pytest.mark.parametrize("what", PROBLEMS)
 
 
-@EACH
+@pytest.mark.parametrize("what", among(list(PROBLEMS), check=3))
 def test_integrators_agree_and_energy_balances(what: str) -> None:
     runs = [
         tt.simulate(PROBLEMS[what], DURATION, integrator=name, tolerance=tolerance, samples=101)
@@ -432,7 +433,7 @@ def test_the_mode_is_the_one_defined() -> None:
     assert energy[-1] < 0.99 * energy[0]
 
 
-@EACH
+@pytest.mark.parametrize("what", among(list(PROBLEMS), check=3))
 def test_sweeps_find_what_runs_find(what: str) -> None:
     asked = {"duration": DURATION, "tolerance": 1e-14, "workers": 1, "decode": False}
     found = tt.sweep(PROBLEMS[what], OVER[what], **asked)
@@ -448,7 +449,7 @@ def test_sweeps_find_what_runs_find(what: str) -> None:
     assert np.unique(found["final_theta"].values).size == cells.sizes["cell"]
 
 
-@EACH
+@pytest.mark.parametrize("what", among(list(PROBLEMS), check=1))
 def test_worker_processes_find_the_same(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tippetop.sweeps.definition.LEAST_CELLS_A_TASK", 1)
     alone, shared = (

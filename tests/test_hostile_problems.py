@@ -134,7 +134,9 @@ def test_hostile_problems_end_with_an_outcome_or_a_sentence(seeds: range) -> Non
     [
         pytest.param(66, {"completed"}, id="a small patch that is struck"),
         pytest.param(1284, {"too_many_steps"}, id="slip that is about to end next to a branch"),
-        pytest.param(1275, {"failed"}, id="a touchdown without impulse or slip"),
+        pytest.param(
+            1275, {"failed"}, id="a touchdown without impulse or slip", marks=pytest.mark.slow
+        ),
         pytest.param(
             6941, {"completed"}, id="slip of hardly more than rounding at a launch in flight"
         ),

@@ -179,6 +179,7 @@ def test_a_ball_jams_beside_another_that_has_just_opened(mu: float, launch: tt.L
     assert run.attrs["outcome"] == "completed"
 
 
+@pytest.mark.slow
 def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
     """The Delassus number and the acceleration it is to balance vanish together, and the force is
     finite.

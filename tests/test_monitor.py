@@ -144,6 +144,7 @@ def test_what_a_motion_seemed_to_come_to_is_not_told_of_one_that_cannot_be_trust
         assert off.judged(outcome, 1e-12) is (tt.Outcome.INACCURATE if ends else outcome)
 
 
+@pytest.mark.slow
 def test_a_lift_off_that_steps_too_long_find_is_not_told() -> None:
     problem = tt.presets.report_problem(spin=175.0).replace({"contact.liftoff": "stop"})
     methods: list[dict[str, Any]] = [{"integrator": "rk4", "step": 3e-3}, {"integrator": "dop853"}]

@@ -6,6 +6,7 @@ import xarray as xr
 from scipy.optimize import brentq, minimize
 
 import tippetop as tt
+from campaigns import among
 from lying import R
 from test_sticking_on_two import (
     ACROSS,
@@ -82,7 +83,7 @@ def test_what_turns_stops_under_the_couple_of_forces_and_of_drilling(pressure: s
     )
 
 
-@pytest.mark.parametrize("pressure", PRESSURES)
+@pytest.mark.parametrize("pressure", among(PRESSURES, check=1))
 def test_both_end_at_once_and_neither_slips_nor_drills_then(pressure: str) -> None:
     problem = with_patch(lying(ONE_THEN_BOTH), pressure, 2e-3)
     run = followed_by_steps(problem, 0.2, 101)

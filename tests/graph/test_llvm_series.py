@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from campaigns import among
 from every_motion import CASES, states
 from tippetop.extend import abs as absolute
 from tippetop.extend import where
@@ -59,7 +60,7 @@ def assert_same(found, expected, beside):
         assert (off <= 1e-12 + ROUNDINGS * grown).all(), (off, grown)
 
 
-@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize("part", among(range(4), check=1))
 def test_coefficients_of_every_motion_are_those_of_power_series(part):
     random, compared = np.random.default_rng(part), 0
     for case in random.permutation(np.array(CASES, dtype=object))[:5]:

@@ -34,18 +34,14 @@ MOST_PIECES = 50
 def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Impact | None:
     """What an impact without restitution does to a body that touches the table.
 
-    None where this is no way to find it: there is no integrator that compiles motions, drilling is
-    not resisted or rolling is, the contact point does not sink, or slip is about to end.
+    None where this is no way to find it: there is no integrator, drilling is not resisted or
+    rolling is, the contact point does not sink, or slip is about to end.
     """
     law = top.friction
     if top.resists_rolling or not is_set_valued(law) or slip_length(law) is None:
         return None
     body = Striking.of(state, top)
-    if (
-        integrator is None
-        or getattr(integrator, "expansion", None) is None
-        or body.before[2] >= 0.0
-    ):
+    if integrator is None or body.before[2] >= 0.0:
         return None
     if is_near(along_table(state), top):
         return None

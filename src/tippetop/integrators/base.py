@@ -20,11 +20,6 @@ Function: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Scalar]
 Rows: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar]], Sequence[Scalar]]
 """Several of them."""
 
-Expansion: TypeAlias = Callable[[Sequence[float]], NDArray[np.float64]]
-"""From a state to the coefficients of the solution from there, in powers of time, each number's in
-a row.
-"""
-
 TOLERANCES = {
     "taylor": 2.0**-52,
     "collocation": 1e-13,

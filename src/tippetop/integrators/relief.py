@@ -7,13 +7,13 @@ method it is looked whether they are long beside the fastest damping; if so, the
 goes on while its steps are much longer.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.integrators.base import TOLERANCES, Arc, Array, Expansion, Integrator, Motion
+from tippetop.integrators.base import TOLERANCES, Arc, Array, Integrator, Motion
 from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.vectors import Scalar
 
@@ -52,11 +52,6 @@ class Relieved:
     def tolerance(self) -> float:
         """Relative error per step where the motion is not stiff."""
         return float(getattr(self.explicit, "tolerance", 0.0))
-
-    @property
-    def expansion(self) -> Callable[[Motion, Sequence[float], int, int], Expansion] | None:
-        """How the method expands a motion's solutions in powers of time, if it does."""
-        return getattr(self.explicit, "expansion", None)
 
     def _implicit(self, shortest: float) -> Integrator:
         """The method where the motion is stiff."""

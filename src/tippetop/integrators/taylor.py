@@ -13,7 +13,7 @@ from tippetop.graph.llvm import llvm_source
 from tippetop.graph.llvm_series import room_size, series_source, with_choices
 from tippetop.graph.recording import Recorded, record, recordable
 from tippetop.graph.taylor_coefficients import NodeArithmetic
-from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Expansion, Motion
+from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.machine_code import loaded
 from tippetop.integrators.polynomial_minima import looked_at, may_fall
@@ -157,22 +157,6 @@ class Taylor:
             yield Arc(solution, run.state, name, None, steps, run.expansions)
             if guard is not None:
                 return
-
-    def expansion(
-        self, motion: Motion, parameters: Sequence[float], degree: int, count: int
-    ) -> Expansion:
-        """Return a function that expands the first numbers of a motion's solution about a state."""
-        recorded = _recorded(motion)
-        if recorded is None:
-            raise TypeError("the motion cannot be recorded")
-        jet, numbers = SeriesExpansion(recorded, degree), np.array(parameters, dtype=float)
-        room, out = jet.room(), np.zeros(jet.coefficients)
-
-        def expand(state: Sequence[float]) -> Array:
-            jet(np.array(state, dtype=float), numbers, room, out)
-            return out[: count * (degree + 1)].reshape(count, degree + 1).copy()
-
-        return expand
 
 
 def order_for(tolerance: float) -> int:
