@@ -121,7 +121,7 @@ def written(gap: str, value: float, units: Mapping[str, str]) -> str:
             return f"{_digits(value, 3)} {units['force']}"
         case "spin" | "precession":
             return f"{_digits(value, 4)} {units['spin']}"
-        case "height" | "length":
+        case "height" | "length" | "other_length":
             return f"{_digits(1e3 * value, 4)} {units['length']}"
         case "energy":
             return f"{_digits(1e6 * value, 4)} {units['energy']}"
