@@ -291,6 +291,21 @@ def test_the_time_of_a_weak_theory_is_that_of_a_longer_run() -> None:
     assert "after about 45 s" in str(describe(followed("little friction")))
 
 
+def test_a_swing_through_its_end_has_not_settled_before_it_stays() -> None:
+    """A damped swing enters the tilts near its end, leaves and enters again: seen in samples."""
+    for name in ("report", "comes upright", "egg, slow", "half way"):
+        problem, duration = LAUNCHES[name]
+        run = tt.simulate(problem, duration, samples=100_001)
+        (settled,) = [clause for clause in describe(run).clauses if "settles" in clause.name]
+        time, theta = run["time"].values, run["theta"].values
+        ends = {"comes upright": 0.0, "egg, slow": 0.5 * math.pi, "report": math.pi}
+        end = ends.get(name, theta[-1])
+        outside = np.flatnonzero(abs(theta - end) > 0.01)
+        assert settled.numbers["time"] == pytest.approx(time[outside[-1]], abs=2.0 * time[1]), name
+        if name == "comes upright":
+            assert settled.numbers["time"] > 1.1 * float(run["arrives"])
+
+
 def test_what_settles_stays_near_where_it_settled() -> None:
     """The tilt of a run that is settled half-way is within twice 0.01 rad of its last one since."""
     for name in ("report", "half way", "too slow", "comes upright", "falls from inverted", "flies"):

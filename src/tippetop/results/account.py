@@ -35,6 +35,8 @@ class Facts(NamedTuple):
     """Numbers of `tippetop.results.catalogue.METRICS`."""
     peak: tuple[float, float]
     """Largest tilt within the run, rad, and when it was reached, s."""
+    settled_since: float
+    """Time since which the tilt stays near that at which it settles, s; nan until it has."""
     events: Sequence[Event]
     flights: Sequence[tuple[float, float]]
     """Begin and end of every flight, s."""
@@ -280,10 +282,10 @@ def _is_undisturbed(facts: Facts) -> bool:
 
 
 def _settled(facts: Facts) -> Clause:
-    """Return where the motion has settled, and when it first came there."""
-    final, arrives = facts.metrics["final_theta"], facts.metrics["arrives"]
+    """Return where the motion has settled, and since when it stays there."""
+    final, since = facts.metrics["final_theta"], facts.settled_since
     launch = facts.problem.launch.tilt
-    numbers = {"tilt": final, "time": arrives}
+    numbers = {"tilt": final, "time": since}
     stays = abs(final - launch) < RISE and facts.peak[0] - max(final, launch) < RISE
     upright = final < NEAR_FINAL
     if upright or final > math.pi - NEAR_FINAL:
@@ -291,7 +293,7 @@ def _settled(facts: Facts) -> Clause:
         if stays and abs(launch - final) >= NEAR_FINAL:
             return Clause(f"comes_{pole}", {"tilt": launch}, "end")
         return Clause(f"stays_{pole}" if stays else f"settles_{pole}", numbers, "end")
-    if arrives == 0.0:
+    if since == 0.0:
         return Clause("stays_at", numbers, "end")
     return Clause("settles_at", numbers, "end")
 

@@ -86,6 +86,7 @@ def describe(run: xr.Dataset) -> Account:
         Outcome[run.attrs["outcome"].upper()],
         {name: run[name].item() for name in METRICS},
         (run["peak_tilt"].item(), run["peak_time"].item()),
+        run["settled_since"].item(),
         events,
         list(flights),
     )
