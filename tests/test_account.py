@@ -174,6 +174,56 @@ def test_a_disk_that_lies_flat_still_spins() -> None:
 def test_two_balls_stand_on_the_ball_that_touches() -> None:
     told = named(describe(followed("two balls, dry")), "stands_on_sphere")
     assert told == {"surface": 0, "length": 0.2}
+    assert "on its sphere of radius 200 mm" in str(describe(followed("two balls, dry")))
+
+
+def test_a_body_on_two_surfaces_is_told_which_they_are() -> None:
+    """A ring top that fell touches with its ball and its rim, hurricane balls with both."""
+    told = named(describe(followed("ring top, falls")), "stands_on_sphere_and_edge")
+    assert told == {"surface": 0, "second": 1, "length": 5e-4, "other_length": 0.1}
+    told = named(describe(followed("hurricane balls")), "stands_on_spheres")
+    assert told["length"] == told["other_length"] == 0.01
+
+
+def test_dry_friction_is_told_to_hold_the_top_or_not() -> None:
+    """Dry friction of 0.3 holds the report's top at launch, that of 0.02 does not."""
+    held, slips = (describe(followed(name)) for name in ("dry", "dry, little friction"))
+    assert names(held)[0] == "never_slips"
+    assert "slip_missing" in names(held)
+    assert names(slips)[0] == "starts_to_slip"
+
+
+def test_a_tilt_within_the_distance_of_its_end_is_not_told_as_far_from_it() -> None:
+    for name in ("report, not yet settled", "upside down"):
+        account = describe(followed(name))
+        assert math.pi - float(followed(name)["final_theta"]) < 0.01
+        assert "is_inverted" in names(account)
+        assert "has not settled" not in str(account)
+
+
+def test_a_swing_is_not_told_as_a_fall() -> None:
+    account = describe(followed("table that pulls"))
+    assert "is_highest" in names(account)
+    assert "down to" not in str(account)
+    assert "just then" in str(account)
+
+
+def test_rocking_beyond_the_horizontal_is_no_turning_over() -> None:
+    for name in ("egg off its centre", "hurricane balls"):
+        assert math.isfinite(float(followed(name)["turns_over"]))
+        assert not {"turns_over", "passes_the_horizontal"} & set(names(describe(followed(name))))
+
+
+def test_a_top_that_comes_upright_is_not_told_to_stay() -> None:
+    told = named(describe(followed("too slow")), "comes_upright")
+    assert told == {"tilt": 0.1}
+    assert "stays_upright" in names(describe(followed("exactly upright, slow")))
+
+
+def test_of_a_flight_without_touching_no_steady_state_is_told() -> None:
+    assert names(describe(followed("in the air all along"))) == [
+        *("drops", "never_touches", "still_flies"),
+    ]
 
 
 def test_slow_tops_are_told_why_they_stay() -> None:
@@ -239,6 +289,21 @@ def test_the_time_of_a_weak_theory_is_that_of_a_longer_run() -> None:
     run = tt.simulate(LAUNCHES["little friction"][0], 60.0, samples=2)
     assert told["about"] == pytest.approx(float(run["arrives"]), rel=0.01)
     assert "after about 45 s" in str(describe(followed("little friction")))
+
+
+def test_a_swing_through_its_end_has_not_settled_before_it_stays() -> None:
+    """A damped swing enters the tilts near its end, leaves and enters again: seen in samples."""
+    for name in ("report", "comes upright", "egg, slow", "half way"):
+        problem, duration = LAUNCHES[name]
+        run = tt.simulate(problem, duration, samples=100_001)
+        (settled,) = [clause for clause in describe(run).clauses if "settles" in clause.name]
+        time, theta = run["time"].values, run["theta"].values
+        ends = {"comes upright": 0.0, "egg, slow": 0.5 * math.pi, "report": math.pi}
+        end = ends.get(name, theta[-1])
+        outside = np.flatnonzero(abs(theta - end) > 0.01)
+        assert settled.numbers["time"] == pytest.approx(time[outside[-1]], abs=2.0 * time[1]), name
+        if name == "comes upright":
+            assert settled.numbers["time"] > 1.1 * float(run["arrives"])
 
 
 def test_what_settles_stays_near_where_it_settled() -> None:

@@ -89,8 +89,8 @@ def test_extremes_agree_where_many_dips_come_close(tilt):
 def test_the_account_tells_the_time_of_the_run(run):
     if float(run["final_theta"]) < 3.0:
         pytest.skip("this top does not invert")
-    (told,) = re.findall(r"first is at ([0-9.]+) s", tt.describe(run).headline)
-    assert float(told) == pytest.approx(float(run["arrives"]), abs=0.005)
+    (told,) = re.findall(r"from ([0-9.]+) s on", tt.describe(run).headline)
+    assert float(told) == pytest.approx(float(run["settled_since"]), abs=0.005)
 
 
 def test_numbers_are_events_and_extremes_of_the_motion(problem, run):

@@ -28,7 +28,7 @@ def test_people_and_programs_are_told_what_summarize_returns() -> None:
     found = {line.rsplit(maxsplit=2)[0] for line in lines[1:]}
     assert {
         "turns over at",
-        "within 0.01 rad of its settled tilt at",
+        "first within 0.01 rad of its settled tilt at",
         "energy lost in impacts",
     } <= found
     (line,) = [line for line in lines if line.startswith("turns over at")]

@@ -203,6 +203,7 @@ def simulate(
         "impact_energy_lost": ends.struck * units.energy,
         "peak_tilt": peak_tilt,
         "peak_time": peak_time * units.time,
+        "settled_since": tally.settled_since * units.time,
         "evaluations": tally.evaluations,
         "energy_error": recorder.monitor.energy_error,
         "jellett_drift": recorder.monitor.jellett_drift,

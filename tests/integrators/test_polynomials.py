@@ -36,6 +36,14 @@ def test_first_fall_is_the_smallest_root_at_which_the_polynomial_falls(roots, sp
         assert np.isnan(found)
 
 
+@given(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=9), st.floats(0.5, 2.0))
+def test_backward_a_polynomial_is_read_from_the_end_of_its_interval(terms, span):
+    forward = Polynomials(np.array(terms).reshape(-1, 1), ones(span))
+    backward = forward.backward()
+    assert np.allclose(backward.values, forward.values[::-1], rtol=0.0, atol=1e-10)
+    assert backward.span == forward.span
+
+
 @pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
 def test_a_dip_between_two_looks_is_found(width):
     middle = 0.5 / LOOKS + 10 / LOOKS

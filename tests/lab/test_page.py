@@ -52,10 +52,10 @@ def test_the_page_is_one_small_file_that_asks_for_nothing(page: Path, lab: Lab) 
         url for url in visitor.requests if not url.startswith(("file:", "blob:", "data:"))
     ] == []
     run = tt.simulate(tt.presets.report_problem(), 20.0, samples=3)
-    turns, arrives = (float(run[name]) for name in ("turns_over", "arrives"))
+    turns, since = (float(run[name]) for name in ("turns_over", "settled_since"))
     assert headline(visitor) == (
-        f"Turns over: its axis passes the horizontal at {turns:.2f} s; settles upside down;"
-        f" within 0.6° of that it first is at {arrives:.2f} s"
+        f"Turns over: its axis passes the horizontal at {turns:.2f} s; settles upside down:"
+        f" from {since:.2f} s on it stays within 0.6° of that"
     )
     visitor.wait("() => tippetopLab.player.time > 0.2")  # it plays
 

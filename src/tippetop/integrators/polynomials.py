@@ -2,6 +2,7 @@
 
 # translate module: skip
 
+import math
 from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple, TypeAlias
@@ -39,6 +40,15 @@ not.
 def _places(count: int) -> Array:
     """The first powers of the places of the looks, shape (LOOKS + 1, count)."""
     return powers(np.linspace(0.0, 1.0, LOOKS + 1), count)
+
+
+@lru_cache
+def _of_the_rest(count: int) -> Array:
+    """Return the matrix that takes powers of u to those of 1 - u, shape (count, count)."""
+    signed = [
+        [(-1) ** row * math.comb(power, row) for power in range(count)] for row in range(count)
+    ]
+    return np.array(signed, dtype=float)
 
 
 class Polynomials:
@@ -111,6 +121,10 @@ class Polynomials:
         unit = sign * self.unit.take(which, axis=1)
         unit[0] += shift
         return Polynomials.of_unit(unit, self.span.take(which))
+
+    def backward(self) -> "Polynomials":
+        """Return the polynomials as functions of the time that is left of their intervals."""
+        return Polynomials.of_unit(times(_of_the_rest(len(self.unit)), self.unit), self.span)
 
     def first_fall(self, from_above: bool = False, after_rise: bool = False) -> Array:
         """First times at which the polynomials fall to zero from above, nan where they do not,

@@ -153,7 +153,7 @@ export class DenseSolution {
   static joined(parts) {
     const knots = parts.flatMap((part, i) => Array.from(part.knots).slice(i ? 1 : 0));
     const rows = parts.flatMap((part) => part.rows_of_terms());
-    const degree = Math.max(...rows.map((row) => row.length));
+    const degree = rows.reduce((most, row) => Math.max(most, row.length), 0);
     const terms = new Float64Array(rows.length * degree);
     rows.forEach((row, i) => {
       terms.set(row, i * degree);

@@ -208,7 +208,8 @@ class Run {
     metrics.set("end_time", this.endTime);
     const peak = [m.highest_seen(ends), this.peakTime() * units.time];
     const flights = this.flights.map(({ start, end }) => [start, end]);
-    this.facts = new m.Facts(this.problem, judged, metrics, peak, events, flights);
+    const since = this.since(m.settled_band(ends.settled)) * units.time;
+    this.facts = new m.Facts(this.problem, judged, metrics, peak, since, events, flights);
     if (!this.segments.length) this.addLaunch();
   }
 
@@ -260,6 +261,18 @@ class Run {
       }
     }
     return NaN;
+  }
+
+  /** Time since which n_z stays in a band; NaN of a band of NaN. */
+  since([low, high]) {
+    if (Number.isNaN(low)) return NaN;
+    for (const { solution } of [...this.segments].reverse()) {
+      for (let step = solution.count - 1; step >= 0; step -= 1) {
+        const part = lastPartOutside(solution, step, low, high);
+        if (!Number.isNaN(part)) return solution.time(step, part);
+      }
+    }
+    return 0;
   }
 
   /** Let a run that ended at its launch be sampled there, as if it slid. */
@@ -438,6 +451,19 @@ function firstPartInBand(solution, step, low, high) {
   if (start <= high && start >= low) return 0;
   if (start > high) return firstFall((part) => solution.value(step, AXIS_Z, part) - high);
   return firstFall((part) => low - solution.value(step, AXIS_Z, part));
+}
+
+/** The last part of a step at which n_z is not in a band; NaN if it is in it all along. */
+function lastPartOutside(solution, step, low, high) {
+  const [least, most] = solution.bounds(step, AXIS_Z);
+  if (least >= low && most <= high) return NaN;
+  const last = solution.value(step, AXIS_Z, 1);
+  if (last > high || last < low) return 1;
+  const exits = [
+    firstFall((rest) => high - solution.value(step, AXIS_Z, 1 - rest)),
+    firstFall((rest) => solution.value(step, AXIS_Z, 1 - rest) - low),
+  ].filter((rest) => !Number.isNaN(rest));
+  return exits.length ? 1 - Math.min(...exits) : NaN;
 }
 
 /** Where a function on [0, 1] first falls to zero; NaN where it does not. With `fromAbove` it must be above first. */

@@ -35,6 +35,8 @@ class Facts(NamedTuple):
     """Numbers of `tippetop.results.catalogue.METRICS`."""
     peak: tuple[float, float]
     """Largest tilt within the run, rad, and when it was reached, s."""
+    settled_since: float
+    """Time since which the tilt stays near that at which it settles, s; nan until it has."""
     events: Sequence[Event]
     flights: Sequence[tuple[float, float]]
     """Begin and end of every flight, s."""
@@ -103,7 +105,9 @@ def _launch(facts: Facts) -> list[Clause]:
     if speed > SLIPS:
         clauses.append(Clause("slips_at_launch", {"speed": speed}, "launch"))
     elif not struck:
-        clauses.append(Clause("starts_without_slip", {}, "launch"))
+        # Dry friction that could hold the top would make it stick at launch.
+        name = "starts_to_slip" if problem.friction.kind == "coulomb" else "starts_without_slip"
+        clauses.append(Clause(name, {}, "launch"))
     return clauses
 
 
@@ -126,12 +130,10 @@ def _motion(facts: Facts) -> list[Clause]:
     tilted = facts.problem.launch.tilt
     if tilted > 0.5 * math.pi and final < 0.5 * math.pi:
         clauses.append(Clause("falls_from_launch", {"tilt": tilted}, "motion"))
-    elif math.isfinite(turned) and not ends_level:
-        name = "turns_over" if tilted < LEANS_AT_LAUNCH else "passes_the_horizontal"
+    elif math.isfinite(turned) and tilted < LEANS_AT_LAUNCH and not ends_level:
+        stays_over = final > 0.5 * math.pi + RISE and facts.peak[0] - final < RISE
+        name = "turns_over" if stays_over else "passes_the_horizontal"
         clauses.append(Clause(name, {"time": turned}, "motion"))
-    if facts.problem.contact.liftoff == "ignore" and facts.metrics["least_normal_force"] < 0.0:
-        force = -facts.metrics["least_normal_force"]
-        clauses.append(Clause("is_pulled", {"force": force}, "motion"))
     clauses += _flights(facts)
     doubles = [event.time for event in facts.events if event.kind is EventKind.DOUBLE_CONTACT]
     if doubles:
@@ -144,7 +146,7 @@ def _motion(facts: Facts) -> list[Clause]:
         clauses.append(Clause(name, {"count": len(strikes), "time": doubles[0]}, "motion"))
     sticks = _sticks_since(facts)
     if math.isfinite(sticks):
-        name = "rolls_at_once" if sticks == 0.0 else "sticks"
+        name = "never_slips" if sticks == 0.0 else "sticks"
         clauses.append(Clause(name, {"time": sticks}, "motion"))
     highest, when = facts.peak
     if _fell_back(facts):
@@ -155,10 +157,16 @@ def _motion(facts: Facts) -> list[Clause]:
         and facts.metrics["is_settled"] == 0
         and highest - max(facts.problem.launch.tilt, final) > 2.0 * NEAR_POLE
     ):
-        name = "rises" if highest - final < RISE else "has_come_down"
-        numbers = {"highest": highest, "time": when, "tilt": final}
-        clauses.append(Clause(name, numbers, "motion"))
-    return sorted(clauses, key=_time_of)
+        clauses.append(Clause("is_highest", {"highest": highest, "time": when}, "motion"))
+    return [*sorted(clauses, key=_time_of), *_pulled(facts)]
+
+
+def _pulled(facts: Facts) -> list[Clause]:
+    """Return that only a table that pulls holds the top down, where it does."""
+    force = facts.metrics["least_normal_force"]
+    if facts.problem.contact.liftoff != "ignore" or force >= 0.0:
+        return []
+    return [Clause("is_pulled", {"force": -force}, "motion")]
 
 
 def _time_of(clause: Clause) -> float:
@@ -219,7 +227,7 @@ def _end(facts: Facts) -> list[Clause]:
         clauses.append(Clause("comes_to_rest", {"tilt": final, "time": time}, "end"))
     elif outcome is Outcome.LIFTED_OFF:
         numbers = {"time": facts.metrics["first_lift_off"], "tilt": final}
-        clauses.append(Clause("would_be_pulled", numbers, "end"))
+        clauses.append(Clause("lifts_off", numbers, "end"))
     elif outcome is not Outcome.COMPLETED:
         clauses.append(_ended_early(facts))
     elif facts.metrics["is_settled"] == 1:
@@ -230,15 +238,29 @@ def _end(facts: Facts) -> list[Clause]:
     elif math.isfinite(_sticks_since(facts)):
         clauses.append(Clause("rolls_on", {"tilt": final, "time": time}, "end"))
     else:
-        name = "still_moves"
-        if _is_aloft(facts):
-            name = "still_flies"
-        elif final < (NEAR_POLE if facts.problem.launch.tilt > NEAR_POLE else NEAR_FINAL):
-            name = "still_upright"
-        elif final > math.pi - NEAR_POLE:
-            name = "still_inverted"
-        clauses.append(Clause(name, {"tilt": final, "time": time}, "end"))
+        clauses.append(_moving(facts))
     return [*clauses, *_standing(facts)]
+
+
+def _moving(facts: Facts) -> Clause:
+    """Return where a top is that still moves when its run ends."""
+    final, highest = facts.metrics["final_theta"], facts.peak[0]
+    numbers = {"tilt": final, "time": _end_time(facts)}
+    name = "still_moves"
+    if _is_aloft(facts):
+        name = "still_flies"
+    elif final < NEAR_FINAL:
+        name = "is_upright"
+    elif final < NEAR_POLE < facts.problem.launch.tilt:
+        name = "still_upright"
+    elif final > math.pi - NEAR_FINAL:
+        name = "is_inverted"
+    elif final > math.pi - NEAR_POLE:
+        name = "still_inverted"
+        if highest - final > NEAR_FINAL:
+            name = "has_been_inverted"
+            numbers["highest"] = highest
+    return Clause(name, numbers, "end")
 
 
 def _is_aloft(facts: Facts) -> bool:
@@ -260,16 +282,18 @@ def _is_undisturbed(facts: Facts) -> bool:
 
 
 def _settled(facts: Facts) -> Clause:
-    """Return where the motion has settled, and when it first came there."""
-    final, arrives = facts.metrics["final_theta"], facts.metrics["arrives"]
+    """Return where the motion has settled, and since when it stays there."""
+    final, since = facts.metrics["final_theta"], facts.settled_since
     launch = facts.problem.launch.tilt
-    numbers = {"tilt": final, "time": arrives}
+    numbers = {"tilt": final, "time": since}
     stays = abs(final - launch) < RISE and facts.peak[0] - max(final, launch) < RISE
-    if final < NEAR_FINAL:
-        return Clause("stays_upright" if stays else "settles_upright", numbers, "end")
-    if final > math.pi - NEAR_FINAL:
-        return Clause("stays_inverted" if stays else "settles_inverted", numbers, "end")
-    if arrives == 0.0:
+    upright = final < NEAR_FINAL
+    if upright or final > math.pi - NEAR_FINAL:
+        pole = "upright" if upright else "inverted"
+        if stays and abs(launch - final) >= NEAR_FINAL:
+            return Clause(f"comes_{pole}", {"tilt": launch}, "end")
+        return Clause(f"stays_{pole}" if stays else f"settles_{pole}", numbers, "end")
+    if since == 0.0:
         return Clause("stays_at", numbers, "end")
     return Clause("settles_at", numbers, "end")
 
@@ -288,14 +312,35 @@ def _standing(facts: Facts) -> list[Clause]:
     least = float(lowest.height(cosine)) - LEVEL * float(surface.size)
     touching = [one.active for one in surface.each if float(one.height(cosine)) >= least]
     if len(touching) > 1:
-        numbers = {"surface": touching[0], "second": touching[1]}
-        return [Clause("stands_on_two", numbers, "end")]
+        return [_standing_on_two(surface, touching[0], touching[1])]
     name = "stands_on_edge" if is_edge(lowest) else "stands_on_surface"
     if acting(lowest).spherical:
         name = "stands_on_sphere"
     number = getattr(lowest, "active", 0)
     size = float(surface.sizes[number])
     return [Clause(name, {"surface": number, "length": size}, "end")]
+
+
+def _standing_on_two(surface: Hull, first: int, second: int) -> Clause:
+    """Return on which two surfaces of a body, by number, it stands; a sphere first."""
+    spheres = [surface.units[number].spherical for number in (first, second)]
+    if spheres[1] and not spheres[0]:
+        return _standing_on_two(surface, second, first)
+    edges = [is_edge(surface.units[number]) for number in (first, second)]
+    name = "stands_on_two"
+    if spheres[1]:
+        name = "stands_on_spheres"
+    elif spheres[0] and edges[1]:
+        name = "stands_on_sphere_and_edge"
+    elif edges[0] and edges[1]:
+        name = "stands_on_edges"
+    numbers = {
+        "surface": first,
+        "second": second,
+        "length": float(surface.sizes[first]),
+        "other_length": float(surface.sizes[second]),
+    }
+    return Clause(name, numbers, "end")
 
 
 def _ended_early(facts: Facts) -> Clause:
@@ -310,11 +355,14 @@ def _theory(facts: Facts) -> list[Clause]:
     if problem.friction.vanishes:
         return [Clause("no_friction", {}, "theory")]
     pulled = problem.contact.liftoff == "ignore" and facts.metrics["least_normal_force"] < 0.0
-    if facts.outcome is not Outcome.COMPLETED or pulled:
+    stays_aloft = launch.gap > 0.0 and not facts.events
+    if facts.outcome is not Outcome.COMPLETED or pulled or stays_aloft:
         return []
     if math.isfinite(_sticks_since(facts)):
-        turned = math.isfinite(facts.metrics["turns_over"])
-        return [] if settled or turned else [Clause("sticking_explained", {}, "theory")]
+        if settled or math.isfinite(facts.metrics["turns_over"]):
+            return []
+        name = "sticking_explained" if _sticks_since(facts) > 0.0 else "slip_missing"
+        return [Clause(name, {}, "theory")]
     if not problem.top.torque_free:
         numbers = {"spin": facts.metrics["final_omega3"]}
         return [Clause("torque_takes_spin", numbers, "theory")]

@@ -422,6 +422,11 @@ MONITORS: Mapping[str, Variable] = {
     ),
     "peak_tilt": Variable("largest tilt of the axis within the run", "rad"),
     "peak_time": Variable("time of the largest tilt within the run", "s"),
+    "settled_since": Variable(
+        f"time since which the tilt stays within {NEAR_FINAL} rad of that at which it settles; "
+        "not a number until it has settled",
+        "s",
+    ),
     "evaluations": Variable("evaluations of the equations of motion", "1", dtype="int64"),
     "jellett_drift": Variable(
         "range of Jellett's integral over the run, relative to |L| h at launch", "1"

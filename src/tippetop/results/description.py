@@ -86,6 +86,7 @@ def describe(run: xr.Dataset) -> Account:
         Outcome[run.attrs["outcome"].upper()],
         {name: run[name].item() for name in METRICS},
         (run["peak_tilt"].item(), run["peak_time"].item()),
+        run["settled_since"].item(),
         events,
         list(flights),
     )
@@ -121,7 +122,7 @@ def written(gap: str, value: float, units: Mapping[str, str]) -> str:
             return f"{_digits(value, 3)} {units['force']}"
         case "spin" | "precession":
             return f"{_digits(value, 4)} {units['spin']}"
-        case "height" | "length":
+        case "height" | "length" | "other_length":
             return f"{_digits(1e3 * value, 4)} {units['length']}"
         case "energy":
             return f"{_digits(1e6 * value, 4)} {units['energy']}"

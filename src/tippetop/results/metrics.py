@@ -166,13 +166,33 @@ def arrival_time(tip: Polynomials, low: Scalar, high: Scalar) -> Array:
     return found
 
 
+# translate: skip
+def last_outside(tip: Polynomials, low: Scalar, high: Scalar) -> Array:
+    """Last times at which n_z is not between `low` and `high`, shape (n,); nan where it always
+    is.
+    """
+    last, back = tip.values[-1], tip.backward()
+    every = np.arange(len(tip.span))
+    exits = [back.some(every, sign, at).first_fall() for sign, at in ((-1.0, high), (1.0, -low))]
+    within = tip.span - np.fmin(*exits)
+    found: Array = np.where((last > high) | (last < low), tip.span, within)
+    return found
+
+
 def settled_band(settled: Scalar) -> tuple[Scalar, Scalar]:
     """Return the least and the largest n_z near tilts at which motions settle, each of shape (n,);
     nan where they do not.
+
+    A band about a pole is open there: rounding takes n_z beyond 1.
     """
-    low = np.cos(np.minimum(settled + NEAR_FINAL, np.pi))
-    high = np.cos(np.maximum(settled - NEAR_FINAL, 0.0))
-    return low, high
+    low = np.where(settled + NEAR_FINAL < np.pi, np.cos(settled + NEAR_FINAL), -OPEN)
+    high = np.where(settled - NEAR_FINAL > 0.0, np.cos(settled - NEAR_FINAL), OPEN)
+    known = settled == settled
+    return np.where(known, low, np.nan), np.where(known, high, np.nan)
+
+
+OPEN = 2.0
+"""A number that n_z never reaches."""
 
 
 def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArray[Any]]:

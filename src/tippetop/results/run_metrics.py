@@ -23,6 +23,7 @@ from tippetop.results.metrics import (
     Ends,
     Flags,
     arrival_time,
+    last_outside,
     settled_band,
     turning_time,
 )
@@ -54,6 +55,10 @@ class Tally:
         self.methods = dict[str, Integrator]()
         self.peak = self._tilt_at(float(start.axis[2])), 0.0
         """Largest tilt on the way, rad, and when it was first reached; known after `ends`."""
+        self.settled_since = math.nan
+        """Time since which n_z stays in the band where it settles; nan if it has not. Known after
+        `ends`.
+        """
 
     def take(self, block: Block) -> None:
         """Take in the steps of a block."""
@@ -118,6 +123,7 @@ class Tally:
         leasts = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
         self._take_peak(leasts[1])
         settled = settled_tilt_of_one(outcome, state, self._start, self._top)
+        self.settled_since = self._since(*settled_band(settled))
         return Ends.of_one(
             last,
             np.float64(time),
@@ -150,6 +156,20 @@ class Tally:
         for tip, starts, least, most in self._tips:
             near = (least <= high) & (most >= low)
             found = _first(found, tip, starts, near, lambda some: arrival_time(some, low, high))
+        return found
+
+    def _since(self, low: Scalar, high: Scalar) -> float:
+        """Return the time since which n_z stays between `low` and `high`; nan of a band of nan."""
+        found = math.nan if np.isnan(low) else 0.0
+        for tip, starts, least, most in self._tips:
+            outside = np.flatnonzero((least < low) | (most > high))
+            latest, count = outside[np.argsort(-starts[outside], kind="stable")], AT_ONCE
+            while len(latest) and starts[latest[0]] + tip.span[latest[0]] > found:
+                which, latest, count = latest[:count], latest[count:], AT_ONCE * count
+                times = last_outside(tip.some(which), low, high) + starts[which]
+                if not np.all(np.isnan(times)):
+                    found = max(found, float(np.fmax.reduce(times)))
+                    break
         return found
 
 

@@ -21,6 +21,7 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
         theta_dot, omega3, phi_dot: rad and rad/s), is_settled (whether the tilt stays near
         a steady state for good), turns_over (s: the tilt first passes pi/2; None if not
         within the run), arrives (s: first within 0.01 rad of the tilt at which it settles;
+        None until then), settled_since (s: from then on it stays within 0.01 rad of it;
         None until then), highest_tilt (rad; None while a larger one may follow),
         first_lift_off (s), highest (m), least_normal_force (N), energy_start, energy_lost,
         energy_lost_sliding, energy_lost_drilling, energy_lost_rolling (J), jellett_drift

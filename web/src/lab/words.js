@@ -49,6 +49,7 @@ function written(gap, value, units) {
       return shown(value, "spin", units);
     case "height":
     case "length":
+    case "other_length":
       return `${digits(1e3 * value)} ${part("account.units.length")}`;
     case "energy":
       return `${digits(1e6 * value)} ${part("account.units.energy")}`;
