@@ -15,6 +15,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 import tippetop as tt
+from package_kinds import forget_own_kinds
 from tippetop.cli.commands import app
 from tippetop.sweeps import Sweep
 
@@ -57,8 +58,9 @@ def maybe(page):
 
 @pytest.fixture(autouse=True)
 def _elsewhere(tmp_path, monkeypatch):
-    """What examples write is written into an empty folder."""
+    """What examples write is written into an empty folder, and what they define is forgotten."""
     monkeypatch.chdir(tmp_path)
+    forget_own_kinds(monkeypatch)
     with mpl.rc_context():
         mpl.use("agg")
         yield

@@ -414,7 +414,9 @@ def test_step_that_does_not_divide_the_time_is_shortened_at_the_end():
 # -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", [method.integrator.name for method in LOOSE])
+@pytest.mark.parametrize(
+    "name", [method.integrator.name for method in LOOSE if method.integrator.name in NAMES]
+)
 def test_integrator_is_made_with_the_tolerance_asked_for(name):
     assert make_integrator(name, 1e-7).tolerance == 1e-7
 

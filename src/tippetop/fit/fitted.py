@@ -86,6 +86,17 @@ class FitResult:
         Other minima that are almost as good, as numbers by name.
     runs
         How many runs the fit followed.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> problem = tt.presets.report_problem()
+    >>> film = tt.Measurement.of_variables(
+    ...     [0.0, 0.1, 0.2, 0.3], {"theta": [0.09, 0.13, 0.11, 0.07]}, noise=0.05
+    ... )
+    >>> fitted = tt.fit(problem, film, ["friction.mu"])
+    >>> sorted(fitted.values)
+    ['friction.mu']
     """
 
     problem: Problem
@@ -391,6 +402,18 @@ def compare_fits(fits: Mapping[str, FitResult]) -> Comparison:
     ------
     InvalidInput
         If there are fewer than two, or they are of different data.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> film = tt.Measurement.of_variables(
+    ...     [0.0, 0.1, 0.2, 0.3], {"theta": [0.09, 0.13, 0.11, 0.07]}, noise=0.05
+    ... )
+    >>> slips = tt.fit(tt.presets.report_problem(), film, ["friction.mu"])
+    >>> spins = tt.fit(tt.presets.report_problem(), film, ["friction.mu", "launch.spin"])
+    >>> comparison = tt.compare_fits({"mu": slips, "mu and spin": spins})
+    >>> sorted(comparison.weights)
+    ['mu', 'mu and spin']
     """
     if not isinstance(fits, Mapping) or len(fits) < 2:
         raise InvalidInput("fits", fits, "at least two fits by name")

@@ -74,7 +74,7 @@ def test_the_state_at_launch_is_that_of_the_problem():
 def test_what_a_format_cannot_say_is_said():
     film = problem_of(tt.presets.REPORT).replace({"friction.kind": "viscous"})
     assert "not mapped" in friction_numbers(film).remarks[0]
-    patch = CASES[4].problem
+    patch = next(case for case in CASES if case.name == "drilling-hertz").problem
     numbers = friction_numbers(patch)
     assert numbers.torsional == pytest.approx(0.3 * 3 * math.pi / 16 * 5e-4)
     assert "Hertz" in numbers.remarks[0]
