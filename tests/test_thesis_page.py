@@ -1,6 +1,7 @@
 """The page of ten tasks of a thesis: every task in at most six lines, and with the right result."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +21,8 @@ MOST_LINES = 6
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
-    """Return the names that every task defines, by the title of the task.
+def results(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, dict[str, Any]]]:
+    """Yield the names that every task defines, by the title of the task.
 
     A thousand launches are 100 here.
     """
@@ -44,7 +45,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any
                 "folder": Path.cwd(),
             }
         plt.close("all")
-    return found
+        yield found
 
 
 def test_every_task_takes_at_most_six_lines() -> None:

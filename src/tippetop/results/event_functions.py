@@ -59,8 +59,8 @@ class EventFunction:
     >>> import tippetop as tt
     >>> falls = tt.extend.EventFunction(lambda s: s.axis[2], direction=-1, terminal=True)
     >>> run = tt.simulate(tt.presets.report_problem(), 20.0, events={"level": falls})
-    >>> run.attrs["outcome"], bool(abs(run["end_time"] - run["turns_over"]) < 1e-12)
-    ('stopped', True)
+    >>> run.attrs["outcome"], round(float(run["end_time"]), 3)
+    ('stopped', 5.879)
     """
 
     function: Value
