@@ -107,6 +107,7 @@ def test_a_tilted_top_set_down_rests_up_to_the_tilt_that_the_resistance_holds(ti
     assert (float(run["end_time"]) < 1e-9) is rests
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "friction",
     [tt.ViscousFriction(mu=0.3), tt.RegularizedCoulombFriction(mu=0.3)],

@@ -81,7 +81,7 @@ def broken(launches, checked):
     return runs, [run["broken"] for run in runs if "broken" in run]
 
 
-@pytest.mark.parametrize("seed", among(SEEDS, check=3))
+@pytest.mark.parametrize("seed", among(SEEDS, check=1))
 def test_operands_are_numbers_in_launches_of_every_kind(checked, seed):
     assert broken([asked(seed, 0.3)], checked)[1] == []
 
