@@ -85,9 +85,7 @@ class Recorder:
         )
 
     def finish(self, end: float, state: State, early: bool) -> Samples:
-        """All samples of a launch that ended; where it did so early, its end is the last of
-        them.
-        """
+        """Return all samples of a launch that has ended; the last is its end if it ended early."""
         if early and not (self._parts and self._parts[-1][0, -1] >= end):
             if self._last is None:
                 self._parts.append(self._single(state))
@@ -122,7 +120,7 @@ class Recorder:
         self._parts.append(rows)
 
     def _single(self, state: State) -> Array:
-        """The sample of a launch that ended as it began."""
+        """Return the sample of a launch that ended as it began."""
         mode, numbers = initial_mode(state, self.top)
         told = read(instants, mode, np.array([numbers]).T)[:, 0]
         sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole]

@@ -176,7 +176,7 @@ class Tally:
 def _first(
     known: float, tip: Polynomials, starts: Array, near: Flags, find: Callable[[Polynomials], Array]
 ) -> float:
-    """The first time that is found on steps where it may be, or the one that is known if that is
+    """Return the first time that `find` gives on the steps marked in `near`, or `known` if that is
     earlier.
     """
     which, count = np.flatnonzero(near & ~(starts > known)), AT_ONCE

@@ -11,7 +11,7 @@ from tippetop.results.description import describe
 
 
 def summarize(run: xr.Dataset) -> dict[str, Any]:
-    """The main figures of a run, as plain numbers and strings.
+    """Return the main figures of a run, as plain numbers and strings.
 
     Returns
     -------
