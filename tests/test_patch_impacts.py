@@ -110,10 +110,13 @@ def test_impacts_are_left_to_other_ways_where_this_is_none():
     resisted = top._replace(rolling_resistance=RollingResistance(0.01))
     assert impact_of_patch(state, resisted, TAYLOR) is None
     assert impact_of_patch(state, top, None) is None
-    assert impact_of_patch(state, top, make_integrator("dop853")) is None
     x, y, z = state.velocity
     assert impact_of_patch(state._replace(velocity=(x, y, z + 9.0)), top, TAYLOR) is None
-    assert impact_of_patch(state, top, TAYLOR) is not None
+    impact = impact_of_patch(state, top, TAYLOR)
+    by_another = impact_of_patch(state, top, make_integrator("dop853"))
+    assert impact is not None
+    assert by_another is not None
+    assert by_another.impulse == pytest.approx(impact.impulse, rel=1e-10)
 
 
 def test_slip_and_drilling_that_end_in_an_impact_are_left_to_what_knows_that():
