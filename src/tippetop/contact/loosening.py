@@ -12,7 +12,7 @@ from tippetop.contact.slipping import SlipPhase, follow_slip
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.beginning import beginning
-from tippetop.mechanics.branches import on_branch
+from tippetop.mechanics.branches import on_branch, on_limit_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.ending import Vanishing
 from tippetop.mechanics.rolling import forces_and_accelerations, is_set_valued
@@ -98,7 +98,10 @@ class Loosening(Passing):
         if ending.slip and not ending.held:
             rolling = point.turning[:2]
         begun = beginning(point, slip, rolling, (ending.slip, not ending.slip), self.wrench)
-        top = on_branch(self.top, begun.slip) if begun.slip is not None else self.top
+        if begun.slip is None:
+            top = on_limit_branch(self.top, begun.wrench)
+        else:
+            top = on_branch(self.top, begun.slip)
         way = begun.slip if ending.slip else begun.rolling
         assert way is not None
         beside, ends = rolling, top.resists_rolling

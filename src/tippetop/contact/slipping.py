@@ -27,6 +27,10 @@ divides them by thirty and more, and the error at the end of a step is of the or
 product.
 """
 
+ROUNDING = 1e-28
+"""The same, over the sum of the squares of the changes of the numbers, that rounding of them makes.
+"""
+
 BEYOND = 1.05
 """Length of a step over the time that slip seems to last, so that the end lies within."""
 
@@ -108,8 +112,10 @@ def follow_slip(
         begin, finished, before = knots[-1], len(knots), now
         length = min(length, longest - begin)
         solved = step.solve(now, directions, length)
-        factor = SAFETY * (ACCURACY / (step.error + TINY)) ** (0.5 / STAGES) if solved else 0.0
-        after, part = [a + b for a, b in zip(now, step.changes, strict=True)], float(PARTS)
+        changes = step.changes
+        accuracy = ACCURACY + ROUNDING * inner(tuple(changes), tuple(changes))
+        factor = SAFETY * (accuracy / (step.error + TINY)) ** (0.5 / STAGES) if solved else 0.0
+        after, part = [a + b for a, b in zip(now, changes, strict=True)], float(PARTS)
         last, speeds = step.last_direction, step.speeds
         lasts = step.least_speed > 0.0 and inner(velocity(after), last) > 0.0
         bad = factor < SAFETY or (not lasts and not to_end) or (to_end and dips(speeds))

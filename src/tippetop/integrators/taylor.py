@@ -2,6 +2,7 @@
 
 import ctypes
 import math
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -145,8 +146,9 @@ class Taylor:
         while run.time < end:
             begin = run.time
             steps, guard, failure = run.advance(LONG)
-            if failure is None and guard is None and not run.time > begin:
-                failure = NO_STEP  # rounding of time swallows all steps
+            rounding = steps * np.spacing(abs(run.time))
+            if failure is None and guard is None and run.time - begin < min(rounding, end - begin):
+                failure = NO_STEP  # steps shorter than rounding of time lead nowhere
             solution = run.solution(begin, steps)
             if failure is not None:
                 solution = _before_blow_up(solution)
@@ -425,7 +427,8 @@ def step_of(layout: StepLayout, left_out: float, raw: Sequence[Scalar]) -> list[
     scaled, power = [[terms[0] for terms in state]], span
     for k in range(1, count):
         scaled.append([terms[k] * power for terms in state])
-        power = power * span
+        # A long step of what hardly moves has powers beyond all floats; 0 times inf is none.
+        power = plain.least(power * span, sys.float_info.max)
     after = [horner(terms, span) for terms in state]
     # What rounding takes from the time is given back (Knuth's sum of two numbers).
     reached = time + span
