@@ -405,9 +405,9 @@ def test_of_the_marks_no_more_is_said_than_holds(lab: Lab, body: tt.Body) -> Non
     known.
     """
     visitor = lab(f"tab=launch&duration=1&{link_of(body)}")
-    said = visitor.page.locator(".prospect", has_text=re.compile("ω. =")).inner_text()
+    said = visitor.page.locator(".prospect", has_text=re.compile("ω_c[12] =")).inner_text()
     spins = tt.critical_spins(problem_of(visitor))
-    marks = {"ω₁": spins.upright, "ω₂": spins.inverted}
+    marks = {"ω_c1": spins.upright, "ω_c2": spins.inverted}
     shown = [name for name, spin in marks.items() if math.isfinite(spin) and spin < 250.0]
     assert [name for name in marks if f"{name} =" in said] == shown
     claims = (
