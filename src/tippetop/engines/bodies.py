@@ -47,17 +47,17 @@ class Written(NamedTuple):
 def primitives(body: tt.Body, ellipsoids: bool) -> tuple[Primitive, ...] | None:
     """Return the shapes whose hull is the body; None where only a mesh is."""
     shapes = body.shapes
-    found = []
+    primitives = []
     for shape in shapes:
         match shape:
             case tt.EccentricSphere(radius=radius, eccentricity=part):
-                found.append(Primitive("sphere", (radius,), part * radius))
+                primitives.append(Primitive("sphere", (radius,), part * radius))
             case tt.Sphere(radius=radius, center=center):
-                found.append(Primitive("sphere", (radius,), center))
+                primitives.append(Primitive("sphere", (radius,), center))
             case tt.Spheroid(across=across, along=along, center=center) if ellipsoids:
-                found.append(Primitive("ellipsoid", (across, across, along), center))
-    if len(found) == len(shapes):
-        return tuple(found)
+                primitives.append(Primitive("ellipsoid", (across, across, along), center))
+    if len(primitives) == len(shapes):
+        return tuple(primitives)
     match shapes:
         case (
             tt.Ring(radius=one, center=low, tube=0.0),

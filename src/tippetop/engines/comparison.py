@@ -41,7 +41,7 @@ DRAWN = 200
 FOLDER = "results"
 """Where stored results are, in this package."""
 
-Told = Callable[[float, float, str], None]
+Progress = Callable[[float, float, str], None]
 
 
 class EngineTask(NamedTuple):
@@ -99,7 +99,7 @@ def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dic
     glances = max(1, math.ceil(between / GLANCE))
     each = max(1, math.ceil(between / glances / step))
     length = between / glances / each
-    begun = time.perf_counter()
+    started = time.perf_counter()
     stepper = task.adapter.start(case, length, task.setting)
     readings, tilts, over = list[EngineState](), [problem.launch.tilt], math.nan
     try:
@@ -116,16 +116,17 @@ def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dic
             readings.append(reading)
     finally:
         stepper.close()
-    took = time.perf_counter() - begun
+    took = time.perf_counter() - started
     vectors = [np.array([getattr(one, name) for one in readings]) for name in EngineState._fields]
-    found = numbers_of(problem, *vectors)
-    apart = np.abs(found["theta"] - reference.numbers["theta"])
+    numbers = numbers_of(problem, *vectors)
+    apart = np.abs(numbers["theta"] - reference.numbers["theta"])
     early = max(
-        abs(found[f"axis_{letter}"][0] - reference.numbers[f"axis_{letter}"][0]) for letter in "xyz"
+        abs(numbers[f"axis_{letter}"][0] - reference.numbers[f"axis_{letter}"][0])
+        for letter in "xyz"
     )
     past = np.flatnonzero(~(apart <= HOLDS))
     holds = case.duration if not len(past) else float(case.times[past[0] - 1]) if past[0] else 0.0
-    energies = np.concatenate([[reference.energy], found["energy"]])
+    energies = np.concatenate([[reference.energy], numbers["energy"]])
     row = {
         "case": case.name,
         "setting": task.setting.name,
@@ -139,7 +140,7 @@ def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dic
         "energy_error": float((energies[-1] - reference.numbers["energy"][-1]) / reference.energy),
         "energy_gain": float(np.diff(energies).max() / reference.energy),
         "jellett_error": _part(
-            float(found["jellett"][-1] - reference.numbers["jellett"][-1]), reference.jellett
+            float(numbers["jellett"][-1] - reference.numbers["jellett"][-1]), reference.jellett
         ),
         "seconds": took,
         "microseconds_per_step": 1e6 * took / (len(case.times) * glances * each),
@@ -172,21 +173,21 @@ def load(folder: Path, name: str) -> dict[str, Any] | None:
     if not path.exists():
         return None
     try:
-        found: dict[str, Any] = json.loads(read_text(path, "results of engines"))
+        results: dict[str, Any] = json.loads(read_text(path, "results of engines"))
     except ValueError:
         raise InvalidInput("out", str(path), "a file of results", "cannot be read") from None
-    return found
+    return results
 
 
 def stored() -> dict[str, dict[str, Any]]:
     """Return the results that come with this package, by program."""
     folder = files(__package__) / FOLDER
-    found = {}
+    results = {}
     for name in ADAPTERS:
         path = folder / f"{name}.json"
         if path.is_file():
-            found[name] = json.loads(path.read_text(encoding="utf-8"))
-    return found
+            results[name] = json.loads(path.read_text(encoding="utf-8"))
+    return results
 
 
 def compare(
@@ -195,7 +196,7 @@ def compare(
     cases: Sequence[str] | None = None,
     steps: Sequence[float] = STEPS,
     longest: float = LONGEST,
-    progress: Told = lambda *_: None,
+    progress: Progress = lambda *_: None,
 ) -> dict[str, dict[str, Any]]:
     """Run the cases in the programs that are installed, and return and write their results.
 
@@ -241,12 +242,12 @@ def _tried(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dict
     try:
         return measure(task, step, reference, drawn)
     except (ArithmeticError, AssertionError, RuntimeError, ValueError) as error:
-        told = " ".join(str(error).split())[:200]
+        message = " ".join(str(error).split())[:200]
         return {
             "case": task.case.name,
             "setting": task.setting.name,
             "asked_step": step,
-            "failure": told or type(error).__name__,
+            "failure": message or type(error).__name__,
         }
 
 
@@ -261,12 +262,12 @@ def _predicted(before: Mapping[str, Any], task: EngineTask, step: float) -> floa
 def _opened(folder: Path, name: str, made: Adapter) -> dict[str, Any]:
     """Return the results of a folder if they are of the same versions, or empty ones."""
     head = {"engine": made.name, "version": version_of(made), "suite": SUITE_VERSION}
-    found = load(folder, name)
-    if found is not None and all(found.get(key) == value for key, value in head.items()):
-        return found
-    told = [setting._asdict() for setting in made.settings]
+    stored = load(folder, name)
+    if stored is not None and all(stored.get(key) == value for key, value in head.items()):
+        return stored
+    settings = [setting._asdict() for setting in made.settings]
     refused = {case.name: made.refusal(case) for case in CASES if made.refusal(case)}
-    return {**head, "settings": told, "refused": refused, "rows": []}
+    return {**head, "settings": settings, "refused": refused, "rows": []}
 
 
 def _has(result: Mapping[str, Any], task: EngineTask, step: float) -> bool:
@@ -308,7 +309,7 @@ class EngineVerdict(NamedTuple):
 
 def verdicts(results: Mapping[str, Mapping[str, Any]]) -> list[EngineVerdict]:
     """Return what each program makes of each case, at the setting with the least early error."""
-    found = []
+    verdicts = []
     for result in results.values():
         rows = [row for row in result["rows"] if "failure" not in row]
         for case in dict.fromkeys(row["case"] for row in rows):
@@ -316,18 +317,18 @@ def verdicts(results: Mapping[str, Mapping[str, Any]]) -> list[EngineVerdict]:
             finest = _finest(of_case)
             best = min(finest, key=lambda row: _number(row["early_error"], math.inf))
             same = [row for row in of_case if row["setting"] == best["setting"]]
-            found.append(_verdict(result["engine"], sorted(same, key=lambda row: -row["step"])))
-    return found
+            verdicts.append(_verdict(result["engine"], sorted(same, key=lambda row: -row["step"])))
+    return verdicts
 
 
 def _finest(rows: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """Return of each setting the row with the shortest step."""
-    found: dict[str, Mapping[str, Any]] = {}
+    finest: dict[str, Mapping[str, Any]] = {}
     for row in rows:
-        last = found.get(row["setting"])
+        last = finest.get(row["setting"])
         if last is None or row["step"] < last["step"]:
-            found[row["setting"]] = row
-    return list(found.values())
+            finest[row["setting"]] = row
+    return list(finest.values())
 
 
 def _verdict(engine: str, rows: Sequence[Mapping[str, Any]]) -> EngineVerdict:

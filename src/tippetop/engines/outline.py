@@ -38,12 +38,12 @@ def meridian(shape: tt.Shape, facets: int = FACETS) -> Array:
     if isinstance(shape, tt.Ring) and shape.tube == 0.0:
         return np.array([[shape.radius, shape.center]])
     surface = shape.surface
-    found = []
+    points = []
     for tilt in np.linspace(POLE, math.pi - POLE, facets // 2 + 1):
         c, s = math.cos(tilt), math.sin(tilt)
         h, slope = float(surface.height(c)), float(surface.slope(c))
-        found.append(((h - c * slope) * s, -slope * s * s - h * c))
-    return np.array(found)
+        points.append(((h - c * slope) * s, -slope * s * s - h * c))
+    return np.array(points)
 
 
 def revolved(body: tt.Body, facets: int = FACETS) -> ConvexMesh:
@@ -55,8 +55,8 @@ def revolved(body: tt.Body, facets: int = FACETS) -> ConvexMesh:
         outline[:, 0] < 10.0 * POLE * np.abs(outline).max(), 0.0, outline[:, 0]
     )
     mirrored = np.concatenate([outline, outline * (-1.0, 1.0)])
-    kept = mirrored[ConvexHull(mirrored).vertices]
-    outline = kept[kept[:, 0] >= 0.0]
+    corners = mirrored[ConvexHull(mirrored).vertices]
+    outline = corners[corners[:, 0] >= 0.0]
     outline = outline[np.argsort(np.arctan2(outline[:, 0], -outline[:, 1] + outline[:, 1].mean()))]
     points = list[tuple[float, float, float]]()
     rows = list[list[int]]()
@@ -85,12 +85,12 @@ def revolved(body: tt.Body, facets: int = FACETS) -> ConvexMesh:
 
 def _pair(low: list[int], high: list[int], k: int, after: int) -> list[tuple[int, int, int]]:
     """Return the triangles of a facet between two rows; one where a row is a point."""
-    found = []
+    triangles = []
     if low[k] != low[after]:
-        found.append((low[k], low[after], high[k]))
+        triangles.append((low[k], low[after], high[k]))
     if high[k] != high[after]:
-        found.append((low[after], high[after], high[k]))
-    return found
+        triangles.append((low[after], high[after], high[k]))
+    return triangles
 
 
 def _error(body: tt.Body, points: Array, facets: int) -> float:

@@ -85,12 +85,12 @@ class Reference(NamedTuple):
             "velocity": ("velocity_x", "velocity_y", "velocity_z"),
             "height": ("height",),
         }
-        found = []
+        errors = []
         for names in groups.values():
             size = max(float(np.abs(self.states[name]).max()) for name in names)
             apart = max(float(self.states[f"{name}_agreement"].max()) for name in names)
-            found.append(apart / size if size else 0.0)
-        return max(found)
+            errors.append(apart / size if size else 0.0)
+        return max(errors)
 
     @property
     def agrees(self) -> bool:
@@ -155,14 +155,14 @@ def reference(case: Case) -> Reference:
     sampled = [run[name].values[1:] for name in ("axis", "angular_velocity", "velocity", "height")]
     # A body that came to rest stays as it is.
     sampled = [_lasting(values, len(times)) for values in sampled]
-    own = numbers_of(case.problem, *sampled)
+    computed = numbers_of(case.problem, *sampled)
     rows = np.array(stored["states"])
     other = numbers_of(case.problem, rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[:, 10])
     variables = {}
     for name, (unit, meaning) in COLUMNS.items():
-        apart = np.maximum(np.abs(own[name] - other[name]), ROUNDING * np.abs(own[name]))
-        told = {"units": unit, "long_name": meaning}
-        variables[name] = ("time", own[name], told)
+        apart = np.maximum(np.abs(computed[name] - other[name]), ROUNDING * np.abs(computed[name]))
+        attributes = {"units": unit, "long_name": meaning}
+        variables[name] = ("time", computed[name], attributes)
         about = {"units": unit, "long_name": f"difference of two methods: {name}"}
         variables[f"{name}_agreement"] = ("time", apart, about)
     states = xr.Dataset(variables, {"time": ("time", times, {"units": "s"})})
@@ -220,11 +220,11 @@ def write_suite(
         if path.parent.is_dir():
             place_for(path, overwrite)
     folder.mkdir(parents=True, exist_ok=True)
-    found = []
+    references = []
     for k, case in enumerate(cases):
         progress(k, len(cases), case.name)
         one = reference(case)
-        found.append(one)
+        references.append(one)
         as_json, states, events, netcdf = _files_of(case.name)
         _write(folder / as_json, json.dumps(record(one), indent=1) + "\n", overwrite)
         _write(folder / states, _states_csv(one), overwrite)
@@ -234,8 +234,8 @@ def write_suite(
         _write(folder / netcdf, memory.getvalue(), overwrite)
     progress(len(cases), len(cases), "")
     _write(folder / "schema.json", json.dumps(SCHEMA, indent=1) + "\n", overwrite)
-    _write(folder / "README.md", _readme(found), overwrite)
-    return found
+    _write(folder / "README.md", _readme(references), overwrite)
+    return references
 
 
 def _files_of(name: str) -> tuple[str, str, str, str]:
@@ -308,8 +308,8 @@ def _events_csv(one: Reference) -> str:
 def _dataset(one: Reference) -> xr.Dataset:
     """Return states and events as one dataset."""
     time, kind, surface, apart = zip(*one.events, strict=True) if one.events else ([],) * 4
-    told = record(one)
-    attributes = {name: told[name] for name in ("suite", "program", "case", "title", "outcome")}
+    fields = record(one)
+    attributes = {name: fields[name] for name in ("suite", "program", "case", "title", "outcome")}
     events = {
         "event_time": ("event", np.array(time, float), {"units": "s"}),
         "event_kind": ("event", np.array(kind, dtype=object)),
@@ -389,12 +389,12 @@ SCHEMA: Mapping[str, Any] = {
 """JSON schema of a case's file."""
 
 
-def _readme(found: Sequence[Reference]) -> str:
+def _readme(references: Sequence[Reference]) -> str:
     template = (files(__package__) / "suite_readme.md").read_text(encoding="utf-8")
     rows = [
         f"| `{one.case.name}` | {one.case.title} | {one.case.tests} | {len(one.events)} |"
         f" {_order(one.event_agreement)} | {_order(one.state_agreement)} |"
-        for one in found
+        for one in references
     ]
     fields = {"version": SUITE_VERSION, "program": tt.__version__, "rows": "\n".join(rows)}
     for name, value in fields.items():

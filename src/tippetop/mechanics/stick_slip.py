@@ -8,7 +8,7 @@ alone, s = |zeta|, and so do all accelerations: with y = (n, L),
 
 How it comes to zero is said in `ending`. At zeta = 0 the wrench that keeps it zero decides: the
 body sticks if the limit surface admits it. Otherwise slip goes on in a direction in which it can, A
-= R e with R > 0 (see `slip_onset`).
+= R e with R > 0 (see `beginning`).
 """
 
 import math
