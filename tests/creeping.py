@@ -2,11 +2,11 @@
 
 from typing import NamedTuple
 
-from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.contacts.contact_point import ContactPoint, flat
+from tippetop.mechanics.contacts.forces import forces_and_accelerations, slip_length
+from tippetop.mechanics.contacts.slip_onset import find_onset
+from tippetop.mechanics.contacts.slip_variables import slip_part
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import forces_and_accelerations, slip_length
-from tippetop.mechanics.stick_slip import slip_part
 
 
 class CreepRates(NamedTuple):
@@ -28,5 +28,5 @@ def creep_rates(axis, momentum, slip, top):
 def direction_of_slip(axis, momentum, top):
     """Direction in which a rolling body that cannot stick slips, and the rate of its speed."""
     point = ContactPoint.of(axis, momentum, top)
-    found = beginning(point, None, point.turning[:2], (True, False))
+    found = find_onset(point, None, point.turning[:2], (True, False))
     return found.slip, found.rates[0]

@@ -8,11 +8,11 @@ from tippetop.contact.automaton import Automaton
 from tippetop.contact.mode import EventKind, Outcome
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.taylor import Taylor
+from tippetop.mechanics.contacts.forces import velocity_without_slip
+from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.motion import on_table
-from tippetop.mechanics.rolling import velocity_without_slip
 from tippetop.mechanics.series import PLAIN, Series
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.stick_slip import slip_of
 
 
 def series(rule):

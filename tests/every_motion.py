@@ -6,18 +6,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tippetop.contact.closing import closing_motion
 from tippetop.contact.contact_mode import ContactMode, sliding_motion
+from tippetop.contact.slip_end_motion import slip_end_motion
 from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators.base import Motion
-from tippetop.mechanics.contensou import EllipsoidalLaw
-from tippetop.mechanics.contensou_hertz import HertzBranch, HertzDrillingLaw, HertzSlidingLaw
-from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
-from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.rolling import is_set_valued
-from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
+from tippetop.mechanics.contacts.forces import is_set_valued
+from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.laws.contensou import EllipsoidalLaw
+from tippetop.mechanics.laws.contensou_hertz import HertzBranch, HertzDrillingLaw, HertzSlidingLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import RingSurface, SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
 BALL = SphereSurface(1.0, 0.3)
@@ -62,13 +62,13 @@ def sliding_motions(top):
         top.resists_rolling,
     )
     yield "sliding", sliding_motion(kind, True), numbers
-    endings = [Vanishing(slip=False)] if rolls else []
+    endings = [SlipComponent(slip=False)] if rolls else []
     if rolls:
         yield "held", sliding_motion(kind, True, held=True), numbers
     if is_set_valued(law):
-        endings += [Vanishing(slip=True, held=held) for held in (False, True)[: 1 + rolls]]
+        endings += [SlipComponent(slip=True, held=held) for held in (False, True)[: 1 + rolls]]
     for ending in endings:
-        yield f"closing {ending}", closing_motion(kind, ending, True), (*numbers, 1e9, 1e-3)
+        yield f"closing {ending}", slip_end_motion(kind, ending, True), (*numbers, 1e9, 1e-3)
     if isinstance(surface, Hull):
         other = top._replace(surface=surface._replace(active=1))
         statuses = {"": (False, False)}
@@ -92,7 +92,7 @@ def sticking_motions(top):
     if rolls:
         yield (
             "sticking closing",
-            closing_motion(kind, Vanishing(False, True), True),
+            slip_end_motion(kind, SlipComponent(False, True), True),
             (*numbers, 1e9, 1e-3),
         )
 

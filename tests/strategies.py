@@ -5,10 +5,10 @@ import math
 from hypothesis import assume, reject
 from hypothesis import strategies as st
 
-from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import contact
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import Angles
 from tippetop.problem.problem import Problem

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import tippetop as tt
+from tippetop.mechanics.contacts.slip_variables import is_slipping
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.stick_slip import is_slipping
 
 DISK_MASS, DISK_RADIUS, THICKNESS = 0.4, 0.0375, 0.0125
 DISK = tt.Body(

@@ -10,7 +10,7 @@ from campaigns import seeds
 from tippetop.contact.choice import automaton_of
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
-from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.top import natural, natural_state, natural_units
 

@@ -13,14 +13,18 @@ from tippetop.cli.commands import app
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import STOPPING, ContactMode
 from tippetop.contact.mode import ModeEnd
-from tippetop.contact.stopping import Stopping
+from tippetop.contact.slip_end import SlipEnd
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.coulomb import CoulombLaw
+from tippetop.mechanics.contacts.forces import (
+    forces_and_accelerations,
+    slip_reserve,
+    velocity_without_slip,
+)
+from tippetop.mechanics.laws.coulomb import CoulombLaw
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
-from tippetop.mechanics.rolling import forces_and_accelerations, slip_reserve, velocity_without_slip
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_state, natural_units
 
 INTEGRATORS = ["taylor", "dop853"]
@@ -216,7 +220,7 @@ def test_a_sweep_changes_between_the_branches_of_hertz_as_a_run_does(liftoff):
             )
 
 
-@pytest.mark.parametrize(("slip", "mode"), [(1e-3, ContactMode), (-1e-3, Stopping)])
+@pytest.mark.parametrize(("slip", "mode"), [(1e-3, ContactMode), (-1e-3, SlipEnd)])
 def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> None:
     """What falls over rolls the way it falls: slip against that ends, slip along it goes on."""
     launch = tt.Launch(tilt=1.0, spin=0.0, slip=(slip, 0.0))

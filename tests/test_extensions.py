@@ -34,13 +34,13 @@ from tippetop.graph.hoisting import played
 from tippetop.graph.recording import record
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.mechanics.contacts.contact_point import ContactPoint
+from tippetop.mechanics.contacts.forces import sum_at, velocity_without_slip
 from tippetop.mechanics.contacts.system import Component, Constraint, free_rates, solve_constraints
+from tippetop.mechanics.contacts.wrench import FORCES, Wrench
 from tippetop.mechanics.motion import axis_rate, on_table
-from tippetop.mechanics.rolling import sum_at, velocity_without_slip
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row
-from tippetop.mechanics.wrench import FORCES, Wrench
 from tippetop.results.catalogue import SWEPT
 from tippetop.support.errors import InvalidInput
 

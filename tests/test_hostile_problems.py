@@ -12,11 +12,11 @@ from scipy.optimize import brentq
 
 import tippetop as tt
 from campaigns import seed_ranges
-from tippetop.contact import closing, collision
+from tippetop.contact import collision, slip_end_motion
 from tippetop.integrators import make_integrator, sampling
 from tippetop.integrators.base import Motion
-from tippetop.mechanics import impact_process
-from tippetop.mechanics.impact import impact
+from tippetop.mechanics.impacts import process as impact_process
+from tippetop.mechanics.impacts.impact import impact
 from tippetop.support.errors import TippetopError
 from tippetop.sweeps import taylor_step
 from tippetop.sweeps.taylor_stepper import stepper
@@ -336,23 +336,27 @@ def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPa
 
 def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """Numbers that turn for ever, as the direction of slip may, in the clock in which it ends."""
-    monkeypatch.setattr(closing, "MOST", 4)
+    monkeypatch.setattr(slip_end_motion, "MOST", 4)
     monkeypatch.setattr(sampling, "MANY", 16)
     turning = Motion(
         lambda y, pace: (pace[0] * y[1], -pace[0] * y[0]), size=2, parameters=1, guards=()
     )
     method, start = make_integrator("dop853", 1e-12), (0.0, np.array([1.0, 0.0]))
-    arcs = list(closing.followed(method, turning, [1e4], start))
+    arcs = list(slip_end_motion.slip_end_arcs(method, turning, [1e4], start))
     assert arcs[-1].failure == "slip, or rolling, takes too many steps to end"
     assert len(arcs) == 4
     monkeypatch.setattr(sampling, "MANY", 64)
-    slow = list(closing.followed(method, turning, [1e-4], start))
+    slow = list(slip_end_motion.slip_end_arcs(method, turning, [1e-4], start))
     assert slow[-1].failure is None
-    assert [arc.solution.end for arc in slow] == [*closing.SOON, closing.LONGEST]
-    late = list(closing.followed(method, turning, [1e-4], (closing.LONGEST - 1.0, start[1])))
+    assert [arc.solution.end for arc in slow] == [*slip_end_motion.SOON, slip_end_motion.LONGEST]
+    late = list(
+        slip_end_motion.slip_end_arcs(
+            method, turning, [1e-4], (slip_end_motion.LONGEST - 1.0, start[1])
+        )
+    )
     assert [arc.solution.end for arc in late] == [
-        closing.LONGEST - 1.0 + closing.SOON[0],
-        closing.LONGEST,
+        slip_end_motion.LONGEST - 1.0 + slip_end_motion.SOON[0],
+        slip_end_motion.LONGEST,
     ]
 
 

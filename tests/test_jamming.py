@@ -14,11 +14,11 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import tippetop as tt
+from tippetop.mechanics.contacts.slip_variables import slip_of
+from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.motion import along_table, contact, contact_swing, on_table
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.stick_slip import slip_of
 
 M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
 """Mass, radius, distance of the centres, moments of inertia, friction and gravity, SI."""

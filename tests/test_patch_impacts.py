@@ -9,12 +9,13 @@ from scipy.integrate import solve_ivp
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.striking import impact_of_patch
 from tippetop.integrators import make_integrator
-from tippetop.mechanics.contensou import EllipsoidalLaw
-from tippetop.mechanics.contensou_hertz import HertzLaw
-from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.impulse import contact_velocity
+from tippetop.mechanics.contacts.slip_variables import slip_of
+from tippetop.mechanics.impacts.struck_body import contact_velocity
 from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.laws.contensou import EllipsoidalLaw
+from tippetop.mechanics.laws.contensou_hertz import HertzLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,
@@ -22,8 +23,7 @@ from tippetop.mechanics.motion import (
     on_table,
 )
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import slip_of
-from tippetop.mechanics.surface import SphereSurface, contact_vector
+from tippetop.mechanics.surfaces.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
 
 TAYLOR = make_integrator("taylor")

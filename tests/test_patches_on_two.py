@@ -23,11 +23,11 @@ from test_sticking_on_two import (
     times,
 )
 from tippetop.contact.two_closed import rolling_of
-from tippetop.mechanics import pair_resolver
-from tippetop.mechanics.contact_pair import ContactPair
-from tippetop.mechanics.contensou_hertz import HertzLaw
-from tippetop.mechanics.pair_motion import pair_motion
-from tippetop.mechanics.pair_resolver import moments_hold, patches_letting_go
+from tippetop.mechanics.contacts import pair_resolver
+from tippetop.mechanics.contacts.pair import ContactPair
+from tippetop.mechanics.contacts.pair_motion import pair_motion
+from tippetop.mechanics.contacts.pair_resolver import moments_hold, patches_letting_go
+from tippetop.mechanics.laws.contensou_hertz import HertzLaw
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.unsolved import Unsolved
 

@@ -12,8 +12,8 @@ from scipy.optimize import linprog
 
 import tippetop as tt
 from tippetop.cli.commands import run
-from tippetop.mechanics.hull import each_surface
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surfaces.hull import each_surface
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.problem.implausible import SENTENCES, sentence
 from tippetop.problem.plausibility import doubts, outside_of
 from tippetop.theory.overview import outlook

@@ -16,9 +16,9 @@ from pydantic import BaseModel
 
 from strategies import problems
 from tippetop import presets
-from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, contact, point_velocity
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
 from tippetop.problem import bodies, contact_rules, frictions, launch, problem, shapes

@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.surface import RingSurface, SphereSurface, contact_vector, gap_guard
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import (
+    RingSurface,
+    SphereSurface,
+    contact_vector,
+    gap_guard,
+)
 
 MASS, SIZE = 0.02, 0.02
 BALL = tt.Sphere(radius=SIZE, center=0.006)

@@ -17,10 +17,10 @@ from tippetop.contact import two_contact_mode as double
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
-from tippetop.mechanics.contact_pair import ContactPair, turning_along
-from tippetop.mechanics.friction import Traction
+from tippetop.mechanics.contacts.pair import ContactPair, turning_along
+from tippetop.mechanics.contacts.pair_motion import pair_motion
+from tippetop.mechanics.laws.friction import Traction
 from tippetop.mechanics.motion import angular_velocity
-from tippetop.mechanics.pair_motion import pair_motion
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector

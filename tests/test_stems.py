@@ -10,15 +10,15 @@ import tippetop as tt
 from tippetop.contact import automaton, collision, touching
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.mode import EventKind, Mode
-from tippetop.contact.passing import Resting
+from tippetop.contact.transient import Resting
 from tippetop.contact.two_contact_mode import TwoContactMode, on_two
-from tippetop.mechanics.contact_pair import ContactPair
+from tippetop.mechanics.contacts.forces import normal_wrench
+from tippetop.mechanics.contacts.pair import ContactPair
+from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.contacts.system import rates_added
 from tippetop.mechanics.motion import on_table
-from tippetop.mechanics.rolling import normal_wrench
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import slip_of
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_units
 from tippetop.results.catalogue import SWEPT, Fault
 

@@ -13,18 +13,18 @@ import tippetop as tt
 from campaigns import among
 from lying import lying
 from tippetop.contact.choice import automaton_of
-from tippetop.contact.double_sticking import SlipBeginningOnTwo
+from tippetop.contact.slip_onset_on_two import SlipOnsetOnTwo
 from tippetop.contact.trajectory import Trajectory
 from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators import make_integrator
-from tippetop.mechanics.contact_pair import ContactPair, slip_apart
-from tippetop.mechanics.flight import gap_rate
-from tippetop.mechanics.friction import NO_TORQUE
+from tippetop.mechanics.contacts.pair import ContactPair, slip_apart
+from tippetop.mechanics.contacts.pair_motion import pair_motion
+from tippetop.mechanics.contacts.wrench import Wrench
+from tippetop.mechanics.flight.free_motion import gap_rate
+from tippetop.mechanics.laws.friction import NO_TORQUE
 from tippetop.mechanics.motion import angular_velocity
-from tippetop.mechanics.pair_motion import pair_motion
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_state, natural_units
-from tippetop.mechanics.wrench import Wrench
 
 MASS, BALL, HALF, MU, G = 0.01, 0.005, 0.02, 0.3, 9.8
 ACROSS = 2e-6
@@ -205,7 +205,7 @@ def test_what_rolls_on_two_contacts_keeps_its_energy() -> None:
 
 def test_slip_that_begins_at_the_limit_grows_with_the_square_of_time() -> None:
     segments = followed(SLIPS_AGAIN)
-    number = next(i for i, s in enumerate(segments) if isinstance(s.mode, SlipBeginningOnTwo))
+    number = next(i for i, s in enumerate(segments) if isinstance(s.mode, SlipOnsetOnTwo))
     begin, before = segments[number], segments[number - 1]
     assert before.mode.sticks == (True, False)
     start = begin.solution.knots[0]
@@ -217,9 +217,7 @@ def test_slip_that_begins_at_the_limit_grows_with_the_square_of_time() -> None:
 @pytest.mark.parametrize("seed", [SLIPS_AGAIN, BEYOND_THE_LIMIT])
 def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
     """From early in its first step on, by an implicit method and in other numbers."""
-    begin = next(
-        segment for segment in followed(seed) if isinstance(segment.mode, SlipBeginningOnTwo)
-    )
+    begin = next(segment for segment in followed(seed) if isinstance(segment.mode, SlipOnsetOnTwo))
     knots = begin.solution.knots
     early, late = (knots[0] + part * (knots[-1] - knots[0]) for part in (0.3, 0.9))
     mode, (first, last) = begin.mode, begin.solution(np.array([early, late])).tolist()

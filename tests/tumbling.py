@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.surface import RingSurface, SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
 EDGES = {

@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 
 from tippetop.graph.graph import Node
-from tippetop.mechanics.friction import NO_TORQUE as NO_TORQUE
-from tippetop.mechanics.friction import FrictionLaw as FrictionLaw
-from tippetop.mechanics.friction import Traction as Traction
-from tippetop.mechanics.surface import Surface as Surface
+from tippetop.mechanics.laws.friction import NO_TORQUE as NO_TORQUE
+from tippetop.mechanics.laws.friction import FrictionLaw as FrictionLaw
+from tippetop.mechanics.laws.friction import Traction as Traction
+from tippetop.mechanics.surfaces.surface import Surface as Surface
 from tippetop.mechanics.units import Units as Units
 from tippetop.mechanics.vectors import Horizontal as Horizontal
 from tippetop.mechanics.vectors import Scalar as Scalar

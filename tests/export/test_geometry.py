@@ -9,8 +9,8 @@ from tippetop.export.geometry import lathe
 from tippetop.figures.appearance import size, toy_parts
 from tippetop.figures.meridian import stated_profile
 from tippetop.figures.toy import FAR, Toy
-from tippetop.mechanics.hull import outer_height
-from tippetop.mechanics.outline import outline
+from tippetop.mechanics.surfaces.hull import outer_height
+from tippetop.mechanics.surfaces.outline import outline
 
 EGG = tt.Body(mass=0.02, shape=tt.Spheroid(across=0.015, along=0.025), I1=4e-6, I3=2e-6)
 STEMMED = tt.Body(

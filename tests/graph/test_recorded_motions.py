@@ -19,10 +19,10 @@ from tippetop.graph.hoisting import hoisted, played
 from tippetop.graph.javascript import javascript_source
 from tippetop.graph.recording import record
 from tippetop.graph.taylor_coefficients import NodeArithmetic
-from tippetop.mechanics.contensou_hertz import HertzLaw
 from tippetop.mechanics.euler import published_rates
+from tippetop.mechanics.laws.contensou_hertz import HertzLaw
 from tippetop.mechanics.series import Series, horner, solved, unknown
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.problem.presets import report_problem
 

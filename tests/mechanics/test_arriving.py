@@ -9,24 +9,24 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun
-from tippetop.contact.arriving import arriving
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.closing import closing_of
+from tippetop.contact.collocated_end import collocated_end
 from tippetop.contact.mode import EventKind
-from tippetop.contact.stopping import Stopping
+from tippetop.contact.slip_end import SlipEnd
+from tippetop.contact.slip_end_motion import slip_end_state
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.integrators.scipy_methods import SciPy
-from tippetop.mechanics.contensou import EllipsoidalLaw
-from tippetop.mechanics.contensou_hertz import HertzDrillingLaw, HertzLaw
-from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.ending import Vanishing, closing_rates
-from tippetop.mechanics.stick_slip import size, velocity_of
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.contacts.slip_end import SlipComponent, slip_end_rates
+from tippetop.mechanics.contacts.slip_variables import size, velocity_of
+from tippetop.mechanics.laws.contensou import EllipsoidalLaw
+from tippetop.mechanics.laws.contensou_hertz import HertzDrillingLaw, HertzLaw
+from tippetop.mechanics.laws.coulomb import RollingResistance
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import dot
 
-SLIP = Vanishing(slip=True)
+SLIP = SlipComponent(slip=True)
 
 EXACT = 2.0**-52
 """Tolerance of an integrator that is exact to rounding."""
@@ -36,7 +36,7 @@ def in_its_clock(top, start, until):
     """The numbers of a top that slips less and less, by an implicit method."""
 
     def rates(_, y):
-        rate = closing_rates(closing_of(y.tolist(), SLIP), SLIP, top)
+        rate = slip_end_rates(slip_end_state(y.tolist(), SLIP), SLIP, top)
         return [*rate.axis, *rate.momentum, *rate.direction, rate.speed, rate.time]
 
     return solve_ivp(rates, (0.0, until), start, "Radau", rtol=1e-9, atol=1e-13).y[:, -1].tolist()
@@ -63,11 +63,11 @@ def spin_for(top, axis, momentum, rate):
 @pytest.mark.parametrize("law", [EllipsoidalLaw(0.4, 0.1), HertzDrillingLaw(0.4, 0.1)])
 def test_its_end_by_collocation_is_where_an_implicit_method_comes_to(law):
     top, start = slipping(law)
-    assert arriving(closing_of(start, SLIP), SLIP, top, EXACT) is None, (
+    assert collocated_end(slip_end_state(start, SLIP), SLIP, top, EXACT) is None, (
         "its direction is not at rest"
     )
     settled = in_its_clock(top, start, 1.0)
-    found = arriving(closing_of(settled, SLIP), SLIP, top, EXACT)
+    found = collocated_end(slip_end_state(settled, SLIP), SLIP, top, EXACT)
     assert found is not None
     end = in_its_clock(top, settled, 25.0)
     assert settled[-1] + found.left == pytest.approx(end[-1], rel=1e-8)
@@ -106,7 +106,7 @@ def test_friction_that_turns_slip_much_faster_than_it_ends_takes_few_steps(integ
         automaton, automaton.launch(run.start), 1.5 * end[-1], integrator
     ).segments()
     first = next(segments)
-    assert isinstance(first.mode, Stopping)
+    assert isinstance(first.mode, SlipEnd)
     assert first.transition.events[0].kind is EventKind.STICK
     assert first.end_time == pytest.approx(end[-1], rel=1e-8)
     assert first.solution(np.array([first.end_time]))[0, :6] == pytest.approx(end[:6], abs=1e-9)
@@ -116,12 +116,12 @@ def test_friction_that_turns_slip_much_faster_than_it_ends_takes_few_steps(integ
 @pytest.mark.parametrize("law", [EllipsoidalLaw(0.4, 0.1), HertzDrillingLaw(0.4, 0.1)])
 def test_a_direction_is_at_rest_as_well_as_an_integrator_of_some_tolerance_tells(law):
     top, start = slipping(law)
-    exact = closing_of(in_its_clock(top, start, 1.0), SLIP)
+    exact = slip_end_state(in_its_clock(top, start, 1.0), SLIP)
     x, y, z = exact.direction
     off = 3e-10 / math.hypot(x, z)
     rough = exact._replace(direction=(x + off * z, y, z - off * x))
-    assert arriving(rough, SLIP, top, EXACT) is None
-    found, known = arriving(rough, SLIP, top, 1e-10), arriving(exact, SLIP, top, EXACT)
+    assert collocated_end(rough, SLIP, top, EXACT) is None
+    found, known = collocated_end(rough, SLIP, top, 1e-10), collocated_end(exact, SLIP, top, EXACT)
     assert found is not None
     assert known is not None
     assert found.left == pytest.approx(known.left, abs=1e-12)

@@ -5,26 +5,26 @@ import math
 import numpy as np
 import pytest
 
-from tippetop.mechanics.contact_pair import ContactPair, slips_of
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.contacts.sticking import sticking_forces
-from tippetop.mechanics.contacts.system import free_rates, solve_constraints
-from tippetop.mechanics.contensou import EllipsoidalLaw
-from tippetop.mechanics.contensou_hertz import HertzSlidingLaw
-from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
-from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.motion import axis_rate, contact, sliding_rates
-from tippetop.mechanics.pair_motion import pair_motion
-from tippetop.mechanics.rolling import (
+from tippetop.mechanics.contacts.forces import (
     constraints_of,
     directions_of,
     forces_and_accelerations,
     sum_at,
 )
+from tippetop.mechanics.contacts.pair import ContactPair, slips_of
+from tippetop.mechanics.contacts.pair_motion import pair_motion
+from tippetop.mechanics.contacts.slip_variables import velocity_of
+from tippetop.mechanics.contacts.sticking import sticking_forces
+from tippetop.mechanics.contacts.system import free_rates, solve_constraints
+from tippetop.mechanics.laws.contensou import EllipsoidalLaw
+from tippetop.mechanics.laws.contensou_hertz import HertzSlidingLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.motion import axis_rate, contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.stick_slip import velocity_of
-from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import RingSurface, SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
 SURFACES = {

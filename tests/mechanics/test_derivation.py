@@ -17,9 +17,9 @@ import sympy as sp
 from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
 
 from tippetop.mechanics.euler import published_normal_force, published_rates
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import contact, sliding_rates
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import Angles, state_from_angles
 

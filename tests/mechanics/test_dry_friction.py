@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from strategies import numbers
-from tippetop.mechanics.contensou import EllipsoidalLaw
-from tippetop.mechanics.contensou_hertz import HertzDrillingLaw, HertzLaw, HertzSlidingLaw
-from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.contensou import EllipsoidalLaw
+from tippetop.mechanics.laws.contensou_hertz import HertzDrillingLaw, HertzLaw, HertzSlidingLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.series import Series, solved, unknown
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.problem.hertz_patch import MATERIALS, Material, hertz_patch_radius
 from tippetop.theory.derivatives import jacobian

@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 from test_impact import RESTITUTIONS, Rigid, check_laws_of_impact, planar
 
 from strategies import numbers, slides
-from tippetop.mechanics.contensou import EllipsoidalLaw
-from tippetop.mechanics.contensou_hertz import HertzLaw
-from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.dry_impact import DryProcess
-from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
-from tippetop.mechanics.impact import impact
-from tippetop.mechanics.impulse import NO_IMPULSE, Striking
+from tippetop.mechanics.contacts.slip_variables import slip_of, slip_part
+from tippetop.mechanics.impacts.dry_impact import DryProcess
+from tippetop.mechanics.impacts.impact import impact
+from tippetop.mechanics.impacts.struck_body import NO_IMPULSE, StruckBody
+from tippetop.mechanics.laws.contensou import EllipsoidalLaw
+from tippetop.mechanics.laws.contensou_hertz import HertzLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.stick_slip import slip_of, slip_part
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
 
@@ -200,7 +200,7 @@ def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_
         tilt = random.uniform(0.1, 3.0)
         axis = (math.sin(tilt), 0.0, math.cos(tilt))
         state = on_table(SlidingState(axis, (0.0, 0.0, 0.0), (0.0, 0.0)), top)
-        body = Striking.of(state._replace(velocity=(0.0, 0.0, -1.0)), top)
+        body = StruckBody.of(state._replace(velocity=(0.0, 0.0, -1.0)), top)
         contact = DryProcess(body).settled(NO_IMPULSE)
         unit = contact.friction(body.before)
         change = body.change(unit)

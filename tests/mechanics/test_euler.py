@@ -13,11 +13,11 @@ from scipy.integrate import solve_ivp
 from campaigns import among
 from strategies import angles, numbers, spheres, tops
 from tippetop.mechanics.euler import published_energy, published_normal_force, published_rates
-from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import contact, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import Angles, state_from_angles
 

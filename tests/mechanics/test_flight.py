@@ -13,9 +13,10 @@ from scipy.optimize import brentq
 
 from campaigns import examples
 from strategies import numbers, slides, spheres, spheroids, tops
-from tippetop.mechanics.flight import fly, gap, gap_rate
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.flight.free_motion import fly, gap, gap_rate
+from tippetop.mechanics.flight.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,
@@ -24,9 +25,8 @@ from tippetop.mechanics.motion import (
     point_velocity,
 )
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.vectors import dot, length, scale
 from tippetop.mechanics.view import Angles, state_from_angles
 from tumbling import EDGES, Tumbling, reach

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import numbers
-from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.units import Units
 
 COEFFICIENTS = numbers(0.01, 2.0)

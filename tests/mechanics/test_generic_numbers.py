@@ -13,10 +13,10 @@ import pytest
 import sympy as sp
 
 from tippetop.mechanics import euler, invariants, quadratures, view
-from tippetop.mechanics.friction import NO_TORQUE, RegularizedCoulombLaw, Traction, ViscousLaw
+from tippetop.mechanics.laws.friction import NO_TORQUE, RegularizedCoulombLaw, Traction, ViscousLaw
 from tippetop.mechanics.motion import along_table, axial_spin, contact, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import cross, dot
 

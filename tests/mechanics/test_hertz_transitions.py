@@ -9,25 +9,25 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun
-from tippetop.contact.closing import closing_of
 from tippetop.contact.contact_mode import split
+from tippetop.contact.slip_end_motion import slip_end_state
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.contensou_hertz import BRANCH_TORQUE, HertzLaw
-from tippetop.mechanics.coulomb import CoulombLaw
-from tippetop.mechanics.ending import Vanishing, closing_rates
-from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import (
+from tippetop.mechanics.contacts.forces import (
     forces_and_accelerations,
     spun_up,
     velocity_without_slip,
     without_drilling,
 )
-from tippetop.mechanics.stick_slip import size, velocity_of
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.contacts.slip_end import SlipComponent, slip_end_rates
+from tippetop.mechanics.contacts.slip_variables import size, velocity_of
+from tippetop.mechanics.laws.contensou_hertz import BRANCH_TORQUE, HertzLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.motion import axis_rate
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 
-SLIP = Vanishing(slip=True)
+SLIP = SlipComponent(slip=True)
 
 
 def about_to_stick(random):
@@ -51,7 +51,7 @@ def test_slip_ends_on_the_branch_its_direction_turns_to(seed):
     top, axis, momentum, slip = about_to_stick(np.random.default_rng(seed))
 
     def rates(_, y):
-        rate = closing_rates(closing_of(y.tolist(), SLIP), SLIP, top)
+        rate = slip_end_rates(slip_end_state(y.tolist(), SLIP), SLIP, top)
         return [*rate.axis, *rate.momentum, *rate.direction, rate.speed, rate.time]
 
     start = [*axis, *momentum, *(x / size(slip) for x in slip), size(slip), 0.0]

@@ -12,13 +12,13 @@ from scipy.integrate import solve_ivp
 
 from campaigns import among, examples
 from strategies import numbers, slides, spheres, tops
-from tippetop.mechanics.flight import gap, gap_rate
-from tippetop.mechanics.friction import RegularizedCoulombLaw, Traction, ViscousLaw
-from tippetop.mechanics.impact import Impact, impact
+from tippetop.mechanics.flight.free_motion import gap, gap_rate
+from tippetop.mechanics.impacts.impact import Impact, impact
 from tippetop.mechanics.invariants import jellett
+from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, Traction, ViscousLaw
 from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface, contact_vector
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
 
 RESTITUTIONS = st.sampled_from([0.0, 0.3, 0.8, 1.0])

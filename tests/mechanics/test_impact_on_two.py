@@ -10,19 +10,19 @@ from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from strategies import numbers
-from tippetop.mechanics import impact_process
-from tippetop.mechanics.coulomb import CoulombLaw
-from tippetop.mechanics.flight import gap_rate
-from tippetop.mechanics.friction import RegularizedCoulombLaw, ViscousLaw
-from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.impact import impact
-from tippetop.mechanics.impact_on_two import ProcessOnTwo, SlipEnds
-from tippetop.mechanics.impulse import Striking
+from tippetop.mechanics.flight.free_motion import gap_rate
+from tippetop.mechanics.impacts import process as impact_process
+from tippetop.mechanics.impacts.impact import impact
+from tippetop.mechanics.impacts.impact_on_two import ProcessOnTwo, SlipEndsInImpact
+from tippetop.mechanics.impacts.struck_body import StruckBody
 from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.motion import axis_rate, on_table
 from tippetop.mechanics.runge_kutta import step_from
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import SphereSurface, contact_vector
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
 
 
@@ -394,7 +394,7 @@ def test_an_error_counts_at_either_end(number):
     be.
     """
     state, tops = sliding_slowly(RegularizedCoulombLaw(0.6, 0.1))
-    process = ProcessOnTwo.of(*(Striking.of(state, top) for top in tops))
+    process = ProcessOnTwo.of(*(StruckBody.of(state, top) for top in tops))
     taken = step_from(process.begin, process.slope(process.begin), 1e-3, process.slope)
     arms, turn = [contact_vector(state.axis, top.surface) for top in tops], (0.0, 0.0, 1e-6)
     at_first = np.cross(turn, np.subtract(arms[0], arms[1 - number]))
@@ -413,4 +413,4 @@ def test_steps_are_bounded_and_told(monkeypatch):
     monkeypatch.setattr(impact_process, "MOST", 10)
     with pytest.raises(ArithmeticError, match="end") as error:
         impact(state, 0.0, *tops)
-    assert not isinstance(error.value, SlipEnds)
+    assert not isinstance(error.value, SlipEndsInImpact)

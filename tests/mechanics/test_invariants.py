@@ -11,11 +11,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from strategies import slides, spheres, tops
-from tippetop.mechanics.friction import NO_TORQUE, Traction, ViscousLaw
 from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.laws.friction import NO_TORQUE, Traction, ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, contact, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector, dot, length
 from tippetop.mechanics.view import Angles, state_from_angles

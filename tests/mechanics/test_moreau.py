@@ -9,9 +9,9 @@ import pytest
 import moreau
 from dry_runs import DryRun, launched
 from tippetop.integrators.scipy_methods import SciPy
-from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
-from tippetop.mechanics.coulomb import CoulombLaw
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 
 MASS, RADIUS, GRAVITY = 0.02, 0.02, 9.8

@@ -13,11 +13,11 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from strategies import numbers, slides, unit_vectors
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, contact, on_table, sliding_rates
 from tippetop.mechanics.quadratures import orientation, quadrature_rates, turn_rate
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
 from tippetop.mechanics.view import Angles, state_from_angles

@@ -11,20 +11,25 @@ from scipy.integrate import solve_ivp
 from strategies import numbers, slides
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.contensou import EllipsoidalLaw
-from tippetop.mechanics.contensou_hertz import HertzDrillingLaw
-from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import angular_velocity, axis_rate, contact, on_table, sliding_rates
-from tippetop.mechanics.rolling import (
+from tippetop.mechanics.contacts.forces import (
     forces_and_accelerations,
     velocity_without_slip,
     without_drilling,
 )
+from tippetop.mechanics.contacts.slip_variables import (
+    HORIZON,
+    rolling_stopping_guard,
+    size,
+    slip_of,
+)
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.laws.contensou import EllipsoidalLaw
+from tippetop.mechanics.laws.contensou_hertz import HertzDrillingLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.friction import ViscousLaw
+from tippetop.mechanics.motion import angular_velocity, axis_rate, contact, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.stick_slip import HORIZON, rolling_stopping_guard, size, slip_of
-from tippetop.mechanics.surface import SphereSurface, contact_vector
+from tippetop.mechanics.surfaces.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.theory.derivatives import derivative, jacobian
 

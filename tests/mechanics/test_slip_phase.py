@@ -12,17 +12,17 @@ from dry_runs import launched
 from tippetop.contact import slip_step
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import STICKS
-from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
-from tippetop.contact.slipping import change_over, dips, parts_left
+from tippetop.contact.slip_onset import SlipOnset
+from tippetop.contact.slip_phase import change_over, dips, parts_left
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import iteration, make_integrator
-from tippetop.mechanics.coulomb import CoulombLaw
-from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.gauss_points import STAGES, gauss_points
+from tippetop.mechanics.contacts.gauss_points import STAGES, gauss_points
+from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.laws.coulomb import CoulombLaw
 from tippetop.mechanics.motion import on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
 LAUNCHES = {
@@ -59,7 +59,7 @@ def test_the_points_are_those_of_gauss_and_integrate_what_they_should():
 def test_a_phase_solves_the_equations_of_sliding(name):
     """From places in it Runge and Kutta's method goes on with the same motion."""
     segments, _ = followed(name, 20.0)
-    phases = [one for one in segments if isinstance(one.mode, Loosening)]
+    phases = [one for one in segments if isinstance(one.mode, SlipOnset)]
     assert max(one.steps for one in phases) > 1
     assert any(one.transition.then.status == STICKS for one in phases), "it is followed to its end"
     for segment in phases[:2]:
@@ -83,7 +83,7 @@ def test_a_phase_solves_the_equations_of_sliding(name):
 def test_a_first_step_and_the_clock_tell_the_same_of_it(name, monkeypatch):
     kinds, times = told(followed(name, 30.0)[1])
     assert kinds.count(EventKind.SLIP) > 1
-    monkeypatch.setattr(Vanishing, "recurs", lambda *_: False)
+    monkeypatch.setattr(SlipComponent, "recurs", lambda *_: False)
     others, seconds = told(followed(name, 30.0)[1])
     assert kinds == others
     assert times == pytest.approx(seconds, abs=1e-11)

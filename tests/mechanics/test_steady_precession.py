@@ -11,10 +11,10 @@ from scipy.optimize import brentq
 
 from strategies import numbers, spheres, tops
 from tippetop.mechanics.euler import published_rates
-from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import jellett
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import contact, on_table, sliding_rates
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import cross, length
 from tippetop.mechanics.view import Angles, state_from_angles

@@ -12,39 +12,39 @@ from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import SLIP, ContactMode, split
-from tippetop.contact.loosening import Loosening
 from tippetop.contact.mode import EventKind
 from tippetop.contact.onset_motion import BOTH as TOGETHER
 from tippetop.contact.onset_motion import onset_motion
+from tippetop.contact.slip_end import SlipEnd
+from tippetop.contact.slip_onset import SlipOnset
+from tippetop.contact.slip_phase import follow_slip
 from tippetop.contact.slip_step import SlipStep
-from tippetop.contact.slipping import follow_slip
-from tippetop.contact.stopping import Stopping
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.integrators.scipy_methods import SciPy
-from tippetop.mechanics.beginning import beginning
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
-from tippetop.mechanics.contensou_hertz import HertzLaw
-from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.friction import NO_TORQUE, Traction
-from tippetop.mechanics.gauss_points import PARTS, STAGES
-from tippetop.mechanics.motion import angular_velocity, on_table, sliding_rates
-from tippetop.mechanics.rolling import (
+from tippetop.mechanics.contacts.forces import (
     forces_and_accelerations,
     velocity_without_slip,
     without_drilling,
 )
-from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.stick_slip import (
+from tippetop.mechanics.contacts.gauss_points import PARTS, STAGES
+from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_onset import find_onset
+from tippetop.mechanics.contacts.slip_variables import (
     plus,
     scaled,
     size,
     slip_of,
     velocity_of,
 )
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
+from tippetop.mechanics.laws.contensou_hertz import HertzLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.friction import NO_TORQUE, Traction
+from tippetop.mechanics.motion import angular_velocity, on_table, sliding_rates
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
 SECOND = math.sqrt(9.8 / 0.02)
@@ -252,7 +252,7 @@ def at_the_limit(family, shape=SPHERE):
 
 def began(top, axis, momentum, direction, length):
     """A step of slip that begins in a direction."""
-    step = SlipStep(onset_motion(top.kind, (Vanishing(slip=True),), False), top.numbers)
+    step = SlipStep(onset_motion(top.kind, (SlipComponent(slip=True),), False), top.numbers)
     none = [0.0 for _ in direction]
     assert step.solve([*axis, *momentum, *none], [direction], length)
     return step
@@ -306,7 +306,7 @@ def test_the_beginning_of_slip_solves_the_equations(family, power, shape):
     top, axis, momentum = starting(family, power, shape)
     direction, rate = direction_of_slip(axis, momentum, top)
     assert (rate < 1e-12) is (power == 2)
-    begun = Followed(top, axis, momentum, [direction], (Vanishing(slip=True),))
+    begun = Followed(top, axis, momentum, [direction], (SlipComponent(slip=True),))
     assert begun.end > 0.01
     for part in (1e-3, 0.02, 0.3, 0.5, 0.77, 0.99):
         numbers, rates = begun(part)
@@ -325,7 +325,7 @@ def test_slip_and_rolling_begin_together(family):
     top = FAMILIES[family](0.02, SPHERE)._replace(rolling_resistance=RollingResistance(1e-3))
     axis, momentum = (0.48, 0.64, 0.6), (0.0, 0.0, 0.0)
     point = ContactPoint.of(axis, momentum, top)
-    begin = beginning(point, None, None, (True, True))
+    begin = find_onset(point, None, None, (True, True))
     begun = Followed(top, axis, momentum, [begin.slip, begin.rolling], TOGETHER)
     count = len(begin.slip)
     for part in (1e-3, 0.1, 0.5, 0.9):
@@ -334,19 +334,19 @@ def test_slip_and_rolling_begin_together(family):
         assert rolling == pytest.approx(angular_velocity(n, L, top)[:2], abs=1e-15)
         here = ContactPoint.of(n, L, top)
         wrench, acceleration = forces_and_accelerations(here, zeta, rolling)
-        change = Vanishing(slip=True).rate(acceleration, top)
+        change = SlipComponent(slip=True).rate(acceleration, top)
         assert rates[3:] == pytest.approx(
             [*here.moment(wrench), *change, *acceleration.turning[:2]], abs=1e-9
         )
 
 
-@pytest.mark.parametrize("mode", [Stopping, Loosening], ids=["clock", "phase"])
+@pytest.mark.parametrize("mode", [SlipEnd, SlipOnset], ids=["clock", "phase"])
 def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
     """Beyond the end of the clock too: the slip goes to zero in a straight line, and what goes with
     it.
     """
-    if mode is Stopping:
-        monkeypatch.setattr(Vanishing, "recurs", lambda *_: False)
+    if mode is SlipEnd:
+        monkeypatch.setattr(SlipComponent, "recurs", lambda *_: False)
     top, axis, momentum, velocity = launched(report(CoulombLaw(0.2)), 1.0, 50.0 / SECOND)
     start = on_table(SlidingState(axis, momentum, velocity), top)
     automaton = Automaton(top, "ignore", 0.0)
@@ -374,11 +374,11 @@ def test_the_table_pulls_from_the_first_instant_on_as_it_does_where_slip_begins(
     top, axis, momentum = starting(family, 1)
     velocity = velocity_without_slip(axis, momentum, top)
     state = on_table(SlidingState(axis, momentum, velocity), top)
-    (segment,) = Loosening(top, Vanishing(slip=True), pulls=True).segments(
+    (segment,) = SlipOnset(top, SlipComponent(slip=True), pulls=True).segments(
         0.0, state, 1.0, make_integrator()
     )
     point = ContactPoint.of(axis, momentum, top)
-    true = beginning(point, None, point.turning[:2], (True, False)).wrench
+    true = find_onset(point, None, point.turning[:2], (True, False)).wrench
     y = segment.solution(np.array([0.0, 1e-14, 1e-11, 1e-9]))
     found = segment.mode.reaction(y.T)
     for i in range(3):

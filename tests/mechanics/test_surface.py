@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import numbers, spheres, spheroids, unit_vectors
-from tippetop.mechanics.surface import (
+from tippetop.mechanics.surfaces.surface import (
     OvalSurface,
     RingSurface,
     SphereSurface,

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from strategies import angles, numbers, slides, tops, unit_vectors
 from tippetop.mechanics import view
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate, contact
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import cross, dot, length
 from tippetop.mechanics.view import Angles, state_from_angles

@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 
 from campaigns import examples
 from strategies import slides, spheres, spheroids, tops
-from tippetop.mechanics import impact_process
-from tippetop.mechanics.contensou_hertz import HertzLaw
-from tippetop.mechanics.flight import fly, gap_rate
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.impact import impact
+from tippetop.mechanics.flight.free_motion import fly, gap_rate
+from tippetop.mechanics.flight.touchdown import Start, highest_gap, touchdown
+from tippetop.mechanics.impacts import process as impact_process
+from tippetop.mechanics.impacts.impact import impact
 from tippetop.mechanics.invariants import energy, jellett
+from tippetop.mechanics.laws.contensou_hertz import HertzLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table, contact, on_table
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top, natural_state, natural_units
-from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.sweeps.flight_steps import GIVEN, LEFT, STATE, TIME, VANISHING, WANTED, pieces
 from tippetop.sweeps.flights import fly_all, look
 from tippetop.sweeps.flights import slides as goes_on

@@ -9,9 +9,9 @@ from strategies import numbers
 from tippetop.contact.contact_mode import sliding_motion
 from tippetop.integrators import make_integrator
 from tippetop.integrators.dense import DenseSolution
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.problem.problem import Problem
 

@@ -8,7 +8,7 @@ from full_runs import full_run, sphere_problem, tilts_of
 from scipy.integrate import solve_ivp
 
 from tippetop import presets
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import natural_units
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import (

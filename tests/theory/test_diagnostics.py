@@ -7,8 +7,8 @@ import pytest
 from full_runs import full_run, tilts_of
 
 from tippetop import presets
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.surface import SpheroidSurface
+from tippetop.mechanics.laws.friction import ViscousLaw
+from tippetop.mechanics.surfaces.surface import SpheroidSurface
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.diagnostics import (

@@ -16,9 +16,9 @@ from campaigns import among
 from strategies import numbers
 from tippetop import presets
 from tippetop.cli.commands import app
-from tippetop.mechanics.coulomb import CoulombLaw, RollingResistance
-from tippetop.mechanics.friction import ViscousLaw
 from tippetop.mechanics.invariants import jellett
+from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table, angular_velocity, contact
 from tippetop.mechanics.state import State
 from tippetop.theory.apparent import critical_spin_from_spectrum

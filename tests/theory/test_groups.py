@@ -10,8 +10,8 @@ from hypothesis import assume, given, settings
 from campaigns import examples
 from strategies import numbers
 from tippetop import presets
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.surface import SpheroidSurface
+from tippetop.mechanics.laws.friction import ViscousLaw
+from tippetop.mechanics.surfaces.surface import SpheroidSurface
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.groups import (
     Group,

@@ -11,10 +11,10 @@ from hypothesis import assume, given
 
 from strategies import numbers
 from tippetop import presets
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import SpheroidSurface
+from tippetop.mechanics.surfaces.surface import SpheroidSurface
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.vectors import dot
 from tippetop.support.errors import InvalidInput

@@ -8,9 +8,9 @@ import pytest
 from full_runs import full_run, sphere_problem, tilts_of
 
 from tippetop import presets
-from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.surface import RingSurface, SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import RingSurface, SphereSurface, SpheroidSurface
 from tippetop.run import simulate
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import predict, touching_tilts

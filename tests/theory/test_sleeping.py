@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 import tippetop as tt
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.mechanics.coulomb import CoulombLaw
-from tippetop.mechanics.surface import SphereSurface, SpheroidSurface
+from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 from tippetop.theory.derivatives import jacobian
 from tippetop.theory.sleeping import sleeping

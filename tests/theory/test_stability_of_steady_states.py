@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from strategies import numbers, spheroids, tops
 from tippetop import presets
 from tippetop.mechanics.euler import published_rates
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table
 from tippetop.theory.derivatives import jacobian
 from tippetop.theory.prediction import stable_by_energy

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 import tippetop as tt
 from strategies import numbers, spheroids, tops
 from tippetop import presets
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.apparent import (
     apparent_critical_spins,

@@ -3,13 +3,12 @@
 A mode says what ended it (`ModeEnd`); the automaton says what follows (`Transition`). No other file
 names next modes. Read `Automaton.follow` first: one branch for every kind of mode. What comes to
 rest normally on the table goes through `Automaton.resting`, and from there to the resolver of one
-contact (`Automaton.settled`) or of two (`Automaton.settled_on_two`).
+contact (`Automaton.resolve`) or of two (`Automaton.resolve_two`).
 """
 
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tippetop.contact.closing import JAMMED, LANDED, OVERTAKEN, REOPENING
 from tippetop.contact.collision import collision
 from tippetop.contact.contact_mode import (
     BRANCH,
@@ -23,11 +22,7 @@ from tippetop.contact.contact_mode import (
     STOPPING,
     ContactMode,
 )
-from tippetop.contact.double_sticking import (
-    SlipBeginningOnTwo,
-)
 from tippetop.contact.flight import TOUCHING, Flight
-from tippetop.contact.loosening import BEGUN, ENDED, UNSEEN, BothLoosening, Loosening
 from tippetop.contact.mode import (
     COMPLETED,
     FAILURE,
@@ -40,9 +35,13 @@ from tippetop.contact.mode import (
     Transition,
     failed,
 )
-from tippetop.contact.passing import Resting
+from tippetop.contact.slip_end import SlipEnd
+from tippetop.contact.slip_end_motion import JAMMED, LANDED, OVERTAKEN, REOPENING
+from tippetop.contact.slip_onset import BEGUN, ENDED, UNSEEN, SlipAndRollingOnset, SlipOnset
+from tippetop.contact.slip_onset_on_two import (
+    SlipOnsetOnTwo,
+)
 from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
-from tippetop.contact.stopping import Stopping
 from tippetop.contact.surfaces import FACE, TOUCH, lies_flat, number_of
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
@@ -51,23 +50,18 @@ from tippetop.contact.touching import (
     outermost,
     stays_closed,
 )
+from tippetop.contact.transient import Resting
 from tippetop.contact.two_closed import BOTH, SECOND, Before, TwoClosed, rolling_of, time_to_end
 from tippetop.contact.two_contact_mode import BRANCHING, OPENING, TwoContactMode, on_two
 from tippetop.integrators.base import Integrator
-from tippetop.mechanics.beginning import Beginning, settling
-from tippetop.mechanics.branches import off_branch, on_branch, on_other_branch
-from tippetop.mechanics.contact_pair import Tops, slips_of, without_tilting
+from tippetop.mechanics.contacts.branches import off_branch, on_branch, on_other_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.ending import Vanishing
-from tippetop.mechanics.flight import gap, gap_rate
-from tippetop.mechanics.hull import Hull, lowest_surface
-from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.jamming import past_jamming, stuck_at_once
-from tippetop.mechanics.motion import along_table, contact, on_table, presses
-from tippetop.mechanics.pair_resolver import Resolution
-from tippetop.mechanics.rolling import is_set_valued
-from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import (
+from tippetop.mechanics.contacts.forces import is_set_valued
+from tippetop.mechanics.contacts.pair import Tops, slips_of, without_tilting
+from tippetop.mechanics.contacts.pair_resolver import Resolution
+from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_onset import Onset, resolve_onset
+from tippetop.mechanics.contacts.slip_variables import (
     HORIZON,
     come_to_rest,
     inner,
@@ -75,11 +69,17 @@ from tippetop.mechanics.stick_slip import (
     is_slipping,
     slip_of,
 )
+from tippetop.mechanics.contacts.wrench import Slip, Wrench
+from tippetop.mechanics.flight.free_motion import gap, gap_rate
+from tippetop.mechanics.flight.touchdown import Start
+from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.motion import along_table, contact, on_table, presses
+from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import Hull, lowest_surface
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.touchdown import Start
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Scalar
-from tippetop.mechanics.wrench import Slip, Wrench
 
 REST = 1e-13
 """Velocities and accelerations, in natural units, that are rounding in a body at rest."""
@@ -154,9 +154,9 @@ class Automaton:
             return here.touch(end.contact, time, end.state)
         if isinstance(mode, Resting):
             return Transition((), Outcome.AT_REST, end.state)
-        if isinstance(mode, Loosening):
+        if isinstance(mode, SlipOnset):
             return here._after_onset(mode, end, time)
-        if isinstance(mode, Stopping):
+        if isinstance(mode, SlipEnd):
             return here._after_clock(mode, end, time)
         if isinstance(mode, TwoContactMode):
             return here._after_two(mode, end, time)
@@ -188,28 +188,28 @@ class Automaton:
         wrench = mode.found(mode.numbers(state))[2]
         if wrench.force[2] <= 0.0 and not self.pulls:
             return self.lift_off(time, state)
-        begins = Vanishing(
+        begins = SlipComponent(
             end.cause == SLIP, held=mode.holds_rolling if end.cause == SLIP else mode.sticks
         )
         return self._begin(time, state, begins, wrench)
 
-    def _after_onset(self, mode: Loosening, end: ModeEnd, time: float) -> Transition:
+    def _after_onset(self, mode: SlipOnset, end: ModeEnd, time: float) -> Transition:
         """Return what follows the first moments of slip, or of rolling, or slip that has ended."""
         if end.cause == ENDED:
-            settled = self.settled(time, end.state, new=(True, False))
-            return self._beside_others(time, settled)
+            resolved = self.resolve(time, end.state, new=(True, False))
+            return self._with_other_surfaces(time, resolved)
         try:
             return Transition((), self.mode_for(end.state, slips=not mode.stuck), end.state)
         except ArithmeticError:
             return Transition((), Outcome.FAILED, end.state, UNSEEN)
 
-    def _after_clock(self, mode: Stopping, end: ModeEnd, time: float) -> Transition:
+    def _after_clock(self, mode: SlipEnd, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a velocity has ended, or is no longer about to."""
         state, ending = end.state, mode.ending
         if end.cause == LANDED:
             new = ending.slip, not ending.slip
-            settled = self.settled(time, state, new, held=ending.held)
-            return self._beside_others(time, settled)
+            resolved = self.resolve(time, state, new, held=ending.held)
+            return self._with_other_surfaces(time, resolved)
         if end.cause == JAMMED:
             return self.jammed(time, state) or self.inconsistent(time, state, ())
         if end.cause == LIFT_OFF:
@@ -218,18 +218,18 @@ class Automaton:
             stuck = not ending.slip and ending.held
             return Transition((), self.mode_for(state, slips=not stuck), state)
         if end.cause == OVERTAKEN:
-            other = replace(mode, ending=Vanishing(not ending.slip), begin=())
+            other = replace(mode, ending=SlipComponent(not ending.slip), begin=())
             return Transition((), other, state)
         if end.cause in (BRANCH, LIMIT_BRANCH):
             top, begin = on_other_branch(mode.top), (*end.numbers[:-1], 0.0)
             return Transition((), replace(mode, top=top, begin=begin), state)
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
-        return self._begin(time, state, Vanishing(slip=end.cause == SLIP))
+        return self._begin(time, state, SlipComponent(slip=end.cause == SLIP))
 
     def _after_two(self, mode: TwoContactMode, end: ModeEnd, time: float) -> Transition:
         """Return what follows on two contacts."""
         state, rolls = end.state, mode.rolls
-        if isinstance(mode, SlipBeginningOnTwo) and end.cause == BEGUN:
+        if isinstance(mode, SlipOnsetOnTwo) and end.cause == BEGUN:
             return Transition((), on_two(state, mode.tops, rolls), state)
         if end.cause == OPENING:
             opens, stays = (mode.tops, mode.tops[::-1])[end.contact]
@@ -248,7 +248,7 @@ class Automaton:
             rolls = 0.0
         elif end.cause == ROLLING:
             rolls = mode.rolling_direction(state)
-        return self.settled_on_two(time, state, mode.tops, Before.of(mode), rolls)
+        return self.resolve_two(time, state, mode.tops, Before.of(mode), rolls)
 
     # One contact.
 
@@ -260,7 +260,7 @@ class Automaton:
         top = on_present_branch(self.top, state, slips)
         ending, left = soonest_end(self.top, state, slips)
         if ending is not None and left <= HORIZON:
-            return Stopping(top, ending, self.pulls)
+            return SlipEnd(top, ending, self.pulls)
         rolls = rolls_freely(self.top, state)
         if slips:
             near = is_set_valued(top.friction) and bool(is_near(along_table(state), top))
@@ -275,16 +275,16 @@ class Automaton:
         if ending is None:
             return Transition((), self.mode_for(state, slips=slips), state)
         top = on_present_branch(self.top, state, slips)
-        return Transition((), Stopping(top, ending, self.pulls), state)
+        return Transition((), SlipEnd(top, ending, self.pulls), state)
 
     def _begin(
-        self, time: float, state: State, begins: Vanishing, wrench: Wrench | None = None
+        self, time: float, state: State, begins: SlipComponent, wrench: Wrench | None = None
     ) -> Transition:
         """Return the mode in which slip, or rolling, begins from the limit of what can be held."""
         event = self.event(EventKind.SLIP if begins.slip else EventKind.ROLL, time)
-        return Transition((event,), Loosening(self.top, begins, self.pulls, wrench), state)
+        return Transition((event,), SlipOnset(self.top, begins, self.pulls, wrench), state)
 
-    def settled(
+    def resolve(
         self,
         time: float,
         state: State,
@@ -304,29 +304,29 @@ class Automaton:
         slip = None if ended[0] else slip_of(*along_table(state), self.top)
         rolling = None if ended[1] else point.turning[:2]
         try:
-            resolved, begins = settling(point, slip, rolling)
+            resolved, begins = resolve_onset(point, slip, rolling)
         except ArithmeticError as error:
             return failed("The force that holds the contact", error, state, events)
         events = (*events, *self._changes(time, new, begins))
-        return self._settle(time, state, resolved, begins, ended, events)
+        return self._after_resolving(time, state, resolved, begins, ended, events)
 
-    def _settle(
+    def _after_resolving(
         self,
         time: float,
         state: State,
-        resolved: Beginning,
+        resolved: Onset,
         begins: tuple[bool, bool],
         ended: tuple[bool, bool],
         events: tuple[Event, ...],
     ) -> Transition:
         """Return the mode of a contact of which is resolved what is held and what begins."""
         if resolved.wrench.force[2] <= 0.0 and not self.pulls:
-            return self._let_go(time, state, events)
+            return self._release(time, state, events)
         if all(begins):
-            return Transition(events, BothLoosening(self.top, pulls=self.pulls), state)
+            return Transition(events, SlipAndRollingOnset(self.top, pulls=self.pulls), state)
         if any(begins):
-            ending = Vanishing(begins[0], held=ended[1] if begins[0] else ended[0])
-            return Transition(events, Loosening(self.top, ending, self.pulls), state)
+            ending = SlipComponent(begins[0], held=ended[1] if begins[0] else ended[0])
+            return Transition(events, SlipOnset(self.top, ending, self.pulls), state)
         mode = self.mode_for(state, slips=not ended[0])
         at, turning = resolved.acceleration
         if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
@@ -377,7 +377,7 @@ class Automaton:
         before = Before((), bool(rolling_of(state, self.top)))
         rolls = rolling_of(without_tilting(state, self.top), self.top)
         here = self._of(tops[0])
-        return here.settled_on_two(time, state, tops, before, rolls, events, arrived=True)
+        return here.resolve_two(time, state, tops, before, rolls, events, arrived=True)
 
     def resting_alone(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Go on on the active surface, whatever else touches: slide, stick, leave or lie flat.
@@ -393,17 +393,17 @@ class Automaton:
         stuck = is_set_valued(self.top.friction) and not is_slipping(*sliding, self.top)
         held = not rolls_freely(self.top, state)
         if stuck or held:
-            return self.settled(time, state, (stuck, held), events=events)
+            return self.resolve(time, state, (stuck, held), events=events)
         touch = contact(sliding.axis, sliding.momentum, sliding.velocity, self.top)
         if touch.delassus <= 0 and not self.pulls:
             if touch.free_acceleration > 0:
                 events = (*events, self.event(EventKind.INDETERMINATE, time))
                 if self.indeterminate == "lift_off":
-                    return self._let_go(time, state, events)
+                    return self._release(time, state, events)
             return self.inconsistent(time, state, events)
         if touch.free_acceleration < 0 or self.pulls:
             return Transition(events, self.mode_for(state, slips=True), state)
-        return self._let_go(time, state, events)
+        return self._release(time, state, events)
 
     # Leaving the table, and impacts.
 
@@ -417,7 +417,7 @@ class Automaton:
             return self.resting(time, state)
         return self._leave(time, state, (), Start.LIFT_OFF)
 
-    def _let_go(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+    def _release(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Leave a table that would have to pull from now on, not from zero force."""
         return self._leave(time, state, events, Start.RELEASE)
 
@@ -512,12 +512,12 @@ class Automaton:
         if not found.events and isinstance(found.then, Mode):
             # Slip is so little that by rounding nothing strikes, and slipping on it would jam at
             # once.
-            found = self.settled(time, stuck_at_once(beyond, self.top), (True, False))
+            found = self.resolve(time, stuck_at_once(beyond, self.top), (True, False))
         return add_prior_impulse(found, state, *taken)
 
     # Two contacts.
 
-    def _beside_others(self, time: float, found: Transition) -> Transition:
+    def _with_other_surfaces(self, time: float, found: Transition) -> Transition:
         """Return what follows on one contact, unless it presses another surface that touches onto
         the table: then both are resolved.
         """
@@ -534,7 +534,7 @@ class Automaton:
                 return self.resting(time, state, tuple(halts))
         return found
 
-    def settled_on_two(
+    def resolve_two(
         self,
         time: float,
         state: State,
@@ -616,7 +616,7 @@ class Automaton:
         slips = slips_of(here.pair, begins)
         one, other = (on_branch(top, slip) for top, slip in zip(here.tops, slips, strict=True))
         way = begins if all(here.ended) else begins[:2]
-        mode = SlipBeginningOnTwo(one, other, rolls=here.rolls, begin=begin, direction=way)
+        mode = SlipOnsetOnTwo(one, other, rolls=here.rolls, begin=begin, direction=way)
         return Transition((), mode, mode.state(begin))
 
 

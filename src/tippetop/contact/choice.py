@@ -4,9 +4,9 @@ from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Mode
-from tippetop.mechanics.hull import lowest_surface
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import lowest_surface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar

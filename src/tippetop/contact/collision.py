@@ -5,9 +5,9 @@ from typing import NamedTuple
 from tippetop.contact.striking import impact_of_patch
 from tippetop.contact.touching import SLOWEST_ROCKING, other_touching
 from tippetop.integrators.base import Integrator
-from tippetop.mechanics.flight import gap_rate
-from tippetop.mechanics.impact import Impact, impact
-from tippetop.mechanics.impact_on_two import SlipEnds
+from tippetop.mechanics.flight.free_motion import gap_rate
+from tippetop.mechanics.impacts.impact import Impact, impact
+from tippetop.mechanics.impacts.impact_on_two import SlipEndsInImpact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 
@@ -60,7 +60,7 @@ def _impact(state: State, restitution: float, top: Top, integrator: Integrator |
         if pressed and abs(gap_rate(state, other)) <= SLOWEST_ROCKING:
             try:
                 both = impact(state, restitution, top, other)
-            except SlipEnds:
+            except SlipEndsInImpact:
                 return alone
             return both._replace(steps=alone.steps + both.steps)
     return alone

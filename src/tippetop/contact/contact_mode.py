@@ -9,10 +9,9 @@ from typing import Any, ClassVar, Self, TypeAlias
 from tippetop.contact.mode import IntegratedMode, Reaction
 from tippetop.contact.surfaces import surface_guards
 from tippetop.integrators.base import Guard, Motion
-from tippetop.mechanics.branches import has_limit_branches, limit_guard
+from tippetop.mechanics.contacts.branches import has_limit_branches, limit_guard
 from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint, flat
-from tippetop.mechanics.motion import along_table, axis_rate, on_table, sliding_rates
-from tippetop.mechanics.rolling import (
+from tippetop.mechanics.contacts.forces import (
     forces_and_accelerations,
     is_set_valued,
     rolling_reserve,
@@ -21,8 +20,7 @@ from tippetop.mechanics.rolling import (
     velocity_without_slip,
     without_rolling,
 )
-from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import (
+from tippetop.mechanics.contacts.slip_variables import (
     branch_guard,
     nearing_guard,
     parting_guard,
@@ -32,9 +30,11 @@ from tippetop.mechanics.stick_slip import (
     slip_of,
     slip_part,
 )
+from tippetop.mechanics.contacts.wrench import Slip, Wrench
+from tippetop.mechanics.motion import along_table, axis_rate, on_table, sliding_rates
+from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
-from tippetop.mechanics.wrench import Slip, Wrench
 
 LIFT_OFF, STOPPING, SLIP, BRANCH, LIMIT_BRANCH = (
     "lift-off",

@@ -11,11 +11,11 @@ from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Segment, ex
 from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import ELEMENTARY, DenseSolution
-from tippetop.mechanics.flight import flight_rates, fly, gap, gap_rate, precession
+from tippetop.mechanics.flight.free_motion import flight_rates, fly, gap, gap_rate, precession
+from tippetop.mechanics.flight.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import support_at
+from tippetop.mechanics.surfaces.surface import support_at
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.touchdown import Start, highest_gap, touchdown
 from tippetop.mechanics.vectors import Row, Scalar
 
 DEGREE = 14

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from tippetop.mechanics.hull import Hull, each_surface, outer_height
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import Surface, contact_vector
+from tippetop.mechanics.surfaces.hull import Hull, each_surface, outer_height
+from tippetop.mechanics.surfaces.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, dot
 

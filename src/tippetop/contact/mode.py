@@ -14,10 +14,10 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
-from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.flight.touchdown import highest_gap
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.touchdown import highest_gap
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 

@@ -6,22 +6,26 @@ from typing import Any
 
 from tippetop.contact.contact_mode import split
 from tippetop.contact.surfaces import surface_guards
-from tippetop.mechanics.branches import has_limit_branches, limit_guard
+from tippetop.mechanics.contacts.branches import has_limit_branches, limit_guard
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.contacts.forces import (
+    forces_and_accelerations,
+    rolling_reserve,
+    slip_reserve,
+)
+from tippetop.mechanics.contacts.slip_collocation import SlipMotion
+from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled, slip_of
 from tippetop.mechanics.motion import axis_rate
-from tippetop.mechanics.rolling import forces_and_accelerations, rolling_reserve, slip_reserve
-from tippetop.mechanics.slip_collocation import SlipMotion
-from tippetop.mechanics.stick_slip import branch_guard, scaled, slip_of
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Scalar
 
-BOTH = (Vanishing(slip=True), Vanishing(slip=False))
+BOTH = (SlipComponent(slip=True), SlipComponent(slip=False))
 """Slip and rolling, which begin together."""
 
 
 @lru_cache
-def onset_motion(kind: Kind, begins: tuple[Vanishing, ...], guarded: bool) -> SlipMotion:
+def onset_motion(kind: Kind, begins: tuple[SlipComponent, ...], guarded: bool) -> SlipMotion:
     """Return the equations of motion for tops of a kind.
 
     Their numbers are axis, angular momentum, the horizontal velocity of the centre of mass where

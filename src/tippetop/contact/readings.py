@@ -11,11 +11,11 @@ from tippetop.contact.lowest_surface import lowest_contact_vector
 from tippetop.contact.mode import IntegratedMode, Mode
 from tippetop.integrators.base import Array, Rows
 from tippetop.integrators.evaluation import Evaluation, compiled_evaluation
-from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.quadratures import quadrature_rates, resistance_powers
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector, dot
 from tippetop.mechanics.view import precession_rate, slip_along_tilt, tilt_rate

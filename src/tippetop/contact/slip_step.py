@@ -18,7 +18,7 @@ from tippetop.integrators.iteration import (
     put_rows,
     room,
 )
-from tippetop.mechanics.gauss_points import (
+from tippetop.mechanics.contacts.gauss_points import (
     CONSTANTS,
     GAUSS,
     PARTS,
@@ -26,9 +26,7 @@ from tippetop.mechanics.gauss_points import (
     TERMS,
     interpolated,
 )
-from tippetop.mechanics.roots import crossing
-from tippetop.mechanics.series import horner
-from tippetop.mechanics.slip_collocation import (
+from tippetop.mechanics.contacts.slip_collocation import (
     LaneValues,
     SlipMotion,
     StepRows,
@@ -36,9 +34,11 @@ from tippetop.mechanics.slip_collocation import (
     step_terms,
     sweep,
 )
-from tippetop.mechanics.stick_slip import inner
+from tippetop.mechanics.contacts.slip_variables import inner
+from tippetop.mechanics.contacts.wrench import Slip
+from tippetop.mechanics.roots import crossing
+from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar
-from tippetop.mechanics.wrench import Slip
 
 SETTLED, MOST = 1e-28, 50
 """Sum of the squares of changes, in natural units, that is rounding; and sweeps of a step at most.

@@ -1,12 +1,12 @@
 """Which velocity of one contact ends first at present rates, slip or rolling, and how soon."""
 
-from tippetop.mechanics.branches import is_branched, on_branch, on_limit_branch
+from tippetop.mechanics.contacts.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.ending import Vanishing
+from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
+from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_variables import inner, is_rolling, slip_of
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import forces_and_accelerations, is_set_valued
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import inner, is_rolling, slip_of
 from tippetop.mechanics.top import Top
 
 
@@ -26,14 +26,14 @@ def on_present_branch(top: Top, state: State, slips: bool) -> Top:
     return on_limit_branch(top, forces_and_accelerations(point, None, rolling)[0])
 
 
-def soonest_end(top: Top, state: State, slips: bool) -> tuple[Vanishing | None, float]:
+def soonest_end(top: Top, state: State, slips: bool) -> tuple[SlipComponent | None, float]:
     """Return which velocity ends first at present rates, and the time left.
 
     None, and infinity, where all grow or none can end.
     """
     rolls, ends = rolls_freely(top, state), slips and is_set_valued(top.friction)
-    possible = [Vanishing(slip=True, held=not rolls)] if ends else []
-    possible += [Vanishing(slip=False, held=not slips)] if rolls and top.resists_rolling else []
+    possible = [SlipComponent(slip=True, held=not rolls)] if ends else []
+    possible += [SlipComponent(slip=False, held=not slips)] if rolls and top.resists_rolling else []
     if not possible:
         return None, float("inf")
     sliding, branched = along_table(state), on_present_branch(top, state, slips)

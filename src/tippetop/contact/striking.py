@@ -1,8 +1,7 @@
 """An impact without restitution as a motion, in which the normal impulse plays the part of time.
 
-It ends where the contact point stops sinking (see `tippetop.mechanics.impact`). What follows
-motions of one launch, and of many, follows it too, unless slip ends on the way, which that module
-knows.
+It ends where the contact point stops sinking (see `tippetop.mechanics.impacts.impact`). The
+executors of motions, of one launch and of many, follow it too, unless slip ends within the impact.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,14 +10,14 @@ from functools import lru_cache
 from tippetop.contact.contact_mode import BRANCH, NEARING
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.integrators.dense import as_array
-from tippetop.mechanics.branches import is_branched, on_branch, on_other_branch
-from tippetop.mechanics.impact import Impact
-from tippetop.mechanics.impulse import Striking, contact_velocity
+from tippetop.mechanics.contacts.branches import is_branched, on_branch, on_other_branch
+from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
+from tippetop.mechanics.contacts.slip_variables import branch_guard, is_near, nearing_guard, slip_of
+from tippetop.mechanics.impacts.impact import Impact
+from tippetop.mechanics.impacts.struck_body import StruckBody, contact_velocity
 from tippetop.mechanics.motion import along_table, angular_velocity, moment_per_normal_force
-from tippetop.mechanics.rolling import is_set_valued, slip_length
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import branch_guard, is_near, nearing_guard, slip_of
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar, add, cross, scale
 
@@ -40,7 +39,7 @@ def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Im
     law = top.friction
     if top.resists_rolling or not is_set_valued(law) or slip_length(law) is None:
         return None
-    body = Striking.of(state, top)
+    body = StruckBody.of(state, top)
     if integrator is None or body.before[2] >= 0.0:
         return None
     if is_near(along_table(state), top):
@@ -70,7 +69,7 @@ def after(state: State, y: Sequence[float]) -> State:
     return state._replace(momentum=(y[0], y[1], y[2]), velocity=(y[3], y[4], y[5]))
 
 
-def impact_between(before: State, then: State, normal: float, body: Striking) -> Impact:
+def impact_between(before: State, then: State, normal: float, body: StruckBody) -> Impact:
     """The impact that leads from one state to another."""
     x, y, _ = scale(body.contact.top.mass, add(then.velocity, scale(-1.0, before.velocity)))
     moment = add(then.momentum, scale(-1.0, before.momentum))

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from tippetop.contact.mode import numbered
-from tippetop.mechanics.hull import Hull, acting, each_surface, is_edge
-from tippetop.mechanics.surface import gap_guard, support_at
+from tippetop.mechanics.surfaces.hull import Hull, acting, each_surface, is_edge
+from tippetop.mechanics.surfaces.surface import gap_guard, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 

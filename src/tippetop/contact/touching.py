@@ -4,17 +4,17 @@ from collections.abc import Sequence
 
 from tippetop.contact.flight import TOUCHING
 from tippetop.contact.two_contact_mode import SLOWEST_SLIP
-from tippetop.mechanics.contact_pair import ContactPair, Tops
+from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
+from tippetop.mechanics.contacts.pair import ContactPair, Tops
+from tippetop.mechanics.contacts.slip_variables import size, slip_of
 from tippetop.mechanics.contacts.system import free_rates, rates_under
-from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.contacts.wrench import Wrench
+from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import forces_and_accelerations, is_set_valued
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import size, slip_of
-from tippetop.mechanics.surface import support_at
+from tippetop.mechanics.surfaces.surface import support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector
-from tippetop.mechanics.wrench import Wrench
 
 SLOWEST_ROCKING = 1e-7
 """Velocity, in units of sqrt(g R), below which rocking between two surfaces has come to its end.

@@ -6,9 +6,9 @@ from typing import NamedTuple
 from tippetop.contact.mode import Event, EventKind
 from tippetop.contact.surfaces import number_of
 from tippetop.contact.two_contact_mode import SLOWEST_SLIP, TwoContactMode
-from tippetop.mechanics.beginning import settling
-from tippetop.mechanics.branches import off_branch
-from tippetop.mechanics.contact_pair import (
+from tippetop.mechanics.contacts.branches import off_branch
+from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
+from tippetop.mechanics.contacts.pair import (
     ContactPair,
     Tops,
     at_rest,
@@ -16,10 +16,8 @@ from tippetop.mechanics.contact_pair import (
     turning_along,
     without_tilting,
 )
-from tippetop.mechanics.contacts.system import free_rates, rates_under
-from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.pair_motion import pair_motion
-from tippetop.mechanics.pair_resolver import (
+from tippetop.mechanics.contacts.pair_motion import pair_motion
+from tippetop.mechanics.contacts.pair_resolver import (
     Resolution,
     both_letting_go,
     letting_go,
@@ -27,11 +25,13 @@ from tippetop.mechanics.pair_resolver import (
     rolling_of_slip,
     turning_about,
 )
-from tippetop.mechanics.rolling import is_set_valued, slip_length
+from tippetop.mechanics.contacts.slip_onset import resolve_onset
+from tippetop.mechanics.contacts.slip_variables import inner, is_rolling, size, slip_of
+from tippetop.mechanics.contacts.system import free_rates, rates_under
+from tippetop.mechanics.contacts.wrench import Slip
+from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import inner, is_rolling, size, slip_of
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.wrench import Slip
 
 TOGETHER = 30.0
 """How many times `SLOWEST_SLIP` the slip of the other contact may be where it ends on one to end
@@ -144,7 +144,7 @@ class TwoClosed:
         if point.free.point[2] >= 0.0:
             return CLOSES
         slip = None if self.ended[number] else slip_of(*along_table(self.state), self.tops[number])
-        found, _ = settling(point, slip, None if self.stopped else point.turning[:2])
+        found, _ = resolve_onset(point, slip, None if self.stopped else point.turning[:2])
         if found.wrench.force[2] <= 0.0:
             return CLOSES
         if found.rolling is None:

@@ -16,12 +16,8 @@ from tippetop.contact.contact_mode import (
 )
 from tippetop.contact.mode import Reaction, numbered
 from tippetop.contact.surfaces import number_of
-from tippetop.mechanics.branches import is_branched, on_numbered_branch
-from tippetop.mechanics.contact_pair import ContactPair, Tops, slip_apart, slips_of
-from tippetop.mechanics.motion import along_table, axis_rate, on_table
-from tippetop.mechanics.pair_motion import PairMotion, pair_motion
-from tippetop.mechanics.pair_resolver import rolling_way
-from tippetop.mechanics.rolling import (
+from tippetop.mechanics.contacts.branches import is_branched, on_numbered_branch
+from tippetop.mechanics.contacts.forces import (
     directions_of,
     is_set_valued,
     slip_length,
@@ -29,11 +25,15 @@ from tippetop.mechanics.rolling import (
     without_drilling,
     without_rolling,
 )
+from tippetop.mechanics.contacts.pair import ContactPair, Tops, slip_apart, slips_of
+from tippetop.mechanics.contacts.pair_motion import PairMotion, pair_motion
+from tippetop.mechanics.contacts.pair_resolver import rolling_way
+from tippetop.mechanics.contacts.slip_variables import branch_guard, inner, scaled, slip_of
+from tippetop.mechanics.contacts.wrench import Slip
+from tippetop.mechanics.motion import along_table, axis_rate, on_table
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.stick_slip import branch_guard, inner, scaled, slip_of
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
-from tippetop.mechanics.wrench import Slip
 
 OPENING, ENDING, BRANCHING = "opening", "ending", "branching"
 
@@ -48,7 +48,7 @@ class TwoContactMode(StatedMode):
     """Two contacts are closed: each slips or sticks, and rolling goes on one way, or is held.
 
     Of one that sticks and one that slips, the first sticks, and the second slips across the axis,
-    along t of `tippetop.mechanics.contact_pair`.
+    along t of `tippetop.mechanics.contacts.pair`.
     """
 
     other: Top
@@ -56,7 +56,7 @@ class TwoContactMode(StatedMode):
     sticks: tuple[bool, bool] = (False, False)
     """Whether each of the contacts sticks; else it slips."""
     rolls: float = 0.0
-    """Sign of omega_e (see `tippetop.mechanics.contact_pair`); 0 where rolling is held, or not
+    """Sign of omega_e (see `tippetop.mechanics.contacts.pair`); 0 where rolling is held, or not
     resisted.
     """
     sense: float = 1.0

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from tippetop.figures.meridian import ARC_STEP, meridian, stated_profile
 from tippetop.figures.style import ACCENT, CONVERGED, REPORT
-from tippetop.mechanics.outline import extent
+from tippetop.mechanics.surfaces.outline import extent
 from tippetop.problem.bodies import Body
 from tippetop.problem.shapes import EccentricSphere
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from tippetop.lathe.edges import Edge
 from tippetop.lathe.profile import profile_of
-from tippetop.mechanics.outline import Line, is_outline, outline, smoothly_joined
+from tippetop.mechanics.surfaces.outline import Line, is_outline, outline, smoothly_joined
 from tippetop.problem.bodies import Body
 
 ARC_STEP = np.pi / 48

@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tippetop.integrators.base import Array
-from tippetop.mechanics.hull import outer_height
+from tippetop.mechanics.surfaces.hull import outer_height
 from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import SAMPLED
 from tippetop.results.event_functions import KINDS

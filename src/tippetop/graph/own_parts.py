@@ -5,7 +5,7 @@ from typing import Any
 
 from tippetop.graph.graph import LESS, SELECT, SIZE, NotRecordable
 from tippetop.graph.recording import record
-from tippetop.mechanics.hull import each_surface
+from tippetop.mechanics.surfaces.hull import each_surface
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar
 from tippetop.support.errors import Described, InvalidInput

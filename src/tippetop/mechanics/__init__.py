@@ -4,8 +4,7 @@ Every function is written once in plain operators, so that the same line serves 
 arrays, compiled expressions and computer algebra. Nothing here knows arrays, files or units of
 input.
 
-Read `top`, `surface` and `friction` first, then `motion`: a body that slides on one contact.
-`contacts` has the multiplier system of any number of contacts, and `rolling` the forces by the
-status of each. `stick_slip` and `ending` follow slip to its end, `beginning` and `pair_resolver`
-find what sticks and in which direction slip begins, `impact` is the process of an impact.
+Read `top`, `surfaces` and `laws` first, then `motion`: a body that slides on one contact.
+`contacts` has the multiplier system of any number of contacts, the forces by the status of each,
+and how slip begins and ends. `impacts` is the process of an impact, `flight` is free motion.
 """

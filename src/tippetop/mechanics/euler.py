@@ -7,8 +7,8 @@ eccentric sphere with viscous friction only.
 
 from collections.abc import Sequence
 
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.laws.friction import ViscousLaw
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Functions, Scalar
 

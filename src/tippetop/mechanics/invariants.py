@@ -2,7 +2,7 @@
 
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, dot
 

@@ -8,9 +8,9 @@ variables have no singularity, and the right-hand side is algebraic.
 
 from typing import NamedTuple
 
-from tippetop.mechanics.friction import Traction
+from tippetop.mechanics.laws.friction import Traction
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.surface import contact_vector, support_at
+from tippetop.mechanics.surfaces.surface import contact_vector, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 

@@ -2,11 +2,11 @@
 
 from typing import Any, NamedTuple
 
-from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.friction import FrictionLaw, Traction
-from tippetop.mechanics.hull import each_surface
+from tippetop.mechanics.laws.coulomb import RollingResistance
+from tippetop.mechanics.laws.friction import FrictionLaw, Traction
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import Surface
+from tippetop.mechanics.surfaces.hull import each_surface
+from tippetop.mechanics.surfaces.surface import Surface
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, scale
 

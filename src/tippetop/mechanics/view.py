@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Functions, Horizontal, Scalar, Vector, add, cross, scale
 

@@ -32,7 +32,7 @@ ROOTS = (
     "tippetop.theory.advice",
     "tippetop.mechanics.view",
     "tippetop.mechanics.quadratures",
-    "tippetop.mechanics.outline",
+    "tippetop.mechanics.surfaces.outline",
     "tippetop.integrators.stepping",
     "tippetop.results.metrics",
     "tippetop.results.samples",

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic.fields import FieldInfo
 from pydantic_core import to_jsonable_python
 
-from tippetop.contact.passing import DEGREE
+from tippetop.contact.transient import DEGREE
 from tippetop.integrators.dense import SHORTEST, chebyshev
 from tippetop.lathe.workpiece import Insert, Workpiece
 from tippetop.problem import presets

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, model_validator
 
-from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.surface import Surface
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import Surface
 from tippetop.problem.shapes import Shape
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.validation import ONE_OR_SEVERAL, Part, Points, Positive, Quantity

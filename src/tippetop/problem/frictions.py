@@ -5,10 +5,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from tippetop.mechanics.contensou import EllipsoidalLaw
-from tippetop.mechanics.contensou_hertz import HertzLaw
-from tippetop.mechanics.coulomb import CoulombLaw
-from tippetop.mechanics.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
+from tippetop.mechanics.laws.contensou import EllipsoidalLaw
+from tippetop.mechanics.laws.contensou_hertz import HertzLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.laws.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.vectors import Scalar
 from tippetop.support.validation import NO_WORD, NotNegative, Positive, Quantity, Variant
 

@@ -20,8 +20,8 @@ centre is c from the centre of mass, all three are m (R^2 - c^2).
 import math
 from typing import NamedTuple, TypeAlias
 
-from tippetop.mechanics.hull import Hull, acting, each_surface, lowest_surface
-from tippetop.mechanics.surface import Surface
+from tippetop.mechanics.surfaces.hull import Hull, acting, each_surface, lowest_surface
+from tippetop.mechanics.surfaces.surface import Surface
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.problem import Problem
 

@@ -12,13 +12,13 @@ from typing import Annotated, Any, Self
 import tomli_w
 from pydantic import model_validator
 
-from tippetop.mechanics.coulomb import RollingResistance
-from tippetop.mechanics.hull import Hull, is_edge, lowest_surface, sizes
+from tippetop.mechanics.contacts.forces import is_set_valued
+from tippetop.mechanics.contacts.slip_variables import is_slipping, size
+from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.motion import along_table, contact, on_table
-from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import is_slipping, size
-from tippetop.mechanics.surface import POLE
+from tippetop.mechanics.surfaces.hull import Hull, is_edge, lowest_surface, sizes
+from tippetop.mechanics.surfaces.surface import POLE
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tippetop.mechanics.surface import (
+from tippetop.mechanics.surfaces.surface import (
     OvalSurface,
     RingSurface,
     SphereSurface,

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from tippetop.contact.lowest_surface import LEVEL
 from tippetop.contact.mode import Event, EventKind, Outcome
-from tippetop.mechanics.hull import Hull, acting, is_edge, lowest_surface
 from tippetop.mechanics.motion import angular_velocity, point_velocity
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surfaces.hull import Hull, acting, is_edge, lowest_surface
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE
 from tippetop.support.errors import InvalidInput

@@ -17,10 +17,10 @@ from tippetop.contact.lowest_surface import highest_between, lowest_jellett
 from tippetop.contact.mode import Event, EventKind, Outcome
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
-from tippetop.mechanics.hull import outer_height
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axial_spin
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import outer_height
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length

@@ -4,9 +4,9 @@ import numpy as np
 
 from tippetop.contact.lowest_surface import lowest_jellett
 from tippetop.contact.mode import Outcome
-from tippetop.mechanics.hull import Hull, outer_height
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import Hull, outer_height
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, length
 

@@ -13,9 +13,9 @@ from tippetop.contact.mode import Segment
 from tippetop.contact.readings import Instants, instants, read
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of
-from tippetop.mechanics.hull import outer_height
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import outer_height
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.problem.launch import Launch

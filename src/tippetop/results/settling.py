@@ -6,11 +6,17 @@ import numpy as np
 
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
-from tippetop.mechanics.hull import Hull, acting, each_surface, lowest_surface, outer_height
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import Surface
+from tippetop.mechanics.surfaces.hull import (
+    Hull,
+    acting,
+    each_surface,
+    lowest_surface,
+    outer_height,
+)
+from tippetop.mechanics.surfaces.surface import Surface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import axis_sine

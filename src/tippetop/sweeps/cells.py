@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from tippetop.contact.choice import automaton_of
 from tippetop.contact.trajectory import LONGEST
 from tippetop.integrators.base import Array
-from tippetop.mechanics.hull import Hull, is_edge, sizes
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import POLE, support_at
+from tippetop.mechanics.surfaces.hull import Hull, is_edge, sizes
+from tippetop.mechanics.surfaces.surface import POLE, support_at
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.view import axis_sine

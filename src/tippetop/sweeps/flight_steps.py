@@ -15,13 +15,13 @@ import numpy as np
 from tippetop.graph.graph import COSINE, SINE, Node
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomial_minima import first_fall, least_value, looked_at
-from tippetop.mechanics.flight import fly
-from tippetop.mechanics.hull import is_edge
-from tippetop.mechanics.separation import NARROWEST, Tip, support_terms
+from tippetop.mechanics.flight.free_motion import fly
+from tippetop.mechanics.flight.separation import NARROWEST, Tip, support_terms
+from tippetop.mechanics.flight.touchdown import Start
 from tippetop.mechanics.series import Arithmetic
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.touchdown import Start
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import axis_sine
 from tippetop.sweeps.taylor_step import CLOSER_LOOKS, LOOKS, extremes, met, step_size

@@ -3,7 +3,7 @@
 A flight is closed: the axis turns about the constant angular momentum and the centre of mass falls,
 so that the gap is a known function of time. Its first zero is found piece by piece, on Taylor
 polynomials that are exact to rounding there. What vanishes at the start of a flight
-(`tippetop.mechanics.touchdown.Start`) is divided out.
+(`tippetop.mechanics.flight.touchdown.Start`) is divided out.
 """
 
 from collections.abc import Callable
@@ -14,24 +14,24 @@ import numpy as np
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
-from tippetop.mechanics.flight import fly
-from tippetop.mechanics.hull import is_edge
-from tippetop.mechanics.motion import (
-    along_table,
-    contact,
-    sliding_rates,
-)
-from tippetop.mechanics.rolling import is_set_valued
-from tippetop.mechanics.separation import NARROWEST, Separation, Tip
-from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import (
+from tippetop.mechanics.contacts.forces import is_set_valued
+from tippetop.mechanics.contacts.slip_variables import (
     is_near,
     is_rolling,
     is_slipping,
     rolling_stopping_guard,
 )
+from tippetop.mechanics.flight.free_motion import fly
+from tippetop.mechanics.flight.separation import NARROWEST, Separation, Tip
+from tippetop.mechanics.flight.touchdown import highest_gap
+from tippetop.mechanics.motion import (
+    along_table,
+    contact,
+    sliding_rates,
+)
+from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.touchdown import highest_gap
 from tippetop.mechanics.view import axis_sine
 from tippetop.sweeps.flight_steps import (
     LEFT,

@@ -1,19 +1,19 @@
 """Impacts of many tops at once.
 
 An impact without restitution ends where the contact point stops sinking. Its equations, in which
-the normal impulse plays the part of time (see `tippetop.mechanics.impact`), are solved piece by
-piece by polynomials, as those of sliding are; where another branch of the law takes over, a piece
-ends.
+the normal impulse plays the part of time (see `tippetop.mechanics.impacts.impact`), are solved
+piece by piece by polynomials, as those of sliding are; where another branch of the law takes over,
+a piece ends.
 """
 
 import numpy as np
 
 from tippetop.contact.striking import MOST_PIECES, impact_motion
 from tippetop.integrators.base import Array
-from tippetop.mechanics.branches import on_other_branch
-from tippetop.mechanics.impulse import contact_velocity
+from tippetop.mechanics.contacts.branches import on_other_branch
+from tippetop.mechanics.impacts.struck_body import contact_velocity
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import length
 from tippetop.sweeps.launch_arrays import Flags

@@ -6,7 +6,7 @@ import numpy as np
 
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array
-from tippetop.mechanics.branches import is_branched, on_other_branch
+from tippetop.mechanics.contacts.branches import is_branched, on_other_branch
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top

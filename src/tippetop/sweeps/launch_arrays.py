@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.integrators.base import Array
-from tippetop.mechanics.branches import is_branched, off_branch, on_numbered_branch
+from tippetop.mechanics.contacts.branches import is_branched, off_branch, on_numbered_branch
+from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
-from tippetop.mechanics.stick_slip import slip_of
 from tippetop.mechanics.top import Kind, Top
 
 Indices = NDArray[np.intp]

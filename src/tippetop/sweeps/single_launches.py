@@ -13,8 +13,8 @@ from tippetop.contact.trajectory import Trajectory
 from tippetop.graph.own_parts import has_choices
 from tippetop.integrators import DEFAULT, TOLERANCES, make_integrator
 from tippetop.integrators.dense import DenseSolution
-from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.results.metrics import Ends
 from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import Tally

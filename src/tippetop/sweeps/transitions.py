@@ -13,11 +13,11 @@ from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import EventKind, Mode, ModeEnd, Outcome, Transition
 from tippetop.contact.surfaces import lies_flat
 from tippetop.integrators.base import Array
-from tippetop.mechanics.flight import gap, gap_rate
+from tippetop.mechanics.flight.free_motion import gap, gap_rate
+from tippetop.mechanics.flight.touchdown import Start
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import presses
 from tippetop.mechanics.state import State
-from tippetop.mechanics.touchdown import Start
 from tippetop.results.metrics import OUTCOMES
 from tippetop.sweeps.flights import fly_all, rolls, slides, slips
 from tippetop.sweeps.impacts import collide

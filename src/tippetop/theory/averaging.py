@@ -18,7 +18,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from tippetop.integrators.base import Array
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.roots import crossing, dip
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles

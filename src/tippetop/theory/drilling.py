@@ -15,8 +15,8 @@ import math
 
 import numpy as np
 
+from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.motion import angular_velocity, contact
-from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.top import Top
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.support.errors import Described, InvalidInput

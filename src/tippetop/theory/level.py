@@ -17,7 +17,7 @@ Omega^2 = 5 g / (2 R)).
 import math
 from typing import NamedTuple
 
-from tippetop.mechanics.hull import Hull, outer_height
+from tippetop.mechanics.surfaces.hull import Hull, outer_height
 from tippetop.mechanics.top import Top
 from tippetop.theory.prediction import touching_tilts
 from tippetop.theory.resting_center import resting_center_on

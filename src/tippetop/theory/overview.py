@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass, replace
 
-from tippetop.mechanics.hull import Hull, is_edge
-from tippetop.mechanics.surface import SphereSurface
+from tippetop.mechanics.surfaces.hull import Hull, is_edge
+from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.problem.frictions import ViscousFriction
 from tippetop.problem.problem import Problem, require_problem

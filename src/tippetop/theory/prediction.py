@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.mechanics.hull import Hull
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem.implausible import warn_if_implausible

@@ -5,9 +5,9 @@ stem.
 import math
 from dataclasses import dataclass
 
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.hull import Hull
-from tippetop.mechanics.surface import Surface, contact_vector
+from tippetop.mechanics.laws.friction import ViscousLaw
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector, add, dot, scale
 from tippetop.problem.bodies import Body

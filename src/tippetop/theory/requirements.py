@@ -1,7 +1,7 @@
 """What the theory asks of a top, with a sentence for those it does not hold for."""
 
-from tippetop.mechanics.hull import Hull, is_edge
-from tippetop.mechanics.rolling import is_set_valued, slip_length
+from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
+from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.top import Top
 from tippetop.support.errors import Described, InvalidInput
 

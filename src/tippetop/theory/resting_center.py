@@ -5,8 +5,8 @@ body.
 import math
 from typing import NamedTuple
 
-from tippetop.mechanics.hull import lowest_surface
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.surfaces.hull import lowest_surface
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import Top
 
 

@@ -7,10 +7,10 @@ steps of Dormand and Prince's method, only to when it first is near its end.
 import math
 from typing import NamedTuple
 
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.hull import Hull
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.runge_kutta import POWER, Point, RungeKuttaStep, step_from, step_to
+from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
 from tippetop.problem.problem import Problem

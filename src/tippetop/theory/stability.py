@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from tippetop.integrators.base import Array
-from tippetop.mechanics.branches import on_branch
-from tippetop.mechanics.friction import ViscousLaw
+from tippetop.mechanics.contacts.branches import on_branch
+from tippetop.mechanics.contacts.forces import is_set_valued
+from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import sliding_rates
-from tippetop.mechanics.rolling import is_set_valued
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.units import Units

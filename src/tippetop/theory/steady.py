@@ -21,7 +21,7 @@ import numpy as np
 from tippetop.integrators.base import Array
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.surface import Surface, contact_vector
+from tippetop.mechanics.surfaces.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.vectors import VERTICAL, Functions, Scalar, Vector, add, dot, scale
 from tippetop.mechanics.view import Angles, state_from_angles

@@ -1,8 +1,8 @@
 """What it takes to stand on a stem: the least Jellett's integral about its tip."""
 
-from tippetop.mechanics.friction import ViscousLaw
-from tippetop.mechanics.hull import each_surface
-from tippetop.mechanics.surface import contact_vector
+from tippetop.mechanics.laws.friction import ViscousLaw
+from tippetop.mechanics.surfaces.hull import each_surface
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Vector, dot
 from tippetop.problem.bodies import Body

@@ -13,6 +13,7 @@ positive definite (Delassus).
 
 from typing import NamedTuple
 
+from tippetop.mechanics.contacts.wrench import Wrench
 from tippetop.mechanics.motion import (
     angular_velocity,
     axial_spin,
@@ -20,10 +21,9 @@ from tippetop.mechanics.motion import (
     driven_acceleration,
     free_acceleration,
 )
-from tippetop.mechanics.surface import contact_vector, support_at
+from tippetop.mechanics.surfaces.surface import contact_vector, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, add, cross, dot, scale
-from tippetop.mechanics.wrench import Wrench
 
 
 class Acceleration(NamedTuple):

@@ -16,10 +16,10 @@ The forces are those of `tippetop.mechanics.contacts.system`.
 """
 
 from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
-from tippetop.mechanics.friction import NO_TORQUE
-from tippetop.mechanics.surface import support_at
+from tippetop.mechanics.contacts.wrench import Wrench
+from tippetop.mechanics.laws.friction import NO_TORQUE
+from tippetop.mechanics.surfaces.surface import support_at
 from tippetop.mechanics.vectors import add, cross, scale
-from tippetop.mechanics.wrench import Wrench
 
 
 def sticking_forces(point: ContactPoint, drills: bool) -> tuple[Wrench, Acceleration]:

@@ -17,9 +17,9 @@ from collections.abc import Sequence
 from typing import NamedTuple, Self, TypeAlias
 
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.friction import NO_TORQUE
+from tippetop.mechanics.contacts.wrench import Wrench
+from tippetop.mechanics.laws.friction import NO_TORQUE
 from tippetop.mechanics.vectors import Scalar, Vector, add, cross, dot, scale, solve
-from tippetop.mechanics.wrench import Wrench
 
 At: TypeAlias = tuple[int, Wrench]
 """Number of a contact, and a wrench at it."""

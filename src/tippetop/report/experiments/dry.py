@@ -10,8 +10,8 @@ import xarray as xr
 from tippetop.contact.contact_mode import sliding_motion
 from tippetop.integrators.classical import classical_step
 from tippetop.integrators.rates import RightHandSide
+from tippetop.mechanics.contacts.forces import velocity_without_slip
 from tippetop.mechanics.motion import along_table
-from tippetop.mechanics.rolling import velocity_without_slip
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.problem import presets

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
+from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.problem.frictions import ContensouFriction, ViscousFriction
 from tippetop.problem.hertz_patch import MATERIALS, hertz_patch_radius
 from tippetop.problem.presets import LEINE_GLOCKER, report_problem

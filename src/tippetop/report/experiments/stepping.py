@@ -5,7 +5,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from tippetop.mechanics.contensou import ELLIPSOIDAL_RADIUS
+from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.problem.frictions import ContensouFriction
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.real import EVENTS, LEINE, LEINE_WINDOW, contact_events

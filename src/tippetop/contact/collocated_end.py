@@ -1,0 +1,98 @@
+"""The end of slip on a patch whose direction has come to rest, in one step of collocation.
+
+On a small patch drilling ends much more slowly than friction turns the direction of slip, which
+soon is the one in which all of it ends. The rest of the turning, the term s^kappa of
+`tippetop.mechanics.contacts.slip_collocation`, is below rounding then, and the solution is smooth
+up to the end: one step of collocation goes from a known speed to zero, with its length unknown.
+"""
+
+import math
+from dataclasses import dataclass
+
+from tippetop.contact.onset_motion import onset_motion
+from tippetop.contact.slip_step import SlipStep
+from tippetop.integrators.base import Array
+from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.contacts.gauss_points import PARTS, STAGES
+from tippetop.mechanics.contacts.slip_end import SlipComponent, SlipEndState, rates_in_time
+from tippetop.mechanics.contacts.slip_variables import inner, scaled, size
+from tippetop.mechanics.series import horner
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Scalar
+
+ACCURACY, SLOWEST = 1e-11, 1e-5
+"""Largest last coefficients of the step, relative to the speed at its start or, for slower slip, to
+this speed in natural units, at which the rounding of the other numbers is as large.
+"""
+
+AT_REST, UNSEEN = 1e-12, 1e-15
+"""Largest angle between the direction of slip and that of the step, times the time that is left, in
+natural units; or times the speed, which is the rounding of a state.
+"""
+
+
+@dataclass(frozen=True)
+class CollocatedEnd:
+    """The end of slip."""
+
+    left: float
+    """The time until slip ends."""
+    start: list[Scalar]
+    """Axis, angular momentum and slip now."""
+    terms: Array
+    """Coefficients of their polynomials, as of `SlipStep.pieces`."""
+
+    def at(self, part: float) -> list[Scalar]:
+        """Return the numbers where a part of the time is left; slip is exactly zero at the end."""
+        count, place = len(self.start), PARTS * (1.0 - part)
+        whole = min(int(place), PARTS - 1)
+        terms, numbers = self.terms.tolist(), list[Scalar]()
+        for number, begin in enumerate(self.start):
+            value = begin
+            for earlier in range(whole + 1):
+                first = (earlier * count + number) * STAGES
+                elapsed = min(place - earlier, 1.0)
+                value = value + elapsed * horner(terms[first : first + STAGES], elapsed)
+            numbers.append(value)
+        return numbers if part > 0.0 else [*numbers[:6], *[0.0 for _ in numbers[6:]]]
+
+    def solution(self, time: float) -> DenseSolution:
+        """Return the numbers as polynomials in time from an instant on."""
+        knots = [self.left * part / PARTS for part in range(PARTS + 1)]
+        return DenseSolution.of_rows(knots, self.start, [self.terms]).moved(time, time + self.left)
+
+
+def collocated_end(
+    here: SlipEndState, ending: SlipComponent, top: Top, tolerance: float
+) -> CollocatedEnd | None:
+    """Return the end of slip from a state on; None where its direction has not come to rest.
+
+    Parameters
+    ----------
+    here
+        The state.
+    ending
+        The slip, beside which nothing else ends.
+    top
+        The body, on the branch of its law that holds.
+    tolerance
+        Error of the directions that an integrator has left.
+    """
+    along = inner(rates_in_time(here, ending, top).xi, here.direction)
+    if along >= 0.0:
+        return None
+    motion = onset_motion(top.kind, (ending,), True)
+    step = SlipStep(motion, top.numbers, from_end=True)
+    now = [*here.axis, *here.momentum]
+    start, guess = [*now, *[0.0 for _ in here.direction]], [-here.speed / along]
+    if not step.solve(start, [here.direction], here.speed, guess):
+        return None
+    slip = tuple([-change for change in step.changes[6:]])
+    aside = math.dist(here.direction, scaled(1.0 / size(slip), slip))
+    at_rest = max(AT_REST, tolerance)
+    if not (aside * step.length < at_rest or aside * here.speed < UNSEEN):
+        return None
+    smooth = step.error < (ACCURACY * max(here.speed, SLOWEST)) ** 2
+    if not smooth or step.least_speed <= 0.0:
+        return None
+    return CollocatedEnd(step.length, [*now, *slip], step.pieces(float(PARTS)))

@@ -1,0 +1,180 @@
+"""The mode in which slip, or rolling, begins, and in which slip may end again."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from tippetop.contact.contact_mode import split
+from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Reaction, Segment, explanation
+from tippetop.contact.onset_motion import BOTH, onset_motion
+from tippetop.contact.slip_phase import SlipPhase, follow_slip
+from tippetop.contact.transient import TransientMode
+from tippetop.integrators.base import Integrator
+from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.contacts.branches import on_branch, on_limit_branch
+from tippetop.mechanics.contacts.contact_point import ContactPoint
+from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
+from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_onset import find_onset
+from tippetop.mechanics.contacts.slip_variables import size, slip_of
+from tippetop.mechanics.contacts.wrench import Slip, Wrench
+from tippetop.mechanics.state import State
+from tippetop.mechanics.vectors import Row, Vector, dot
+
+PART = 0.25
+"""Part of the time in which another velocity could end, at its first rate, that a step takes: in
+planar motion that velocity passes through zero, where friction jumps.
+"""
+
+TINY = 1e-100
+"""Speed of the first instant, in natural units, which gives a velocity of zero its direction."""
+
+BEGUN, ENDED = "begun", "slip ended"
+"""Causes of the end of such a mode: what begins is followed like anything else from here on, or
+slip has ended.
+"""
+
+UNSEEN = "slip, or rolling, cannot be told from its beginning"
+"""Detail of the outcome where rounding hides the velocities that begin."""
+
+
+@dataclass(frozen=True)
+class SlipOnset(TransientMode):
+    """The mode from the instant at which slip, or rolling, begins."""
+
+    wrench: Wrench | None = None
+    """The wrench that held what begins, if that is known."""
+
+    @property
+    def begins(self) -> tuple[SlipComponent, ...]:
+        """The velocities that begin."""
+        return (self.ending,)
+
+    @property
+    def what(self) -> str:
+        """A clause of a sentence: they begin."""
+        return "slip begins" if self.ending.slip else "rolling begins"
+
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
+        """Follow what begins: to its end where it may end and begin many times a second."""
+        try:
+            mode, directions, longest = self._with_directions(state)
+        except ArithmeticError as error:
+            why = explanation(f"The direction in which {self.what}", error)
+            yield failed_segment(self.reported_mode, time, state, why)
+            return
+        top = mode.top
+        velocity = state.velocity[:2] if self.ending.moves else ()
+        numbers = [*state.axis, *state.momentum, *velocity]
+        begin = [*numbers, *[0.0 for way in directions for _ in way]]
+        phase = follow_slip(
+            onset_motion(top.kind, self.begins, not self.pulls),
+            top,
+            (begin, directions),
+            min(longest, end - time),
+            to_end=len(self.begins) == 1 and self.ending.recurs(top),
+        )
+        if not phase.rows:
+            yield failed_segment(self.reported_mode, time, state, UNSEEN)
+            return
+        last = mode.state([*phase.last[: len(numbers)], 0.0, 0.0] if phase.ended else phase.last)
+        first = [TINY * number for way in directions for number in way]
+        solution = solution_of(phase, [*numbers, *first], (time, end))
+        cause = COMPLETED if solution.end >= end else BEGUN
+        how = ModeEnd(ENDED if phase.ended else cause, last)
+        yield Segment(mode, solution, last, how, len(phase.knots) - 1, phase.sweeps)
+
+    def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip], float]":
+        """Return the mode on its law's branch, the directions of what begins, and the longest time
+        for which it may be followed.
+        """
+        ending, other = self.ending, SlipComponent(not self.ending.slip)
+        point = ContactPoint.of(state.axis, state.momentum, self.top)
+        slip, rolling = None, None
+        if ending.moves:
+            slip = slip_of(state.axis, state.momentum, state.velocity[:2], self.top)
+        if ending.slip and not ending.held:
+            rolling = point.turning[:2]
+        begun = find_onset(point, slip, rolling, (ending.slip, not ending.slip), self.wrench)
+        if begun.slip is None:
+            top = on_limit_branch(self.top, begun.wrench)
+        else:
+            top = on_branch(self.top, begun.slip)
+        way = begun.slip if ending.slip else begun.rolling
+        assert way is not None
+        beside, ends = rolling, top.resists_rolling
+        if ending.moves:
+            beside, ends = slip, is_set_valued(top.friction)
+        longest = math.inf
+        if beside is not None and ends and size(beside) > 0.0:
+            longest = PART * size(beside) / size(other.rate(begun.acceleration, top))
+        return replace(self, top=top), [way], longest
+
+    @property
+    def stuck(self) -> bool:
+        """Whether the contact sticks meanwhile."""
+        return not self.ending.slip and self.ending.held
+
+
+@dataclass(frozen=True)
+class SlipAndRollingOnset(SlipOnset):
+    """The same where slip and rolling begin at once."""
+
+    ending: SlipComponent = SlipComponent(slip=True)  # noqa: RUF009
+
+    @property
+    def begins(self) -> tuple[SlipComponent, ...]:
+        """Slip and rolling."""
+        return BOTH
+
+    @property
+    def what(self) -> str:
+        """A clause of a sentence: they begin."""
+        return "slip and rolling begin"
+
+    @property
+    def form(self) -> str:
+        """Its numbers have both velocities."""
+        return f"{self.name}: slip and rolling"
+
+    def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
+        """Read axis, angular momentum and slip."""
+        return *split(y), (), tuple(y[6 : len(y) - 2])
+
+    def reaction(self, y: Row) -> Reaction:
+        """Return the contact force and torque, from both velocities."""
+        axis, momentum, _, slip = self._parts(y)
+        rolling = y[len(y) - 2 :]
+        point = ContactPoint.of(axis, momentum, self.top)
+        (force, torque), _ = forces_and_accelerations(point, slip, (rolling[0], rolling[1]))
+        turning: Vector = (rolling[0], rolling[1], point.turning[2])
+        power = dot(torque, turning) + (force[0] * slip[0] + force[1] * slip[1])
+        return Reaction(force, torque, power)
+
+    def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip], float]":
+        """Return the mode on its law's branch, both directions, and no bound of time."""
+        point = ContactPoint.of(state.axis, state.momentum, self.top)
+        begun = find_onset(point, None, None, (True, True))
+        assert begun.slip is not None
+        assert begun.rolling is not None
+        directions: list[Slip] = [begun.slip, begun.rolling]
+        return replace(self, top=on_branch(self.top, begun.slip)), directions, math.inf
+
+
+def solution_of(
+    phase: SlipPhase, start: Sequence[float], times: tuple[float, float]
+) -> DenseSolution:
+    """Return the solution of a phase from its numbers at the start, which begins at a time and ends
+    with the run at the latest.
+    """
+    time, end = times
+    last = phase.knots[-1]
+    reach = end if last >= end - time else min(time + last, end)
+    return DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach)
+
+
+def failed_segment(mode: Mode, time: float, state: State, why: str) -> Segment:
+    """Return a segment without any motion, after which a run fails."""
+    return Segment(mode, DenseSolution.nothing(time, 8), state, ModeEnd(FAILURE, state, detail=why))

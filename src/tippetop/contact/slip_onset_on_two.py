@@ -1,0 +1,114 @@
+"""The first moments of slip at one of two closed contacts, or at both."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, Self
+
+from tippetop.contact.contact_mode import split
+from tippetop.contact.mode import COMPLETED, ModeEnd, Segment
+from tippetop.contact.slip_onset import BEGUN, TINY, UNSEEN, failed_segment, solution_of
+from tippetop.contact.slip_phase import follow_slip
+from tippetop.contact.two_contact_mode import TwoContactMode
+from tippetop.integrators.base import Integrator
+from tippetop.mechanics.contacts.branches import is_branched
+from tippetop.mechanics.contacts.pair import ContactPair, slips_of
+from tippetop.mechanics.contacts.pair_motion import PairMotion, pair_motion
+from tippetop.mechanics.contacts.slip_collocation import SlipMotion
+from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled, velocity_of
+from tippetop.mechanics.contacts.wrench import Slip
+from tippetop.mechanics.motion import axis_rate, on_table
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.top import Kind
+from tippetop.mechanics.vectors import Row, Scalar
+
+NUMBERS = 9
+"""How many numbers such a motion has."""
+
+
+@dataclass(frozen=True)
+class SlipOnsetOnTwo(TwoContactMode):
+    """The first moments of slip at one of two contacts, or at both.
+
+    Its numbers are axis, angular momentum and xi (see `tippetop.mechanics.contacts.pair`).
+    """
+
+    begin: tuple[float, ...] = ()
+    """The numbers at the start."""
+    direction: Slip = ()
+    """Direction of what begins: of the slip of the first contact, or of xi."""
+
+    def state(self, y: Row) -> State:
+        """The state, with its height."""
+        axis, momentum = split(y)
+        momentum = self.stilled(axis, momentum)
+        velocity = velocity_of(axis, momentum, (y[6], y[7]), self.top)
+        return on_table(SlidingState(axis, momentum, velocity), self.top)
+
+    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
+        """What the table does, and how both contacts slip."""
+        pair = ContactPair.of(*split(y), self.tops)
+        slips = slips_of(pair, (y[6], y[7], y[8]))
+        return pair_motion(pair, slips, self.rolls), slips
+
+    def without_tops(self) -> Self:
+        """Without the numbers of one state, too."""
+        none = tuple([0.0 for _ in self.direction])
+        return replace(super().without_tops(), begin=(), direction=none)
+
+    def onset_rates(self, y: Row, way: Slip) -> tuple[Row, Row]:
+        """Return the rates of the numbers, and margins, where what begins has a direction."""
+        axis, momentum = split(y)
+        pair = ContactPair.of(axis, momentum, self.tops)
+        slips = slips_of(pair, way if len(way) == 3 else (y[6], y[7], y[8]))
+        if len(way) == 2:
+            slips = way, slips[1]
+        now = pair_motion(pair, slips, self.rolls)
+        margins = [*now.normal]
+        if self.stopped:
+            margins.append(now.rolling_reserve)
+        elif self.top.resists_rolling:
+            margins.append(self.rolls * now.rolling)
+        if is_branched(self.top.friction):
+            margins += [branch_guard(slip, top) for slip, top in zip(slips, self.tops, strict=True)]
+        return (*axis_rate(axis, momentum, self.top), *now.moment, *now.rate), margins
+
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
+        """Follow what begins for a step."""
+        kinds = self.top.kind, self.other.kind
+        phase = follow_slip(
+            onset_motion_on_two(self.without_tops(), kinds),
+            self.top,
+            (self.begin, [self.direction]),
+            end - time,
+            numbers=self.parameters,
+        )
+        if not phase.rows:
+            yield failed_segment(self, time, state, UNSEEN)
+            return
+        first = scaled(TINY, self.direction)
+        start = [*self.begin[:6], *first, *self.begin[6 + len(first) :]]
+        solution = solution_of(phase, start, (time, end))
+        last = self.state(phase.last)
+        how = ModeEnd(COMPLETED if solution.end >= end else BEGUN, last)
+        yield Segment(self, solution, last, how, len(phase.knots) - 1, phase.sweeps)
+
+
+@lru_cache
+def onset_motion_on_two(form: Any, kinds: tuple[Kind, Kind]) -> SlipMotion:
+    """Return the equations of motion of a mode without tops, for tops of these kinds."""
+    one, other = kinds
+
+    def rates(
+        numbers: Sequence[Scalar], ways: Sequence[Any], parameters: Sequence[Scalar]
+    ) -> tuple[Sequence[Any], Sequence[Any]]:
+        first, second = parameters[: one.numbers], parameters[one.numbers :]
+        mode = form.with_tops((one.top(tuple(first)), other.top(tuple(second))), ())
+        changes: tuple[Sequence[Any], Sequence[Any]] = mode.onset_rates(numbers, ways[0])
+        return changes
+
+    margins = 2 + int(one.resists_rolling) + 2 * int(is_branched(one.example.friction))
+    velocities = ((6, len(form.direction)),)
+    return SlipMotion(rates, NUMBERS, velocities, one.numbers + other.numbers, margins)

@@ -1,0 +1,139 @@
+"""The moments in which slip, or rolling, ends or begins, under friction that is set-valued."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from tippetop.contact.contact_mode import ContactMode, split
+from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment
+from tippetop.integrators.base import Integrator
+from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.contacts.forces import velocity_without_slip, without_rolling
+from tippetop.mechanics.contacts.slip_end import (
+    SlipComponent,
+    SlipEndState,
+    rates_in_time,
+    slip_beside,
+)
+from tippetop.mechanics.contacts.slip_variables import scaled, velocity_of
+from tippetop.mechanics.contacts.wrench import Slip
+from tippetop.mechanics.motion import angular_velocity, on_table
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
+
+AT_REST = "at rest"
+"""Cause of the end of `Resting`."""
+
+SETTLED = 1e-14
+"""Error of the instant at which slip ends, in natural units, that counts as none."""
+
+LOOKS = 16
+"""Looks along a moment at whether another surface touches, or the table would have to pull: else a
+mode with a guard takes over sooner.
+"""
+
+SHORT = 1e-14
+"""How long a top at rest is followed, in natural units of time or relative to the time."""
+
+DEGREE = 14
+"""Degree of the polynomials that stand for the last moments in a solution."""
+
+
+@dataclass(frozen=True)
+class TransientMode(Mode):
+    """A moment between two modes; a result reports the one of them in which something moves."""
+
+    ending: SlipComponent
+    """Which velocity ends or begins, and whether the other is held."""
+    pulls: bool = False
+    """Whether the table may pull."""
+
+    name: ClassVar[str] = "passing"
+
+    @property
+    def reported_mode(self) -> ContactMode:
+        """The mode that a result reports for it."""
+        slip, held = self.ending
+        return ContactMode(self.top, not slip and held, slip and held)
+
+    @property
+    def label(self) -> str:
+        """The name of the reported mode."""
+        return self.reported_mode.label
+
+    @property
+    def form(self) -> str:
+        """What ends or begins decides how its numbers are read."""
+        return f"{self.name}: slip {self.ending.slip}, held {self.ending.held}"
+
+    def state(self, y: Row) -> State:
+        """The state from axis, momentum, velocity where it is free, and what ends or begins."""
+        axis, momentum, velocity, xi = self._parts(y)
+        if self.ending.slip:
+            velocity = velocity_of(axis, momentum, xi, self.top)
+            momentum = without_rolling(axis, momentum, self.top) if self.ending.held else momentum
+        elif self.ending.held:
+            velocity = velocity_without_slip(axis, momentum, self.top)
+        return on_table(SlidingState(axis, momentum, (velocity[0], velocity[1])), self.top)
+
+    def reaction(self, y: Row) -> Reaction:
+        """The contact force and torque, from what ends or begins itself: a state has but few digits
+        of it.
+        """
+        axis, momentum, velocity, xi = self._parts(y)
+        here = SlipEndState(axis, momentum, velocity, xi, 0.0, 0.0)
+        force, torque = rates_in_time(here, self.ending, self.top).wrench
+        power = dot(torque, angular_velocity(axis, momentum, self.top))
+        slip = xi if self.ending.slip else slip_beside(here, self.ending, self.top)
+        if slip is not None:
+            power = power + (force[0] * slip[0] + force[1] * slip[1])
+        return Reaction(force, torque, power)
+
+    @property
+    def free(self) -> int:
+        """How many numbers come before what ends or begins."""
+        return 8 if self.ending.moves else 6
+
+    def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
+        return *split(y), tuple(y[6 : self.free]), tuple(y[self.free :])
+
+
+@dataclass(frozen=True)
+class Resting(Mode):
+    """Every velocity has ended: an instant, so that a result has it, and then the run is over."""
+
+    reported_mode: IntegratedMode
+    """The mode that a result reports for it."""
+
+    name: ClassVar[str] = "resting"
+
+    def state(self, y: Row) -> State:
+        """As in the reported mode."""
+        return self.reported_mode.state(y)
+
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
+        """Stay as it is."""
+        numbers = self.reported_mode.numbers(state)
+        still = straight(numbers, numbers, time, time + SHORT * max(1.0, time))
+        yield Segment(self.reported_mode, still, state, ModeEnd(AT_REST, state))
+
+
+def straight(
+    begin: Sequence[float], last: Sequence[float], start: float, end: float
+) -> DenseSolution:
+    """Numbers that go from some to others in a straight line."""
+    rows = [[a, b - a] for a, b in zip(begin, last, strict=True)]
+    return in_one_step(rows, 0.0, 1.0).moved(start, end)
+
+
+def in_one_step(rows: Sequence[list[Scalar]], start: float, lasts: float) -> DenseSolution:
+    """Numbers by coefficients in powers of the time since some time, for as long as that."""
+    terms = [[*row, *[0.0] * (DEGREE + 1 - len(row))] for row in rows]
+    return DenseSolution.in_time([0.0, lasts], [terms]).moved(start, start + lasts)
+
+
+def pack_moment(here: SlipEndState) -> tuple[Scalar, ...]:
+    """The numbers of a moment that passes: axis, momentum, velocity where it is free, and xi."""
+    return (*here.axis, *here.momentum, *here.velocity, *scaled(here.speed, here.direction))

@@ -1,0 +1,253 @@
+"""Forces of the closed contacts of a body, by the status of each: it slips, or it sticks.
+
+A contact that slips has the friction of its law. A contact that sticks keeps its slip constant, and
+its drilling under a law that resists drilling. Rolling that is resisted goes on, against a couple
+of the table, or it is held: its angular velocity stays constant.
+"""
+
+from collections.abc import Sequence
+from typing import Any, TypeAlias
+
+from tippetop.mechanics.contacts.branches import on_branch
+from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
+from tippetop.mechanics.contacts.sticking import sticking_forces
+from tippetop.mechanics.contacts.system import (
+    At,
+    Component,
+    Constraint,
+    ConstraintSolution,
+    free_rates,
+    rates_added,
+    solve_constraints,
+)
+from tippetop.mechanics.contacts.wrench import DRILLING, EAST, FORCES, NORTH, Slip, Wrench
+from tippetop.mechanics.laws.friction import NO_TORQUE, FrictionLaw
+from tippetop.mechanics.motion import angular_velocity, contact_swing
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, dot, scale
+
+Slips: TypeAlias = Sequence[Slip | None]
+"""Slip of every contact, or its direction; None where the contact sticks."""
+
+
+def forces_and_accelerations(
+    point: ContactPoint, slip: Slip | None, rolling: Horizontal | None = None
+) -> tuple[Wrench, Acceleration]:
+    """What the table does to a body in contact, and how that accelerates.
+
+    Parameters
+    ----------
+    point
+        The contact point.
+    slip
+        The slip, of which a law that is set-valued takes the direction only: two components, or
+        three with the drilling rate times the law's slip length; or None where it is held at zero
+        (both, if the law resists drilling).
+    rolling
+        The horizontal angular velocity, of which only the direction counts, or None where it is
+        held at zero; without rolling resistance it does not matter.
+    """
+    if slip is None and not point.top.resists_rolling:
+        return sticking_forces(point, drills=slip_length(point.top.friction) is None)
+    solution = solve_contacts((point,), (slip,), rolling)
+    (acceleration,), turning = solution.rates
+    return sum_at(0, solution.wrenches), Acceleration(acceleration, turning)
+
+
+def solve_contacts(
+    points: Sequence[ContactPoint], slips: Slips, rolling: Slip | None
+) -> ConstraintSolution:
+    """Return the wrenches of the table at all closed contacts, and the accelerations.
+
+    Parameters
+    ----------
+    points
+        The contact points.
+    slips
+        Slip of every contact, or its direction; None where it sticks.
+    rolling
+        The horizontal angular velocity, or its direction; None where it is held. On several
+        contacts, where it is along the axis, a unit vector, or zero without rolling resistance.
+    """
+    return solve_constraints(points, constraints_of(points, slips, rolling), free_rates(points))
+
+
+def constraints_of(
+    points: Sequence[ContactPoint], slips: Slips, rolling: Slip | None
+) -> list[Constraint]:
+    """Return the components that are held: slip of what sticks, normal velocities, rolling."""
+    return [
+        *sticking_constraints(points, [slip is None for slip in slips]),
+        *normal_constraints(points, slips, rolling),
+        *rolling_constraints(points, rolling),
+    ]
+
+
+def sticking_constraints(
+    points: Sequence[ContactPoint], sticks: Sequence[bool]
+) -> list[Constraint]:
+    """Return the constraints of the contacts that stick.
+
+    Two contacts of a body of revolution move as one along the horizontal part of the axis, in whose
+    plane they are, and two that stick do not drill.
+    """
+    numbers = [number for number, held in enumerate(sticks) if held]
+    if len(numbers) > 1:
+        first, second = numbers
+        along, across = directions_of(points[0].axis)
+        held = [Component(first, along), Component(first, across), Component(second, across)]
+        return [Constraint.of(component) for component in held]
+    held = [Component(number, way) for number in numbers for way in (EAST, NORTH)]
+    if numbers and len(points) == 1 and slip_length(points[0].top.friction) is not None:
+        held.append(Component(numbers[0], VERTICAL, turns=True))
+    return [Constraint.of(component) for component in held]
+
+
+def normal_constraints(
+    points: Sequence[ContactPoint], slips: Slips, rolling: Slip | None
+) -> list[Constraint]:
+    """Return the constraints that keep the gaps closed: unit normal forces with their friction."""
+    resistance, couple = points[0].top.rolling_resistance, None
+    if resistance is not None and rolling is not None:
+        turning = (rolling[0], rolling[1], 0.0)
+        alone = len(points) == 1
+        couple = resistance.couple(turning) if alone else scale(-resistance.length, turning)
+    return [
+        Constraint(Component(number, VERTICAL), normal_wrench(point, slip, couple))
+        for number, (point, slip) in enumerate(zip(points, slips, strict=True))
+    ]
+
+
+def rolling_constraints(points: Sequence[ContactPoint], rolling: Slip | None) -> list[Constraint]:
+    """Return the constraints of rolling that is held.
+
+    Two closed contacts hold the angular velocity across the axis already.
+    """
+    if rolling is not None or not points[0].top.resists_rolling:
+        return []
+    ways = [EAST, NORTH] if len(points) == 1 else [directions_of(points[0].axis)[0]]
+    return [Constraint.of(Component(0, way, turns=True)) for way in ways]
+
+
+def directions_of(axis: Vector) -> tuple[Vector, Vector]:
+    """Return the horizontal unit vectors e along the axis and t across it."""
+    inverse = (axis[0] * axis[0] + axis[1] * axis[1]) ** -0.5
+    x, y = axis[0] * inverse, axis[1] * inverse
+    return (x, y, 0.0 * x), (-y, x, 0.0 * x)
+
+
+def sum_at(contact: int, wrenches: Sequence[At]) -> Wrench:
+    """Return the sum of the wrenches at a contact."""
+    force = torque = NO_TORQUE
+    for number, wrench in wrenches:
+        if number == contact:
+            force, torque = add(force, wrench.force), add(torque, wrench.torque)
+    return Wrench(force, torque)
+
+
+def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None) -> Wrench:
+    """Return a unit normal impulse, with what goes with it; of floats.
+
+    The arguments are those of `forces_and_accelerations`. The configuration is fixed, nothing
+    falls, and velocities that are held stay as they are.
+    """
+    if slip is not None:
+        point = point._replace(top=on_branch(point.top, slip))
+    points, slips = (point,), (slip,)
+    (normal,) = normal_constraints(points, slips, rolling)
+    held = [
+        *sticking_constraints(points, [slip is None]),
+        *rolling_constraints(points, rolling),
+    ]
+    if not held:
+        return normal.wrench
+    driven = rates_added(points, 0, normal.wrench)
+    more = solve_constraints(points, held, driven).wrenches
+    return sum_at(0, [(0, normal.wrench), *more])
+
+
+def pressing_wrench(point: ContactPoint, slip: Slip | None, rolling: Slip | None) -> Wrench:
+    """Return a unit normal force with the friction, and the rolling couple, that go with it."""
+    return normal_constraints((point,), (slip,), rolling)[0].wrench
+
+
+def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None = None) -> Wrench:
+    """A unit normal force with the friction that goes with it where the contact slips, and a
+    couple.
+    """
+    force, torque = (0.0, 0.0), NO_TORQUE
+    if slip is not None:
+        force, torque = point.top.friction.traction((slip[0], slip[1]), turning_with(point, slip))
+    return Wrench((*force, 1.0), torque if couple is None else add(torque, couple))
+
+
+def slip_wrenches(law: FrictionLaw) -> tuple[Wrench, ...]:
+    """The wrenches that resist slip: two forces, and the drilling torque if the law resists
+    that.
+    """
+    return FORCES[:2] if slip_length(law) is None else (*FORCES[:2], DRILLING)
+
+
+def slip_length(law: FrictionLaw) -> Scalar | None:
+    """Length by which drilling compares with slip under a law, m; None where it does not resist
+    drilling.
+    """
+    return getattr(law, "slip_length", None)
+
+
+def slip_reserve(top: Top, wrench: Wrench) -> Scalar:
+    """Positive while the table can exert the force and drilling torque in a wrench that holds slip,
+    N^2.
+    """
+    law: Any = top.friction
+    return law.reserve(wrench.force[2], wrench.force[:2], wrench.torque[2])
+
+
+def rolling_reserve(point: "ContactPoint", wrench: Wrench, slip: Slip | None) -> Scalar:
+    """Positive while the table can exert the couple in a wrench that holds rolling, (N m)^2."""
+    resistance: Any = point.top.rolling_resistance
+    couple, normal = (wrench.torque[0], wrench.torque[1]), wrench.force[2]
+    if slip is not None:
+        torque = point.top.friction.traction((slip[0], slip[1]), turning_with(point, slip)).torque
+        couple = (couple[0] - normal * torque[0], couple[1] - normal * torque[1])
+    return resistance.reserve(normal, couple)
+
+
+def turning_with(point: "ContactPoint", slip: Slip) -> Vector:
+    """The angular velocity as a law takes it, drilling as the slip has it, rad/s."""
+    w = point.turning[2] if len(slip) == 2 else slip[2] / slip_length(point.top.friction)
+    return (point.turning[0], point.turning[1], w)
+
+
+def velocity_without_slip(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
+    """Horizontal velocity of the centre of mass of a body whose contact point is at rest, m/s."""
+    x, y = contact_swing(axis, momentum, top)
+    return (-x, -y)
+
+
+def without_drilling(axis: Vector, momentum: Vector, top: Top) -> Vector:
+    """The angular momentum for which the body does not turn about the vertical, kg m^2/s.
+
+    What changes is the angular velocity's vertical component, which becomes zero.
+    """
+    turning = angular_velocity(axis, momentum, top)
+    return spun_up(axis, momentum, (0.0, 0.0, -turning[2]), top)
+
+
+def without_rolling(axis: Vector, momentum: Vector, top: Top) -> Vector:
+    """The angular momentum for which the body turns about the vertical alone, kg m^2/s."""
+    turning = angular_velocity(axis, momentum, top)
+    return spun_up(axis, momentum, (-turning[0], -turning[1], 0.0), top)
+
+
+def spun_up(axis: Vector, momentum: Vector, change: Vector, top: Top) -> Vector:
+    """The angular momentum after a change of the angular velocity (rad/s), kg m^2/s."""
+    along = (top.axial_inertia - top.transverse_inertia) * dot(axis, change)
+    return add(momentum, add(scale(top.transverse_inertia, change), scale(along, axis)))
+
+
+def is_set_valued(law: FrictionLaw) -> bool:
+    """Whether a law lets slip end: it has a `reserve`, and elsewhere depends on slip's direction
+    alone.
+    """
+    return hasattr(law, "reserve")

@@ -1,0 +1,147 @@
+"""What the table does to a body at two closed contacts, and how that accelerates."""
+
+from typing import Any, NamedTuple
+
+from tippetop.mechanics.contacts.forces import (
+    Slips,
+    directions_of,
+    slip_reserve,
+    solve_contacts,
+    sum_at,
+    turning_with,
+)
+from tippetop.mechanics.contacts.pair import ContactPair, apart, slips_of, turning_along
+from tippetop.mechanics.contacts.slip_variables import scaled
+from tippetop.mechanics.contacts.system import ContactRates
+from tippetop.mechanics.contacts.wrench import Slip, Wrench
+from tippetop.mechanics.laws.coulomb import TINY
+from tippetop.mechanics.laws.friction import NO_TORQUE
+from tippetop.mechanics.vectors import Scalar, Vector, add, cross, dot, scale
+
+
+class PairMotion(NamedTuple):
+    """What the table does at both contacts that stay closed, and how they accelerate."""
+
+    pair: ContactPair
+    """The contact points."""
+    wrenches: tuple[Wrench, Wrench]
+    """What the table does at each; along e, where both stick, all at the first."""
+    rates: ContactRates
+    """Accelerations of both contact points, and angular acceleration."""
+    holding: Scalar = 0.0
+    """Couple along e that holds rolling, N m; none where nothing does."""
+
+    @property
+    def force(self) -> Vector:
+        """Force of the table, N."""
+        return add(self.wrenches[0].force, self.wrenches[1].force)
+
+    @property
+    def couple(self) -> Vector:
+        """Torque of the table at both contacts, N m."""
+        return add(self.wrenches[0].torque, self.wrenches[1].torque)
+
+    @property
+    def moment(self) -> Vector:
+        """Moment of the table about the centre of mass, N m."""
+        return self.pair.moment(tuple(enumerate(self.wrenches)))
+
+    @property
+    def torque(self) -> Vector:
+        """Torque of the table about the first contact point, N m."""
+        return add(self.moment, scale(-1.0, cross(self.pair.first.arm, self.force)))
+
+    @property
+    def normal(self) -> tuple[Scalar, Scalar]:
+        """Normal forces, N."""
+        return self.wrenches[0].force[2], self.wrenches[1].force[2]
+
+    @property
+    def rate(self) -> Slip:
+        """Rate of xi."""
+        point, _ = self.rates.points
+        return (point[0], point[1], apart(self.pair) * self.rates.turning[2])
+
+    def needed(self, number: int) -> Scalar:
+        """Force across e at a contact, N."""
+        return dot(self.wrenches[number].force, directions_of(self.pair.first.axis)[1])
+
+    def reserve(self, number: int) -> Scalar:
+        """Positive while the table can exert the horizontal force on a contact that alone sticks,
+        N^2.
+        """
+        return slip_reserve(self.pair[number].top, Wrench(self.wrenches[number].force, NO_TORQUE))
+
+    def left(self, number: int) -> Scalar:
+        """mu^2 N_i^2 - T_i^2 where both stick, N^2."""
+        force = (self.needed(number), 0.0, self.normal[number])
+        return slip_reserve(self.pair[number].top, Wrench(force, NO_TORQUE))
+
+    @property
+    def along(self) -> Scalar:
+        """S, the force along e at both, N."""
+        return dot(self.force, directions_of(self.pair.first.axis)[0])
+
+    @property
+    def rolling(self) -> Scalar:
+        """omega_e, rad/s."""
+        return turning_along(self.pair)
+
+    @property
+    def rolling_rate(self) -> Scalar:
+        """Rate of omega_e, rad/s^2."""
+        return dot(self.rates.turning, directions_of(self.pair.first.axis)[0])
+
+    @property
+    def rolling_reserve(self) -> Scalar:
+        """Positive while the table can exert the couple that holds rolling, (N m)^2."""
+        resistance: Any = self.pair.first.top.rolling_resistance
+        one, other = self.normal
+        return resistance.reserve(one + other, (self.holding, 0.0))
+
+    @property
+    def both_reserve(self) -> Scalar:
+        """Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive
+        A_i.
+        """
+        one, other, along = self.left(0), self.left(1), self.along
+        product = one * other
+        return one + other + 2.0 * (product * product + TINY) ** 0.25 - along * along
+
+    @property
+    def is_held(self) -> bool:
+        """Whether the table can hold both contacts, without moments of drilling; of floats."""
+        return bool(min(self.left(0), self.left(1), self.both_reserve) >= 0.0)
+
+    def spare(self, way: Slip) -> Scalar:
+        """Power that friction takes at most where xi = `way`, less what holding takes of it, W."""
+        spare: Any = 0.0
+        for point, slip, wrench in zip(
+            self.pair, slips_of(self.pair, way), self.wrenches, strict=True
+        ):
+            turning = turning_with(point, slip)
+            force, torque = point.top.friction.traction((slip[0], slip[1]), turning)
+            x, y, normal = wrench.force
+            spare = spare - normal * torque[2] * turning[2]
+            spare = spare + (x - normal * force[0]) * slip[0] + (y - normal * force[1]) * slip[1]
+        return spare
+
+
+def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
+    """What the table does to a body whose two contacts stay closed, and how it accelerates.
+
+    Parameters
+    ----------
+    pair
+        The contact points.
+    slips
+        How they slip.
+    rolls
+        Sign of omega_e, 0 where it is held at zero; without rolling resistance it does not matter.
+    """
+    along = directions_of(pair.first.axis)[0]
+    stopped = pair.first.top.resists_rolling and not rolls
+    rolling = None if stopped else scaled(rolls, along[:2])
+    wrenches, rates = solve_contacts(pair, slips, rolling)
+    holding = dot(wrenches[-1][1].torque, along) if stopped else 0.0
+    return PairMotion(pair, (sum_at(0, wrenches), sum_at(1, wrenches)), rates, holding)

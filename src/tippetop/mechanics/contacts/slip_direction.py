@@ -1,0 +1,152 @@
+"""Directions in which velocities begin that cannot be held: along each, A(e) = R e with R >= 0.
+
+Under dry friction the rate A of a velocity xi depends on its direction e = xi / s alone. Friction
+takes energy, so that e -> c e + A(e), normalized, comes to such a direction if c is large enough.
+It comes there slowly where one component of xi responds much less than another to what resists it,
+such as drilling of a small patch: Newton's method ends the search.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from tippetop.mechanics.contacts.slip_variables import inner, plus, scaled, size, tangents
+from tippetop.mechanics.contacts.wrench import Slip
+from tippetop.mechanics.unsolved import Unsolved
+from tippetop.mechanics.vectors import solve
+
+ROUNDS, ITERATIONS, NEWTON = 100, 50, 12
+"""Rounds of the search, iterations in each, and steps of Newton's method that try to end it."""
+
+EXACT, DIRECTED = 4e-16, 1e-9
+"""Change of a direction that is rounding, and how well one must be known at least."""
+
+APART = 1e-7
+"""Difference of two directions from which a derivative is found; its error costs steps, no digits.
+"""
+
+
+class Resisted(NamedTuple):
+    """How a velocity that begins in a direction changes."""
+
+    rate: Slip
+    """A."""
+    strength: float
+    """Size of what resists it, as large as its share in A at least: the part of c that is not A
+    itself.
+    """
+
+
+Response = Callable[[Sequence[Slip]], Sequence[Resisted]]
+"""From the directions of velocities that begin at once to how they change, all floats."""
+
+
+def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
+    """Directions in which velocities that cannot be held begin.
+
+    Parameters
+    ----------
+    response
+        How they change.
+    start
+        Unit vectors, or longer ones, in whose directions the search begins.
+
+    Raises
+    ------
+    ArithmeticError
+        If no such directions are found: more than one contact force may be consistent, or none.
+    """
+    ways = [_unit(direction) for direction in start]
+    for turn in range(ROUNDS):
+        for step in range(ITERATIONS):
+            before, responses = ways, response(ways)
+            ways = [
+                _unit(plus(scaled(resisted.strength + size(resisted.rate), e), resisted.rate))
+                for resisted, e in zip(responses, ways, strict=True)
+            ]
+            if _apart(ways, before) < EXACT:
+                if turn + step == 0 and _leads(responses, before):
+                    return before
+                break
+        found = _improved(response, ways)
+        if found is not None:
+            return found
+        # Exactly against what drives it, as may be in a plane, a direction stays so: it is turned
+        # round.
+        rates = [resisted.rate for resisted in response(ways)]
+        along = [inner(rate, e) for rate, e in zip(rates, ways, strict=True)]
+        against = min(0.0, *along)
+        ways = [
+            _unit(rates[i]) if along[i] < 0.0 and along[i] == against else ways[i]
+            for i in range(len(ways))
+        ]
+    raise Unsolved("no direction in which the contact can go on, though nothing can hold it")
+
+
+def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
+    """The directions by Newton's method from near ones; None if that does not lead to any."""
+    last = DIRECTED
+    for _ in range(NEWTON):
+        try:
+            better = _newton(response, ways)
+        except ArithmeticError:
+            return None
+        moved, ways = _apart(better, ways), better
+        if moved < EXACT or last * 0.5 <= moved < DIRECTED:
+            return ways if _grow(response(ways), ways) else None
+        last = moved
+    return None
+
+
+def _grow(responses: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
+    """Whether velocities in these directions grow, or stay."""
+    return all(
+        inner(a.rate, e) >= -DIRECTED * a.strength for a, e in zip(responses, ways, strict=True)
+    )
+
+
+def _leads(responses: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
+    """Whether directions that do not turn at once are known: slip alone, in a plane, never turns
+    slowly.
+    """
+    return len(ways) == 1 and len(ways[0]) == 2 and _grow(responses, ways)
+
+
+def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
+    """One step towards directions across which nothing changes."""
+    bases = [tangents(e) for e in ways]
+
+    def across(ways: Sequence[Slip]) -> list[float]:
+        responses = response(ways)
+        lefts = [
+            plus(resisted.rate, scaled(-inner(resisted.rate, e), e))
+            for resisted, e in zip(responses, ways, strict=True)
+        ]
+        return [inner(left, b) for left, basis in zip(lefts, bases, strict=True) for b in basis]
+
+    def moved(parts: Sequence[float]) -> list[Slip]:
+        found, used = list[Slip](), 0
+        for e, basis in zip(ways, bases, strict=True):
+            turned = e
+            for b in basis:
+                turned = plus(turned, scaled(parts[used], b))
+                used += 1
+            found.append(_unit(turned))
+        return found
+
+    here = across(ways)
+    count = len(here)
+    columns = []
+    for j in range(count):
+        there = across(moved([APART if i == j else 0.0 for i in range(count)]))
+        columns.append([(there[i] - here[i]) / APART for i in range(count)])
+    return moved(
+        solve([[column[i] for column in columns] for i in range(count)], [-x for x in here])
+    )
+
+
+def _apart(ways: Sequence[Slip], others: Sequence[Slip]) -> float:
+    return max(size(plus(a, scaled(-1.0, b))) for a, b in zip(ways, others, strict=True))
+
+
+def _unit(a: Slip) -> Slip:
+    return scaled(1.0 / size(a), a)

@@ -1,0 +1,167 @@
+"""In which direction slip, or rolling, begins where the table cannot hold it."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypeAlias
+
+from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
+from tippetop.mechanics.contacts.forces import (
+    forces_and_accelerations,
+    rolling_reserve,
+    slip_length,
+    slip_reserve,
+)
+from tippetop.mechanics.contacts.slip_direction import Resisted, directions
+from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_variables import inner, scaled, size
+from tippetop.mechanics.contacts.wrench import Slip, Wrench
+from tippetop.mechanics.motion import presses
+from tippetop.mechanics.unsolved import Unsolved
+
+CHOICES = ((False, False), (True, False), (False, True), (True, True))
+"""What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""
+
+Moved: TypeAlias = Callable[[ContactPoint, Slip | None, Slip | None], tuple[Wrench, Acceleration]]
+"""From slip and rolling, None where they are held, to what the table does, and the acceleration."""
+
+Motion: TypeAlias = tuple[Slip | None, Slip | None, Wrench, Acceleration]
+"""Slip and rolling, or their directions, None where they are held; and what comes of them."""
+
+
+class Onset(NamedTuple):
+    """How the velocities of a contact go on."""
+
+    slip: Slip | None
+    rolling: Slip | None
+    """Slip and rolling, or the directions in which they begin; None where they are held."""
+    rates: tuple[float, ...]
+    """At which rates R >= 0 those that begin grow, slip first."""
+    wrench: Wrench
+    acceleration: Acceleration
+    """What the table does, and how the contact accelerates."""
+
+
+def find_onset(
+    point: ContactPoint,
+    slip: Slip | None,
+    rolling: Slip | None,
+    begins: tuple[bool, bool],
+    held: Wrench | None = None,
+    moved: Moved = forces_and_accelerations,
+) -> Onset:
+    """Directions in which slip, or rolling, or both, begin.
+
+    Parameters
+    ----------
+    point
+        The contact point, floats.
+    slip, rolling
+        Slip and horizontal angular velocity, None where they are zero.
+    begins
+        Whether slip, and rolling, begin; what is zero and does not is held.
+    held
+        What would hold what begins, if that is known and not both begin.
+    moved
+        What the table does.
+
+    Raises
+    ------
+    ArithmeticError
+        If no such direction is found: more than one contact force may be consistent, or none.
+    """
+    parts = [
+        SlipComponent(which) for which, wanted in zip((True, False), begins, strict=True) if wanted
+    ]
+    stiffness = [_stiffness(part, point) for part in parts]
+
+    tried = list[tuple[Sequence[Slip], Motion]]()
+
+    def motion(ways: Sequence[Slip]) -> Motion:
+        if tried and tried[-1][0] is ways:
+            return tried[-1][1]
+        each = dict(zip([part.slip for part in parts], ways, strict=True))
+        both = each.get(True, slip), each.get(False, rolling)
+        result = (*both, *moved(point, *both))
+        tried.append((ways, result))
+        return result
+
+    def response(ways: Sequence[Slip]) -> list[Resisted]:
+        _, _, wrench, acceleration = motion(ways)
+        return [
+            Resisted(
+                part.rate(acceleration, point.top), stiff * size(part.resisting(wrench, point.top))
+            )
+            for part, stiff in zip(parts, stiffness, strict=True)
+        ]
+
+    ways: list[Slip] = []
+    if parts:
+        # Against what would have held it; slip, if both begin, against what holds it once rolling
+        # goes on.
+        beside = (
+            find_onset(point, slip, rolling, (False, True), None, moved).rolling
+            if all(begins)
+            else rolling
+        )
+        against = held or moved(point, slip, beside)[0]
+        ways = directions(
+            response, [scaled(-1.0, part.resisting(against, point.top)) for part in parts]
+        )
+    found = motion(ways)
+    along = [inner(part.rate(found[3], point.top), e) for part, e in zip(parts, ways, strict=True)]
+    return Onset(found[0], found[1], tuple(max(rate, 0.0) for rate in along), found[2], found[3])
+
+
+def resolve_onset(
+    point: ContactPoint,
+    slip: Slip | None,
+    rolling: Slip | None,
+    moved: Moved = forces_and_accelerations,
+) -> tuple[Onset, tuple[bool, bool]]:
+    """How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin
+    again.
+
+    Parameters
+    ----------
+    point
+        The contact point, floats.
+    slip, rolling
+        Slip and horizontal angular velocity, None where they have ended.
+    moved
+        What the table does: in contact, or in an impact.
+
+    Raises
+    ------
+    ArithmeticError
+        If nothing can hold the contact, and it can go on in no direction.
+    """
+    ended = slip is None, rolling is None
+    for begins in CHOICES:
+        if begins[0] > ended[0] or begins[1] > ended[1]:
+            continue
+        try:
+            found = find_onset(point, slip, rolling, begins, None, moved)
+        except ArithmeticError:
+            continue
+        if _admits(point, found):
+            return found, begins
+    raise Unsolved("nothing can hold the contact, and there is no direction in which it can go on")
+
+
+def _admits(point: ContactPoint, found: Onset) -> bool:
+    """Whether the table can hold what does not go on, and the contact closed if the gap would
+    close.
+    """
+    if found.wrench.force[2] <= 0.0 and presses(point.axis, point.momentum, point.top):
+        return False
+    if found.slip is None and slip_reserve(point.top, found.wrench) < 0.0:
+        return False
+    return found.rolling is not None or bool(
+        rolling_reserve(point, found.wrench, found.slip) >= 0.0
+    )
+
+
+def _stiffness(part: SlipComponent, point: ContactPoint) -> float:
+    """How strongly the contact responds to what resists slip, or rolling, 1/kg or 1/(kg m^2)."""
+    responses = [part.rate(point.response(unit), point.top) for unit in part.wrenches(point.top)]
+    sizes = [abs(response[i]) for i, response in enumerate(responses)]
+    return float(sum(sizes[:2]) + sum(sizes[2:]) * (slip_length(point.top.friction) or 0.0))

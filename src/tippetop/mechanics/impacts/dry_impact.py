@@ -1,0 +1,215 @@
+"""Dry friction in an impact: slip, sticking, drilling and rolling with the normal impulse as time.
+
+While the normal impulse p grows, slip zeta (see `stick_slip`) changes by d zeta / dp = A(e), which
+depends on its direction e alone, as the configuration is fixed. Slip that ends stays ended if the
+limit surface admits the impulse that keeps it so; else it goes on along a direction with A = R e, R
+> 0, which then is constant: as in contact (see `find_onset`), with unit normal impulses for forces
+that weight calls for.
+
+A direction along which A(e) = R e stays so: all impulses then grow in a straight line, until slip
+has ended if R < 0. Slip comes to such a direction much faster than it ends where one component of
+it responds much more to friction than another, as sliding does on a small patch, on which drilling
+lasts: equations that are stiff.
+"""
+
+# translate module: numbers
+
+import math
+from dataclasses import dataclass
+from typing import Self
+
+from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
+from tippetop.mechanics.contacts.forces import is_set_valued, slip_length, struck_wrench
+from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_onset import resolve_onset
+from tippetop.mechanics.contacts.slip_variables import (
+    come_to_rest,
+    inner,
+    plus,
+    scaled,
+    size,
+    slip_part,
+)
+from tippetop.mechanics.contacts.wrench import Slip, Wrench
+from tippetop.mechanics.impacts.process import SteppedProcess
+from tippetop.mechanics.impacts.struck_body import FUZZ, Goal, Impulse, first_reach
+from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.runge_kutta import RungeKuttaStep
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import solve
+
+SLIP = SlipComponent(slip=True)
+
+ENDED = 10.0 * FUZZ
+"""Slip, in units of the body's speed, that is none."""
+
+KEPT = 1e-8
+"""How near, relatively, friction must be to what keeps the direction of slip to count as equal to
+it.
+"""
+
+LOOK = 4
+"""After how many steps each it is looked whether slip has come to a direction that it keeps."""
+
+
+def is_dry(top: Top) -> bool:
+    """Whether slip or rolling can end under the law of a top."""
+    return top.resists_rolling or is_set_valued(top.friction)
+
+
+@dataclass(frozen=True)
+class DryProcess(SteppedProcess):
+    """An impact under dry friction, all floats."""
+
+    ended: bool = False
+    stopped: bool = False
+    """Whether slip, and rolling, have ended."""
+    way: Slip | None = None
+    rolling_way: Slip | None = None
+    """The direction in which they go on all the same; None if they are held."""
+
+    @property
+    def top(self) -> Top:
+        """The body and its law of friction."""
+        return self.body.contact.top
+
+    @property
+    def reach(self) -> float | None:
+        """Slip length of the law; None if drilling is free."""
+        return slip_length(self.top.friction)
+
+    def parts(self, velocity: Slip) -> tuple[Slip, Slip]:
+        """Slip zeta and horizontal angular velocity (times the arm's length) of six velocities,
+        m/s.
+        """
+        return slip_part(velocity, self.reach), scaled(self.body.lever, velocity[3:5])
+
+    def zeros(self, velocity: Slip) -> tuple[bool, bool]:
+        """Whether slip, and rolling, have ended at these velocities, if they can."""
+        (slip, rolling), least = self.parts(velocity), ENDED * self.body.speed
+        ended = is_set_valued(self.top.friction) and size(slip) <= least
+        return ended, self.top.resists_rolling and size(rolling) <= least
+
+    def settled(self, here: Impulse) -> Self:
+        """The impact with what has ended after an impulse, and where that goes on if it cannot stay
+        so.
+        """
+        velocity = self.body.velocities(here)
+        ended, stopped = self.zeros(velocity)
+        if not (ended or stopped):
+            return type(self)(self.body) if self.ended or self.stopped else self
+        slip, rolling = self.parts(velocity)
+        go_on = None if ended else slip, None if stopped else rolling
+        found, _ = resolve_onset(self.body.contact, *go_on, struck_motion)
+        return type(self)(self.body, ended, stopped, found.slip, found.rolling)
+
+    def friction(self, velocity: Slip) -> Slip:
+        """Force and torque per unit normal impulse at these velocities, six numbers."""
+        way = self.way if self.ended else slip_part(velocity, self.reach)
+        wrench = struck_wrench(
+            self.body.contact, way, self.rolling_way if self.stopped else velocity[3:5]
+        )
+        return (*wrench.force, *wrench.torque)
+
+    def pace(self, velocity: Slip, unit: Slip) -> float:
+        """Rate of a clock in which slip, and rolling, that end decay exponentially: traction over
+        both.
+        """
+        reach, rate = self.reach, 0.0
+        slip, rolling = size(slip_part(velocity, reach)), size(velocity[3:5])
+        if not self.ended and slip > 0.0:
+            rate += math.hypot(unit[0], unit[1], 0.0 if reach is None else unit[5] / reach) / slip
+        if self.top.resists_rolling and not self.stopped and rolling > 0.0:
+            rate += math.hypot(unit[3], unit[4]) / (self.body.lever**2 * rolling)
+        return rate
+
+    def after(self, here: Impulse) -> State:
+        """The state after an impulse, in which slip and rolling that have ended are exactly
+        zero.
+        """
+        then = self.body.after(here)
+        still = come_to_rest(along_table(then), self.top, *self.zeros(self.body.velocities(here)))
+        return then._replace(momentum=still.momentum, velocity=(*still.velocity, then.velocity[2]))
+
+    def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
+        """An error in slip and rolling, relative to them or to a millionth of the body's speed."""
+        here, there = self.body.velocities(taken.here), self.body.velocities(taken.there)
+        parts = zip(self.parts(here), self.parts(there), self.parts(off), strict=True)
+        least = 1e-6 * self.body.speed
+        ratios = [
+            size(wrong) / max(size(before), size(after), least) for before, after, wrong in parts
+        ]
+        return float(max(*ratios, abs(off[2]) / self.speed))
+
+    def straight(
+        self, here: Impulse, goal: Goal, guess: float, taken: int
+    ) -> tuple[Impulse, bool] | None:
+        """Where a straight line leads, and whether to the goal: slip may end before.
+
+        It is None if slip changes its direction, or begins, or rolling is resisted; or is not
+        looked for.
+        """
+        if taken % LOOK or self.top.resists_rolling or (self.ended and self.way is not None):
+            return None
+        line = None if goal(here) >= 0.0 else self.line(here)
+        if line is None:
+            return None
+        unit, longest = line
+        along = self.body.straight(here, unit)
+        if longest < math.inf:
+            end = along(longest)
+            if goal(end) < 0.0:
+                return end, False
+            guess = longest
+        return first_reach(along, goal, guess), True
+
+    def line(self, here: Impulse) -> tuple[Slip, float] | None:
+        """Force and torque per unit normal impulse on a straight line, and its length until slip
+        ends.
+        """
+        velocity = self.body.velocities(here)
+        slip, unit = self.parts(velocity)[0], self.friction(velocity)
+        if self.ended:
+            return unit, math.inf
+        grip = SLIP.resisting(
+            Wrench((unit[0], unit[1], 1.0), (unit[3], unit[4], unit[5])), self.top
+        )
+        speed, holds = size(slip), size(grip)
+        way, change = scaled(1.0 / speed, slip), slip_part(self.body.change(unit), self.reach)
+        # What changes slip so, and what changes it along itself; their ratio in the metric of
+        # kinetic energy.
+        doing, along = self.impulse_for(change), self.impulse_for(way)
+        inertia = inner(way, along)
+        rate = inner(way, doing) / inertia
+        # Slip has a direction, and a rate, but for rounding.
+        fuzz = FUZZ * self.body.speed / speed
+        if abs(rate) * inertia <= fuzz * holds:
+            rate = 0.0
+        wrong = plus(doing, scaled(-rate, along))
+        # What grows along a wrong direction would go ever farther.
+        if size(wrong) > (KEPT if rate > 0.0 else KEPT + fuzz) * holds:
+            return None
+        drilling = 0.0 if self.reach is None else self.reach * wrong[2]
+        exact = plus(unit, (-wrong[0], -wrong[1], 0.0, 0.0, 0.0, -drilling))
+        return exact, speed / -rate if rate < 0.0 else math.inf
+
+    def impulse_for(self, change: Slip) -> Slip:
+        """What changes slip so: impulses of force, and that of a drilling torque over the law's
+        length.
+        """
+        held, lengths = (
+            ((0, 1), (1.0, 1.0)) if self.reach is None else ((0, 1, 5), (1.0, 1.0, self.reach))
+        )
+        pairs, response = list(zip(held, lengths, strict=True)), self.body.response
+        return tuple(
+            solve([[a * response[i][j] * b for j, b in pairs] for i, a in pairs], list(change))
+        )
+
+
+def struck_motion(
+    point: ContactPoint, slip: Slip | None, rolling: Slip | None
+) -> tuple[Wrench, Acceleration]:
+    """What a unit normal impulse brings with it, and how the velocities change."""
+    wrench = struck_wrench(point, slip, rolling)
+    return wrench, point.response(wrench)

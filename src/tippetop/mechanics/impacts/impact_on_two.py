@@ -1,0 +1,181 @@
+"""An impact of one surface while another touches the table, and is pressed onto it.
+
+With the normal impulse p of the striking contact as time (see `impact`), the other contact j has
+
+    0 <= dp_j,    0 <= dv_nj,    dp_j dv_nj = 0    while its normal velocity v_nj is zero,
+
+and none of its own while it is open. At both, friction follows the law along the way. What the
+table does at the other contact is a force and a torque at the first, too: that of its moment about
+it.
+"""
+
+# translate module: numbers
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+from tippetop.mechanics.contacts.forces import is_set_valued
+from tippetop.mechanics.contacts.slip_variables import plus
+from tippetop.mechanics.contacts.wrench import Slip
+from tippetop.mechanics.impacts.process import STUCK, SteppedProcess, slip_error
+from tippetop.mechanics.impacts.struck_body import (
+    NO_IMPULSE,
+    NORMAL,
+    Goal,
+    Impulse,
+    StruckBody,
+    first_reach,
+)
+from tippetop.mechanics.motion import point_velocity
+from tippetop.mechanics.runge_kutta import RungeKuttaStep
+from tippetop.mechanics.vectors import Vector, add, cross, length, scale
+
+OPEN = 1e-9
+"""Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes.
+"""
+
+SUNK = 1e-7
+"""Normal velocity below zero at which it sinks, in the same units: beyond all errors of steps."""
+
+OTHER = 7
+"""Place of the other contact's normal impulse."""
+
+
+class SlipEndsInImpact(ArithmeticError):
+    """Slip, or rolling, ends under a law that then leaves what resists it open."""
+
+
+@dataclass(frozen=True)
+class ProcessOnTwo(SteppedProcess):
+    """Such an impact, floats: impulses are those of both contacts at what strikes, and work is its
+    own.
+
+    The other contact's normal impulse is one more of their numbers.
+    """
+
+    apart: Vector
+    """From the contact point that strikes to the other one, m."""
+    before: Slip
+    """The six velocities of the other contact at the start."""
+    pressed: bool = True
+    """Whether the other contact is closed."""
+    sunk: bool = False
+    """Whether it sinks, as friction has jammed it."""
+
+    @classmethod
+    def of(cls, body: StruckBody, other: StruckBody) -> Self:
+        """The impact of a body at what strikes, and at what touches."""
+        return cls(body, add(other.contact.arm, scale(-1.0, body.contact.arm)), other.before)
+
+    @property
+    def begin(self) -> Impulse:
+        """No impulse."""
+        return (*NO_IMPULSE, 0.0)
+
+    @property
+    def speed(self) -> float:
+        """Speed at which what strikes sinks, m/s."""
+        return -float(self.body.before[2])
+
+    def normal(self, here: Impulse) -> float:
+        """Normal impulse of what strikes, N s."""
+        return here[NORMAL] - here[OTHER]
+
+    def beside(self, change: Slip) -> Slip:
+        """Change of the six velocities of the other contact, by that of what strikes: it keeps
+        digits.
+        """
+        x, y, z, *turning = change
+        turned = (turning[0], turning[1], turning[2])
+        return (*point_velocity((x, y, z), turned, self.apart), *turned)
+
+    def there(self, here: Impulse) -> Slip:
+        """The six velocities of the other contact after an impulse."""
+        return plus(self.before, self.beside(self.body.change(here)))
+
+    def settled(self, here: Impulse) -> Self:
+        """The impact from some impulses on, whether or not the other contact is closed, or sinks,
+        then.
+        """
+        rise = self.there(here)[2] / self.speed
+        pressed, sunk = bool(rise <= OPEN), bool(rise < -(OPEN if self.sunk else SUNK))
+        same = pressed == self.pressed and sunk == self.sunk
+        return self if same else replace(self, pressed=pressed, sunk=sunk)
+
+    def ends(self, goal: Goal) -> list[Goal]:
+        """The goal, and that the other contact closes, or has come back."""
+        if self.pressed and not self.sunk:
+            return [goal]
+        way = 1.0 if self.sunk else -1.0
+        return [goal, lambda here: way * self.there(here)[2]]
+
+    def slope(self, here: Impulse) -> Impulse:
+        """Rate of the numbers in a clock in which slip that ends decays exponentially."""
+        velocity, resistance = self.body.velocities(here), self.body.contact.top.rolling_resistance
+        rate = 1.0 / self.speed
+        if resistance is not None:
+            rolling = length((velocity[3], velocity[4], 0.0))
+            if self.body.lever * rolling < OPEN * self.speed:
+                raise SlipEndsInImpact("rolling ends in an impact on two surfaces")
+            rate += 2.0 * resistance.length / (self.body.lever**2 * rolling)
+        unit, share = self.sliding(velocity), 0.0
+        pace = self.pace(velocity, unit)
+        if self.pressed:
+            there = self.there(here)
+            x, y, z, *torque = more = self.sliding(there)
+            moment = add((torque[0], torque[1], torque[2]), cross(self.apart, (x, y, z)))
+            at_first = (x, y, z, *moment)
+            share = self.share(unit, at_first)
+            unit = tuple((1.0 - share) * a + share * b for a, b in zip(unit, at_first, strict=True))
+            pace = (1.0 - share) * pace + share * self.pace(there, more)
+        work = (1.0 - share) * velocity[2]
+        return tuple(number / (rate + pace) for number in (*unit, work, share))
+
+    def share(self, unit: Slip, other: Slip) -> float:
+        """Part of the normal impulses that acts at the other contact, which they keep closed.
+
+        Where friction presses it as much as its impulse opens it (Painleve's paradox) it sinks, and
+        has all of them until its slip has changed and it is back, as in an impact of its own.
+        Those, with the friction that they cause, are given: `unit` at what strikes, `other` at the
+        other one.
+        """
+        coupling, own = (self.beside(self.body.change(wrench))[2] for wrench in (unit, other))
+        if self.sunk or (coupling < 0.0 and own <= 0.0):
+            return 1.0
+        return -coupling / (own - coupling) if coupling < 0.0 else 0.0
+
+    def sliding(self, velocity: Slip) -> Slip:
+        """The friction at a contact with these velocities; see `friction`."""
+        slip = length((velocity[0], velocity[1], 0.0))
+        if is_set_valued(self.body.contact.top.friction) and slip < OPEN * self.speed:
+            raise SlipEndsInImpact("slip ends in an impact on two surfaces")
+        return self.friction(velocity)
+
+    def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
+        """What an error counts as: that of the contact where it is the larger.
+
+        A steep law may hold slip so slow that its force has no digits but those beside it.
+        """
+        velocities = [self.there(end) for end in (taken.here, taken.there)]
+        return max(super().wrong(taken, off), slip_error(velocities, self.beside(off), self.speed))
+
+    def straight(
+        self, here: Impulse, goal: Goal, guess: float, taken: int
+    ) -> tuple[Impulse, bool] | None:
+        """The rest if friction has come to hold both slips constant.
+
+        Where they change less along it than a step may err, a steep law would take many steps, and
+        no other way.
+        """
+        if not self.pressed:
+            return None
+        rates = self.slope(here)
+        if not self.normal(rates) > 0.0:
+            return None
+        unit = tuple(rate / self.normal(rates) for rate in rates)
+        change = self.body.change(unit)
+        x, y, rise, *_ = change
+        other = self.beside(change)
+        if not length((x, y, 0.0)) + length((other[0], other[1], 0.0)) < STUCK * rise:
+            return None
+        return first_reach(self.body.straight(here, unit), goal, self.speed / rise), True

@@ -1,0 +1,145 @@
+"""Bodies of several surfaces: the convex hull of all, of which one at a time is asked."""
+
+from typing import Any, NamedTuple
+
+from tippetop.mechanics.surfaces.surface import Support, Surface, gap_guard, support_at
+from tippetop.mechanics.vectors import Scalar, Vector
+
+
+class Hull(NamedTuple):
+    """The surfaces of a body: a `Surface` that stands for the active one."""
+
+    units: tuple[Surface, ...]
+    sizes: tuple[Scalar, ...]
+    """The surfaces, each of unit size, and their sizes, m."""
+    active: int = 0
+    """Number of the active surface."""
+
+    @classmethod
+    def of(cls, surfaces: tuple[Surface, ...]) -> "Hull":
+        """The hull of some surfaces; the first is active."""
+        units = tuple(type(surface).from_proportions(surface.proportions) for surface in surfaces)
+        return cls(units, tuple(surface.size for surface in surfaces))
+
+    @property
+    def each(self) -> tuple["Hull", ...]:
+        """The hull with every surface active in turn."""
+        return tuple(self._replace(active=number) for number in range(len(self.units)))
+
+    def height(self, c: Scalar) -> Scalar:
+        """Support function h(c), m."""
+        return self.sizes[self.active] * self.units[self.active].height(c)
+
+    def slope(self, c: Scalar) -> Scalar:
+        """First derivative h'(c), m."""
+        return self.sizes[self.active] * self.units[self.active].slope(c)
+
+    def curvature(self, c: Scalar) -> Scalar:
+        """Second derivative h''(c), m."""
+        return self.sizes[self.active] * self.units[self.active].curvature(c)
+
+    def support_at(self, axis: Vector) -> Support:
+        """Return the support function of the active surface and its derivatives for an axis, m."""
+        size = self.sizes[self.active]
+        height, slope, curvature = support_at(axis, self.units[self.active])
+        return size * height, size * slope, size * curvature
+
+    def gap_guard(self, axis: Vector, height: Scalar, margin: Scalar) -> Scalar:
+        """Return what falls through zero as the gap of the active surface and a margin do."""
+        size, unit = self.sizes[self.active], self.units[self.active]
+        return gap_guard(axis, height / size, margin / size, unit)
+
+    @property
+    def spherical(self) -> bool:
+        """It is none, though all of its surfaces be spheres."""
+        return False
+
+    @property
+    def size(self) -> Scalar:
+        """The size of the first surface, m, whichever is active."""
+        return self.sizes[0]
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        """Those of every surface, and before them, for all but the first, its size in sizes of the
+        first.
+        """
+        found: tuple[Scalar, ...] = self.units[0].proportions
+        for unit, size in zip(self.units[1:], self.sizes[1:], strict=True):
+            found = (*found, size / self.sizes[0], *unit.proportions)
+        return found
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> "Hull":
+        """Never used: a hull is made by its `make`, which knows of what surfaces."""
+        raise NotImplementedError
+
+    @property
+    def make(self) -> "HullKind":
+        """What remains of it without its numbers."""
+        return HullKind(
+            tuple(type(unit) for unit in self.units),
+            tuple(len(unit.proportions) for unit in self.units),
+            self.active,
+        )
+
+
+class HullKind(NamedTuple):
+    """What remains of a hull when its numbers are taken away."""
+
+    units: tuple[type[Surface], ...]
+    counts: tuple[int, ...]
+    active: int
+
+    def from_proportions(self, proportions: tuple[Scalar, ...]) -> Hull:
+        """Make the hull, whose first surface has unit size, with these proportions."""
+        units: list[Surface] = []
+        sizes: list[Any] = []
+        place = 0
+        for number, (unit, count) in enumerate(zip(self.units, self.counts, strict=True)):
+            sizes.append(proportions[place] if number else 1.0)
+            place += number > 0
+            units.append(unit.from_proportions(tuple(proportions[place : place + count])))
+            place += count
+        return Hull(tuple(units), tuple(sizes), self.active)
+
+
+def each_surface(surface: Surface) -> tuple[Surface, ...]:
+    """A surface alone, or a hull with every surface active in turn."""
+    return surface.each if isinstance(surface, Hull) else (surface,)
+
+
+def sizes(surface: Surface) -> tuple[Scalar, ...]:
+    """The sizes of all surfaces, m."""
+    return surface.sizes if isinstance(surface, Hull) else (surface.size,)
+
+
+def acting(surface: Surface) -> Surface:
+    """A surface, or, of a hull, the one that is active, in its own size."""
+    return surface.units[surface.active] if isinstance(surface, Hull) else surface
+
+
+def is_edge(surface: Surface) -> bool:
+    """Whether a surface, or the one that is active, is an edge, on whose face the body may lie
+    flat.
+    """
+    return hasattr(acting(surface), "face_guard")
+
+
+def outer_height(surface: Surface, c: Scalar) -> Scalar:
+    """Height of the centre of mass above the table while the lowest of all surfaces touches it,
+    m.
+    """
+    first, *others = each_surface(surface)
+    height = first.height(c)
+    for other in others:
+        here = other.height(c)
+        height = 0.5 * (height + here + abs(height - here))
+    return height
+
+
+def lowest_surface(surface: Surface, c: float) -> Surface:
+    """The surface that reaches lowest at this c, active; the first of several that do. Of
+    floats.
+    """
+    return max(each_surface(surface), key=lambda one: float(one.height(c)))
