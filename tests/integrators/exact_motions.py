@@ -5,6 +5,7 @@ make.
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from page_method import PageMethod
@@ -39,6 +40,7 @@ def _adaptive(name, tolerance):
 
 
 STEP = 0.01
+CLASSICAL = Method("rk4", make_integrator("rk4", step=STEP), step=STEP)
 EPS = float(np.finfo(float).eps)
 DEFAULTS = [
     _adaptive("taylor", EPS),
@@ -48,7 +50,7 @@ DEFAULTS = [
     _adaptive("radau", 1e-9),
     _adaptive("bdf", 1e-9),
     _adaptive("lsoda", 1e-11),
-    Method("rk4", make_integrator("rk4", step=STEP), step=STEP),
+    CLASSICAL,
     Method("page-1e-13", PageMethod(), 1e-13),
 ]
 LOOSE = [
@@ -80,6 +82,12 @@ def follow(method, exact, guards=(), **changes):
     exact = replace(exact, **changes)
     motion = replace(exact.motion, guards=tuple(guards))
     return whole(method.integrator.integrate(motion, exact.parameters, exact.start, exact.end))
+
+
+@cache
+def followed(method, exact):
+    """Return the arc of an exact motion to its end; several tests look at the same arcs."""
+    return follow(method, exact)
 
 
 @dataclass(frozen=True)
