@@ -57,6 +57,18 @@ def test_an_event_on_the_table_is_where_the_function_is_zero() -> None:
     assert len(east) == np.count_nonzero(fine[1:] * fine[:-1] < 0.0) > 100
 
 
+@pytest.mark.parametrize("spin", [100.0, 155.0])
+def test_a_run_that_ends_as_the_top_turns_over_has_turned_over(spin: float) -> None:
+    """The end is rounded to either side of the horizontal: of these spins to one side each."""
+    problem = tt.presets.report_problem(spin=spin)
+    run = tt.simulate(problem, 8.0, until=lambda s: s.axis[2])
+    assert float(run["turns_over"]) == pytest.approx(float(run["end_time"]), rel=1e-15)
+    earlier = tt.simulate(problem, float(run["end_time"]) * (1.0 - 1e-14), samples=2)
+    assert np.isnan(earlier["turns_over"])
+    beyond = tt.simulate(problem.replace({"launch.tilt": 2.0}), 0.05, samples=2)
+    assert np.isnan(beyond["turns_over"])
+
+
 @pytest.mark.parametrize("gap", [1e-5, 1e-7])
 def test_two_crossings_close_together_are_both_found(gap: float) -> None:
     """Much closer than the function is evaluated; one that does not come down to zero has none."""

@@ -15,6 +15,7 @@ from tippetop.contact.readings import Rates
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import chebyshev
 from tippetop.integrators.polynomials import Least, Polynomials, least_of_each
+from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
@@ -32,6 +33,12 @@ from tippetop.results.settling import settled_tilt_of_one
 AT_ONCE = 4
 """Steps that are searched together for when something happens first; then so many times more, and
 again.
+"""
+
+END_SPACINGS = 4.0
+"""How many spacings of doubles the time of an event may be off: it is rounded where it is found
+within a step, and where the step's beginning is added. With 0 a run that ends as the top turns over
+may be said not to have turned over; with many, one that ends before it to have.
 """
 
 FORCE_DEGREE = 20
@@ -122,6 +129,8 @@ class Tally:
         last = State.unpack([np.float64(number) for number in state.pack()])
         leasts = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
         self._take_peak(leasts[1])
+        if math.isnan(self._turned) and self._is_turning_at(state, time):
+            self._turned = time
         settled = settled_tilt_of_one(outcome, state, self._start, self._top)
         self.settled_since = self._since(*settled_band(settled))
         return Ends.of_one(
@@ -136,6 +145,15 @@ class Tally:
             (self._turned, settled, self.arrival(*settled_band(settled))),
             float(self._rolls),
         )
+
+    def _is_turning_at(self, state: State, end: float) -> bool:
+        """Return whether n_z falls through 0 at the end of the run, to the rounding of its time.
+
+        A run that an event ends there ends on either side of it.
+        """
+        rate = axis_rate(state.axis, state.momentum, self._top)[2]
+        off = END_SPACINGS * np.spacing(end) * abs(rate)
+        return bool(end > 0.0 > rate and abs(state.axis[2]) <= off)
 
     def _take_peak(self, least: Least) -> None:
         """Take in the least n_z on the way, which the launch may be below already."""
