@@ -1,12 +1,17 @@
 """Sweeps that the tests share: small, quick, and with all that can happen in them."""
 
+import time
+
 import numpy as np
+import pytest
 
 import tippetop as tt
 from tippetop.problem.presets import report_problem
 from tippetop.run import simulate
 from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.axes import Spaced
+
+zarr = pytest.importorskip("zarr")
 
 FIELDS = (
     "final_theta",
@@ -53,6 +58,13 @@ def problem_of(sweep, cell):
 def truth(problem, duration, samples=2001, **options):
     """A run to compare with."""
     return simulate(problem, duration, samples=samples, **options)
+
+
+def wait_for_a_task(store, process):
+    """Wait until the process that fills a store has finished a task of it."""
+    while not (store.exists() and np.any(zarr.open_array(store / "status", mode="r")[...])):
+        assert process.poll() is None
+        time.sleep(0.05)
 
 
 def same(one, other):

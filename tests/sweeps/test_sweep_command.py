@@ -5,13 +5,13 @@ import os
 import re
 import signal
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 import typer
 import xarray as xr
+from sweep_cases import wait_for_a_task
 from typer.testing import CliRunner
 
 import tippetop as tt
@@ -149,6 +149,7 @@ def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path)
         1,
         "--out",
         tmp_path / "a.zarr",
+        "--no-maps",
     )
     (tmp_path / "sweep.toml").write_text(
         'problem = "stem.toml"\nduration = 0.3\n[axes]\n'
@@ -165,7 +166,6 @@ def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path)
                 name,
                 metric,
             )
-    assert (tmp_path / "a.final_theta.png").exists()
 
 
 @pytest.mark.parametrize("name", ["x.txt", "x", "x.zarr.nc"])
@@ -229,7 +229,7 @@ def test_a_picture_of_somebody_else_is_not_overwritten(tmp_path):
 
 def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):
     out = tmp_path / "a.zarr"
-    run(*AXES, *SHORT, "--out", out)
+    run(*AXES, *SHORT, "--out", out, "--no-maps")
     with pytest.raises(
         FileTrouble, match=r"a\.zarr exists; it is finished with .*, and overwritten only"
     ):
@@ -308,11 +308,10 @@ def test_ctrl_c_leaves_a_line_and_a_store_that_resumes(tmp_path, workers):
     script, out = tmp_path / "run.py", tmp_path / "a.zarr"
     script.write_text(INTERRUPTED)
     options = ["--axis", "launch.spin=1:250:120", "--axis", "friction.mu=0.1:1:100", "--no-maps"]
+    options += ["--duration", "1"]
     command = [sys.executable, script, *options, "--workers", str(workers), "--out", out]
     with started(command) as process:
-        while not (out.exists() and np.any(xr.open_zarr(out)["status"].values)):
-            assert process.poll() is None
-            time.sleep(0.05)
+        wait_for_a_task(out, process)
         os.killpg(process.pid, signal.SIGINT)
         _, said, code = ended(process)
     assert code == 130

@@ -10,15 +10,14 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
-from sweep_cases import lively, stored
+from sweep_cases import lively, stored, wait_for_a_task
 
-from campaigns import seeds
+from campaigns import examples, seeds
 from children import started
 from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble
@@ -39,7 +38,7 @@ from tippetop.sweeps import (
 zarr = pytest.importorskip("zarr")
 
 
-DAMAGES = 20
+DAMAGES = examples(check=8, claim=20)
 """In how many places a store is damaged, one after the other."""
 
 
@@ -240,9 +239,7 @@ def test_a_sweep_that_is_being_filled_is_not_replaced(tmp_path, small_tasks):
     other = lively("stop", 7, 3, 0.05, 1e-9)
     with started([sys.executable, "-c", script]) as process:
         assert process.stdout.readline() == "filling\n"
-        while not (path.exists() and np.any(xr.open_zarr(path)["status"].values)):
-            assert process.poll() is None
-            time.sleep(0.05)
+        wait_for_a_task(path, process)
         for overwrite in (True, False):
             with pytest.raises(
                 FileTrouble, match="being filled by another process" if overwrite else "exists"

@@ -21,6 +21,10 @@ def plane():
     return compute(Sweep(report_problem(tilt=1.0), Product(axes), 0.2))
 
 
+SAVED = ("outcome", "turns_over")
+"""Maps that are written: one of words and one of numbers."""
+
+
 @pytest.mark.parametrize("name", [name for name in SWEPT if name != "steps"])
 def test_a_map_holds_every_cell(plane, name, tmp_path):
     figure = phase_map(plane, name)
@@ -36,7 +40,8 @@ def test_a_map_holds_every_cell(plane, name, tmp_path):
     if "flag_meanings" in plane[name].attrs:
         labels = [label.get_text().replace("-", "_") for label in bar.get_yticklabels()]
         assert labels == plane[name].attrs["flag_meanings"].split()
-    save(figure, tmp_path / "map.png")
+    if name in SAVED:
+        save(figure, tmp_path / "map.png")
 
 
 def test_what_is_not_computed_is_not_shown(plane):
@@ -96,7 +101,8 @@ def test_more_axes_go_from_panel_to_panel(plane, count, drawn, tmp_path):
         assert np.array_equal(mesh.get_array(), parts[place]["final_theta"].values.T)
         assert f"{tilts[place]:.4g}" in mesh.axes.get_title(loc="left")
     assert "Gravity (m/s²) = 2" in figure.get_suptitle()
-    save(figure, tmp_path / "map.png")
+    if count < 4:
+        save(figure, tmp_path / "map.png")
 
 
 def test_making_a_map_leaves_the_style_alone(plane):
