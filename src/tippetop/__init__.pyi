@@ -18,6 +18,7 @@ from .fit.least_squares import fit as fit
 from .fit.measurement import Measurement as Measurement
 from .fit.measurement import read_measurement as read_measurement
 from .fit.planning import plan_measurement as plan_measurement
+from .fit.sensitivities import sensitivities as sensitivities
 from .lab.notebook import view as view
 from .lathe.design import design_bowl as design_bowl
 from .lathe.design import design_insert as design_insert

@@ -23,6 +23,7 @@ from tippetop.problem.problem import Problem, require_problem
 from tippetop.results.dataset import assemble
 from tippetop.results.event_functions import EventSearch, OwnEvent, Value
 from tippetop.results.metrics import metrics
+from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import Tally
 from tippetop.results.run_solution import Begin, RunSolution
 from tippetop.results.sample_times import sample_times
@@ -191,23 +192,6 @@ def simulate(
         if callback is not None:
             callback(trajectory.time / trajectory.end)
     outcome = recorder.outcome_of(trajectory)
-    early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
-    found = recorder.finish(trajectory.time, trajectory.state, early)
-    ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
-    peak_tilt, peak_time = tally.peak
-    begin = State.unpack([np.float64(number) for number in state.pack()])
-    end_time = duration if trajectory.time == trajectory.end else trajectory.time * units.time
-    scalars = metrics(ends, begin, top, units) | {
-        "end_time": end_time,
-        "energy_start": float(energy(state, top)) * units.energy,
-        "impact_energy_lost": ends.struck * units.energy,
-        "peak_tilt": peak_tilt,
-        "peak_time": peak_time * units.time,
-        "settled_since": tally.settled_since * units.time,
-        "evaluations": tally.evaluations,
-        "energy_error": recorder.monitor.energy_error,
-        "jellett_drift": recorder.monitor.jellett_drift,
-    }
     attributes = {
         "title": "Motion of a spinning top on a table",
         "problem": problem.to_json(),
@@ -226,14 +210,66 @@ def simulate(
         **_method_attributes([method, *tally.methods.values()], units),
         "tippetop_version": __version__,
     }
-    lists = _event_arrays(trajectory.events, search.events, units)
+    readers = recorder, tally
+    run = read_off(start, readers, trajectory, outcome, grid, duration, search.events, attributes)
+    return (run, RunSolution(start, segments, run)) if dense else run
+
+
+def read_off(
+    start: Begin,
+    readers: tuple[Recorder, Tally],
+    trajectory: Trajectory,
+    outcome: Outcome,
+    grid: NDArray[np.float64],
+    duration: float,
+    own_events: Sequence[OwnEvent] = (),
+    attributes: Mapping[str, Any] | None = None,
+) -> xr.Dataset:
+    """Return the dataset of a trajectory that has ended, from the readers that took its blocks.
+
+    Parameters
+    ----------
+    start
+        The launch, with the top and the units of the trajectory.
+    readers
+        The recorder and the tally that took the trajectory's blocks.
+    trajectory
+        Where the trajectory ended, and its events.
+    outcome
+        How it ended.
+    grid, duration
+        The sample times, shape (k,), and the length that were asked for, s.
+    own_events
+        Events of the user's functions.
+    attributes
+        Attributes of the dataset.
+    """
+    recorder, tally = readers
+    top, units, state = start.top, start.units, start.state
+    early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
+    found = recorder.finish(trajectory.time, trajectory.state, early)
+    ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
+    peak_tilt, peak_time = tally.peak
+    begin = State.unpack([np.float64(number) for number in state.pack()])
+    end_time = duration if trajectory.time == trajectory.end else trajectory.time * units.time
+    scalars = metrics(ends, begin, top, units) | {
+        "end_time": end_time,
+        "energy_start": float(energy(state, top)) * units.energy,
+        "impact_energy_lost": ends.struck * units.energy,
+        "peak_tilt": peak_tilt,
+        "peak_time": peak_time * units.time,
+        "settled_since": tally.settled_since * units.time,
+        "evaluations": tally.evaluations,
+        "energy_error": recorder.monitor.energy_error,
+        "jellett_drift": recorder.monitor.jellett_drift,
+    }
+    lists = _event_arrays(trajectory.events, own_events, units)
     lists |= _flight_arrays(tally.flights.rows, units)
     times = np.append(grid, end_time)[: len(found.times)]
     if early:
         times[-1] = end_time
     variables, modes = start.variables(found), (found.mode, recorder.modes)
-    run = assemble(times, variables, modes, scalars, lists, attributes)
-    return (run, RunSolution(start, segments, run)) if dense else run
+    return assemble(times, variables, modes, scalars, lists, attributes or {})
 
 
 def integrator_of(

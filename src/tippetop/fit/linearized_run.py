@@ -1,0 +1,660 @@
+"""One run and its derivatives: every leg of it followed with what moves it.
+
+A run is a chain of legs. An integrated leg is followed with its variational equations (see
+`variational`). A junction lies between two of them: the guard that ends one, what the automaton
+decides there - a reset, an impact - and the modes that are no equations of motion, such as flights
+and the first and last moments of slip. The derivative of the guard's time gives the state at the
+junction; its own code, called beside the run, gives the derivatives of what comes out of it.
+
+All derivatives at the ends of legs are total ones: they move with the time of the end.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import zip_longest
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tippetop.contact.automaton import Automaton
+from tippetop.contact.block import Block
+from tippetop.contact.choice import automaton_of
+from tippetop.contact.contact_mode import StatedMode
+from tippetop.contact.loosening import BEGUN
+from tippetop.contact.mode import (
+    COMPLETED,
+    FAILURE,
+    IntegratedMode,
+    Mode,
+    ModeEnd,
+    Outcome,
+    Segment,
+    Transition,
+)
+from tippetop.contact.trajectory import Trajectory
+from tippetop.fit.dual import duals, parts_of
+from tippetop.fit.problem_numbers import Direction, Numbers
+from tippetop.fit.variational import TOGETHER, followed
+from tippetop.integrators import make_integrator
+from tippetop.integrators.base import Array, Guard
+from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.problem.problem import Problem
+from tippetop.results.run_metrics import Tally
+from tippetop.results.run_solution import Begin
+from tippetop.run import read_off, simulate
+
+BESIDE = 2e-5
+"""How far beside the run a junction is followed, in natural units.
+
+The error of the rule over four such runs is the fourth power of that over the scale of the motion,
+and rounding over it: slip that is about to end, at 1e-3, is the smallest scale.
+"""
+
+READ_BESIDE = 2e-5
+"""How far beside the run its variables are read off, in natural units: the error is the square of
+that.
+"""
+
+TRIES, SHORTER = 3, 0.1
+"""How often a junction is followed nearer to the run, and how much nearer each time, until the runs
+beside it go through the same events.
+"""
+
+GRAZING = 1e-9
+"""Rate of a guard, in natural units, below which it has no derivative of its time."""
+
+FOUR = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0))
+"""Rule of fourth order for a first derivative: places and weights."""
+
+OTHER_EVENTS = (
+    "runs nearby go through other events: a choice of the contact is at its edge, or at the limit"
+    " of sticking"
+)
+GRAZES = "the motion grazes: the guard that ends it hardly falls"
+UNSOLVED = "the variational equations cannot be followed"
+UNKNOWN = "what follows cannot be found beside the run"
+
+
+class Differs(Exception):
+    """A run beside another goes through other events from some time on, or cannot go on."""
+
+    def __init__(self, reason: str, time: float = 0.0) -> None:
+        super().__init__(reason)
+        self.time = time
+
+
+@dataclass
+class Visit:
+    """A mode that the run went through."""
+
+    mode: Mode
+    """The mode as it was entered."""
+    time: float
+    state: State
+    """When and where it was entered."""
+    segments: list[Segment] = field(default_factory=list)
+    end: ModeEnd | None = None
+    """What ended it, if anything did."""
+    transition: Transition | None = None
+    """What followed."""
+
+    @property
+    def end_time(self) -> float:
+        """When it ended."""
+        return self.segments[-1].end_time
+
+
+@dataclass
+class IntegratedLeg:
+    """A visit of a mode with equations of motion, and its derivatives."""
+
+    visit: Visit
+    solutions: list[DenseSolution]
+    """Numbers and derivatives, of at most `TOGETHER` directions each."""
+    times: tuple[Array, Array]
+    """Derivatives of the times at which it begins and ends, shape (directions,)."""
+    last: Array
+    """Numbers at its end."""
+    changes: Array
+    """Total derivatives of them, shape (directions, size)."""
+    guard: tuple[Guard, float] | None = None
+    """The guard that ends it, and its rate there."""
+    along: dict[int, tuple[Array, Array]] = field(default_factory=dict)
+    """Derivatives along it, once they are asked for, by direction."""
+
+    def displaced(self, mode: Mode, direction: int, change: float, end: float) -> Segment:
+        """Return it as a segment of a run beside the run, to first order.
+
+        `end` is the time of its end.
+        """
+        solution = self.solutions[direction // TOGETHER]
+        moved, rates = self._rates_along(direction)
+        terms = change * rates
+        terms[:, :, :-1] += solution.terms[:, : len(self.last)]
+        ends = solution.knots + change * moved
+        ends[-1] = end
+        last = mode.state(terms[-1].sum(axis=1).tolist()) if len(terms) else self.visit.state
+        mode_end = self.visit.end
+        steps = sum(segment.steps for segment in self.visit.segments)
+        return Segment(mode, DenseSolution(ends, terms), last, mode_end, steps)
+
+    def _rates_along(self, direction: int) -> tuple[Array, Array]:
+        """Return the derivatives of the ends of the steps and, along them, of the polynomials."""
+        if direction in self.along:
+            return self.along[direction]
+        solution = self.solutions[direction // TOGETHER]
+        size, place, knots = len(self.last), 1 + direction % TOGETHER, solution.knots
+        begun, ended = (float(times[direction]) for times in self.times)
+        whole = knots[-1] - knots[0]
+        moved = begun + (ended - begun) * (knots - knots[0]) / (whole if whole > 0.0 else 1.0)
+        degree = solution.terms.shape[2]
+        terms = np.zeros((len(solution.terms), size, degree + 1))
+        terms[:, :, :degree] = solution.terms[:, place * size : (place + 1) * size]
+        if np.any(moved):
+            spans = np.diff(knots)[:, None, None]
+            slopes = solution.terms[:, :size, 1:] * np.arange(1, degree) / spans
+            terms[:, :, : degree - 1] += slopes * moved[:-1, None, None]
+            terms[:, :, 1:degree] += slopes * np.diff(moved)[:, None, None]
+        self.along[direction] = moved, terms
+        return moved, terms
+
+
+@dataclass
+class Junction:
+    """What lies between two integrated legs: transitions, and visits of other modes."""
+
+    before: IntegratedLeg | None
+    """The leg that it ends; None at launch."""
+    transitions: list[Transition]
+    """What follows the leg, or the launch, and each of the visits."""
+    visits: list[Visit]
+    """The visits, one after each transition but the last."""
+    completes: bool = False
+    """Whether the run ends with the last visit."""
+
+
+@dataclass
+class Beside:
+    """A junction followed beside the run."""
+
+    transitions: list[Transition]
+    segments: list[list[Segment]]
+    time: float
+    state: State
+    """When and where it ends."""
+
+
+class LinearizedRun:
+    """A run of a problem, and its derivatives in several directions.
+
+    Attributes
+    ----------
+    failures
+        Why derivatives do not exist and from which time on, natural units, by direction.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        duration: float,
+        grid: Array,
+        directions: Sequence[Direction],
+        *,
+        tolerance: float | None = None,
+    ) -> None:
+        self.problem, self.duration, self.grid = problem, duration, grid
+        self.fields = tuple(directions)
+        self.directions = tuple([one.rates for one in directions])
+        self.numbers = Numbers.of(problem)
+        self.integrator = make_integrator(None, tolerance)
+        self.kind = problem.top.kind
+        self.failures = dict[int, tuple[float, str]]()
+        self.legs = list[IntegratedLeg | Junction]()
+        self._launches = dict[tuple[int, float], Numbers | None]()
+        self._follow()
+        self._differentiate()
+
+    # The run itself.
+
+    def _automaton(self, numbers: Numbers) -> Automaton:
+        found = automaton_of(self.problem.contact, numbers.top_of(self.kind), numbers.natural_units)
+        if getattr(found, "restitution", None) == self.numbers.restitution:
+            found = replace(found, restitution=numbers.restitution)
+        return found
+
+    def _end_of(self, numbers: Numbers) -> float:
+        return float(self.duration / numbers.units[2])
+
+    @np.errstate(all="ignore")
+    def _follow(self) -> None:
+        """Follow the run, and keep every visit."""
+        numbers = self.numbers
+        automaton = self._automaton(numbers)
+        launch = automaton.launch(numbers.start)
+        self.trajectory = Trajectory(automaton, launch, self._end_of(numbers), self.integrator)
+        self.visits, self.launch, entered = list[Visit](), launch, launch
+        visit: Visit | None = None
+        for segment in self.trajectory.segments():
+            if visit is None:
+                assert isinstance(entered.then, Mode)
+                begin = self.visits[-1].end_time if self.visits else 0.0
+                visit = Visit(entered.then, begin, entered.state)
+                self.visits.append(visit)
+            visit.segments.append(segment)
+            if segment.transition is not None:
+                visit.end, visit.transition = segment.mode_end, segment.transition
+                entered, visit = segment.transition, None
+        assert self.trajectory.outcome is not None
+        self.outcome: Outcome = self.trajectory.outcome
+
+    # Its derivatives.
+
+    @np.errstate(all="ignore")
+    def _differentiate(self) -> None:
+        """Go from leg to leg with the derivatives."""
+        count = len(self.directions)
+        times = np.zeros(count)
+        before: IntegratedLeg | None = None
+        transition, visits = self.launch, list(self.visits)
+        while True:
+            junction = Junction(before, [transition], [])
+            while visits and not is_integrated(visits[0].mode):
+                visit = visits.pop(0)
+                junction.visits.append(visit)
+                if visit.transition is None:
+                    break
+                junction.transitions.append(visit.transition)
+            self.legs.append(junction)
+            junction.completes = not visits
+            if not visits:
+                return
+            visit = visits.pop(0)
+            assert isinstance(visit.mode, IntegratedMode)
+            times, changes = self._through(junction, visit, times)
+            before = self._integrated(visit, times, changes)
+            self.legs.append(before)
+            times = before.times[1]
+            if visit.transition is None:
+                return
+            transition = visit.transition
+            if visit.end is not None and visit.end.cause in (COMPLETED, FAILURE):
+                return
+
+    def _through(self, junction: Junction, visit: Visit, times: Array) -> tuple[Array, Array]:
+        """Return the derivatives of the time and numbers with which a leg begins."""
+        mode: Any = visit.mode
+        size = len(mode.numbers(visit.state))
+        found, ahead = np.zeros((len(self.directions), size)), np.zeros(len(self.directions))
+        straight = self._straight(junction, mode)
+        if straight is not None:
+            return ahead, straight
+        for direction in range(len(self.directions)):
+            if direction in self.failures:
+                continue
+            change = self._change(junction, direction)
+            for _ in range(TRIES):
+                try:
+                    for place, weight in FOUR:
+                        beside = self.beside(junction, direction, place * change)
+                        row = np.array(mode_of(beside, junction).numbers(beside.state))
+                        found[direction] += weight / change * row
+                        ahead[direction] += weight / change * (beside.time - visit.time)
+                    break
+                except Differs as differs:
+                    error = differs
+                    found[direction], ahead[direction] = 0.0, 0.0
+                    change *= SHORTER
+            else:
+                self.fail(direction, error.time, str(error))
+        leg = junction.before
+        if leg is not None and not junction.visits:
+            # The axis does not jump: where two surfaces strike in turns, ever sooner, rounding of
+            # the rule in its derivative would grow as fast as the time between them shrinks.
+            found[:, :3], ahead = leg.changes[:, :3], leg.times[1]
+        return ahead, found
+
+    def _straight(self, junction: Junction, mode: Any) -> Array | None:
+        """Return the derivatives of the numbers with which the run begins, where nothing happens at
+        launch.
+        """
+        unchanged = self.launch.state == self.numbers.start and not self.launch.events
+        if junction.before is not None or junction.visits or not unchanged:
+            return None
+        rows = [mode.numbers(State.unpack(rates.state.tolist())) for rates in self.directions]
+        return np.array(rows, dtype=float)
+
+    def _change(self, junction: Junction, direction: int) -> float:
+        """Return how far to go along a direction beside the run."""
+        rates = self.directions[direction]
+        sizes = [np.max(np.abs(rates.top)), abs(rates.restitution)]
+        leg = junction.before
+        if leg is None:
+            sizes.append(np.max(np.abs(rates.state)))
+        else:
+            sizes += [np.max(np.abs(leg.changes[direction])), abs(leg.times[1][direction])]
+        return BESIDE / max(1.0, *map(float, sizes))
+
+    def fail(self, direction: int, time: float, reason: str) -> None:
+        """Say that derivatives do not exist from a time on, which may come before another."""
+        if time < self.failures.get(direction, (np.inf, ""))[0]:
+            self.failures[direction] = time, reason
+
+    def _integrated(self, visit: Visit, times: Array, changes: Array) -> IntegratedLeg:
+        """Follow the variational equations of a visit to its end, and its guard."""
+        mode: Any = visit.mode
+        motion, parameters = mode.motion, np.array(mode.parameters, dtype=float)
+        start = np.array(mode.numbers(visit.state), dtype=float)
+        tangents = changes - np.outer(times, motion.rates(start.tolist(), parameters.tolist()))
+        rates = np.stack([self._parameter_rates(mode, one) for one in self.directions])
+        solutions, last, ended = list[DenseSolution](), start, list[Array]()
+        for first in range(0, len(tangents), TOGETHER):
+            some = slice(first, first + TOGETHER)
+            solved = followed(
+                motion,
+                np.vstack([parameters, rates[some]]),
+                (visit.time, np.vstack([start, tangents[some]])),
+                visit.end_time,
+                self.integrator,
+            )
+            if solved is None:
+                size = (1 + len(tangents[some])) * len(start)
+                solutions.append(DenseSolution.nothing(visit.time, size))
+                for direction in range(first, first + len(tangents[some])):
+                    self.fail(direction, visit.time, UNSOLVED)
+                ended.append(np.zeros_like(tangents[some]))
+                continue
+            solutions.append(solved[0])
+            last = solved[1][0]
+            ended.append(solved[1][1:])
+        final = np.vstack(ended)
+        slopes = np.array(motion.rates(last.tolist(), parameters.tolist()))
+        guard, ahead = self._guard_times(visit, (last, final, slopes), (parameters, rates))
+        total = final + np.outer(ahead, slopes)
+        return IntegratedLeg(visit, solutions, (times, ahead), last, total, guard)
+
+    def _parameter_rates(self, mode: Mode, direction: Numbers) -> Array:
+        """Return the derivatives of the parameters of a mode."""
+        step = 1e-3
+        ends = [self._mode(mode, direction, sign * step).parameters for sign in (-1.0, 1.0)]
+        return np.asarray((np.array(ends[1]) - np.array(ends[0])) / (2.0 * step))
+
+    def _mode(self, mode: Mode, direction: Numbers, change: float) -> Any:
+        """Return a mode with the tops of a run beside."""
+        tops = [self._top(top, direction, change) for top in mode.tops]
+        if isinstance(mode, StatedMode):
+            count = sum(top.kind.numbers for top in mode.tops)
+            return mode.with_tops(tops, mode.parameters[count:])
+        return replace(mode, top=tops[0])
+
+    def _top(self, top: Top, direction: Numbers, change: float) -> Top:
+        """Return the top of a mode in a run beside; a number of its branch does not change."""
+        common = 2 + self.kind.proportions + self.kind.coefficients
+        branch = np.zeros(top.kind.coefficients - self.kind.coefficients)
+        rates = np.concatenate([direction.top[:common], branch, direction.top[common:]])
+        return top.kind.top(tuple((np.array(top.numbers) + change * rates).tolist()))
+
+    def _guard_times(
+        self, visit: Visit, at: tuple[Array, Array, Array], given: tuple[Array, Array]
+    ) -> tuple[tuple[Guard, float] | None, Array]:
+        """Return the guard that ends a visit with its rate, and the derivatives of its time."""
+        (last, tangents, slopes), (parameters, rates) = at, given
+        count = len(tangents)
+        mode: Any = visit.mode
+        guard = guard_of(mode.motion.guards, visit.end)
+        if guard is None:
+            return None, np.array([self._end_rate(one) for one in self.directions])
+        y = duals(last, np.vstack([tangents, slopes]))
+        p = duals(parameters, np.vstack([rates, np.zeros(len(parameters))]))
+        parts = parts_of(guard.value(y, p), count + 1)
+        slope = float(parts[-1])
+        if not abs(slope) > GRAZING:
+            for direction in range(count):
+                self.fail(direction, visit.end_time, GRAZES)
+            return (guard, slope), np.zeros(count)
+        return (guard, slope), -parts[:-1] / slope
+
+    def _end_rate(self, direction: Numbers) -> float:
+        """Return the derivative of the natural time at which the run ends."""
+        return float(-self._end_of(self.numbers) / self.numbers.units[2] * direction.units[2])
+
+    # Runs beside it.
+
+    def beside(
+        self,
+        junction: Junction,
+        direction: int,
+        change: float,
+        end: float | None = None,
+        until: float = np.inf,
+    ) -> Beside:
+        """Follow a junction beside the run.
+
+        Parameters
+        ----------
+        junction
+            The junction.
+        direction, change
+            Which of the directions, and how far along it.
+        end
+            Time at which the run beside ends, if that is known better than to first order.
+        until
+            Time of the run after which visits are not followed further.
+
+        Raises
+        ------
+        Differs
+            If it goes through other events.
+        """
+        numbers = self._beside(direction, change, at_launch=junction.before is None)
+        end = self._end_of(numbers) if end is None else end
+        automaton, nominal = self._automaton(numbers), self._start_of(junction)
+        segments = list[list[Segment]]()
+        try:
+            if junction.before is None:
+                time, transition = 0.0, automaton.launch(numbers.start)
+            else:
+                time, transition = self._left(automaton, junction.before, direction, change)
+            done = [same(transition, junction.transitions[0])]
+            for visit, following in zip_longest(junction.visits, junction.transitions[1:]):
+                nominal = visit.end_time
+                some, how = self._visited(visit, automaton, (time, done[-1]), end)
+                segments.append(some)
+                time = some[-1].end_time
+                if following is None or nominal >= until:
+                    return Beside(done, segments, time, some[-1].end_state)
+                if how is None or visit.end is None or how.cause != visit.end.cause:
+                    raise Differs(OTHER_EVENTS)
+                mode: Any = done[-1].then
+                transition = automaton.follow(mode, how, time, self.integrator)
+                done.append(same(transition, following))
+                some[-1] = replace(some[-1], transition=transition)
+        except (Differs, ArithmeticError, ValueError) as error:
+            reason = str(error) if isinstance(error, Differs) else UNKNOWN
+            raise Differs(reason, nominal) from error
+        return Beside(done, segments, time, done[-1].state)
+
+    def _visited(
+        self, visit: Visit, automaton: Automaton, start: tuple[float, Transition], end: float
+    ) -> tuple[list[Segment], ModeEnd | None]:
+        """Return the segments of a visit beside the run, and how it ended."""
+        time, transition = start
+        mode: Any = transition.then
+        # The end of what begins is no event: it is followed for as long as in the run.
+        begins = visit.end is not None and visit.end.cause == BEGUN
+        until = min(time + (visit.end_time - visit.time), end) if begins else end
+        some = list(mode.segments(time, transition.state, until, self.integrator))
+        if not begins:
+            return some, some[-1].mode_end
+        some += self._begun(mode, automaton, some[-1], until)
+        return some, ModeEnd(BEGUN, some[-1].end_state)
+
+    def _beside(self, direction: int, change: float, *, at_launch: bool) -> Numbers:
+        """Return the numbers of a run beside the run, which are linear in the change.
+
+        Those at launch are the problem's own, where there is such a problem: so contact and the
+        absence of slip hold to rounding, and not to first order.
+        """
+        if not at_launch:
+            return self.numbers.moved(self.directions[direction], change)
+        if (direction, change) not in self._launches:
+            own = self.fields[direction].beside(self.problem, change)
+            self._launches[direction, change] = own
+        own = self._launches[direction, change]
+        return self.numbers.moved(self.directions[direction], change) if own is None else own
+
+    def _begun(
+        self, mode: Mode, automaton: Automaton, last: Segment, until: float
+    ) -> list[Segment]:
+        """Return what follows the end of what begins up to a time, where that comes later."""
+        assert last.mode_end is not None
+        if last.mode_end.cause == COMPLETED:
+            return []
+        if last.mode_end.cause != BEGUN:
+            raise Differs(OTHER_EVENTS)
+        onwards = automaton.follow(mode, last.mode_end, last.end_time, self.integrator)
+        then: Any = onwards.then
+        if not is_integrated(then):
+            raise Differs(OTHER_EVENTS)
+        found = list(then.segments(last.end_time, onwards.state, until, self.integrator))
+        if found[-1].mode_end is None or found[-1].mode_end.cause != COMPLETED:
+            raise Differs(OTHER_EVENTS)
+        return found
+
+    def _left(
+        self, automaton: Automaton, leg: IntegratedLeg, direction: int, change: float
+    ) -> tuple[float, Transition]:
+        """Return when a leg ends beside the run, and what follows there."""
+        assert leg.visit.end is not None
+        rates = self.directions[direction]
+        mode: Any = self._mode(leg.visit.mode, rates, change)
+        y = leg.last + change * leg.changes[direction]
+        time = leg.visit.end_time + change * float(leg.times[1][direction])
+        if leg.guard is not None:
+            # The guard is zero to first order: Newton's method makes it zero.
+            guard, slope = leg.guard
+            parameters = tuple(mode.parameters)
+            late = float(guard.value(y.tolist(), parameters)) / slope
+            y = y - late * np.array(mode.motion.rates(y.tolist(), parameters))
+            time -= late
+        how = replace(leg.visit.end, state=mode.state(y.tolist()))
+        return time, automaton.follow(mode, how, time, self.integrator)
+
+    @np.errstate(all="ignore")
+    def read_beside(self, direction: int, change: float) -> xr.Dataset:
+        """Return the dataset of the run beside the run, to first order in a change.
+
+        Raises
+        ------
+        Differs
+            If it goes through other events.
+        """
+        rates = self.directions[direction]
+        numbers = self._beside(direction, change, at_launch=True)
+        units, end = numbers.natural_units, self._end_of(numbers)
+        failing = self.failures.get(direction, (np.inf, ""))[0]
+        segments, events, launch = list[Segment](), list[Any](), None
+        time, state = 0.0, numbers.start
+        for leg in self.legs:
+            if isinstance(leg, Junction):
+                if self._start_of(leg) >= failing:
+                    break
+                passed = self.beside(leg, direction, change, end, failing)
+                if launch is None:
+                    launch = passed.transitions[0]
+                elif segments:
+                    segments[-1] = replace(segments[-1], transition=passed.transitions[0])
+                events += [event for one in passed.transitions for event in one.events]
+                segments += [segment for some in passed.segments for segment in some]
+                time, state = passed.time, passed.state
+                continue
+            if leg.visit.time >= failing or not len(leg.solutions[direction // TOGETHER].terms):
+                break
+            completes = leg.visit.end is None or leg.visit.end.cause == COMPLETED
+            until = leg.visit.end_time + change * float(leg.times[1][direction])
+            mode = self._mode(leg.visit.mode, rates, change)
+            segment = leg.displaced(mode, direction, change, end if completes else until)
+            segments.append(segment)
+            time, state = segment.end_time, segment.end_state
+        if launch is None:
+            return self.read()
+        trajectory = Trajectory(self._automaton(numbers), launch, end, self.integrator)
+        trajectory.end_at(time, state, self.outcome, self.trajectory.detail)
+        trajectory.events = events
+        start = Begin(
+            numbers.top_of(self.kind), units, numbers.start, numbers.azimuth, launch.energy_lost
+        )
+        recorder = start.recorder(self.grid / units.time)
+        tally = Tally(start.top, start.state)
+        block = Block(segments)
+        recorder.take(block)
+        tally.take(block)
+        return read_off(
+            start, (recorder, tally), trajectory, self.outcome, self.grid, self.duration
+        )
+
+    def read(self) -> xr.Dataset:
+        """Return the dataset of the run itself."""
+        return simulate(self.problem, self.duration, times=self.grid)
+
+    def _start_of(self, junction: Junction) -> float:
+        return 0.0 if junction.before is None else junction.before.visit.end_time
+
+    def reach(self, direction: int) -> float:
+        """Return a change that moves the run by `READ_BESIDE` at most."""
+        rates = self.directions[direction]
+        sizes = [1.0, float(np.max(np.abs(rates.pack())[: len(rates.top) + 10]))]
+        size = 0.0
+        for leg in self.legs:
+            if isinstance(leg, IntegratedLeg) and direction not in self.failures:
+                terms = leg.solutions[direction // TOGETHER].terms
+                size = len(leg.last)
+                place = 1 + direction % TOGETHER
+                tangent = terms[:, place * size : (place + 1) * size, 0]
+                sizes += [float(np.max(np.abs(tangent), initial=0.0))]
+                sizes += [abs(float(times[direction])) for times in leg.times]
+        return READ_BESIDE / max(sizes)
+
+
+def is_integrated(mode: object) -> bool:
+    """Return whether a mode is followed by its equations of motion alone."""
+    return isinstance(mode, IntegratedMode) and (type(mode).segments is IntegratedMode.segments)
+
+
+def mode_of(beside: Beside, junction: Junction) -> Any:
+    """Return the mode that follows a junction beside the run."""
+    return beside.transitions[-1].then
+
+
+def guard_of(guards: Sequence[Guard], end: ModeEnd | None) -> Guard | None:
+    """Return the guard that ended a mode; None if the run did."""
+    if end is None:
+        return None
+    for guard in guards:
+        named = ModeEnd.by_guard(guard.name, end.state)
+        if (named.cause, named.contact) == (end.cause, end.contact):
+            return guard
+    return None
+
+
+def same(transition: Transition, nominal: Transition) -> Transition:
+    """Return a transition if it is that of the run but for its numbers.
+
+    Raises
+    ------
+    Differs
+        If it is not.
+    """
+    kinds = [event.kind for event in transition.events]
+    if kinds != [event.kind for event in nominal.events]:
+        raise Differs(OTHER_EVENTS)
+    one, other = transition.then, nominal.then
+    if isinstance(one, Mode) and isinstance(other, Mode):
+        alike = type(one) is type(other) and (one.label, one.form) == (other.label, other.form)
+    else:
+        alike = one is other
+    if not alike:
+        raise Differs(OTHER_EVENTS)
+    return transition

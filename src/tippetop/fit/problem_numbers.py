@@ -1,0 +1,178 @@
+"""The numbers that a run starts from, and their derivatives with respect to fields of a problem."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tippetop.integrators.base import Array
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Kind, Top, natural_state, natural_units
+from tippetop.mechanics.units import Units
+from tippetop.problem.problem import Problem, get
+from tippetop.support.errors import InvalidInput, is_number
+from tippetop.support.units import exponents_of
+
+SMALLEST_SCALE = 0.01
+"""Least scale of a number, in natural units: numbers such as a rate at launch may be zero."""
+
+STEP = 1e-3
+"""Step of the differences of a problem's numbers, relative to the scale of a field.
+
+The formulae from a problem to its numbers are algebraic: at this step the sixth-order rule leaves
+out less than the rounding, 1e-13, that a shorter step would multiply.
+"""
+
+CENTRAL = ((-3, -1), (-2, 9), (-1, -45), (1, 45), (2, -9), (3, 1))
+"""Sixth-order rule for a first derivative: steps, and weights over 60."""
+
+FORWARD = ((0, -147), (1, 360), (2, -450), (3, 400), (4, -225), (5, 72), (6, -10))
+"""The same on one side, where the field is at its bound."""
+
+BACKWARD = tuple((-step, -weight) for step, weight in FORWARD)
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """What a run starts from, in natural units; or derivatives of that."""
+
+    top: Array
+    """The numbers of the top (see `tippetop.mechanics.top.Top.numbers`)."""
+    state: Array
+    """The ten numbers of the state at launch."""
+    units: Array
+    """Units of mass, length and time, SI."""
+    azimuth: float
+    """Direction into which the axis leans, rad."""
+    restitution: float
+    """Ratio of the impulses of restitution and compression."""
+
+    @classmethod
+    def of(cls, problem: Problem) -> "Numbers":
+        """Return the numbers of a problem."""
+        top = problem.top
+        units = natural_units(top)
+        state = natural_state(problem.start(), units)
+        return cls(
+            np.array(top.numbers, dtype=float),
+            np.array(state.pack(), dtype=float),
+            np.array(units, dtype=float),
+            float(problem.launch.azimuth),
+            float(problem.contact.restitution),
+        )
+
+    @classmethod
+    def unpack(cls, row: Array, top_numbers: int) -> "Numbers":
+        """Return the numbers from a row of them."""
+        ends = np.cumsum([top_numbers, 10, 3])
+        top, state, units, rest = np.split(row, ends)
+        return cls(top, state, units, float(rest[0]), float(rest[1]))
+
+    def pack(self) -> Array:
+        """Return all of them in a row."""
+        return np.concatenate([self.top, self.state, self.units, [self.azimuth, self.restitution]])
+
+    def moved(self, rates: "Numbers", change: float) -> "Numbers":
+        """Return the numbers after a change along derivatives."""
+        return Numbers.unpack(self.pack() + change * rates.pack(), len(self.top))
+
+    def top_of(self, kind: Kind) -> Top:
+        """Return the top of a kind with these numbers."""
+        return kind.top(tuple(self.top.tolist()))
+
+    @property
+    def start(self) -> State:
+        """The state at launch."""
+        return State.unpack(self.state.tolist())
+
+    @property
+    def natural_units(self) -> Units:
+        """The natural units."""
+        return Units(*self.units.tolist())
+
+
+def require_fields(problem: Problem, fields: Sequence[str], argument: str) -> None:
+    """Refuse, with `InvalidInput`, names that are no fields with a number."""
+    for field in fields:
+        try:
+            number = get(problem, field)
+        except InvalidInput as error:
+            raise InvalidInput(argument, field, error.accepted, hint=error.hint) from None
+        if not is_number(number):
+            accepted = "the name of a field with a number, such as friction.mu"
+            raise InvalidInput(argument, field, accepted)
+
+
+def scale_of(problem: Problem, field: str, number: float | None = None) -> float:
+    """Return the size of a field, SI, above which a change of it is large."""
+    units, natural = natural_units(problem.top), 1.0
+    si = problem.quantity(field).units
+    if si not in ("", "1"):
+        length, mass, time, _ = exponents_of(si)
+        natural = units.length**length * units.mass**mass * units.time**time
+    value = float(get(problem, field)) if number is None else number
+    return float(max(abs(value), SMALLEST_SCALE * natural))
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A field of a problem, and how the numbers of the problem move with it."""
+
+    field: str
+    scale: float
+    """Change of the field, SI, by which the numbers move as `rates` says."""
+    rates: Numbers
+    """Derivatives of the numbers, times the scale."""
+
+    @classmethod
+    def of(cls, problem: Problem, field: str) -> "Direction":
+        """Return the direction of a field, by its own scale."""
+        scale = scale_of(problem, field)
+        found = derivatives(problem, field)
+        return cls(field, scale, Numbers.unpack(scale * found.pack(), len(found.top)))
+
+    def beside(self, problem: Problem, change: float) -> Numbers | None:
+        """Return the numbers of a problem beside; None where there is no such problem."""
+        value = float(get(problem, self.field)) + change * self.scale
+        try:
+            return Numbers.of(problem.replace({self.field: value}))
+        except InvalidInput:
+            return None
+
+
+def derivatives(problem: Problem, field: str) -> Numbers:
+    """Return the derivatives of the numbers of a problem with respect to a field.
+
+    They are differences of sixth order of the formulae from problem to numbers, not of runs; they
+    are one-sided where the field is at its bound.
+
+    Raises
+    ------
+    InvalidInput
+        If the problem has no neighbours with other values of the field.
+    """
+    value, step = float(get(problem, field)), STEP * scale_of(problem, field)
+
+    def numbers(change: float) -> Array:
+        return Numbers.of(problem.replace({field: value + change})).pack()
+
+    size = len(Numbers.of(problem).top)
+    for rule in (CENTRAL, FORWARD, BACKWARD):
+        found = _difference(numbers, rule, step)
+        if found is not None:
+            return Numbers.unpack(found, size)
+    accepted = "a field that may be changed by a thousandth of its value"
+    raise InvalidInput("wrt", field, accepted)
+
+
+def _difference(
+    numbers: Callable[[float], Array], rule: Sequence[tuple[int, int]], step: float
+) -> Array | None:
+    """Return a derivative by a rule; None where a problem that the rule needs is refused."""
+    try:
+        rows = [weight * numbers(place * step) for place, weight in rule]
+    except InvalidInput:
+        return None
+    if any(len(row) != len(rows[0]) for row in rows):
+        return None
+    return np.asarray(np.sum(rows, axis=0) / (60.0 * step))

@@ -1,0 +1,269 @@
+"""Derivatives of runs: closed forms, and differences of runs over random problems."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import launches
+import tippetop as tt
+from campaigns import seeds
+from tippetop.fit.dual import Dual, duals, parts_of
+from tippetop.graph.derivatives import tangents
+from tippetop.graph.recording import record
+from tippetop.problem.problem import get
+
+CLOSED = 1e-9
+"""Relative error of derivatives that have a closed form."""
+
+BALL = tt.Body(mass=0.02, shape=tt.Sphere(radius=0.01, center=0.0), I1=8e-7, I3=8e-7)
+
+
+def slope(slopes, name, field):
+    """Return the derivatives of a variable with respect to a field."""
+    return slopes[name].sel(parameter=field).values
+
+
+def test_bouncing_ball():
+    height, restitution, gravity = 0.02, 0.6, 9.8
+    problem = tt.Problem(
+        body=BALL,
+        friction=tt.ViscousFriction(mu=0.1),
+        launch=tt.Launch(tilt=0.3, spin=0.0, gap=height),
+        contact=tt.Contact(liftoff="fly", restitution=restitution),
+        gravity=gravity,
+    )
+    fields = ["launch.gap", "contact.restitution", "gravity", "body.mass"]
+    slopes = tt.sensitivities(problem, 0.3, fields, samples=11)
+    first = (2.0 * height / gravity) ** 0.5
+    times = [first, first * (1.0 + 2.0 * restitution)]
+    times.append(times[-1] + 2.0 * first * restitution**2)
+    lands = [0, 3, 6]  # each landing has touchdown and impact, and a flight follows
+    kinds = tt.simulate(problem, 0.3)["event_kind"].values.tolist()
+    lands = [number for number, kind in enumerate(kinds) if kind == "impact"][:3]
+    by_height = [time / (2.0 * height) for time in times]
+    by_gravity = [-time / (2.0 * gravity) for time in times]
+    by_restitution = [0.0, 2.0 * first, 2.0 * first + 4.0 * first * restitution]
+    expected = {"launch.gap": by_height, "gravity": by_gravity, "body.mass": [0.0] * 3}
+    expected["contact.restitution"] = by_restitution
+    for field, numbers in expected.items():
+        found = slope(slopes, "event_time", field)[lands]
+        np.testing.assert_allclose(found, numbers, rtol=CLOSED, atol=1e-9)
+    # The second impulse is m (1 + e) e (2 g h)^(1/2).
+    speed = (2.0 * gravity * height) ** 0.5
+    impulses = slope(slopes, "event_impulse", "contact.restitution")[lands]
+    by_hand = [0.02 * speed * change for change in (1.0, 1.0 + 2.0 * restitution)]
+    np.testing.assert_allclose(impulses[:2], by_hand, rtol=CLOSED)
+
+
+def test_ball_that_slides_and_then_rolls():
+    speed, mu, gravity = 0.5, 0.2, 9.8
+    problem = tt.Problem(
+        body=BALL,
+        friction=tt.CoulombFriction(mu=mu),
+        launch=tt.Launch(tilt=0.3, spin=0.0, slip=(speed, 0.0)),
+        gravity=gravity,
+    )
+    slopes = tt.sensitivities(problem, 0.2, ["friction.mu", "gravity", "launch.slip.0"], samples=5)
+    end = speed / (3.5 * mu * gravity)
+    for field, expected in (
+        ("friction.mu", -end / mu),
+        ("gravity", -end / gravity),
+        ("launch.slip.0", end / speed),
+    ):
+        sticks = slope(slopes, "event_time", field)[0]
+        np.testing.assert_allclose(sticks, expected, rtol=CLOSED)
+    moves = slope(slopes, "velocity", "launch.slip.0")[-1, 0]
+    np.testing.assert_allclose(moves, 5.0 / 7.0, rtol=CLOSED)
+    np.testing.assert_allclose(slope(slopes, "velocity", "friction.mu")[-1], 0.0, atol=CLOSED)
+
+
+def test_impact_of_a_leaning_rod():
+    """A spheroid falls without turning, and friction is too little to matter: p = (1 + e) m v / (1
+    + m a^2 / I1), a the horizontal distance of the contact point from the centre of mass.
+    """
+    mass, inertia, gap, tilt, gravity, restitution = 0.01, 4e-7, 0.01, 0.7, 9.8, 0.5
+    across, along = 0.004, 0.02
+    problem = tt.Problem(
+        body=tt.Body(mass=mass, shape=tt.Spheroid(across=across, along=along), I1=inertia, I3=1e-7),
+        friction=tt.ViscousFriction(mu=1e-12),
+        launch=tt.Launch(tilt=tilt, spin=0.0, gap=gap),
+        contact=tt.Contact(liftoff="fly", restitution=restitution),
+        gravity=gravity,
+    )
+    duration = 1.1 * (2.0 * gap / gravity) ** 0.5
+    fields = ["body.I1", "launch.gap", "launch.tilt"]
+    slopes = tt.sensitivities(problem, duration, fields, samples=5)
+    place = tt.simulate(problem, duration)["event_kind"].values.tolist().index("impact")
+
+    def impulse(inertia, gap, tilt):
+        cosine, sine = np.cos(tilt), np.sin(tilt)
+        height = np.sqrt((across * sine) ** 2 + (along * cosine) ** 2)
+        arm = (along**2 - across**2) * sine * cosine / height
+        speed = np.sqrt(2.0 * gravity * gap)
+        return (1.0 + restitution) * mass * speed / (1.0 + mass * arm**2 / inertia)
+
+    at = (inertia, gap, tilt)
+    for number, field in enumerate(fields):
+        step = np.zeros(3)
+        step[number] = 1e-30 * at[number]
+        expected = impulse(*(np.array(at) + 1j * step)).imag / step[number]
+        found = slope(slopes, "event_impulse", field)[place]
+        np.testing.assert_allclose(found, expected, rtol=1e-8)
+
+
+def test_restitution_at_its_bound_has_no_derivative():
+    problem = tt.Problem(
+        body=BALL,
+        friction=tt.ViscousFriction(mu=0.1),
+        launch=tt.Launch(tilt=0.3, spin=0.0, gap=0.02),
+        contact=tt.Contact(liftoff="fly", restitution=0.0),
+    )
+    slopes = tt.sensitivities(problem, 0.2, ["contact.restitution", "launch.gap"], samples=21)
+    lands = (2.0 * 0.02 / problem.gravity) ** 0.5
+    before = slopes["time"].values < lands
+    height = slopes["height"].sel(parameter="contact.restitution").values
+    assert np.all(height[before] == 0.0)
+    assert np.all(np.isnan(height[~before]))
+    assert slopes["reason"].values[0] != ""
+    assert slopes["reason"].values[1] == ""
+    assert np.all(np.isfinite(slopes["height"].sel(parameter="launch.gap").values))
+
+
+@pytest.mark.parametrize(
+    ("wrt", "word"),
+    [("friction.mu", "list"), ([], "list"), (["friction.nu"], "nu"), (["contact"], "number")],
+)
+def test_wrong_fields_are_refused(wrt, word):
+    with pytest.raises(tt.InvalidInput, match=word):
+        tt.sensitivities(tt.presets.report_problem(), 0.1, wrt)
+
+
+FIELDS = (
+    *("friction.mu", "friction.patch_radius", "rolling_resistance", "contact.restitution"),
+    *("launch.spin", "launch.tilt", "gravity", "body.mass", "body.I1"),
+)
+
+NAMES = ("theta", "omega3", "normal_force", "x", "energy", "velocity", "event_time", "end_time")
+
+
+def random_case(seed):
+    """Return a random problem, a duration and a field; None where the problem is refused."""
+    try:
+        problem = tt.Problem.model_validate(launches.launch_of(seed))
+    except (ValueError, tt.InvalidInput):
+        return None
+    random = np.random.default_rng(1000 + seed)
+    duration = float(random.uniform(0.1, 1.0))
+
+    def varies(name):
+        try:
+            return isinstance(get(problem, name), float) and get(problem, name) != 0.0
+        except tt.InvalidInput:
+            return False
+
+    return problem, duration, str(random.choice([name for name in FIELDS if varies(name)]))
+
+
+def richardson(problem, times, field, kinds):
+    """Return derivatives by differences extrapolated twice, and an estimate of their error; None
+    where the runs have other events.
+    """
+    value, step = float(get(problem, field)), 1e-5 * abs(float(get(problem, field)))
+    rows = []
+    for part in (1.0, 0.5, 0.25):
+        ends = []
+        for sign in (-1.0, 1.0):
+            beside = problem.replace({field: value + sign * part * step})
+            run = tt.simulate(beside, times[-1], times=times)
+            if run["event_kind"].values.tolist() != kinds:
+                return None
+            ends.append(run)
+        rows.append(
+            {n: (ends[1][n].values - ends[0][n].values) / (2.0 * part * step) for n in NAMES}
+        )
+    found = {}
+    for name in NAMES:
+        if len({row[name].shape for row in rows}) == 1:
+            first, second = ((4.0 * rows[k + 1][name] - rows[k][name]) / 3.0 for k in (0, 1))
+            best = (16.0 * second - first) / 15.0
+            found[name] = best, np.max(np.abs(second - first), initial=0.0)
+    return found
+
+
+@pytest.mark.parametrize("seed", seeds(check=24, sample=60, claim=600))
+@pytest.mark.filterwarnings("ignore::tippetop.Implausible")
+def test_random_problems_agree_with_differences(seed):
+    case = random_case(seed)
+    if case is None:
+        return
+    problem, duration, field = case
+    times = np.linspace(0.0, duration, 41)
+    kinds = tt.simulate(problem, duration, times=times)["event_kind"].values.tolist()
+    slopes = tt.sensitivities(problem, duration, [field], times=times)
+    beside = richardson(problem, times, field, kinds)
+    if beside is None:
+        return
+    assert slopes["reason"].values[0] == ""
+    for name, (expected, error) in beside.items():
+        found = slope(slopes, name, field)
+        largest = max(np.max(np.abs(expected), initial=0.0), 1e-300)
+        off = np.max(np.abs(found - expected), initial=0.0)
+        natural = 1e-9 * np.max(np.abs(expected), initial=0.0)
+        assert off <= 10.0 * error + 1e-7 * largest + natural, (
+            name,
+            off / largest,
+            error / largest,
+        )
+
+
+def test_rules_of_the_graph_are_those_of_dual_numbers():
+    """Both differentiate one function with every operation, by themselves."""
+
+    def function(y, p):
+        a, b, c = y
+        quotient = (a - b) / (1.0 + c * c)
+        powers = abs(a) ** 1.5 + b**3 - c**-2 + (a * a + 1.0) ** 0.25 + (b * b) ** 0.3
+        return [quotient * p[0] - powers, -(a * c) + 2.0 / b, p[0] ** 0.5]
+
+    y, p = (0.3, -1.2, 0.7), (1.9,)
+    parts = np.random.default_rng(3).normal(size=(2, 4))
+    by_duals = function(duals(y, parts[:, :3]), duals(p, parts[:, 3:]))
+
+    def tangent(y, p):
+        outputs = function(y[:3], p[:1])
+        seeds = {y[k].place: (y[3 + k], y[6 + k]) for k in range(3)}
+        seeds[p[0].place] = (p[1], p[2])
+        return [number for one in tangents(outputs, seeds) for number in one]
+
+    recorded = record(tangent, 9, 3)
+    values = evaluated(recorded, [*y, *parts[0, :3], *parts[1, :3]], [*p, *parts[:, 3]])
+    expected = np.concatenate([parts_of(one, 2) for one in by_duals])
+    np.testing.assert_allclose(values, expected, rtol=1e-13)
+    assert Dual(2.0, np.ones(1)) > 1.0
+
+
+def evaluated(recorded, y, p):
+    """Return the outputs of a recorded function, node by node."""
+    values = {}
+    for node in recorded.nodes:
+        operands = [values[operand.place] for operand in node.operands]
+        values[node.place] = {
+            "y": lambda o, n=node: y[int(n.value)],
+            "p": lambda o, n=node: p[int(n.value)],
+            "constant": lambda o, n=node: n.value,
+            "+": lambda o: o[0] + o[1],
+            "-": lambda o: o[0] - o[1],
+            "*": lambda o: o[0] * o[1],
+            "/": lambda o: o[0] / o[1],
+            "negative": lambda o: -o[0],
+            "less": lambda o: float(o[0] < o[1]),
+            "select": lambda o: o[1] if o[0] else o[2],
+            "abs": lambda o: abs(o[0]),
+            "sqrt": lambda o: o[0] ** 0.5,
+            "pow": lambda o: o[0] ** o[1],
+        }[node.name](operands)
+    return [values[output.place] for output in recorded.outputs]
+
+
+warnings.filterwarnings("ignore", category=tt.Implausible)
