@@ -9,7 +9,7 @@ import launches
 import tippetop as tt
 from campaigns import seeds
 from tippetop.fit.dual import Dual, duals, parts_of
-from tippetop.graph.derivatives import tangents
+from tippetop.graph.derivatives import derivatives
 from tippetop.graph.recording import record
 from tippetop.problem.problem import get
 
@@ -234,7 +234,7 @@ def test_rules_of_the_graph_are_those_of_dual_numbers():
         outputs = function(y[:3], p[:1])
         seeds = {y[k].place: (y[3 + k], y[6 + k]) for k in range(3)}
         seeds[p[0].place] = (p[1], p[2])
-        return [number for one in tangents(outputs, seeds) for number in one]
+        return [number for one in derivatives(outputs, seeds) for number in one]
 
     recorded = record(tangent, 9, 3)
     values = evaluated(recorded, [*y, *parts[0, :3], *parts[1, :3]], [*p, *parts[:, 3]])

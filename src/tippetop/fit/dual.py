@@ -8,48 +8,51 @@ from tippetop.integrators.base import Array
 
 
 class Dual:
-    """A number and its derivatives, shape (directions,); comparisons are those of the number."""
+    """A number and its derivatives, shape (directions,); comparisons are those of the number.
+
+    Or many numbers: an array of them, with derivatives of shape (directions, ...).
+    """
 
     __array_ufunc__ = None
     __slots__ = ("parts", "value")
 
-    def __init__(self, value: float, parts: Array) -> None:
+    def __init__(self, value: Any, parts: Array) -> None:
         self.value, self.parts = value, parts
 
-    def __add__(self, other: Any) -> "Dual":
-        if isinstance(other, Dual):
-            return Dual(self.value + other.value, self.parts + other.parts)
-        return Dual(self.value + other, self.parts)
+    def __add__(self, operand: Any) -> "Dual":
+        if isinstance(operand, Dual):
+            return Dual(self.value + operand.value, self.parts + operand.parts)
+        return Dual(self.value + operand, self.parts)
 
     __radd__ = __add__
 
     def __neg__(self) -> "Dual":
         return Dual(-self.value, -self.parts)
 
-    def __sub__(self, other: Any) -> "Dual":
-        if isinstance(other, Dual):
-            return Dual(self.value - other.value, self.parts - other.parts)
-        return Dual(self.value - other, self.parts)
+    def __sub__(self, operand: Any) -> "Dual":
+        if isinstance(operand, Dual):
+            return Dual(self.value - operand.value, self.parts - operand.parts)
+        return Dual(self.value - operand, self.parts)
 
-    def __rsub__(self, other: Any) -> "Dual":
-        return Dual(other - self.value, -self.parts)
+    def __rsub__(self, operand: Any) -> "Dual":
+        return Dual(operand - self.value, -self.parts)
 
-    def __mul__(self, other: Any) -> "Dual":
-        if isinstance(other, Dual):
-            parts = self.parts * other.value + other.parts * self.value
-            return Dual(self.value * other.value, parts)
-        return Dual(self.value * other, self.parts * other)
+    def __mul__(self, operand: Any) -> "Dual":
+        if isinstance(operand, Dual):
+            parts = self.parts * operand.value + operand.parts * self.value
+            return Dual(self.value * operand.value, parts)
+        return Dual(self.value * operand, self.parts * operand)
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Any) -> "Dual":
-        if isinstance(other, Dual):
-            ratio = self.value / other.value
-            return Dual(ratio, (self.parts - ratio * other.parts) / other.value)
-        return Dual(self.value / other, self.parts / other)
+    def __truediv__(self, operand: Any) -> "Dual":
+        if isinstance(operand, Dual):
+            ratio = self.value / operand.value
+            return Dual(ratio, (self.parts - ratio * operand.parts) / operand.value)
+        return Dual(self.value / operand, self.parts / operand)
 
-    def __rtruediv__(self, other: Any) -> "Dual":
-        ratio = other / self.value
+    def __rtruediv__(self, operand: Any) -> "Dual":
+        ratio = operand / self.value
         return Dual(ratio, -ratio / self.value * self.parts)
 
     def __pow__(self, exponent: float) -> "Dual":
@@ -61,20 +64,20 @@ class Dual:
     def __abs__(self) -> "Dual":
         return self if self.value >= 0.0 else -self
 
-    def __lt__(self, other: Any) -> bool:
-        return bool(self.value < value_of(other))
+    def __lt__(self, operand: Any) -> bool:
+        return bool(self.value < value_of(operand))
 
-    def __le__(self, other: Any) -> bool:
-        return bool(self.value <= value_of(other))
+    def __le__(self, operand: Any) -> bool:
+        return bool(self.value <= value_of(operand))
 
-    def __gt__(self, other: Any) -> bool:
-        return bool(self.value > value_of(other))
+    def __gt__(self, operand: Any) -> bool:
+        return bool(self.value > value_of(operand))
 
-    def __ge__(self, other: Any) -> bool:
-        return bool(self.value >= value_of(other))
+    def __ge__(self, operand: Any) -> bool:
+        return bool(self.value >= value_of(operand))
 
-    def __eq__(self, other: object) -> bool:
-        return bool(self.value == value_of(other))
+    def __eq__(self, operand: object) -> bool:
+        return bool(self.value == value_of(operand))
 
     __hash__ = None  # type: ignore[assignment]
 

@@ -21,7 +21,6 @@ from tippetop.contact.automaton import Automaton
 from tippetop.contact.block import Block
 from tippetop.contact.choice import automaton_of
 from tippetop.contact.contact_mode import StatedMode
-from tippetop.contact.loosening import BEGUN
 from tippetop.contact.mode import (
     COMPLETED,
     FAILURE,
@@ -32,9 +31,10 @@ from tippetop.contact.mode import (
     Segment,
     Transition,
 )
+from tippetop.contact.slip_onset import BEGUN
 from tippetop.contact.trajectory import Trajectory
 from tippetop.fit.dual import duals, parts_of
-from tippetop.fit.problem_numbers import Direction, Numbers
+from tippetop.fit.problem_numbers import Direction, StartNumbers
 from tippetop.fit.variational import TOGETHER, followed
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Array, Guard
@@ -44,7 +44,8 @@ from tippetop.mechanics.top import Top
 from tippetop.problem.problem import Problem
 from tippetop.results.run_metrics import Tally
 from tippetop.results.run_solution import Begin
-from tippetop.run import read_off, simulate
+from tippetop.run import read_off
+from tippetop.support.errors import InvalidInput
 
 BESIDE = 2e-5
 """How far beside the run a junction is followed, in natural units.
@@ -113,11 +114,11 @@ class IntegratedLeg:
 
     visit: Visit
     solutions: list[DenseSolution]
-    """Numbers and derivatives, of at most `TOGETHER` directions each."""
+    """StartNumbers and derivatives, of at most `TOGETHER` directions each."""
     times: tuple[Array, Array]
     """Derivatives of the times at which it begins and ends, shape (directions,)."""
     last: Array
-    """Numbers at its end."""
+    """StartNumbers at its end."""
     changes: Array
     """Total derivatives of them, shape (directions, size)."""
     guard: tuple[Guard, float] | None = None
@@ -147,9 +148,9 @@ class IntegratedLeg:
             return self.along[direction]
         solution = self.solutions[direction // TOGETHER]
         size, place, knots = len(self.last), 1 + direction % TOGETHER, solution.knots
-        begun, ended = (float(times[direction]) for times in self.times)
-        whole = knots[-1] - knots[0]
-        moved = begun + (ended - begun) * (knots - knots[0]) / (whole if whole > 0.0 else 1.0)
+        start, stop = (float(times[direction]) for times in self.times)
+        span = knots[-1] - knots[0]
+        moved = start + (stop - start) * (knots - knots[0]) / (span if span > 0.0 else 1.0)
         degree = solution.terms.shape[2]
         terms = np.zeros((len(solution.terms), size, degree + 1))
         terms[:, :, :degree] = solution.terms[:, place * size : (place + 1) * size]
@@ -208,24 +209,24 @@ class LinearizedRun:
         self.problem, self.duration, self.grid = problem, duration, grid
         self.fields = tuple(directions)
         self.directions = tuple([one.rates for one in directions])
-        self.numbers = Numbers.of(problem)
+        self.numbers = StartNumbers.of(problem)
         self.integrator = make_integrator(None, tolerance)
         self.kind = problem.top.kind
         self.failures = dict[int, tuple[float, str]]()
         self.legs = list[IntegratedLeg | Junction]()
-        self._launches = dict[tuple[int, float], Numbers | None]()
+        self._problems = dict[tuple[int, float], Problem | None]()
         self._follow()
         self._differentiate()
 
     # The run itself.
 
-    def _automaton(self, numbers: Numbers) -> Automaton:
-        found = automaton_of(self.problem.contact, numbers.top_of(self.kind), numbers.natural_units)
-        if getattr(found, "restitution", None) == self.numbers.restitution:
-            found = replace(found, restitution=numbers.restitution)
-        return found
+    def _automaton(self, numbers: StartNumbers) -> Automaton:
+        rules = automaton_of(self.problem.contact, numbers.top_of(self.kind), numbers.natural_units)
+        if getattr(rules, "restitution", None) == self.numbers.restitution:
+            rules = replace(rules, restitution=numbers.restitution)
+        return rules
 
-    def _end_of(self, numbers: Numbers) -> float:
+    def _end_of(self, numbers: StartNumbers) -> float:
         return float(self.duration / numbers.units[2])
 
     @np.errstate(all="ignore")
@@ -287,7 +288,7 @@ class LinearizedRun:
         """Return the derivatives of the time and numbers with which a leg begins."""
         mode: Any = visit.mode
         size = len(mode.numbers(visit.state))
-        found, ahead = np.zeros((len(self.directions), size)), np.zeros(len(self.directions))
+        changes, ahead = np.zeros((len(self.directions), size)), np.zeros(len(self.directions))
         straight = self._straight(junction, mode)
         if straight is not None:
             return ahead, straight
@@ -300,12 +301,12 @@ class LinearizedRun:
                     for place, weight in FOUR:
                         beside = self.beside(junction, direction, place * change)
                         row = np.array(mode_of(beside, junction).numbers(beside.state))
-                        found[direction] += weight / change * row
+                        changes[direction] += weight / change * row
                         ahead[direction] += weight / change * (beside.time - visit.time)
                     break
                 except Differs as differs:
                     error = differs
-                    found[direction], ahead[direction] = 0.0, 0.0
+                    changes[direction], ahead[direction] = 0.0, 0.0
                     change *= SHORTER
             else:
                 self.fail(direction, error.time, str(error))
@@ -313,8 +314,8 @@ class LinearizedRun:
         if leg is not None and not junction.visits:
             # The axis does not jump: where two surfaces strike in turns, ever sooner, rounding of
             # the rule in its derivative would grow as fast as the time between them shrinks.
-            found[:, :3], ahead = leg.changes[:, :3], leg.times[1]
-        return ahead, found
+            changes[:, :3], ahead = leg.changes[:, :3], leg.times[1]
+        return ahead, changes
 
     def _straight(self, junction: Junction, mode: Any) -> Array | None:
         """Return the derivatives of the numbers with which the run begins, where nothing happens at
@@ -375,13 +376,13 @@ class LinearizedRun:
         total = final + np.outer(ahead, slopes)
         return IntegratedLeg(visit, solutions, (times, ahead), last, total, guard)
 
-    def _parameter_rates(self, mode: Mode, direction: Numbers) -> Array:
+    def _parameter_rates(self, mode: Mode, direction: StartNumbers) -> Array:
         """Return the derivatives of the parameters of a mode."""
         step = 1e-3
         ends = [self._mode(mode, direction, sign * step).parameters for sign in (-1.0, 1.0)]
         return np.asarray((np.array(ends[1]) - np.array(ends[0])) / (2.0 * step))
 
-    def _mode(self, mode: Mode, direction: Numbers, change: float) -> Any:
+    def _mode(self, mode: Mode, direction: StartNumbers, change: float) -> Any:
         """Return a mode with the tops of a run beside."""
         tops = [self._top(top, direction, change) for top in mode.tops]
         if isinstance(mode, StatedMode):
@@ -389,7 +390,7 @@ class LinearizedRun:
             return mode.with_tops(tops, mode.parameters[count:])
         return replace(mode, top=tops[0])
 
-    def _top(self, top: Top, direction: Numbers, change: float) -> Top:
+    def _top(self, top: Top, direction: StartNumbers, change: float) -> Top:
         """Return the top of a mode in a run beside; a number of its branch does not change."""
         common = 2 + self.kind.proportions + self.kind.coefficients
         branch = np.zeros(top.kind.coefficients - self.kind.coefficients)
@@ -397,10 +398,10 @@ class LinearizedRun:
         return top.kind.top(tuple((np.array(top.numbers) + change * rates).tolist()))
 
     def _guard_times(
-        self, visit: Visit, at: tuple[Array, Array, Array], given: tuple[Array, Array]
+        self, visit: Visit, at: tuple[Array, Array, Array], carried: tuple[Array, Array]
     ) -> tuple[tuple[Guard, float] | None, Array]:
         """Return the guard that ends a visit with its rate, and the derivatives of its time."""
-        (last, tangents, slopes), (parameters, rates) = at, given
+        (last, tangents, slopes), (parameters, rates) = at, carried
         count = len(tangents)
         mode: Any = visit.mode
         guard = guard_of(mode.motion.guards, visit.end)
@@ -416,7 +417,7 @@ class LinearizedRun:
             return (guard, slope), np.zeros(count)
         return (guard, slope), -parts[:-1] / slope
 
-    def _end_rate(self, direction: Numbers) -> float:
+    def _end_rate(self, direction: StartNumbers) -> float:
         """Return the derivative of the natural time at which the run ends."""
         return float(-self._end_of(self.numbers) / self.numbers.units[2] * direction.units[2])
 
@@ -456,7 +457,7 @@ class LinearizedRun:
             if junction.before is None:
                 time, transition = 0.0, automaton.launch(numbers.start)
             else:
-                time, transition = self._left(automaton, junction.before, direction, change)
+                time, transition = self._after_leg(automaton, junction.before, direction, change)
             done = [same(transition, junction.transitions[0])]
             for visit, following in zip_longest(junction.visits, junction.transitions[1:]):
                 nominal = visit.end_time
@@ -488,24 +489,32 @@ class LinearizedRun:
         some = list(mode.segments(time, transition.state, until, self.integrator))
         if not begins:
             return some, some[-1].mode_end
-        some += self._begun(mode, automaton, some[-1], until)
+        some += self._caught_up(mode, automaton, some[-1], until)
         return some, ModeEnd(BEGUN, some[-1].end_state)
 
-    def _beside(self, direction: int, change: float, *, at_launch: bool) -> Numbers:
+    def _beside(self, direction: int, change: float, *, at_launch: bool) -> StartNumbers:
         """Return the numbers of a run beside the run, which are linear in the change.
 
         Those at launch are the problem's own, where there is such a problem: so contact and the
         absence of slip hold to rounding, and not to first order.
         """
-        if not at_launch:
-            return self.numbers.moved(self.directions[direction], change)
-        if (direction, change) not in self._launches:
-            own = self.fields[direction].beside(self.problem, change)
-            self._launches[direction, change] = own
-        own = self._launches[direction, change]
-        return self.numbers.moved(self.directions[direction], change) if own is None else own
+        problem = self._problem_beside(direction, change) if at_launch else None
+        try:
+            numbers = None if problem is None else StartNumbers.of(problem)
+        except InvalidInput:
+            numbers = None
+        return (
+            self.numbers.moved(self.directions[direction], change) if numbers is None else numbers
+        )
 
-    def _begun(
+    def _problem_beside(self, direction: int, change: float) -> Problem | None:
+        """Return the problem beside, if there is one."""
+        key = direction, change
+        if key not in self._problems:
+            self._problems[key] = self.fields[direction].beside(self.problem, change)
+        return self._problems[key]
+
+    def _caught_up(
         self, mode: Mode, automaton: Automaton, last: Segment, until: float
     ) -> list[Segment]:
         """Return what follows the end of what begins up to a time, where that comes later."""
@@ -515,15 +524,15 @@ class LinearizedRun:
         if last.mode_end.cause != BEGUN:
             raise Differs(OTHER_EVENTS)
         onwards = automaton.follow(mode, last.mode_end, last.end_time, self.integrator)
-        then: Any = onwards.then
-        if not is_integrated(then):
+        mode_after: Any = onwards.then
+        if not is_integrated(mode_after):
             raise Differs(OTHER_EVENTS)
-        found = list(then.segments(last.end_time, onwards.state, until, self.integrator))
-        if found[-1].mode_end is None or found[-1].mode_end.cause != COMPLETED:
+        caught_up = list(mode_after.segments(last.end_time, onwards.state, until, self.integrator))
+        if caught_up[-1].mode_end is None or caught_up[-1].mode_end.cause != COMPLETED:
             raise Differs(OTHER_EVENTS)
-        return found
+        return caught_up
 
-    def _left(
+    def _after_leg(
         self, automaton: Automaton, leg: IntegratedLeg, direction: int, change: float
     ) -> tuple[float, Transition]:
         """Return when a leg ends beside the run, and what follows there."""
@@ -586,18 +595,38 @@ class LinearizedRun:
         start = Begin(
             numbers.top_of(self.kind), units, numbers.start, numbers.azimuth, launch.energy_lost
         )
-        recorder = start.recorder(self.grid / units.time)
+        problem = self._problem_beside(direction, change) or self.problem
+        return self._dataset(problem, start, segments, trajectory)
+
+    @np.errstate(all="ignore")
+    def read(self) -> xr.Dataset:
+        """Return the dataset of the run itself."""
+        numbers = self.numbers
+        start = Begin(
+            numbers.top_of(self.kind),
+            numbers.natural_units,
+            numbers.start,
+            numbers.azimuth,
+            self.launch.energy_lost,
+        )
+        segments = [segment for visit in self.visits for segment in visit.segments]
+        return self._dataset(self.problem, start, segments, self.trajectory)
+
+    def _dataset(
+        self,
+        problem: Problem,
+        start: Begin,
+        segments: Sequence[Segment],
+        trajectory: Trajectory,
+    ) -> xr.Dataset:
+        """Return the dataset of segments, of the run or beside it."""
+        recorder = start.recorder(self.grid / start.units.time)
         tally = Tally(start.top, start.state)
         block = Block(segments)
         recorder.take(block)
         tally.take(block)
-        return read_off(
-            start, (recorder, tally), trajectory, self.outcome, self.grid, self.duration
-        )
-
-    def read(self) -> xr.Dataset:
-        """Return the dataset of the run itself."""
-        return simulate(self.problem, self.duration, times=self.grid)
+        run = read_off(start, (recorder, tally), trajectory, self.outcome, self.grid, self.duration)
+        return run.assign_attrs(problem=problem.to_json(), outcome=self.outcome.name.lower())
 
     def _start_of(self, junction: Junction) -> float:
         return 0.0 if junction.before is None else junction.before.visit.end_time
@@ -650,11 +679,12 @@ def same(transition: Transition, nominal: Transition) -> Transition:
     kinds = [event.kind for event in transition.events]
     if kinds != [event.kind for event in nominal.events]:
         raise Differs(OTHER_EVENTS)
-    one, other = transition.then, nominal.then
-    if isinstance(one, Mode) and isinstance(other, Mode):
-        alike = type(one) is type(other) and (one.label, one.form) == (other.label, other.form)
+    mode, expected = transition.then, nominal.then
+    if isinstance(mode, Mode) and isinstance(expected, Mode):
+        names = (mode.label, mode.form), (expected.label, expected.form)
+        alike = type(mode) is type(expected) and names[0] == names[1]
     else:
-        alike = one is other
+        alike = mode is expected
     if not alike:
         raise Differs(OTHER_EVENTS)
     return transition

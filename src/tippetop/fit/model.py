@@ -1,42 +1,33 @@
 """From numbers of a problem and of the instruments to the values of measurements, and back.
 
-`Model.values` follows one run and asks every measurement what it would have shown. `Model.jacobian`
-has the derivatives by extrapolated central differences of runs that go through the same sequence of
-events.
+`Model.predict` asks every measurement what a run would have shown. `Model.jacobian` has the
+derivatives: those of the run (see `linearized_run`) through what each measurement makes of it.
 """
 
+import contextlib
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from tippetop.fit.linearized_run import Differs, LinearizedRun
 from tippetop.fit.measurement import Measurement
+from tippetop.fit.problem_numbers import SMALLEST_SCALE, Direction, require_fields, scale_of
 from tippetop.integrators.base import Array
-from tippetop.mechanics.top import natural_units
 from tippetop.problem.implausible import Implausible
 from tippetop.problem.problem import Problem, get
 from tippetop.run import simulate
-from tippetop.support.errors import InvalidInput, is_number
-from tippetop.support.units import exponents_of
+from tippetop.support.errors import InvalidInput
 
-STEP = 3e-5
+DIFFERENCE_STEP = 3e-5
 """Step of differences, relative to the scale of a number.
 
-The phase of a spin of a thousand radians moves by 0.03 rad: smaller steps meet the rounding of
-runs, larger ones the third derivative of such a phase.
+It is for numbers of an instrument, and for fields where a run has no derivative: the phase of a
+spin of a thousand radians moves by 0.03 rad. Smaller steps meet the rounding of runs, larger ones
+the third derivative of such a phase.
 """
-
-SMALLEST_SCALE = 0.01
-"""Least scale of a number, in natural units: numbers such as a rate at launch may be zero."""
-
-SHORTER = 0.25
-"""How much shorter a step is made where two runs differ in their events."""
-
-TRIES = 4
-"""Steps that are tried until two runs have the same events."""
-
 
 NEGLIGIBLE = 1e-8
 """Change of the values, relative to them, for a change of a number by its size, below which they do
@@ -72,15 +63,7 @@ class Model:
     ) -> None:
         self.problem, self.measurements = problem, tuple(measurements)
         self.fields, self.runs, self.reasons = tuple(fields), 0, dict[str, str]()
-        for field in fields:
-            try:
-                number = get(problem, field)
-            except InvalidInput as error:
-                hint = error.hint
-                raise InvalidInput("vary", field, error.accepted, hint=hint) from None
-            if not is_number(number):
-                accepted = "the name of a field with a number, such as friction.mu"
-                raise InvalidInput("vary", field, accepted)
+        require_fields(problem, self.fields, "vary")
         several = len(self.measurements) > 1
         self.instruments = tuple(
             {name: f"{place}.{name}" if several else name for name in one.observation.parameters}
@@ -137,59 +120,68 @@ class Model:
     def jacobian(self, numbers: Array, *, exact: bool) -> Array:
         """Return the derivatives of the values, shape (values, numbers).
 
-        Those with respect to instruments need no run. Those with respect to fields are differences
-        of two runs, good enough to step by. If `exact`, they are extrapolated from four runs, all
-        with the same events, and a column is NaN where no short step leads to such runs: `reasons`
-        says so.
+        Where the run has no derivative, a column is NaN if `exact`, and `reasons` says why; else it
+        is a difference of runs, good enough to step by.
         """
-        run = self.run(numbers)
+        problem = self.problem_of(numbers)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Implausible)
+            directions = [Direction.of(problem, field) for field in self.fields]
+            linear = LinearizedRun(problem, float(self.times[-1]), self.times, directions)
+        self.runs += 1
+        run = linear.read()
         center = self.predict(numbers, run)
         columns = list[Array]()
         largest = np.nanmax(np.abs(center.values))
         for place, scale in enumerate(self.scales(numbers)):
-            of_field = place < len(self.fields)
-            column = self._column(numbers, place, center, None if of_field else run, exact)
+            if place < len(self.fields):
+                column = self._field_column(numbers, place, linear)
+                if exact and np.isnan(column).all():
+                    self.reasons[self.names[place]] = linear.failures[place][1]
+                elif not exact and place in linear.failures:
+                    column = self._difference(numbers, place, None)
+            else:
+                column = self._difference(numbers, place, run)
             has_effect = not np.max(np.abs(column)) * scale < NEGLIGIBLE * largest
             columns.append(column if has_effect else np.zeros_like(column))
         return np.stack(columns, axis=1)
 
     def scales(self, numbers: Array) -> Array:
         """Return the size of each number, above which a change of it is large."""
-        units = natural_units(self.problem.top)
         sizes = list[float]()
         for name, number in zip(self.names, numbers, strict=False):
-            natural = 1.0
-            if name in self.fields:
-                si = self.problem.quantity(name).units
-                length, mass, time, _ = exponents_of(si) if si not in ("", "1") else (0, 0, 0, 0)
-                natural = units.length**length * units.mass**mass * units.time**time
-            sizes.append(max(abs(number), SMALLEST_SCALE * natural))
+            of_field = name in self.fields
+            least = SMALLEST_SCALE
+            sizes.append(
+                scale_of(self.problem, name, number) if of_field else max(abs(number), least)
+            )
         return np.array(sizes)
 
-    def _column(
-        self, numbers: Array, place: int, center: PredictedData, run: xr.Dataset | None, exact: bool
-    ) -> Array:
-        """Return the derivatives with respect to one number."""
-        step = STEP * self.scales(numbers)[place]
+    def _field_column(self, numbers: Array, place: int, linear: LinearizedRun) -> Array:
+        """Return the derivatives with respect to a field; NaN where the run has none."""
+        if place not in linear.failures:
+            with contextlib.suppress(Differs):
+                change = linear.reach(place)
+                ends = [
+                    self.predict(numbers, linear.read_beside(place, sign * change)).values
+                    for sign in (1.0, -1.0)
+                ]
+                return np.asarray((ends[0] - ends[1]) / (2.0 * change * linear.fields[place].scale))
+        return np.full(len(self.data), np.nan)
 
-        def beside(change: float) -> PredictedData:
+    def _difference(self, numbers: Array, place: int, run: xr.Dataset | None) -> Array:
+        """Return a difference quotient with respect to a number, of a run or of what it shows."""
+        step = DIFFERENCE_STEP * self.scales(numbers)[place]
+        ends, changes = list[Array](), list[float]()
+        for sign in (1.0, -1.0, 0.0):
             moved = numbers.copy()
-            moved[place] += change
-            return self.predict(moved, run)
-
-        if not exact:
-            slope = _slope(beside, center, step, same_events=False)
-            return np.zeros_like(center.values) if slope is None else np.nan_to_num(slope)
-        for _ in range(TRIES):
-            coarse = _slope(beside, center, step)
-            fine = None if coarse is None else _slope(beside, center, 0.5 * step)
-            if coarse is not None and fine is not None:
-                return (4.0 * fine - coarse) / 3.0
-            step *= SHORTER
-        self.reasons[self.names[place]] = (
-            "runs nearby go through other events: the motion grazes, or is at a limit of sticking"
-        )
-        return np.full(len(center.values), np.nan)
+            moved[place] += sign * step
+            with contextlib.suppress(InvalidInput):  # The number is at its bound.
+                ends.append(self.predict(moved, run).values)
+                changes.append(sign * step)
+        if len(ends) < 2:
+            return np.zeros(len(self.data))
+        return np.nan_to_num((ends[0] - ends[1]) / (changes[0] - changes[1]))
 
     def _seen(self, run: xr.Dataset, one: Measurement) -> xr.Dataset:
         """Return the run sampled at the times of a measurement, up to its end."""
@@ -201,38 +193,3 @@ class Model:
     def _instrument(self, names: Mapping[str, str], numbers: Array) -> dict[str, float]:
         """Return the numbers of an instrument by their own names."""
         return {plain: float(numbers[self.names.index(name)]) for plain, name in names.items()}
-
-
-class Rule(NamedTuple):
-    """A rule for a first derivative, of second order."""
-
-    offsets: tuple[float, ...]
-    weights: tuple[float, ...]
-    center: float
-    """Weight of the value in the middle."""
-
-
-CENTRAL = Rule((-1.0, 1.0), (-0.5, 0.5), 0.0)
-FORWARD = Rule((1.0, 2.0), (2.0, -0.5), -1.5)
-BACKWARD = Rule((-1.0, -2.0), (-2.0, 0.5), 1.5)
-
-
-def _slope(
-    beside: Callable[[float], PredictedData],
-    center: PredictedData,
-    step: float,
-    same_events: bool = True,
-) -> Array | None:
-    """Return a difference quotient; None if runs have other events, or there are no runs."""
-    for rule in (CENTRAL, FORWARD, BACKWARD):
-        total = rule.center * center.values
-        try:
-            for offset, weight in zip(rule.offsets, rule.weights, strict=True):
-                prediction = beside(offset * step)
-                if same_events and prediction.events != center.events:
-                    return None
-                total = total + weight * prediction.values
-        except InvalidInput:  # The number is at its bound: look to its inside.
-            continue
-        return total / step
-    return None

@@ -33,7 +33,7 @@ BACKWARD = tuple((-step, -weight) for step, weight in FORWARD)
 
 
 @dataclass(frozen=True)
-class Numbers:
+class StartNumbers:
     """What a run starts from, in natural units; or derivatives of that."""
 
     top: Array
@@ -48,7 +48,7 @@ class Numbers:
     """Ratio of the impulses of restitution and compression."""
 
     @classmethod
-    def of(cls, problem: Problem) -> "Numbers":
+    def of(cls, problem: Problem) -> "StartNumbers":
         """Return the numbers of a problem."""
         top = problem.top
         units = natural_units(top)
@@ -62,19 +62,19 @@ class Numbers:
         )
 
     @classmethod
-    def unpack(cls, row: Array, top_numbers: int) -> "Numbers":
+    def unpack(cls, row: Array, top_numbers: int) -> "StartNumbers":
         """Return the numbers from a row of them."""
         ends = np.cumsum([top_numbers, 10, 3])
-        top, state, units, rest = np.split(row, ends)
-        return cls(top, state, units, float(rest[0]), float(rest[1]))
+        top, state, units, last = np.split(row, ends)
+        return cls(top, state, units, float(last[0]), float(last[1]))
 
     def pack(self) -> Array:
         """Return all of them in a row."""
         return np.concatenate([self.top, self.state, self.units, [self.azimuth, self.restitution]])
 
-    def moved(self, rates: "Numbers", change: float) -> "Numbers":
+    def moved(self, rates: "StartNumbers", change: float) -> "StartNumbers":
         """Return the numbers after a change along derivatives."""
-        return Numbers.unpack(self.pack() + change * rates.pack(), len(self.top))
+        return StartNumbers.unpack(self.pack() + change * rates.pack(), len(self.top))
 
     def top_of(self, kind: Kind) -> Top:
         """Return the top of a kind with these numbers."""
@@ -121,26 +121,26 @@ class Direction:
     field: str
     scale: float
     """Change of the field, SI, by which the numbers move as `rates` says."""
-    rates: Numbers
+    rates: StartNumbers
     """Derivatives of the numbers, times the scale."""
 
     @classmethod
     def of(cls, problem: Problem, field: str) -> "Direction":
         """Return the direction of a field, by its own scale."""
         scale = scale_of(problem, field)
-        found = derivatives(problem, field)
-        return cls(field, scale, Numbers.unpack(scale * found.pack(), len(found.top)))
+        slopes = derivatives(problem, field)
+        return cls(field, scale, StartNumbers.unpack(scale * slopes.pack(), len(slopes.top)))
 
-    def beside(self, problem: Problem, change: float) -> Numbers | None:
-        """Return the numbers of a problem beside; None where there is no such problem."""
+    def beside(self, problem: Problem, change: float) -> Problem | None:
+        """Return the problem after a change of the field; None where there is no such problem."""
         value = float(get(problem, self.field)) + change * self.scale
         try:
-            return Numbers.of(problem.replace({self.field: value}))
+            return problem.replace({self.field: value})
         except InvalidInput:
             return None
 
 
-def derivatives(problem: Problem, field: str) -> Numbers:
+def derivatives(problem: Problem, field: str) -> StartNumbers:
     """Return the derivatives of the numbers of a problem with respect to a field.
 
     They are differences of sixth order of the formulae from problem to numbers, not of runs; they
@@ -154,13 +154,13 @@ def derivatives(problem: Problem, field: str) -> Numbers:
     value, step = float(get(problem, field)), STEP * scale_of(problem, field)
 
     def numbers(change: float) -> Array:
-        return Numbers.of(problem.replace({field: value + change})).pack()
+        return StartNumbers.of(problem.replace({field: value + change})).pack()
 
-    size = len(Numbers.of(problem).top)
+    size = len(StartNumbers.of(problem).top)
     for rule in (CENTRAL, FORWARD, BACKWARD):
-        found = _difference(numbers, rule, step)
-        if found is not None:
-            return Numbers.unpack(found, size)
+        slopes = _difference(numbers, rule, step)
+        if slopes is not None:
+            return StartNumbers.unpack(slopes, size)
     accepted = "a field that may be changed by a thousandth of its value"
     raise InvalidInput("wrt", field, accepted)
 

@@ -118,23 +118,23 @@ def slopes_of(run: LinearizedRun, direction: int) -> tuple[dict[str, xr.Variable
 def _differences(ends: Sequence[xr.Dataset], apart: float, until: float) -> dict[str, xr.Variable]:
     """Return the slopes of the variables between two runs, NaN from a time on."""
     up, down = ends
-    found = dict[str, xr.Variable]()
+    slopes = dict[str, xr.Variable]()
     for name, variable in described().items():
-        one, other = up.variables[name], down.variables[name]
-        if one.dtype.kind != "f":
+        high, low = up.variables[name], down.variables[name]
+        if high.dtype.kind != "f":
             continue
-        slope: Array = (one.values - other.values) / apart
+        slope: Array = (high.values - low.values) / apart
         if variable.units == "rad":
             slope = (np.remainder(slope * apart + 0.5 * TURN, TURN) - 0.5 * TURN) / apart
-        if "time" in one.dims:
+        if "time" in high.dims:
             slope[up.variables["time"].values >= until] = np.nan
-        elif "event" in one.dims:
+        elif "event" in high.dims:
             slope[up.variables["event_time"].values >= until] = np.nan
         elif np.isfinite(until):
             slope = np.full_like(slope, np.nan)
-        found[name] = xr.Variable(one.dims, slope, one.attrs)
-    found["time"] = up.variables["time"]
-    return found
+        slopes[name] = xr.Variable(high.dims, slope, high.attrs)
+    slopes["time"] = up.variables["time"]
+    return slopes
 
 
 def described() -> dict[str, Variable]:

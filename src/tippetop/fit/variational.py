@@ -2,10 +2,13 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
-from tippetop.graph.derivatives import tangents
+from tippetop.fit.dual import Dual, value_of
+from tippetop.graph.derivatives import Tangent, derivatives
+from tippetop.graph.graph import Node
 from tippetop.integrators.base import Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.vectors import Scalar
@@ -19,24 +22,34 @@ def variational_motion(motion: Motion, directions: int) -> Motion:
     """Return the equations of a motion and of its derivatives in several directions.
 
     Its numbers are those of the motion, then their derivatives, direction by direction, and so are
-    its parameters. The derivatives are those of the graph of the motion's rates, so that the
-    equations can be recorded only.
+    its parameters. It is recorded by differentiating the graph of the motion's rates, and evaluated
+    by dual numbers.
     """
     size, count = motion.size, motion.parameters
 
     def rates(y: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
-        outputs = list(motion.rates(y[:size], p[:count]))
-        seeds = {
-            numbers[i].place: tuple(
-                [numbers[i + many * (1 + direction)] for direction in range(directions)]
-            )
-            for numbers, many in ((y, size), (p, count))
-            for i in range(many)
-        }
-        derivatives = tangents(outputs, seeds)
-        return outputs + [
-            derivatives[i][direction] for direction in range(directions) for i in range(size)
+        numbers = [*y[:size], *p[:count]]
+        tangents = [tuple(y[size + i :: size]) for i in range(size)]
+        tangents += [tuple(p[count + i :: count]) for i in range(count)]
+        changes = recorded if isinstance(y[0], Node) else evaluated
+        outputs, slopes = changes(numbers, tangents)
+        return outputs + [slope[direction] for direction in range(directions) for slope in slopes]
+
+    def recorded(numbers: list[Any], tangents: list[Tangent]) -> tuple[list[Any], list[Tangent]]:
+        outputs = list(motion.rates(numbers[:size], numbers[size:]))
+        places = [node.place for node in numbers]
+        return outputs, derivatives(outputs, dict(zip(places, tangents, strict=True)))
+
+    def evaluated(numbers: list[Any], tangents: list[Tangent]) -> tuple[list[Any], list[Tangent]]:
+        instants = np.ones(np.shape(numbers[0]))
+        duals = [
+            Dual(number * instants, np.array([part * instants for part in tangent]))
+            for number, tangent in zip(numbers, tangents, strict=True)
         ]
+        outputs = list(motion.rates(duals[:size], duals[size:]))
+        constant = np.zeros((directions, *instants.shape))
+        slopes = [tuple(one.parts if isinstance(one, Dual) else constant) for one in outputs]
+        return [value_of(one) for one in outputs], slopes
 
     every = 1 + directions
     return Motion(rates, size * every, count * every, (), motion.lasting)

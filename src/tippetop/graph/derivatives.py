@@ -12,7 +12,7 @@ Tangent: TypeAlias = tuple[Scalar, ...]
 """Derivatives of one number in several directions."""
 
 
-def tangents(outputs: Sequence[Scalar], seeds: Mapping[int, Tangent]) -> list[Tangent]:
+def derivatives(outputs: Sequence[Scalar], seeds: Mapping[int, Tangent]) -> list[Tangent]:
     """Return the derivatives of outputs, nodes or plain numbers, in several directions.
 
     Parameters
@@ -26,14 +26,14 @@ def tangents(outputs: Sequence[Scalar], seeds: Mapping[int, Tangent]) -> list[Ta
     nodes = [output for output in outputs if isinstance(output, Node)]
     directions = len(next(iter(seeds.values())))
     zero = (0.0,) * directions
-    derivatives = dict(seeds)
+    tangents = dict(seeds)
     for node in needed(nodes[0].graph, nodes) if nodes else ():
-        if node.place not in derivatives and node.operands:
-            parts = [derivatives.get(operand.place, zero) for operand in node.operands]
+        if node.place not in tangents and node.operands:
+            parts = [tangents.get(operand.place, zero) for operand in node.operands]
             if any(part is not zero for part in parts):
-                derivatives[node.place] = _derived(node, parts)
+                tangents[node.place] = _derived(node, parts)
     return [
-        derivatives.get(output.place, zero) if isinstance(output, Node) else zero
+        tangents.get(output.place, zero) if isinstance(output, Node) else zero
         for output in outputs
     ]
 
