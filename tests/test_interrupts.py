@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from tippetop.support.interrupts import deferred, heard
+from tippetop.support.interrupts import deferred, run_interruptibly
 
 pytestmark = pytest.mark.usefixtures("heard_signals")
 
@@ -66,13 +66,13 @@ def test_ctrl_c_is_heard_while_deaf_work_is_done():
     interrupter = threading.Thread(target=interrupt)
     interrupter.start()
     with pytest.raises(KeyboardInterrupt):
-        heard(work)
+        run_interruptibly(work)
     assert not ended.is_set()
     interrupter.join()
     assert ended.wait(), "all of it"
 
 
 def test_what_comes_of_heard_work_or_is_raised_by_it_is_handed_over():
-    assert heard(threading.current_thread) is not threading.current_thread()
+    assert run_interruptibly(threading.current_thread) is not threading.current_thread()
     with pytest.raises(ZeroDivisionError):
-        heard(lambda: 1 / 0)
+        run_interruptibly(lambda: 1 / 0)

@@ -19,7 +19,7 @@ from tippetop.graph.recording import recordable
 from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.sealed_folders import kept_content
-from tippetop.support.interrupts import heard
+from tippetop.support.interrupts import run_interruptibly
 
 RESOLVED = 1e6
 """Step, in roundings of time, below which only a solution that blows up is followed: these matter
@@ -204,7 +204,7 @@ def _compiled(motion: Motion, tolerance: float, effort: int = EFFORT) -> _Compil
         hy.__version__,
         hy.__file__,
     )
-    content = heard(lambda: kept_content(made, lambda: pickle.dumps(make())))
+    content = run_interruptibly(lambda: kept_content(made, lambda: pickle.dumps(make())))
     try:
         return _Compiled(pickle.loads(content), numbers)
     except Exception:  # noqa: BLE001 - whatever is wrong with what was kept, it can be made anew

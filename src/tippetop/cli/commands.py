@@ -21,7 +21,7 @@ from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
 from tippetop.support.accepted_values import refusal_of
 from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, TippetopError
-from tippetop.support.interrupts import INTERRUPTED, asked_to_end, let_end, let_raise
+from tippetop.support.interrupts import INTERRUPTED, is_interrupted, let_end, let_raise
 
 MISUSE = 2
 """Exit code of a command line that is not accepted."""
@@ -52,7 +52,7 @@ class Commands(TyperGroup):
         except UsageError as error:
             raise _in_a_sentence(error) from None
         except (KeyboardInterrupt, Exception) as error:
-            if not (isinstance(error, KeyboardInterrupt) or asked_to_end()) or isinstance(
+            if not (isinstance(error, KeyboardInterrupt) or is_interrupted()) or isinstance(
                 error, typer.Exit
             ):
                 raise
@@ -121,7 +121,7 @@ def run() -> None:
     try:
         app()
     except TippetopError as error:
-        typer.echo(f"tippetop: {error.told(WORDS)}", err=True)
+        typer.echo(f"tippetop: {error.reworded(WORDS)}", err=True)
         sys.exit(MISUSE)
     except BrokenPipeError:
         # The reader has closed the pipe, as in `tippetop ... | head`.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from tippetop.support.interrupts import hear
+from tippetop.support.interrupts import reraise_interrupt
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -73,7 +73,7 @@ def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
     The callback takes the work done, the work in total and, if it changes, the text shown.
     """
     if not sys.stderr.isatty():
-        yield lambda *_: hear()
+        yield lambda *_: reraise_interrupt()
         return
     from rich.console import Console  # noqa: PLC0415
     from rich.markup import escape  # noqa: PLC0415
@@ -84,7 +84,7 @@ def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
         task = bar.add_task(escape(f"{what:<28}"), total=None)
 
         def tell(done: float, total: float, now: str = what) -> None:
-            hear()
+            reraise_interrupt()
             bar.update(task, completed=done, total=total, description=escape(f"{now:<28}"))
 
         yield tell

@@ -9,7 +9,7 @@ from tippetop.integrators.base import Integrator as Integrator
 from tippetop.integrators.base import Motion as Motion
 from tippetop.integrators.base import require_tolerance
 from tippetop.support.errors import MISSING, InvalidInput, is_number
-from tippetop.support.interrupts import import_heard
+from tippetop.support.interrupts import import_interruptibly
 from tippetop.support.suggestions import not_one_of
 
 NAMES = [*TOLERANCES, "rk4"]
@@ -85,7 +85,7 @@ def _adaptive(name: str, tolerance: float) -> Integrator:
     """Make an integrator that chooses its steps; its module is imported only now, which is slow."""
     match name:
         case "taylor":
-            import_heard("tippetop.integrators.taylor")
+            import_interruptibly("tippetop.integrators.taylor")
             from tippetop.integrators.taylor import Taylor  # noqa: PLC0415
 
             return Taylor(tolerance)

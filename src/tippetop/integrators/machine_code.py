@@ -11,7 +11,7 @@ from tippetop.graph.llvm import llvm_source
 from tippetop.graph.recording import Recorded
 from tippetop.integrators.base import Array
 from tippetop.integrators.sealed_folders import kept_content
-from tippetop.support.interrupts import heard
+from tippetop.support.interrupts import run_interruptibly
 
 EFFORT = 1
 """How hard the compiler tries, of 3: with 2 it takes an eighth longer, and its code runs no faster;
@@ -42,9 +42,9 @@ def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
 def loaded(source: str, effort: int = EFFORT) -> llvm.ExecutionEngine:
     """The machine code of a source, compiled or taken from the cache."""
     made = (source, llvmlite.__version__, effort)
-    content = heard(lambda: kept_content(made, lambda: _compiled(source, effort)))
+    content = run_interruptibly(lambda: kept_content(made, lambda: _compiled(source, effort)))
     if not content.startswith(FORMATS):
-        content = heard(lambda: _compiled(source, effort))
+        content = run_interruptibly(lambda: _compiled(source, effort))
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(content))
     engine.finalize_object()

@@ -1,6 +1,6 @@
-"""What every room uses and none owns: errors, files, interrupts, processes and checked fields.
+"""Shared services of all rooms: errors, files, interrupts, processes, units, checked fields.
 
-Read `errors` first: every refusal in the package is one of its classes. `validation` holds the
-base class of checked, frozen parts of a problem; `accepted_values`, `field_paths` and `parsing`
-serve it. `files`, `interrupts` and `processes` stand alone.
+Read `errors` first: every refusal in the package is one of its classes. `validation` holds the base
+class of checked, frozen parts of a problem; `accepted_values`, `field_paths`, `suggestions`,
+`units` and `parsing` serve it. `files`, `interrupts` and `processes` need none of these.
 """

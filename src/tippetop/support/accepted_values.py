@@ -1,4 +1,4 @@
-"""What fields accept, in words, and the refusals of other values."""
+"""Accepted values of fields in words, and the refusals of all others."""
 
 import inspect
 import math
@@ -15,9 +15,10 @@ from tippetop.support.units import number_hint, written
 
 
 def refusal_of(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> InvalidInput:
-    """Return the refusal of a value of one of some fields, by their names, from pydantic's.
+    """Return the refusal of a field's value, made of an error of pydantic.
 
-    Without the field of a number that is out of its range, the limits are those that the error has.
+    `fields` are the declared fields by their names. For a number out of range whose field is not
+    among them, the limits are taken from pydantic's error.
     """
     place = [*map(str, detail["loc"]), ""]
     field, value = ".".join(place[:-1]), detail["input"]
@@ -34,7 +35,7 @@ def refusal_of(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Invalid
         case "missing" if len(detail["loc"]) > 1 and (count := count_of(info)):
             return InvalidInput(place[0], value, f"{count} numbers")
         case "missing":
-            return InvalidInput(field, MISSING, _wanted(info))
+            return InvalidInput(field, MISSING, _accepted_values(info))
         case "literal_error":
             words = get_args(info.annotation) if info and len(place) == 2 else ()
             if words:
@@ -55,7 +56,7 @@ def refusal_of(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Invalid
 
 
 def degrees_hint(value: Any, accepted: str) -> str:
-    """Return how an angle in degrees is written, for one that is too large in radians."""
+    """Return how to write an angle in degrees; "" unless the value is too large in radians."""
     angle = accepted.endswith("at most pi") and isinstance(value, float | int)
     if angle and math.pi < value <= 180.0:
         degrees = short(value)
@@ -63,8 +64,8 @@ def degrees_hint(value: Any, accepted: str) -> str:
     return ""
 
 
-def _wanted(info: FieldInfo | None) -> str:
-    """What a field without a default takes, in words."""
+def _accepted_values(info: FieldInfo | None) -> str:
+    """Return in words what a field without a default takes."""
     kinds = (info.annotation, *get_args(info.annotation)) if info else ()
     if any(inspect.isclass(kind) and issubclass(kind, BaseModel) for kind in kinds):
         return "a table of its fields"
@@ -76,7 +77,7 @@ def _wanted(info: FieldInfo | None) -> str:
 
 
 def count_of(info: FieldInfo | None) -> str:
-    """Return how many numbers a field lists, in words; "" where that is not said."""
+    """Return how many numbers a field lists, in words; "" if it is no list of fixed length."""
     kinds = (info.annotation, *get_args(info.annotation)) if info else ()
     listed = [get_args(kind) for kind in kinds if get_origin(kind) is tuple]
     if not info or not listed or Ellipsis in listed[0]:
@@ -86,7 +87,7 @@ def count_of(info: FieldInfo | None) -> str:
 
 
 def range_of(info: FieldInfo) -> str:
-    """The constraints of a number in words: "a number greater than 0 and less than 1"."""
+    """Return the limits of a number in words: "a number greater than 0 and less than 1"."""
     limits = {
         name: getattr(constraint, name)
         for constraint in info.metadata
@@ -100,7 +101,7 @@ _LIMITS = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at 
 
 
 def _ranged(limits: Mapping[str, Any], kind: str = "a number") -> str:
-    """A kind of number within some limits."""
+    """Return a kind of number with its limits, in words."""
     bounds = [
         f"{words} {'pi' if limits[name] == math.pi else format(limits[name], 'g')}"
         for name, words in _LIMITS.items()

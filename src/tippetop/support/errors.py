@@ -1,10 +1,10 @@
-"""What can go wrong, each with one sentence that says what to do.
+"""Exceptions of the package, each with one sentence that says what to do.
 
     TippetopError
     |-- InvalidInput (ValueError)      names the field, the value and what is accepted
     |-- FileTrouble (OSError)          a file that cannot be read, or may not be overwritten
     |-- NotConverged (RuntimeError)    a fit that did not reach a minimum
-    `-- Unavailable (RuntimeError)     something optional that is not installed here
+    `-- Unavailable (RuntimeError)     an optional library or program that is not installed
 
 How a run ends is not an error: see `tippetop.contact.mode.Outcome`.
 """
@@ -22,17 +22,17 @@ class _Missing:
 
 
 MISSING = _Missing()
-"""Stands for a value that was not given."""
+"""Stands in refusals for a value that is missing."""
 
 
 class Described(NamedTuple):
-    """A refused value that sentences describe instead of writing it out."""
+    """Refused value that sentences show by a description."""
 
     description: str
 
 
 OVERWRITE, RESUME, OTHER_OUT = "overwrite=True", "resume=True", "another out"
-"""How sentences name what is asked for in Python; a command has its own words for these."""
+"""How sentences name arguments in Python; the command line names its options instead."""
 
 
 # translate: skip
@@ -49,41 +49,41 @@ class TippetopError(Exception):
     mu: -1 is not a number at least 0
     """
 
-    def told(self, words: Mapping[str, str]) -> str:
-        """The sentence with other words for what is asked for, where it ends with such."""
+    def reworded(self, words: Mapping[str, str]) -> str:
+        """Return the sentence with names of arguments in Python replaced by `words` of theirs."""
         sentence = str(self)
-        for python, other in words.items():
-            sentence = other.join(sentence.rsplit(python, 1))
+        for python, option in words.items():
+            sentence = option.join(sentence.rsplit(python, 1))
         return sentence
 
 
 LONGEST_FIELD = 100
-"""How much of a field's name a sentence shows, letters."""
+"""Letters of a field's name that a sentence shows at most."""
 
 
 class InvalidInput(TippetopError, ValueError):
-    """A value that is refused, in a sentence with its field and what to write instead.
+    """Refusal of a value, in a sentence with its field and what to write instead.
 
-    The sentence is "field: value is not what is accepted (hint)" or, with a fault of its own,
-    "field: value has this fault (write what is accepted)".
+    The sentence is "<field>: <value> is not <accepted> (<hint>)" or, if a fault is stated,
+    "<field>: <value> <fault> (write <accepted>)".
 
     Parameters
     ----------
     field
         Where the value stands, dotted: ``launch.tilt``.
     value
-        The value given; a `Described` one is shown in its words.
+        The refused value; a `Described` one is shown by its description.
     accepted
         What is accepted, as the end of "is not ..." or "write ...".
     fault
-        What is wrong with the value, as the end of "<field>: <value> ...", where "is not
-        <accepted>" does not say it.
+        What is wrong with the value, as the end of "<field>: <value> ..."; "" if "is not
+        <accepted>" says it.
     hint
-        What to write instead, where that is more than what is accepted.
+        What to write instead, if that is more than `accepted` says.
     others
-        How many more values of the same input are refused.
+        How many further values of the same input are refused.
     file
-        The file that the value is in; "" where it is in none.
+        The file that the value is in; "" if it is in none.
 
     Examples
     --------
@@ -113,16 +113,16 @@ class InvalidInput(TippetopError, ValueError):
         head = f"{name} in {file}" if file else name
         note = hint
         if value is MISSING:
-            said = f"{head} is missing"
+            statement = f"{head} is missing"
         elif fault:
-            said = f"{head}: {short(value)} {fault}"
+            statement = f"{head}: {short(value)} {fault}"
         else:
-            said = f"{head}: {short(value)} is not {accepted}"
+            statement = f"{head}: {short(value)} is not {accepted}"
         if not hint and accepted and (fault or value is MISSING):
             note = f"write {accepted}"
         noted = f" ({note})" if note else ""
-        more = f" (and {others} more)" if others else ""
-        super().__init__(f"{said}{noted}{more}")
+        counted = f" (and {others} more)" if others else ""
+        super().__init__(f"{statement}{noted}{counted}")
         self.field = field
         self.value = value
         self.accepted = accepted
@@ -131,9 +131,10 @@ class InvalidInput(TippetopError, ValueError):
         self.others = others
         self.file = file
 
-    def within(self, part: str, more: int = 0) -> "InvalidInput":
-        """The same of a field of a part, or of the part itself if it names none; more are refused
-        besides.
+    def within(self, part: str, further: int = 0) -> "InvalidInput":
+        """Return this refusal with the name of a part put before that of the field.
+
+        `further` is how many further values of the same input are refused.
         """
         field = ".".join([name for name in (part, self.field) if name])
         return InvalidInput(
@@ -142,13 +143,13 @@ class InvalidInput(TippetopError, ValueError):
             self.accepted,
             self.fault,
             self.hint,
-            self.others + more,
+            self.others + further,
             self.file,
         )
 
     # translate: skip
     def in_file(self, file: str) -> "InvalidInput":
-        """The same of a value in a file."""
+        """Return this refusal with the name of the file that the value is in."""
         return InvalidInput(
             self.field, self.value, self.accepted, self.fault, self.hint, self.others, file
         )
@@ -168,7 +169,7 @@ class InvalidInput(TippetopError, ValueError):
 
 # translate: skip
 class FileTrouble(TippetopError, OSError):
-    """A file that cannot be read or written, or that exists and may not be overwritten.
+    """Error of a file that cannot be read or written, or may not be overwritten.
 
     Examples
     --------
@@ -183,7 +184,7 @@ class FileTrouble(TippetopError, OSError):
 
 # translate: skip
 class NotConverged(TippetopError, RuntimeError):
-    """A search for the best numbers that did not reach a minimum: there is no result.
+    """Error of a fit or search that did not reach a minimum: there is no result.
 
     Examples
     --------
@@ -195,7 +196,7 @@ class NotConverged(TippetopError, RuntimeError):
 
 # translate: skip
 class Unavailable(TippetopError, RuntimeError):
-    """Something optional that is asked for and not installed.
+    """Error of an optional library or program that is needed and not installed.
 
     Examples
     --------
@@ -214,7 +215,7 @@ def require(field: str, value: object, kind: type, accepted: str) -> None:
 
 # translate: runtime
 def is_number(value: object) -> bool:
-    """Whether a value is a finite real number, as a float too."""
+    """Return whether a value is a finite real number that a float can hold."""
     try:
         return isinstance(value, Real) and not isinstance(value, bool) and isfinite(value)
     except OverflowError:
@@ -223,15 +224,13 @@ def is_number(value: object) -> bool:
 
 # translate: runtime
 def is_whole(value: object) -> TypeGuard[int]:
-    """Whether a value is a whole number, also of numpy, and no truth value."""
+    """Return whether a value is a whole number, of Python or NumPy, and no truth value."""
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 # translate: runtime
 def short(value: object, limit: int = 60) -> str:
-    """A value as it would be typed, numbers as briefly as can be, cut to at most `limit`
-    characters.
-    """
+    """Return a value as it would be typed, cut to at most `limit` characters."""
     try:
         text = _typed(value)
     except RecursionError:
@@ -245,7 +244,7 @@ def short(value: object, limit: int = 60) -> str:
 
 
 BEGINS_A_NUMBER = "0123456789+-.,"
-"""What numbers begin with."""
+"""Characters that numbers begin with."""
 
 
 # translate: skip
@@ -257,5 +256,5 @@ def _typed(value: object) -> str:
         return f"[{inner}]" if isinstance(value, list) else f"({inner})"
     if isinstance(value, str) and value[:1] in BEGINS_A_NUMBER and value.isprintable() and value:
         return value
-    # What was refused may have been made a fraction on its way: a whole number is told as one.
+    # Validation may have turned a whole number into a float: it is shown without ".0".
     return repr(float(value) + 0.0).removesuffix(".0") if isinstance(value, float) else repr(value)

@@ -1,4 +1,4 @@
-"""Fields in parts of parts, by their names with dots."""
+"""Fields of nested parts, addressed by dotted names such as "body.shape.radius"."""
 
 # translate module: by hand in part.js
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def numbers_of(value: Any, name: str = "") -> Iterator[tuple[str, float]]:
-    """Every number in the fields, with its name with dots."""
+    """Yield every number in the fields, with its dotted name."""
     match value:
         case dict():
             for field, inner in value.items():
@@ -19,42 +19,42 @@ def numbers_of(value: Any, name: str = "") -> Iterator[tuple[str, float]]:
             yield name, value
 
 
-def part_at(whole: Any, where: str) -> Any:
-    """What has this name, with dots, in tables, tuples and objects; None where there is nothing."""
+def part_at(value: Any, where: str) -> Any:
+    """Return the value of a dotted name in nested tables, tuples and objects; None without one."""
     for name in where.split(".") if where else ():
-        if isinstance(whole, dict):
-            whole = whole.get(name)
-        elif isinstance(whole, tuple) and is_place(name, whole):
-            whole = whole[int(name)]
+        if isinstance(value, dict):
+            value = value.get(name)
+        elif isinstance(value, tuple) and is_place(name, value):
+            value = value[int(name)]
         else:
-            whole = getattr(whole, name, None)
-    return whole
+            value = getattr(value, name, None)
+    return value
 
 
 def table_at(fields: dict[str, Any], where: str) -> dict[str, Any]:
-    """The table of this name, with dots; an empty one where there is none."""
-    found = part_at(fields, where)
-    return found if isinstance(found, dict) else {}
+    """Return the table of a dotted name; an empty one if there is none."""
+    table = part_at(fields, where)
+    return table if isinstance(table, dict) else {}
 
 
 def with_its_list(fields: dict[str, Any], name: str, value: Any) -> tuple[str, Any]:
-    """A field and a value for it; of what is in a list, named by its place, the list with that in
-    it.
+    """Return a field and its new value; for a place in a list, the list's field and the new
+    list.
     """
     where, _, place = name.rpartition(".")
-    whole = part_at(fields, where)
-    if not (isinstance(whole, tuple) and is_place(place, whole)):
+    values = part_at(fields, where)
+    if not (isinstance(values, tuple) and is_place(place, values)):
         return name, value
-    return with_its_list(fields, where, (*whole[: int(place)], value, *whole[int(place) + 1 :]))
+    return with_its_list(fields, where, (*values[: int(place)], value, *values[int(place) + 1 :]))
 
 
-def is_place(name: str, whole: tuple[Any, ...]) -> bool:
-    """Whether a name counts a place that a list has: 0, 1, ..., written in one way."""
-    return name in map(str, range(len(whole)))
+def is_place(name: str, values: tuple[Any, ...]) -> bool:
+    """Return whether a name is the number of a place in a list: "0", "1", ...."""
+    return name in map(str, range(len(values)))
 
 
 def dotted_names(fields: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
-    """Every field's name with dots, depth first."""
+    """Yield the dotted name of every field, depth first."""
     for name, value in fields.items():
         if isinstance(value, dict):
             yield from dotted_names(value, f"{prefix}{name}.")

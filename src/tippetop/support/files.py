@@ -1,4 +1,4 @@
-"""Files that are either whole or not there, and never overwritten unasked."""
+"""Writing files at once and only if wished, reading texts, and messages about files."""
 
 # translate module: skip
 
@@ -19,13 +19,13 @@ if sys.platform != "win32":
     import fcntl
 
 MARK = ".tippetop-"
-"""How the names of files begin that are not yet whole."""
+"""Beginning of the names of files that are still being written."""
 
 LONGEST_TEXT = 2**24
-"""Largest file of text that is read, bytes: no problem and no sweep comes near it."""
+"""Largest text file that is read, bytes; larger ones are no problem or sweep."""
 
 LONGEST_NAME = 300
-"""How much of a path a sentence shows, letters."""
+"""Letters of a path that a sentence shows at most."""
 
 
 _OF_OTHERS = {
@@ -46,11 +46,11 @@ _OF_OTHERS = {
     ),
     *(".stl", ".3mf"),
 }
-"""How the names of files of other kinds than NetCDF end."""
+"""Endings of the names of files that are not NetCDF."""
 
 
 def require_ending(field: str, path: Path, endings: Sequence[str]) -> str:
-    """The ending of a file's name; raises `InvalidInput` if it is none of these."""
+    """Return the ending of a file's name; raise `InvalidInput` if it is none of these."""
     ending = path.suffix.lower()
     if ending not in endings:
         raise InvalidInput(field, str(path), f"a file name that ends in {' or '.join(endings)}")
@@ -58,16 +58,15 @@ def require_ending(field: str, path: Path, endings: Sequence[str]) -> str:
 
 
 def refuse_ending_of_others(field: str, path: Path) -> None:
-    """Raise `InvalidInput` if the name of a NetCDF file, which needs no ending, ends as others."""
+    """Raise `InvalidInput` if the name of a NetCDF file has the ending of another kind of file."""
     if path.suffix.lower() in _OF_OTHERS:
         require_ending(field, path, (".nc",))
 
 
 def refuse_overwriting(path: Path, overwrite: bool, otherwise: str = "") -> None:
-    """Raise `FileTrouble` if something is there, even a link to nothing, and may not be
-    overwritten.
+    """Raise `FileTrouble` if the path exists, even as a broken link, and may not be overwritten.
 
-    What else may be done with it is told, if anything: "it is <otherwise>overwritten only with
+    `otherwise` is what else the message says may be done: "it is <otherwise>overwritten only with
     ...".
     """
     require("overwrite", overwrite, bool, "True or False")
@@ -78,16 +77,16 @@ def refuse_overwriting(path: Path, overwrite: bool, otherwise: str = "") -> None
 
 
 def place_for(path: Path | str, overwrite: bool) -> Path:
-    """The file that writing to a path makes or replaces: the end of its links.
+    """Return the file that writing to a path makes or replaces: the end of its links.
 
-    Raises `FileTrouble` if something is there and `overwrite` is false or it is no regular file, or
-    there is no such folder.
+    Raises `FileTrouble` if the path exists and `overwrite` is false or it is no regular file, or if
+    its folder does not exist.
     """
     with in_words(path, "written"):
         target = Path(os.path.realpath(path))
-        there = _status(target)
-        if there is not None and not stat.S_ISREG(there.st_mode):
-            kind = "a folder" if stat.S_ISDIR(there.st_mode) else "a device, pipe or socket"
+        status = _status(target)
+        if status is not None and not stat.S_ISREG(status.st_mode):
+            kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a device, pipe or socket"
             raise FileTrouble(f"{named(path)} is {kind}, and not replaced by a file")
         refuse_overwriting(Path(path), overwrite)
         target.parent.stat()
@@ -96,24 +95,25 @@ def place_for(path: Path | str, overwrite: bool) -> Path:
 
 @contextmanager
 def written_beside(path: Path | str, overwrite: bool = False) -> Iterator[Path]:
-    """A temporary file beside `path`, with its suffix, that takes its place once all is written.
+    """Yield a temporary file that is moved to `path` once the block has written it.
 
-    It is on the disk before it does, has the permissions of the file it replaces, and is nobody
-    else's. What writers that were killed have left in the folder is removed. Raises `FileTrouble`
-    if the file exists and `overwrite` is false, or cannot be written; nothing is then left of it.
+    The temporary file is in the same folder, has the suffix of `path` and the permissions of the
+    file it replaces, is locked, and is on the disk before it is moved. Temporary files of writers
+    that were killed are removed. Raises `FileTrouble` if the file exists and `overwrite` is false,
+    or cannot be written; the temporary file is then removed.
     """
     target = place_for(path, overwrite)
     file = None
     with in_words(path, "written"):
         try:
             with deferred():
-                _clear(target.parent)
-                file = _begin(target)
+                _remove_abandoned(target.parent)
+                file = _new_file(target)
             beside = Path(file.name)
             yield beside
             os.fsync(file.fileno())
             if sys.platform == "win32":
-                file.close()  # No open file is moved there.
+                file.close()  # Windows moves no open file.
             put_in_place(beside, path, overwrite)
         finally:
             with deferred():
@@ -123,27 +123,25 @@ def written_beside(path: Path | str, overwrite: bool = False) -> Iterator[Path]:
 
 
 def put_in_place(beside: Path, path: Path | str, overwrite: bool) -> None:
-    """Move a finished file to its place, at once; of several that make the same new file, one
-    succeeds.
+    """Move a finished file to its place atomically; of several writers of a new file, one succeeds.
 
-    Raises `FileTrouble` as `place_for` does, at this very moment.
+    Raises `FileTrouble` as `place_for` does, by the state of the folder at this moment.
     """
     target = place_for(path, overwrite)
     with in_words(path, "written"):
-        there = _status(target)
-        if there is not None:
+        status = _status(target)
+        if status is not None:
             with contextlib.suppress(PermissionError):
-                os.chown(beside, there.st_uid, there.st_gid)
-            beside.chmod(stat.S_IMODE(there.st_mode))
+                os.chown(beside, status.st_uid, status.st_gid)
+            beside.chmod(stat.S_IMODE(status.st_mode))
         if not overwrite:
             _claim(beside, target, path)
         beside.replace(target)
-        # Two names of one file are left alone by that.
-        beside.unlink(missing_ok=True)
+        beside.unlink(missing_ok=True)  # replacing does not remove a second name of the same file
 
 
 def read_text(path: Path | str, accepted: str) -> str:
-    """The text of a file, which is `accepted`, as the end of a sentence.
+    """Return the text of a file; refusals say that the file is not `accepted`.
 
     Raises `FileTrouble` if the file cannot be read, is no text, or is longer than `LONGEST_TEXT`.
     """
@@ -160,29 +158,30 @@ def read_text(path: Path | str, accepted: str) -> str:
 
 
 @contextmanager
-def made_of(path: Path | str, given: Container[str] = (), part: str = "") -> Iterator[None]:
-    """Say of what cannot be that it is in this file, unless it is in another, or a field that is
-    given.
+def made_of(path: Path | str, replaced: Container[str] = (), part: str = "") -> Iterator[None]:
+    """Name the file in every refusal that the block raises.
 
-    If only a part is in the file, it is said of fields of that alone.
+    Refusals of `replaced` fields, whose values are not from the file, and refusals that name
+    another file stay as they are. If only a part was read from the file, so do those of fields
+    outside this part.
     """
     try:
         yield
     except InvalidInput as error:
         elsewhere = part and not f"{error.field}.".startswith(f"{part}.")
-        if error.file or elsewhere or error.field.partition(".")[0] in given:
+        if error.file or elsewhere or error.field.partition(".")[0] in replaced:
             raise
         raise error.in_file(named(Path(path).name)) from None
 
 
 def named(path: Path | str) -> str:
-    """A path as it stands in a sentence: on one line, and no longer than one reads."""
+    """Return a path as sentences show it: on one line, cut to `LONGEST_NAME` letters."""
     text = str(path) if str(path).isprintable() else repr(str(path))
     return text if len(text) <= LONGEST_NAME else f"...{text[-LONGEST_NAME:]}"
 
 
 def path_of(path: object) -> Path:
-    """The path of a file or folder by its name; raises `InvalidInput` if that is none."""
+    """Return the path of a file or folder by its name; raise `InvalidInput` for no name."""
     if not isinstance(path, str | os.PathLike):
         raise InvalidInput("path", path, "the name of a file or folder")
     return Path(path)
@@ -190,7 +189,7 @@ def path_of(path: object) -> Path:
 
 @contextmanager
 def in_words(path: Path | str, done: str) -> Iterator[None]:
-    """Turn what the file system says into one sentence."""
+    """Turn errors of the file system into `FileTrouble`: "<path> cannot be <done>: ..."."""
     path_of(path)
     try:
         yield
@@ -205,7 +204,7 @@ def in_words(path: Path | str, done: str) -> Iterator[None]:
 
 
 def _may_be(path: Path | str) -> bool:
-    """Whether the system could have a file of this name."""
+    """Return whether the system could have a file of this name."""
     try:
         return b"\0" not in os.fsencode(path)
     except UnicodeEncodeError:
@@ -219,10 +218,10 @@ def _status(path: Path) -> os.stat_result | None:
         return None
 
 
-def _begin(target: Path) -> BinaryIO:
-    """A new file beside another, held, which nobody else may read who may not read that."""
-    there = _status(target)
-    permissions = 0o666 if there is None else stat.S_IMODE(there.st_mode) & 0o666 | 0o600
+def _new_file(target: Path) -> BinaryIO:
+    """Return a new, locked file beside the target, with no wider permissions than the target's."""
+    status = _status(target)
+    permissions = 0o666 if status is None else stat.S_IMODE(status.st_mode) & 0o666 | 0o600
 
     def opener(name: str, flags: int) -> int:
         return os.open(name, flags, permissions)
@@ -230,26 +229,26 @@ def _begin(target: Path) -> BinaryIO:
     while True:
         beside = target.with_name(f"{MARK}{secrets.token_hex(6)}{target.suffix[:16]}")
         file = open(beside, "xb", opener=opener)  # noqa: SIM115 - the caller closes it
-        # Another writer may have taken it for one that was left.
-        if _holds(file.fileno()) is not False and os.fstat(file.fileno()).st_nlink:
+        # Before it was locked, another writer may have removed it as abandoned.
+        if _lock(file.fileno()) is not False and os.fstat(file.fileno()).st_nlink:
             return file
         file.close()
 
 
-def _clear(folder: Path) -> None:
-    """Remove what is left in a folder of writers that are no more: what nobody holds."""
-    for left in folder.glob(f"{MARK}*"):
+def _remove_abandoned(folder: Path) -> None:
+    """Remove the temporary files of writers that have ended: those that nobody has locked."""
+    for abandoned in folder.glob(f"{MARK}*"):
         with contextlib.suppress(OSError):
-            handle = os.open(left, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
+            handle = os.open(abandoned, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
             try:
-                if stat.S_ISREG(os.fstat(handle).st_mode) and _holds(handle):
-                    left.unlink()
+                if stat.S_ISREG(os.fstat(handle).st_mode) and _lock(handle):
+                    abandoned.unlink()
             finally:
                 os.close(handle)
 
 
-def _holds(handle: int) -> bool | None:
-    """Take hold of an open file for as long as it is open; None where files cannot be held."""
+def _lock(handle: int) -> bool | None:
+    """Lock an open file until it is closed; return False if it is locked, None without locks."""
     if sys.platform == "win32":
         return None
     try:
@@ -262,8 +261,9 @@ def _holds(handle: int) -> bool | None:
 
 
 def _claim(beside: Path, target: Path, path: Path | str) -> None:
-    """Make the target, which is to be new, out of a file; where a file has one name only, make it
-    empty.
+    """Make the new target a second name of a file, or an empty file without support for links.
+
+    Raises `FileTrouble` if the target exists.
     """
     try:
         try:

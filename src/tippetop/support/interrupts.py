@@ -1,4 +1,4 @@
-"""Ctrl-C and its like, which wait while something must not be cut short."""
+"""Handling of Ctrl-C and other signals to end, and their delay while work must not be cut."""
 
 import os
 import signal
@@ -14,26 +14,24 @@ from typing import TypeVar
 ENDINGS = [
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 ]
-"""The signals that ask a program to end: Ctrl-C, the system's, and that of a terminal that is
-closed.
-"""
+"""Signals that ask a program to end: Ctrl-C, that of the system, and that of a closed terminal."""
 INTERRUPTED = 130
-"""Exit code of a program that they ended."""
-GLANCE = 0.1
-"""How often one who waits for deaf work listens where a system does not wake those who wait, s."""
+"""Exit code of a program that a signal ended."""
+CHECK_INTERVAL = 0.1
+"""Time between checks for signals while uninterruptible work runs, s: without such checks some
+systems would not deliver Ctrl-C before the work ends; shorter intervals cost time."""
 
 Made = TypeVar("Made")
 
 
 def let_end(at_first: bool = False) -> None:
-    """Let signals to end do so at once, with a word: for where nothing is begun that would have to
-    be undone.
+    """Let signals end the process at once with one line: while nothing has to be undone.
 
-    Later than `at_first` it undoes `let_raise`.
+    With `at_first` they replace Python's handlers, without it those of `let_raise`.
     """
     replaced = (signal.SIG_DFL, signal.default_int_handler) if at_first else (_raise,)
     for number in ENDINGS:
-        # What is not heard at all, as Ctrl-C by programs in the background, stays so.
+        # Ignored signals stay ignored, as Ctrl-C is for programs in the background.
         if signal.getsignal(number) in replaced:
             signal.signal(number, _end)
 
@@ -59,25 +57,25 @@ def _raise(number: int, frame: FrameType | None) -> None:
     raise KeyboardInterrupt
 
 
-def asked_to_end() -> bool:
-    """Whether a signal has raised a `KeyboardInterrupt`; imports may have made another error of
-    it.
+def is_interrupted() -> bool:
+    """Return whether a signal has raised a `KeyboardInterrupt`, which imports may have
+    swallowed.
     """
     return bool(_raised)
 
 
 @contextmanager
 def deferred() -> Iterator[None]:
-    """Let signals to end wait until the block ends; they come to the main thread alone."""
+    """Delay signals to end until the block ends; only the main thread receives signals."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     arrived: list[int] = []
 
-    def note(number: int, frame: FrameType | None) -> None:
+    def record(number: int, frame: FrameType | None) -> None:
         arrived.append(number)
 
-    before = {number: signal.signal(number, note) for number in ENDINGS}
+    before = {number: signal.signal(number, record) for number in ENDINGS}
     try:
         yield
     finally:
@@ -87,25 +85,25 @@ def deferred() -> Iterator[None]:
             signal.raise_signal(arrived[0])
 
 
-def hear() -> None:
-    """Raise again the `KeyboardInterrupt` of a signal that was lost, as some imports swallow it."""
-    if asked_to_end():
+def reraise_interrupt() -> None:
+    """Raise `KeyboardInterrupt` again if a signal raised one that an import swallowed."""
+    if is_interrupted():
         raise KeyboardInterrupt
 
 
-def import_heard(name: str) -> None:
-    """Import a module, if it is not, of which an interrupted import would leave pieces and another
-    error.
+def import_interruptibly(name: str) -> None:
+    """Import a module completely even if Ctrl-C comes meanwhile, which is then raised
+    afterwards.
     """
     if name not in sys.modules:
-        heard(lambda: import_module(name))
+        run_interruptibly(lambda: import_module(name))
 
 
-def heard(work: Callable[[], Made]) -> Made:
-    """What comes of work that is deaf to signals, as a compiler is; they are heard meanwhile.
+def run_interruptibly(work: Callable[[], Made]) -> Made:
+    """Return the result of work that does not react to signals, such as compiled code.
 
-    The main thread waits while another one works. Where it is interrupted the work still goes to
-    its end, and the interpreter does not end before.
+    Another thread works while the main thread waits and receives signals. An interrupted wait does
+    not end the work, and the interpreter does not exit before the work ends.
     """
     if threading.current_thread() is not threading.main_thread():
         return work()
@@ -121,7 +119,7 @@ def heard(work: Callable[[], Made]) -> Made:
             done.set()
 
     threading.Thread(target=do, name="tippetop compiler").start()
-    # Not by joining it: Python 3.11 takes a thread for ended if that is interrupted.
-    while not done.wait(GLANCE):
+    # The thread is not joined: after an interrupted join Python 3.11 believes it has ended.
+    while not done.wait(CHECK_INTERVAL):
         pass
     return made.result()

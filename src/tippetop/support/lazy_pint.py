@@ -1,7 +1,7 @@
-"""Keeps xarray from importing pint, which takes a third of a second, before anybody uses it.
+"""Keep xarray from importing pint, which takes a third of a second, before pint is used.
 
-xarray asks of every coordinate whether it is a quantity of pint, and imports pint for that. Nothing
-is one before somebody else has imported pint.
+xarray imports pint to ask of every coordinate whether it is a quantity of pint. No coordinate can
+be one before pint has been imported elsewhere.
 """
 
 import sys
@@ -11,7 +11,7 @@ from xarray.namedarray import pycompat
 
 
 class _PintOnceImported:
-    """What xarray asks of pint, of the module that is imported by now if there is one."""
+    """Entry of xarray's table of array modules: pint, if it has been imported."""
 
     @property
     def module(self) -> Any:
@@ -28,7 +28,7 @@ class _PintOnceImported:
 
 
 def leave_pint_alone() -> None:
-    """Let xarray look for quantities of pint only once pint is imported."""
-    # An xarray without this table imports pint as it likes.
-    known: dict[str, Any] = getattr(pycompat, "_cached_duck_array_modules", {})
-    known.setdefault("pint", _PintOnceImported())
+    """Let xarray look for quantities of pint only once pint has been imported."""
+    # Versions of xarray without this table still import pint by themselves.
+    modules: dict[str, Any] = getattr(pycompat, "_cached_duck_array_modules", {})
+    modules.setdefault("pint", _PintOnceImported())

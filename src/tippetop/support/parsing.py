@@ -1,4 +1,4 @@
-"""The fields that texts in JSON and TOML hold."""
+"""Reading of JSON and TOML texts into tables of fields."""
 
 # translate module: skip
 
@@ -11,22 +11,21 @@ from tippetop.support.errors import InvalidInput, require
 from tippetop.support.files import named
 
 DEEPEST = 20
-"""How deep tables and lists may be nested in a text; a problem's are three deep."""
+"""Largest depth of nested tables and lists in a text; problems are three deep."""
 
 
 def parse_json(text: str, field: str, file: str = "") -> dict[str, Any]:
-    """The fields of a JSON text that states something, which is called a field in sentences.
+    """Return the fields of a JSON text.
 
-    They show the text, or its file if it has one.
-
-    Raises `InvalidInput` if it is no JSON object, is nested deeper than `DEEPEST`, or holds whole
-    numbers of thousands of digits.
+    Raises `InvalidInput`, with `field` as its field and with the text or its file as the value, if
+    the text is no JSON object, is nested deeper than `DEEPEST`, or holds whole numbers of thousands
+    of digits.
     """
     return _parsed("JSON", json.loads, text, field, file)
 
 
 def parse_toml(text: str, field: str, file: str = "") -> dict[str, Any]:
-    """The same of a TOML text."""
+    """Return the fields of a TOML text; raise `InvalidInput` as `parse_json` does."""
     return _parsed("TOML", tomllib.loads, text, field, file)
 
 
@@ -38,9 +37,9 @@ def _parsed(
         fields = loads(text)
         _refuse_depths(fields)
     except (ValueError, RecursionError) as error:
-        told = _TOO_DEEP if isinstance(error, RecursionError) else error
+        reason = _TOO_DEEP if isinstance(error, RecursionError) else error
         raise InvalidInput(
-            field, file or text.strip(), "", f"is not {language}", str(told)
+            field, file or text.strip(), "", f"is not {language}", str(reason)
         ) from None
     if not isinstance(fields, dict):
         raise InvalidInput(field, fields, f"a {language} object", file=file and named(file))

@@ -1,8 +1,9 @@
-"""The one way to run work in processes beside this one.
+"""Worker processes: `shared` runs jobs in several processes and yields their results.
 
-They are fresh interpreters, which is the one way to start that is the same on every system and safe
-beside threads. They run this package alone and never the caller's script, have one thread each,
-leave Ctrl-C to this process, and end with it even if it is killed. One that is killed is replaced.
+Workers are fresh interpreters: this way of starting is the same on every system and safe beside
+threads. They import this package but never the caller's script, have one thread each, ignore
+Ctrl-C, which the parent handles, and end with the parent even if it is killed. A worker that is
+killed is replaced.
 """
 
 import multiprocessing
@@ -21,7 +22,7 @@ from tippetop.support.errors import TippetopError, Unavailable
 from tippetop.support.interrupts import deferred
 
 RESTARTS = 3
-"""How often a job is done again whose process was killed."""
+"""How often a job whose process was killed is done again."""
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 _SPAWN = multiprocessing.get_context("spawn")
@@ -29,14 +30,14 @@ _starting = threading.Lock()
 
 
 def processors() -> int:
-    """Return how many processors this process may use: no more than its container is given."""
+    """Return how many processors this process may use, limits of its container included."""
     from loky import cpu_count  # noqa: PLC0415 - slow to import
 
     return int(cpu_count())
 
 
 class Job(NamedTuple):
-    """A call to be made in another process: importable, with arguments that can be sent."""
+    """Call to be made in another process: importable, with arguments that can be pickled."""
 
     name: Any
     call: Callable[..., Any]
@@ -44,13 +45,13 @@ class Job(NamedTuple):
 
 
 class _Failed(NamedTuple):
-    """What a job raised."""
+    """Exception that a job raised, sent back to the parent."""
 
     error: Exception
 
 
 class Worker:
-    """A process that does one job at a time."""
+    """Process that does one job at a time."""
 
     def __init__(self) -> None:
         self.end, theirs = _SPAWN.Pipe()
@@ -61,39 +62,39 @@ class Worker:
             with _apart():
                 self._process.start()
         except BaseException:
-            # Ctrl-C that had to wait: nobody else knows of this process.
+            # A delayed Ctrl-C is raised here, before the caller could close this process.
             if self._process.pid is not None:
                 self.close()
             raise
         theirs.close()
 
     def give(self, job: Callable[..., Any], *arguments: Any) -> None:
-        """Have a job done; if the process has ended, `take` tells."""
+        """Send a job to the process; if the process has ended, `take` raises."""
         with suppress(OSError):
             self.end.send((job, arguments))
 
     def take(self) -> Any:
-        """What comes of the job; an `EOFError` if the process ended."""
+        """Return the result of the job; raise `EOFError` if the process ended."""
         try:
             return self.end.recv()
         except OSError:
             raise EOFError from None
 
     def close(self) -> None:
-        """End the process, whatever it does."""
+        """Kill the process."""
         self._process.kill()
         self._process.join()
         self.end.close()
 
 
 def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any, Any]]:
-    """Do jobs in so many processes, and give the name and the result of each as it comes.
+    """Run jobs in `count` processes, and yield the name and the result of each as it ends.
 
-    When a process is free, `next_job` gives another, or None if there is none, or none before
-    another result. With a count of 1 all is done in this process.
+    When a process is free, `next_job` returns a job, or None if there is none, or none before a
+    further result. With a count of 1 all jobs run in this process.
 
-    Raises `Unavailable` if the process of a job was killed, again and again, and whatever a job
-    raises.
+    Raises `Unavailable` if the process of a job was killed more than `RESTARTS` times, and whatever
+    a job raises.
     """
     if count == 1:
         while (job := next_job()) is not None:
@@ -131,7 +132,7 @@ def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any
                 if isinstance(result, _Failed):
                     raise result.error
                 idle.append(worker)
-                hand_out()  # a process need not wait for what is done with its result
+                hand_out()  # the process works on while the caller uses its result
                 yield job.name, result
                 hand_out()
     finally:
@@ -141,13 +142,13 @@ def shared(next_job: Callable[[], Job | None], count: int) -> Iterator[tuple[Any
 
 @contextmanager
 def _apart() -> Iterator[None]:
-    """Keep the caller's script, and Ctrl-C, from processes that are started meanwhile."""
+    """Hide the caller's script, and block Ctrl-C, while processes are started."""
     main = sys.modules["__main__"]
     with _starting, deferred():
         spec, main.__spec__ = getattr(main, "__spec__", None), None
         file = vars(main).pop("__file__", None)
         try:
-            with _unheard():
+            with _interrupts_blocked():
                 yield
         finally:
             main.__spec__ = spec
@@ -156,14 +157,12 @@ def _apart() -> Iterator[None]:
 
 
 @contextmanager
-def _unheard() -> Iterator[None]:
-    """Block Ctrl-C in this thread, where a system can: what is started meanwhile inherits that, for
-    good.
-    """
+def _interrupts_blocked() -> Iterator[None]:
+    """Block Ctrl-C in this thread, if the system can: processes started meanwhile inherit that."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    # Python's tracker of resources would be started with the first process, and unblock it.
+    # Otherwise Python's resource tracker starts with the first process, and unblocks Ctrl-C.
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -173,10 +172,10 @@ def _unheard() -> Iterator[None]:
 
 
 def _work(end: Any) -> None:
-    """The life of a worker: jobs from the other end of the pipe, until it closes."""
+    """Do jobs from the other end of the pipe until it closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ.update(dict.fromkeys(THREADS, "1"))
-    # A job does not look at its pipe until it is done.
+    # A running job would not notice that its pipe has closed.
     threading.Thread(target=_follow_parent, daemon=True).start()
     with suppress(EOFError, OSError):
         while True:
@@ -195,13 +194,11 @@ def _follow_parent() -> None:
 
 
 def _portable(error: Exception) -> Exception:
-    """An error as it can be sent: with where it was raised, unless it is one that is raised on
-    purpose.
-    """
+    """Return an error that can be pickled, with its traceback as a note unless it is ours."""
     if not isinstance(error, TippetopError):
         error.add_note(traceback.format_exc())
     try:
         pickle.loads(pickle.dumps(error))
-    except Exception:  # noqa: BLE001 - whatever it is that does not go through
+    except Exception:  # noqa: BLE001 - pickling may raise anything
         return RuntimeError(repr(error))
     return error

@@ -1,4 +1,4 @@
-"""Names that were likely meant, for names that do not exist."""
+"""Suggestions of the names that were likely meant by unknown ones."""
 
 # translate module: by hand in suggestions.js
 
@@ -25,10 +25,10 @@ OTHER_NAMES = {
     **dict.fromkeys(("height", "drop", "z"), "gap"),
     **dict.fromkeys(("law", "type", "model"), "kind"),
 }
-"""What the fields of problems are called elsewhere."""
+"""Names of the fields of problems by those that they have elsewhere."""
 
 REVOLUTION = "bodies of revolution only"
-"""What is said to whoever describes another body."""
+"""Part of the hints about bodies that are no bodies of revolution."""
 
 HINTS_BY_NAME = {
     **dict.fromkeys(
@@ -48,13 +48,13 @@ HINTS_BY_NAME = {
         "it is a field of a workpiece; tippetop body FILE --toml makes a problem of one",
     ),
 }
-"""Hints for names that problems do not have: those of other bodies and of workpieces."""
+"""Hints for unknown names: those of other bodies, and fields of workpieces."""
 
 
 def unknown_field(
     name: str,
     value: object,
-    own: Collection[str],
+    names: Collection[str],
     places: Mapping[str, str],
     kinds: Collection[str] = (),
 ) -> InvalidInput:
@@ -64,7 +64,7 @@ def unknown_field(
     ----------
     name, value
         The name, without those of the parts around it, and the value.
-    own
+    names
         The names of the fields that the part has.
     places
         The full names of the fields of all parts by their last names.
@@ -74,9 +74,9 @@ def unknown_field(
     hint = HINTS_BY_NAME.get(name.rpartition(".")[2], "")
     if kinds:
         hint = f"it is a field of the kind {' or '.join(kinds)}"
-    if not hint and (meant := likely(name, own, places)):
+    if not hint and (meant := likely(name, names, places)):
         hint = f"did you mean {meant}?"
-    return InvalidInput(name, value, f"one of {', '.join(own)}", UNKNOWN, hint)
+    return InvalidInput(name, value, f"one of {', '.join(names)}", UNKNOWN, hint)
 
 
 UNKNOWN = "is given for an unknown field"
@@ -90,28 +90,28 @@ def not_one_of(field: str, value: object, choices: Collection[str]) -> InvalidIn
     return InvalidInput(field, value, f"one of {', '.join(choices)}", hint=hint)
 
 
-LONGEST = 60
-"""Longest name that another is sought for, letters."""
+LONGEST_GUESSED = 60
+"""Longest name for which a likely one is sought, letters; longer ones are no slips of typing."""
 
 
-def likely(name: str, own: Iterable[str], places: Mapping[str, str]) -> str:
-    """Return the name that was likely meant, among some and those of all places; "" without one.
+def likely(name: str, names: Iterable[str], places: Mapping[str, str]) -> str:
+    """Return the name that was likely meant, among `names` and those of all places; "" without one.
 
-    A name that stands in another place, and another word for a field, go before likeness.
+    The same name in another place, and synonyms of a field, are preferred to similar names.
     """
-    if len(name) > LONGEST:
+    if len(name) > LONGEST_GUESSED:
         return ""
-    own, last = list(own), name.rpartition(".")[2]
+    names, last = list(names), name.rpartition(".")[2]
     word = OTHER_NAMES.get(last, OTHER_NAMES.get(last.lower(), last))
-    whole = [choice for choice in own if choice.rpartition(".")[2] == word]
-    if whole:
-        return whole[0]
+    exact = [choice for choice in names if choice.rpartition(".")[2] == word]
+    if exact:
+        return exact[0]
     if word in places:
         return places[word]
-    near = get_close_matches(name, own, 1) or get_close_matches(
-        last, [choice.rpartition(".")[2] for choice in own], 1
+    near = get_close_matches(name, names, 1) or get_close_matches(
+        last, [choice.rpartition(".")[2] for choice in names], 1
     )
     if near:
-        return next(choice for choice in own if near[0] in (choice, choice.rpartition(".")[2]))
+        return next(choice for choice in names if near[0] in (choice, choice.rpartition(".")[2]))
     near = get_close_matches(last, list(places), 1)
     return places[near[0]] if near else ""

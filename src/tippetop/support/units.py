@@ -1,8 +1,8 @@
-"""Numbers with units, such as "2200 rpm", and quantities of pint, in SI.
+"""Conversion of numbers with units, such as "2200 rpm", and of pint's quantities to SI.
 
-A unit is a product of names with whole powers: "kg m^2", "kg*m**2", "rev/min", "rad s-1". Pint says
-what the names are; it is imported when the first unit is read. The page reads the same units from a
-table that pint made (`tippetop.page_engine.tables`).
+A unit is a product of names with whole powers: "kg m^2", "kg*m**2", "rev/min", "rad s-1". Pint
+knows the names; it is imported when the first unit is read. The page reads the same units from a
+table that is made with pint (`tippetop.page_engine.tables`).
 """
 
 # translate module: skip
@@ -25,15 +25,15 @@ SUPERSCRIPTS = {"¹": "1", "²": "2", "³": "3", "⁻": "-"}
 BASES = {"meter": 0, "kilogram": 1, "second": 2, "radian": 3}
 """The base units, by the names that pint gives them, and their places in exponents."""
 
-MORE_NAMES = (
+ADDED_NAMES = (
     *("turn = rev = revs = rotation = rotations", "revolutions_per_minute = RPM"),
     *("kilogram = Kg = KG", "degree = degs"),
 )
-"""Names that people write and pint does not have: "name = other names"."""
+"""Names that people write and pint does not have: "name = synonyms"."""
 
 
 class Unit(NamedTuple):
-    """A unit in SI: numbers in it times `over` over `under` are in SI.
+    """Unit as a factor to SI: a number in it times `over` and divided by `under` is in SI.
 
     An exact decimal unit, such as the millimetre, divides by a whole number: 14.1 mm is 0.0141 m.
     """
@@ -49,11 +49,11 @@ PLAIN = Unit(1.0, 1.0, (0, 0, 0, 0))
 
 
 class QuantityKind(NamedTuple):
-    """A kind of quantity, in words."""
+    """Kind of quantity, in words."""
 
     name: str
     examples: str
-    """Units that it is written in."""
+    """Units that the quantity is written in."""
 
 
 KINDS = {
@@ -101,14 +101,14 @@ COMMON = (
 
 
 def has_unit(value: object) -> bool:
-    """Whether a value is a text, which may have a unit, or a quantity, such as pint's."""
+    """Return whether a value is a text, which may have a unit, or a quantity such as pint's."""
     if isinstance(value, float | int):
         return False
     return isinstance(value, str) or is_quantity(value)
 
 
 def is_quantity(value: object) -> bool:
-    """Whether a value has a magnitude and units, and can be converted to others, as pint's can."""
+    """Return whether a value has a magnitude and convertible units, as pint's quantities do."""
     try:
         return all(hasattr(value, name) for name in ("magnitude", "units")) and callable(
             getattr(value, "to", None)
@@ -121,7 +121,7 @@ def in_si(value: Any, units: str) -> Any:
     """Return a number in an SI unit from a text with a number and a unit, or from a quantity.
 
     The magnitude of a quantity may be an array; then a list is returned. Raises `InvalidInput`,
-    which names no field, for what is no number, has no unit, or one of another dimension.
+    which names no field, if the value is no number or its unit is missing or of another dimension.
     """
     if isinstance(value, str):
         number, text = _number_and_unit(value, units)
@@ -142,7 +142,7 @@ def in_si(value: Any, units: str) -> Any:
 
 
 def number_in(field: str, value: Any, units: str) -> Any:
-    """Return a field's number in an SI unit from a text or a quantity; others as they are."""
+    """Return a field's number in an SI unit from a text or a quantity; other values unchanged."""
     if not has_unit(value):
         return value
     try:
@@ -152,7 +152,7 @@ def number_in(field: str, value: Any, units: str) -> Any:
 
 
 def converted(number: Any, unit: Unit) -> Any:
-    """Return a number of a unit in SI; what is no number as it is."""
+    """Return a number of a unit in SI; other values unchanged."""
     return number * unit.over / unit.under if is_number(number) else number
 
 
@@ -164,21 +164,21 @@ def unit_of(text: str, value: object, units: str) -> Unit:
 
     Raises `InvalidInput` about the value otherwise.
     """
-    wanted = KINDS.get(units, QuantityKind(f"a quantity in {units}", f"in {written(units)}"))
+    expected = KINDS.get(units, QuantityKind(f"a quantity in {units}", f"in {written(units)}"))
     factors = factors_of(text)
-    known = [(name, named_unit(name), power) for name, power in factors or ()]
-    strange = next((name for name, unit, _ in known if unit is None), None)
+    units_by_name = [(name, named_unit(name), power) for name, power in factors or ()]
+    strange = next((name for name, unit, _ in units_by_name if unit is None), None)
     if not factors or strange is not None:
         near = [
             name
             for name in get_close_matches(strange or "", COMMON, 3, 0.5)
             if len(factors or ()) > 1 or exponents_of(units) == _exponents_of_name(name)
         ]
-        hint = f"write it {wanted.examples}"
+        hint = f"write it {expected.examples}"
         if near and strange:
             hint = f"did you mean {near[0]}? {hint[0].upper()}{hint[1:]}"
-        raise InvalidInput("", value, wanted.name, UNKNOWN_UNIT, hint)
-    unit = product([(unit, power) for _, unit, power in known if unit is not None])
+        raise InvalidInput("", value, expected.name, UNKNOWN_UNIT, hint)
+    unit = product([(unit, power) for _, unit, power in units_by_name if unit is not None])
     asked = exponents_of(units)
     if unit.exponents == asked:
         return unit
@@ -187,19 +187,21 @@ def unit_of(text: str, value: object, units: str) -> Unit:
         hint = "write it in rev/s for turns, or in rad/s"
         if number and unit.over == unit.under:
             hint = f"write {number[1]} rev/s for turns, or {number[1]} rad/s"
-        raise InvalidInput("", value, wanted.name, "is a frequency, not an angular velocity", hint)
+        raise InvalidInput(
+            "", value, expected.name, "is a frequency, not an angular velocity", hint
+        )
     kind = next(
         (kind.name for si, kind in KINDS.items() if exponents_of(si) == unit.exponents),
         "another quantity",
     )
-    fault = f"is {kind}, not {wanted.name}"
-    raise InvalidInput("", value, wanted.name, fault, f"write it {wanted.examples}")
+    fault = f"is {kind}, not {expected.name}"
+    raise InvalidInput("", value, expected.name, fault, f"write it {expected.examples}")
 
 
 def factors_of(text: str) -> list[tuple[str, int]] | None:
-    """Return the names of units in a product, with their powers; None where there are none such."""
+    """Return the names of units in a product, with their powers; None if the text is no product."""
     text = re.sub(r"^1\s*(?=/)", "", text)
-    found, place = [], 0
+    factors, place = [], 0
     while place < len(text):
         match = FACTOR.match(text, place)
         if match is None:
@@ -207,11 +209,11 @@ def factors_of(text: str) -> list[tuple[str, int]] | None:
         over, name, power = match.groups()
         for mark, digit in SUPERSCRIPTS.items():
             power = power and power.replace(mark, digit)
-        found.append((name, (-1 if over else 1) * int(power or "1")))
-        if abs(found[-1][1]) > MOST_POWER:
+        factors.append((name, (-1 if over else 1) * int(power or "1")))
+        if abs(factors[-1][1]) > MOST_POWER:
             return None
         place = match.end()
-    return found
+    return factors
 
 
 def product(factors: list[tuple[Unit, int]]) -> Unit:
@@ -221,8 +223,8 @@ def product(factors: list[tuple[Unit, int]]) -> Unit:
         for _ in range(abs(power)):
             over *= unit.over if power > 0 else unit.under
             under *= unit.under if power > 0 else unit.over
-        for place, own in enumerate(unit.exponents):
-            exponents[place] += power * own
+        for place, exponent in enumerate(unit.exponents):
+            exponents[place] += power * exponent
     return Unit(over, under, tuple(exponents))
 
 
@@ -233,11 +235,11 @@ MOST_POWER = 9
 @cache
 def exponents_of(units: str) -> tuple[int, ...]:
     """Return the powers of metre, kilogram, second and radian in an SI unit such as "kg m2"."""
-    found = [0, 0, 0, 0]
+    exponents = [0, 0, 0, 0]
     for name, power in factors_of(units) or ():
-        for place, own in enumerate(_SI_EXPONENTS[name]):
-            found[place] += power * own
-    return tuple(found)
+        for place, exponent in enumerate(_SI_EXPONENTS[name]):
+            exponents[place] += power * exponent
+    return tuple(exponents)
 
 
 _SI_EXPONENTS = {
@@ -252,11 +254,13 @@ _SI_EXPONENTS = {
 
 @cache
 def named_unit(name: str) -> Unit | None:
-    """Return the unit of a name as pint has it; None where it has none that mechanics uses."""
+    """Return the unit of a name by pint; None if it is unknown or has dimensions not of
+    mechanics.
+    """
     try:
         quantity = registry().Quantity(1.0, registry().parse_units(name)).to_base_units()
         powers = dict(quantity.unit_items())
-    except Exception:  # noqa: BLE001 - pint raises what its parser does, of any text
+    except Exception:  # noqa: BLE001 - pint's parser may raise anything
         return None
     exponents = [0, 0, 0, 0]
     for unit, power in powers.items():
@@ -272,11 +276,11 @@ def named_unit(name: str) -> Unit | None:
 
 @cache
 def registry() -> Any:
-    """Return pint's units, with the names that people write besides."""
+    """Return pint's registry of units with `ADDED_NAMES`."""
     import pint  # noqa: PLC0415 - slow to import
 
     units: Any = pint.UnitRegistry()
-    for names in MORE_NAMES:
+    for names in ADDED_NAMES:
         units.define(f"@alias {names}")
     return units
 
@@ -295,7 +299,7 @@ def written(units: str) -> str:
 
 
 def _converted_by_itself(value: Any, refusal: InvalidInput, units: str) -> Any:
-    """The magnitude of a quantity whose units only it knows, such as one of another registry."""
+    """Return the magnitude of a quantity that only its own registry can convert."""
     try:
         return value.to("" if units == "1" else written(units)).magnitude
     except Exception:  # noqa: BLE001 - foreign quantities raise errors of their own
@@ -303,7 +307,7 @@ def _converted_by_itself(value: Any, refusal: InvalidInput, units: str) -> Any:
 
 
 def _number_and_unit(text: str, units: str) -> tuple[float, str]:
-    """A text's number and unit; raises `InvalidInput` where it does not have both."""
+    """Return the number and the unit of a text; raise `InvalidInput` unless it has both."""
     match = NUMBER.fullmatch(text)
     if match is None or not match[2] or not begins_a_unit(match[2]):
         raise InvalidInput("", text, "a number", hint=number_hint(text, units))
@@ -317,31 +321,33 @@ def begins_a_unit(text: str) -> bool:
     return not re.match(r"[0-9,.'_:]|/\s*\d|[*·]?\s*(pi|π)(?![^\W\d])", text)
 
 
-LONGEST = 60
+LONGEST_HINT = 60
 """Longest text that is repeated in a hint, letters."""
 
 
 def number_hint(text: str, units: str = "") -> str:
-    """Return what to write instead of a text that is no number; "" where nobody knows."""
+    """Return what to write instead of a text that is no number; "" if that cannot be guessed."""
     text = text.strip()
-    if len(text) > LONGEST:
+    if len(text) > LONGEST_HINT:
         return ""
     shown = "" if units in ("", "1") else f' or with its unit, "{text} {written(units)}"'
     if re.fullmatch(rf"[+-]?{DIGITS}(?:[eE][+-]?\d+)?", text):
         return f"write {text} without quotes{',' * bool(shown)}{shown}"
     if match := re.fullmatch(r"([+-]?)(\d[\d.,' _]*)(?<![ ])(.*)", text):
-        sign, number, rest = match.groups()
+        sign, number, ending = match.groups()
         plain = re.sub(r"[' _]", "", number)
         if plain.endswith((",", ".")):
             plain = plain[:-1]
         if re.fullmatch(r"[1-9]\d{0,2},\d{3}", plain):
-            whole, point = plain.replace(",", ""), plain.replace(",", ".")
-            return f"write {sign}{point}{rest}, or {sign}{whole}{rest} if thousands are meant"
+            thousands, point = plain.replace(",", ""), plain.replace(",", ".")
+            return (
+                f"write {sign}{point}{ending}, or {sign}{thousands}{ending} if thousands are meant"
+            )
         if plain.count(",") == 1 and plain.rfind(",") > plain.rfind("."):
             plain = plain.replace(".", "").replace(",", ".")
         plain = plain.replace(",", "")
         if number != plain and re.fullmatch(DIGITS, plain):
-            return f"write {sign}{plain}{rest}"
+            return f"write {sign}{plain}{ending}"
     match = re.fullmatch(rf"([+-]?)({DIGITS})\s*/\s*({DIGITS})(.*)", text)
     if match and float(match[3]):
         return f"write {match[1]}{float(match[2]) / float(match[3]):.7g}{match[4]}"

@@ -1,4 +1,4 @@
-"""The base of every part of a problem: frozen, validated, and clear about what it refuses."""
+"""Base classes of the parts of a problem: frozen, validated, with clear refusals."""
 
 # translate module: by hand in part.js
 
@@ -39,7 +39,7 @@ from tippetop.support.units import DIGITS, KINDS, has_unit, in_si, number_hint
 
 
 def _no_word(value: Any) -> Any:
-    """Refuse what Python would turn into a number although nobody would call it one."""
+    """Refuse texts and truth values, which pydantic would convert to numbers."""
     if isinstance(value, str):
         raise InvalidInput("", value, "a number", hint=number_hint(value))
     if isinstance(value, (bool, np.bool_, bytes)):
@@ -48,27 +48,27 @@ def _no_word(value: Any) -> Any:
 
 
 NO_WORD = BeforeValidator(_no_word)
-"""Makes a field of numbers refuse truth values and digits in quotes."""
+"""Makes a field of numbers refuse truth values and texts."""
 
 Number: TypeAlias = Annotated[float, NO_WORD]
-"""A number, and nothing that only looks like one."""
+"""Finite number; texts and truth values are refused."""
 
 Positive: TypeAlias = Annotated[float, Field(gt=0), NO_WORD]
 NotNegative: TypeAlias = Annotated[float, Field(ge=0), NO_WORD]
 
 
-def _whole(value: Any) -> int:
+def _whole_number(value: Any) -> int:
     if not is_whole(value):
         raise PydanticCustomError("int_type", "a whole number")
     return int(value)
 
 
-Whole: TypeAlias = Annotated[int, BeforeValidator(_whole)]
-"""A whole number, and nothing that only looks like one."""
+Whole: TypeAlias = Annotated[int, BeforeValidator(_whole_number)]
+"""Whole number; texts, fractions and truth values are refused."""
 
 
 POINTS = "a list of points [distance from the axis, height, radius]"
-"""What a profile is accepted as."""
+"""Accepted form of a profile, in words."""
 
 
 def _listed(value: Any) -> Any:
@@ -96,22 +96,22 @@ TEXT_WITH_UNIT = rf"^\s*[+-]?{DIGITS}([eE][+-]?\d+)?\s*(?![eE][+-]?\d)[A-Za-zÂµÂ
 
 
 class Quantity(NamedTuple):
-    """What a field of numbers measures."""
+    """Physical quantity of a field: unit and name."""
 
     units: str
     """Its SI unit, as in CF: ``rad s-1``; "1" for a pure number."""
     long_name: str
     places: tuple[str, ...] = ()
-    """What each number is, of a field of several."""
+    """Name of each number, for a field of several."""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """Let the field take texts with a unit, and quantities, too."""
+        """Let the field also take texts with a unit, and quantities."""
         depth = max(_depth(kind) for kind in (source, *get_args(source)))
 
         def convert(value: Any) -> Any:
-            # A text is no list.
+            # A field of several numbers is not written as one text.
             return value if depth and isinstance(value, str) else self.in_si(value, depth)
 
         return core_schema.no_info_before_validator_function(convert, handler(source))
@@ -145,7 +145,9 @@ class Quantity(NamedTuple):
         return {**schema, **nested}
 
     def in_si(self, value: Any, depth: int = 1) -> Any:
-        """Return a value of the field, or lists of values so deep, with its numbers in SI."""
+        """Return a value of the field, or lists of values nested `depth` deep, with numbers in
+        SI.
+        """
         if isinstance(value, float | int):
             return value
         if isinstance(value, list | tuple) and depth:
@@ -158,7 +160,7 @@ class Quantity(NamedTuple):
 
 
 def _depth(kind: Any) -> int:
-    """How deep the tuples of a type are nested."""
+    """Return how deep the tuples of a type are nested."""
     inner = get_args(kind)
     if get_origin(kind) is Annotated:
         return _depth(inner[0])
@@ -166,7 +168,7 @@ def _depth(kind: Any) -> int:
 
 
 class Padded(NamedTuple):
-    """Lets a field of several numbers leave out the last one, which then is 0."""
+    """Lets a field of several numbers omit the last one, which is then 0."""
 
     least: int
     """How many numbers there must be."""
@@ -178,13 +180,13 @@ class Padded(NamedTuple):
         return core_schema.no_info_before_validator_function(self.padded, handler(source))
 
     def padded(self, value: Any) -> Any:
-        """Return a list with a 0 for the number that is left out."""
+        """Return a list with a 0 for the omitted number."""
         lacks_one = isinstance(value, list | tuple) and len(value) == self.least
         return (*value, 0.0) if lacks_one else value
 
 
 def _placed(place: int, value: Any, of: Callable[[Any], Any]) -> Any:
-    """What a function makes of a value of a list, whose place is named if it is refused."""
+    """Return a function of a value of a list; its refusals name the value's place."""
     try:
         return of(value)
     except InvalidInput as error:
@@ -192,7 +194,7 @@ def _placed(place: int, value: Any, of: Callable[[Any], Any]) -> Any:
 
 
 class Part(BaseModel):
-    """A frozen, validated piece of a problem.
+    """Frozen, validated part of a problem.
 
     Raises
     ------
@@ -207,11 +209,11 @@ class Part(BaseModel):
         frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True
     )
 
-    if not TYPE_CHECKING:  # else mypy takes it that values may do without names
+    if not TYPE_CHECKING:  # else mypy believes that values need no names
 
         def __new__(cls, /, *values: Any, **_: Any) -> Self:
-            """Refuse values without their names here, where signatures of parts, made of
-            `__init__`, stay.
+            """Refuse values without names, leaving the signature of `__init__` as pydantic made
+            it.
             """
             if values and cls.__init__ is Part.__init__:
                 raise InvalidInput(
@@ -236,7 +238,7 @@ class Part(BaseModel):
         fields = {name: getattr(self, name) for name in type(self).model_fields}
         return type(self)(**{**fields, **(update or {})})
 
-    if not TYPE_CHECKING:  # else mypy takes it that every attribute may be set
+    if not TYPE_CHECKING:  # else mypy believes that every attribute may be set
 
         def __setattr__(self, name: str, value: Any) -> None:
             try:
@@ -248,7 +250,9 @@ class Part(BaseModel):
                 ) from None
 
     def quantity(self, field: str) -> Quantity:
-        """What a field measures, named with dots; without a unit if it was declared with none."""
+        """Return the quantity of a field by its dotted name; one without a unit if none is
+        declared.
+        """
         where, _, last = field.rpartition(".")
         part = part_at(self, where)
         if isinstance(part, tuple):
@@ -259,15 +263,15 @@ class Part(BaseModel):
             (item for item in info.metadata if isinstance(item, Quantity)), Quantity("", last)
         )
 
-    def own_kinds(self) -> set[type["Part"]]:
-        """The kinds of this part, and of the parts in it, that are defined outside this package."""
-        own = type(self).__module__.partition(".")[0] != _PACKAGE
-        here: set[type[Part]] = {type(self)} if own else set()
+    def foreign_kinds(self) -> set[type["Part"]]:
+        """Return the classes of this part and its parts that are defined outside this package."""
+        is_foreign = type(self).__module__.partition(".")[0] != _PACKAGE
+        kinds: set[type[Part]] = {type(self)} if is_foreign else set()
         values = [getattr(self, name) for name in type(self).model_fields]
         several = [
             inner for value in values for inner in (value if isinstance(value, tuple) else (value,))
         ]
-        return here.union(*(value.own_kinds() for value in several if isinstance(value, Part)))
+        return kinds.union(*(value.foreign_kinds() for value in several if isinstance(value, Part)))
 
 
 _PACKAGE = __name__.partition(".")[0]
@@ -276,9 +280,9 @@ _PACKAGE = __name__.partition(".")[0]
 def in_order(
     part: type[Part], names: Iterable[str], values: Sequence[Any], fields: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Fields of a part, of which the first may be given without their names.
+    """Return the fields of a part by name, the first of which may be passed by position.
 
-    Raises `InvalidInput` if there are too many, or one both in its place and by its name.
+    Raises `InvalidInput` for too many values, and for a field passed both ways.
     """
     names = list(names)
     if len(values) > len(names):
@@ -300,7 +304,7 @@ def in_order(
 
 
 def _refuse_keys(field: str, value: object) -> None:
-    """Refuse a table whose keys are no names, which Python cannot take for fields."""
+    """Refuse a table whose keys are no texts."""
     if isinstance(value, Mapping) and not all(isinstance(key, str) for key in value):
         raise InvalidInput(field, value, "a table of fields by their names")
 
@@ -317,12 +321,12 @@ def declared_fields(part: type[Part], prefix: str = "") -> Iterator[tuple[str, F
                 yield from declared_fields(kind, f"{prefix}{name}.")
 
 
-def declare_places(whole: type[Part]) -> dict[str, str]:
-    """Return the dotted names of the fields of a part, and of those in it, by their last names.
+def declare_places(part: type[Part]) -> dict[str, str]:
+    """Return the dotted names of the fields of a part, and of its parts, by their last names.
 
     Refusals of unknown fields suggest them.
     """
-    for name, _ in declared_fields(whole):
+    for name, _ in declared_fields(part):
         last = name.rpartition(".")[2]
         if last != "kind":
             Part.places.setdefault(last, name)
@@ -330,20 +334,20 @@ def declare_places(whole: type[Part]) -> dict[str, str]:
 
 
 _receiving = list[bool]()
-"""Not empty while kinds of another process are made."""
+"""Not empty while classes of another process are unpickled."""
 
 
 class Variant(Part):
-    """A part of which there are several kinds: its subclasses, told apart by their field `kind`.
+    """Part with several kinds: its subclasses, distinguished by their field `kind`.
 
     A ``class Mine(Shape)`` with a field ``kind: Literal["mine"] = "mine"`` is a kind of `Shape`
-    wherever it is defined, and whatever has a `Shape` takes it. One that is defined again, as in a
-    notebook, replaces its former self.
+    wherever it is defined, and every field of type `Shape` accepts it. A class that is defined
+    again, as in a notebook, replaces the earlier one.
 
     Attributes
     ----------
     kinds
-        Those that are known, by their words.
+        The defined kinds, by the value of their field `kind`.
     """
 
     kinds: ClassVar[dict[str, type[Part]]]
@@ -351,7 +355,7 @@ class Variant(Part):
     @classmethod
     def __pydantic_init_subclass__(cls, **keywords: Any) -> None:
         super().__pydantic_init_subclass__(**keywords)
-        if _receiving:  # cloudpickle makes a class before it fills it
+        if _receiving:  # cloudpickle makes a class before it has its fields
             return
         if Variant in cls.__bases__:
             cls.kinds = {}
@@ -359,16 +363,16 @@ class Variant(Part):
         info = cls.model_fields.get("kind")
         if info is None or not isinstance(info.default, str):
             raise TypeError(f'{cls.__name__} needs a word: kind: Literal["word"] = "word"')
-        known = cls.kinds.get(info.default)
-        if known and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
+        same = cls.kinds.get(info.default)
+        if same and (same.__module__, same.__qualname__) != (cls.__module__, cls.__qualname__):
             raise TypeError(
-                f"{cls.__name__} needs another word: {info.default!r} is {known.__name__}"
+                f"{cls.__name__} needs another word: {info.default!r} is {same.__name__}"
             )
         cls.kinds[info.default] = cls
 
     @staticmethod
     def receive(content: bytes) -> None:
-        """Make kinds known that another process has and has sent, pickled by cloudpickle."""
+        """Register kinds that another process has sent, pickled by cloudpickle."""
         _receiving.append(True)
         try:
             kinds = pickle.loads(content)
@@ -379,27 +383,27 @@ class Variant(Part):
 
     @classmethod
     def kinds_with(cls, field: str) -> list[str]:
-        """The words of the kinds of the same part that have a field."""
+        """Return the names of the kinds that have a field."""
         return [word for word, kind in cls.kinds.items() if field in kind.model_fields]
 
     @classmethod
     def fields_of(cls, kind: Any) -> set[str]:
-        """The names of the fields of another kind of the same part; those of this one if there is
-        none.
+        """Return the names of the fields of a kind of the same part; of this one if it is
+        unknown.
         """
         base = next(part for part in cls.__mro__ if Variant in part.__bases__)
-        known: Any = base.kinds  # type: ignore[attr-defined]
+        kinds: Any = base.kinds  # type: ignore[attr-defined]
         return (
-            set(known.get(kind, cls).model_fields)
+            set(kinds.get(kind, cls).model_fields)
             if isinstance(kind, str)
             else set(cls.model_fields)
         )
 
 
 class _OfItsKind:
-    """Makes a field take all kinds of a variant, and keep what each has of its own.
+    """Makes a field accept every kind of a variant, with the fields of that kind.
 
-    A list of them is taken too if there may be `several`; of one in a list, the list is forgotten.
+    If there may be `several`, a list of them is accepted too; a list of one becomes that one.
     """
 
     def __init__(self, *, several: bool = False) -> None:
@@ -422,32 +426,32 @@ class _OfItsKind:
                 raise InvalidInput("kind", kind, f"one of {', '.join(base.kinds)}")
             if not isinstance(kind, str) or kind not in base.kinds:
                 raise not_one_of("kind", kind, list(base.kinds))
-            found = base.kinds[kind](**value)
-            assert isinstance(found, base)
-            return found
+            part = base.kinds[kind](**value)
+            assert isinstance(part, base)
+            return part
 
         def chosen_each(value: Any) -> Any:
             if not isinstance(value, list | tuple):
                 return chosen(value)
-            found = []
+            parts = []
             for place, inner in enumerate(value):
                 try:
-                    found.append(chosen(inner))
+                    parts.append(chosen(inner))
                 except InvalidInput as error:
                     raise error.within(str(place)) from None
-            if not found:
+            if not parts:
                 raise PydanticCustomError("model_type", "a table of its fields")
-            return tuple(found) if len(found) > 1 else found[0]
+            return tuple(parts) if len(parts) > 1 else parts[0]
 
-        taken = chosen_each if self.several else chosen
-        return core_schema.no_info_plain_validator_function(taken, metadata={"base": base})
+        validate = chosen_each if self.several else chosen
+        return core_schema.no_info_plain_validator_function(validate, metadata={"base": base})
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         base: Any = schema["metadata"]["base"]
-        known = [*([] if inspect.isabstract(base) else [base]), *base.kinds.values()]
-        one = {"oneOf": [handler(kind.__pydantic_core_schema__) for kind in known]}
+        kinds = [*([] if inspect.isabstract(base) else [base]), *base.kinds.values()]
+        one = {"oneOf": [handler(kind.__pydantic_core_schema__) for kind in kinds]}
         return (
             {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
             if self.several
@@ -462,12 +466,10 @@ ONE_OR_SEVERAL = _OfItsKind(several=True)
 def _as_invalid_input(
     error: ValidationError, part: type[Part], fields: Mapping[str, Any]
 ) -> InvalidInput:
-    """Turn a validation error into the one sentence a user reads, about the most telling of its
-    details.
-    """
+    """Return the refusal that a user reads: that of the most telling detail of an error."""
     details = sorted(error.errors(), key=lambda detail: detail["type"] != "extra_forbidden")
     first, others = details[0], len(details) - 1
-    if first["type"] == "missing" and len(first["loc"]) > 1:  # A list of too few is one mistake.
+    if first["type"] == "missing" and len(first["loc"]) > 1:  # a list of too few is one mistake
         others = sum(detail["loc"][:1] != first["loc"][:1] for detail in details)
     field = ".".join(str(step) for step in first["loc"])
     cause = first.get("ctx", {}).get("error")
@@ -477,11 +479,11 @@ def _as_invalid_input(
         kinds = part.kinds_with(field) if issubclass(part, Variant) else ()
         refusal = unknown_field(field, first["input"], list(_written(part)), part.places, kinds)
         return refusal.within("", others)
-    if has_unit(fields.get(field)):  # Its number in SI is refused, and shown as it was written.
+    if has_unit(fields.get(field)):  # the message shows the number as it was written, not in SI
         first["input"] = fields[field]
     return refusal_of(first, _written(part)).within("", others)
 
 
 def _written(part: type[Part]) -> dict[str, FieldInfo]:
-    """The fields of a part by the names they are written with."""
+    """Return the fields of a part by the names that users write."""
     return {info.alias or name: info for name, info in part.model_fields.items()}

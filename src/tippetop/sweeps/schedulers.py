@@ -147,7 +147,7 @@ def _own_parts(
     known = is_whole(workers) and workers >= 1
     if not (workers is None or known):
         raise InvalidInput("workers", workers, "a whole number, at least 1")
-    own = sorted(sweep.problem.own_kinds(), key=lambda kind: kind.__qualname__)
+    own = sorted(sweep.problem.foreign_kinds(), key=lambda kind: kind.__qualname__)
     modules = tuple(sorted({kind.__module__ for kind in own} - {HERE}))
     unimportable = [kind for kind in own if kind.__module__ == HERE]
     kinds, why = _pickled(unimportable) if unimportable else (b"", "")
