@@ -25,8 +25,8 @@ from tippetop.theory.nutation import (
     numbers_of,
     orbit,
     orbit_of_amplitudes,
+    turned_orbit,
     turning_tilts,
-    upside_down,
 )
 from tippetop.theory.prediction import predict
 from tippetop.theory.slow_time import time_to_end
@@ -148,7 +148,7 @@ def test_the_flow_is_that_of_the_constants_of_the_smooth_table(problem):
     numbers, unit = numbers_of(problem.top), float(natural_units(problem.top).jellett)
     alpha, kept = numbers.alpha, jellett_of_launch(problem) / unit
     seen = nutation_of_launch(problem)
-    begin = upside_down(seen.orbit, numbers.turned) if seen.turned else seen.orbit
+    begin = turned_orbit(seen.orbit, numbers.turned) if seen.turned else seen.orbit
 
     def path(y):
         return orbit(Constants(kept + alpha * y[0], y[0], y[1]), numbers)

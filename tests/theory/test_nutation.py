@@ -31,8 +31,8 @@ from tippetop.theory.nutation import (
     numbers_of,
     orbit,
     orbit_of_amplitudes,
+    turned_orbit,
     turning_tilts,
-    upside_down,
 )
 
 LAUNCHES = [
@@ -134,7 +134,7 @@ def test_the_orbit_is_that_of_its_constants(gamma, alpha, tilt, spin, tilt_rate,
     low, high = turning_tilts(amplitudes(path))
     assert low - 1e-6 <= tilt <= high + 1e-6
 
-    for seen, view in ((path, numbers_), (upside_down(path, numbers_), numbers_.turned)):
+    for seen, view in ((path, numbers_), (turned_orbit(path, numbers_), numbers_.turned)):
         pair = Amplitudes(*map(float, amplitudes(seen)))
         again = orbit_of_amplitudes(pair, math.sqrt(abs(seen.far)), kept, view)
         assert tuple(again) == pytest.approx(tuple(seen), rel=1e-6, abs=1e-6)
@@ -143,13 +143,13 @@ def test_the_orbit_is_that_of_its_constants(gamma, alpha, tilt, spin, tilt_rate,
 @pytest.mark.parametrize("problem", LAUNCHES)
 def test_upside_down_the_nutation_is_the_same(problem):
     path, numbers_ = path_of(problem)
-    turned, view = upside_down(path, numbers_), numbers_.turned
+    turned, view = turned_orbit(path, numbers_), numbers_.turned
     low, high = turning_tilts(amplitudes(path))
     low_seen, high_seen = turning_tilts(amplitudes(turned))
     assert (math.pi - high_seen, math.pi - low_seen) == pytest.approx((low, high), abs=1e-9)
     taken, seen = mean_dissipation(path, numbers_), mean_dissipation(turned, view)
     assert (-seen.axial, seen.energy) == pytest.approx(tuple(taken), rel=1e-9)
-    back = upside_down(turned, view)
+    back = turned_orbit(turned, view)
     assert tuple(back) == pytest.approx(tuple(path), rel=1e-12)
 
 
@@ -159,7 +159,7 @@ def test_a_root_that_is_a_little_wrong_is_put_right(problem, turned):
     values, numbers_ = natural(problem)
     kept = values.vertical - numbers_.alpha * values.axial
     path = orbit(values, numbers_)
-    seen, view = (upside_down(path, numbers_), numbers_.turned) if turned else (path, numbers_)
+    seen, view = (turned_orbit(path, numbers_), numbers_.turned) if turned else (path, numbers_)
     pair, root = Amplitudes(*map(float, amplitudes(seen))), math.sqrt(abs(seen.far))
     again = orbit_of_amplitudes(pair, root * (1.0 + 1e-4), kept, view)
     assert tuple(again) == pytest.approx(tuple(seen), rel=1e-8)
@@ -178,7 +178,7 @@ def test_the_amplitudes_change_as_the_constants_do(problem, turned):
         axial = values.axial + time * taken.axial
         later = Constants(kept + numbers_.alpha * axial, axial, values.energy + time * taken.energy)
         path = orbit(later, numbers_)
-        seen, view = (upside_down(path, numbers_), numbers_.turned) if turned else (path, numbers_)
+        seen, view = (turned_orbit(path, numbers_), numbers_.turned) if turned else (path, numbers_)
         return [*map(float, amplitudes(seen)), math.sqrt(abs(seen.far))], view
 
     before, view = amplitudes_after(-step)

@@ -24,7 +24,7 @@ from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group
 from tippetop.theory.overview import outlook
-from tippetop.theory.prediction import steady_launch
+from tippetop.theory.prediction import steady_state_of_launch
 from tippetop.theory.stability import spectrum
 from tippetop.theory.steady import FASTEST, SteadyKind, precession_branch, vertical_spin
 
@@ -224,7 +224,7 @@ def test_a_launch_exactly_on_a_vertical_spin_stays_there(mu, body, tilt, kind):
         ("velocity", (0.0, 0.0, 1e-6)),
         ("tilt", abs(tilt - 1e-6)),
     ):
-        assert steady_launch(problem.replace({f"launch.{field}": value})) is None
+        assert steady_state_of_launch(problem.replace({f"launch.{field}": value})) is None
 
 
 @pytest.mark.parametrize("tilt", [1.9, 2.5])
@@ -238,13 +238,13 @@ def test_a_launch_exactly_on_a_precession_stays_there(tilt):
     assert found.stays.spectrum.stable
     assert found.prediction.final.tilt == pytest.approx(tilt, abs=1e-9)
     for field in on:
-        assert steady_launch(problem.replace({field: on[field] * (1.0 + 1e-8)})) is None
+        assert steady_state_of_launch(problem.replace({field: on[field] * (1.0 + 1e-8)})) is None
 
 
 def test_an_egg_on_its_side_stays_there():
     problem = launch_of("egg", FRICTION[0], math.pi / 2, 0.0, (0.0, 30.0))
-    assert steady_launch(problem).kind is SteadyKind.LEVEL
-    assert steady_launch(problem.replace({"launch.spin": 1.0})) is None
+    assert steady_state_of_launch(problem).kind is SteadyKind.LEVEL
+    assert steady_state_of_launch(problem.replace({"launch.spin": 1.0})) is None
 
 
 @pytest.mark.parametrize("kind", ["viscous", "regularized_coulomb"])

@@ -8,7 +8,7 @@ from tippetop.cli.options import Choice, Json, of_a_problem
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 
 if TYPE_CHECKING:
-    from tippetop.theory.overview import Judged, Outlook
+    from tippetop.theory.overview import AnalysedState, Outlook
     from tippetop.theory.stability import Spectrum
     from tippetop.theory.steady import SteadyState
 
@@ -252,7 +252,7 @@ def _described(state: "SteadyState[float]") -> str:
     return f"{state.kind.value} at θ = {state.tilt:.7g}"
 
 
-def _state_row(judged: "Judged") -> tuple[str, ...]:
+def _state_row(judged: "AnalysedState") -> tuple[str, ...]:
     state, spectrum = judged.state, judged.spectrum
     verdict, growth = "", ""
     if spectrum is not None:
@@ -262,7 +262,7 @@ def _state_row(judged: "Judged") -> tuple[str, ...]:
     return (state.kind.value, *motion, f"{state.energy:.5g}", verdict, growth)
 
 
-def _eigenvalues(judged: "Judged") -> str:
+def _eigenvalues(judged: "AnalysedState") -> str:
     """Return the eigenvalues as text; one of each conjugate pair stands for both."""
     assert judged.spectrum is not None
     shown = [value for value in judged.spectrum.eigenvalues.tolist() if value.imag >= 0]

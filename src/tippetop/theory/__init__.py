@@ -1,3 +1,8 @@
-"""What can be known of a top without simulating it: steady states, their stability, the slow
-flow.
+"""Analytical results about a launch, without simulating it.
+
+Read `steady` first: steady states and Jellett's integral. `stability`, `thresholds` and `groups`
+say which of them are stable, and `prediction` where a launch ends. `nutation`, `dissipation`,
+`nutation_decay`, `averaging` and `slow_time` have the slow flow under weak friction. `level`,
+`sleeping`, `stem`, `drilling` and `resting_center` treat other bodies and friction; `overview`,
+`prospects` and `advice` collect the results for people.
 """

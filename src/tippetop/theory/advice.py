@@ -1,4 +1,4 @@
-"""What to change in a top so that it turns over and stands at spins within reach."""
+"""Least changes of a top's sizes with which it turns over and stands."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -9,14 +9,14 @@ from tippetop.support.errors import InvalidInput
 from tippetop.theory.prospects import prospects
 
 STEPS = 16
-"""Sizes tried between the present one and either bound; nearer ones are found by halving."""
+"""Sizes tried between the present one and either bound, before halving refines them."""
 
 HALVINGS = 10
-"""Halvings between a size that does not do and the next that does."""
+"""Halvings between a size that does not suffice and the next that does."""
 
 
 class Size(NamedTuple):
-    """A size of a top that may be changed."""
+    """Changeable size of a top with its bounds."""
 
     name: str
     value: float
@@ -25,19 +25,19 @@ class Size(NamedTuple):
 
 
 class Advice(NamedTuple):
-    """One size to change, by the least that does."""
+    """Least change of one size that suffices."""
 
     name: str
     value: float
     spin: float
-    """Least spin of launches, rad/s, that turn over and stand with it."""
+    """Least spin of launches, rad/s, with which the changed top turns over and stands."""
 
 
 def standing_spin(body: Body, gravity: float = 9.8, tilt: float = 0.1) -> float:
-    """Return the least spin of launches, rad/s, from which a top turns over and stands on its other
-    end; inf if no spin is enough.
+    """Return the least spin of launches, rad/s, from which a top turns over and stands.
 
-    A sphere alone stands on its head; a body of several surfaces on the last of them, a sphere.
+    A single sphere stands on its head, a body of several surfaces on the last of them, which must
+    be a sphere. The result is inf if no spin is enough.
     """
     ahead = prospects(body, list(body.shapes), gravity, tilt)
     if ahead is None or not ahead.group.leaves_upright:
@@ -56,11 +56,11 @@ def advice(
     gravity: float = 9.8,
     tilt: float = 0.1,
 ) -> list[Advice]:
-    """Return the least change of each size alone with which a top stands at spins up to a reach,
-    rad/s; sizes that cannot do it alone are left out.
+    """Return the least change of each single size with which a top stands.
 
-    `body_with` makes the body with one size, by its name, of another value; where it raises
-    `InvalidInput`, there is none.
+    `reach` is the largest spin of launches, rad/s. Sizes whose change alone is not enough are
+    omitted. `body_with` makes the body with another value of one size, by its name; it raises
+    `InvalidInput` if there is no such body.
 
     Examples
     --------
@@ -80,7 +80,7 @@ def advice(
         except InvalidInput:
             return math.inf
 
-    found = []
+    changed = []
     for size in sizes:
         changes = [
             change
@@ -89,14 +89,14 @@ def advice(
         ]
         if changes:
             nearest = min(changes, key=lambda one: abs(one.value - size.value))
-            found.append(nearest)
-    return found
+            changed.append(nearest)
+    return changed
 
 
 def _least_changes(
     spin_with: Callable[[str, float], float], size: Size, bound: float, reach: float
 ) -> list[Advice]:
-    """Return the least change of a size towards a bound that does, or none."""
+    """Return the least sufficient change of a size towards a bound, in a list; [] without one."""
     short = size.value
     for step in range(1, STEPS + 1):
         enough = size.value + (bound - size.value) * step / STEPS

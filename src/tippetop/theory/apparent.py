@@ -1,5 +1,5 @@
-"""Critical spins as the equations of motion show them: in spectra of vertical spins, and in runs
-that end.
+"""Critical spins computed from the equations of motion: from spectra, and from runs of finite
+length.
 """
 
 import math
@@ -17,14 +17,15 @@ from tippetop.theory.stability import linear_tilts, vertical_growth_rates
 from tippetop.theory.steady import SteadyKind, vertical_spin
 from tippetop.theory.thresholds import CriticalSpins, jellett_line, stability_limits
 
-_SEARCH = 1.05
+_SEARCH_FACTOR = 1.05
+"""Ratio of neighbouring spins at which a root is sought."""
 
 
 def critical_spin_from_spectrum(kind: SteadyKind, top: Top) -> float:
-    """Axial spin at which the growth rate of a vertical spin vanishes, rad/s; inf where it never
-    does.
+    """Return the axial spin, rad/s, at which the growth rate of a vertical spin vanishes; inf if
+    none.
 
-    Nothing but the equations of motion and their derivatives enters: no energy, no Jellett's
+    Only the equations of motion and their derivatives are used, neither the energy nor Jellett's
     integral. The growth rate is sampled over spins up to 10^4 sqrt(g / size), and its first zero is
     refined.
     """
@@ -43,8 +44,9 @@ def critical_spin_from_spectrum(kind: SteadyKind, top: Top) -> float:
 
 
 def growth_rates_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -> Array:
-    """Growth rates, 1/s, of the vertical spins with the Jellett's integrals of launches with these
-    spins.
+    """Return the growth rates, 1/s, of the vertical spins with the Jellett's integrals of launches.
+
+    The launches are those of the problem with these spins, rad/s, shape (n,).
     """
     per_spin = vertical_spin(kind, problem.top, 1.0).jellett
     return vertical_growth_rates(
@@ -53,23 +55,22 @@ def growth_rates_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -
 
 
 def apparent_critical_spins(problem: Problem, window: float, visible: float) -> CriticalSpins:
-    """Critical spins as runs of finite length show them, rad/s.
+    """Return the critical spins, rad/s, that runs of finite length show.
 
-    Near its threshold a vertical spin attracts or repels slowly. A run that ends `visible` away
-    from the vertical passes for one that goes elsewhere: so the upright spin seems to be left below
-    its threshold (or above, if launches have time to come closer than that even at it), and the
-    inverted spin seems to be reached only above its own.
+    Near its threshold a vertical spin attracts or repels slowly. A run that ends more than
+    `visible` away from the vertical is counted as one that goes elsewhere. The upright spin
+    therefore seems unstable already below its threshold (or only above it, if launches come closer
+    than `visible` even at the threshold), and the inverted spin seems stable only above its own.
 
     The launch is near theta = 0, and its spin does not matter; `window` is the length of the runs,
-    s, and `visible` the least distance from the vertical that is told from none, rad. Raises
-    `InvalidInput` if this is not between 0 and the launch's tilt, or the window is not positive.
+    s, and `visible` the least distance from the vertical that is distinguished from 0, rad. Raises
+    `InvalidInput` if it is not between 0 and the launch's tilt, or the window is not positive.
 
     Notes
     -----
-    The upright spin: the launch is followed in the linear motion about the upright spin. The
-    inverted spin: a distance of 1 rad at the start of the window is let decay at the growth rate of
-    the inverted spin; the time of turning over is not counted, so this is a lower bound of the
-    bias.
+    For the upright spin, the launch is followed in the linear motion about it. For the inverted
+    spin, a distance of 1 rad at the start of the window decays at the growth rate of the inverted
+    spin; the time of turning over is not counted, so this is a lower bound of the bias.
     """
     if not 0.0 < visible < problem.launch.tilt:
         raise InvalidInput("visible", visible, "a distance between 0 and the launch's tilt")
@@ -79,26 +80,26 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
     top, line = problem.top, jellett_line(problem)
     per_spin = vertical_spin(SteadyKind.UPRIGHT, top, 1.0).jellett
 
-    def tilt_left(spin: float) -> float:
+    def log_final_tilt(spin: float) -> float:
         upright = vertical_spin(SteadyKind.UPRIGHT, top, line.at(spin) / per_spin)
         start = along_table(problem.replace({"launch.spin": spin}).start())
         return math.log(float(linear_tilts(upright, top, start, np.array([window]))[0]) / visible)
 
-    def distance_left(spin: float) -> float:
+    def log_final_distance(spin: float) -> float:
         rate = growth_rates_of_launches(SteadyKind.INVERTED, problem, np.array([spin]))
         return float(rate[0]) * window - math.log(visible)
 
-    # Where even the threshold's own slow motion has come within `visible`, the bias is upward.
-    settles = math.isfinite(real.upright) and tilt_left(real.upright) < 0.0
-    upright = _walk(tilt_left, real.upright, outward=settles)
-    return CriticalSpins(upright, _walk(distance_left, real.inverted, outward=True))
+    # If the motion at the threshold itself has come within `visible`, the bias is upward.
+    settles = math.isfinite(real.upright) and log_final_tilt(real.upright) < 0.0
+    upright = _nearest_root(log_final_tilt, real.upright, outward=settles)
+    return CriticalSpins(upright, _nearest_root(log_final_distance, real.inverted, outward=True))
 
 
-def _walk(function: Callable[[float], float], start: float, outward: bool) -> float:
-    """First root above `start`, or below it, up to a factor 100: inf or 0 if there is none."""
+def _nearest_root(function: Callable[[float], float], start: float, outward: bool) -> float:
+    """Return the first root above `start` or below it within a factor 100: inf or 0 if none."""
     if math.isinf(start):
         return start
-    near, factor = start, _SEARCH if outward else 1.0 / _SEARCH
+    near, factor = start, _SEARCH_FACTOR if outward else 1.0 / _SEARCH_FACTOR
     for _ in range(95):
         far = near * factor
         if function(near) * function(far) <= 0.0:

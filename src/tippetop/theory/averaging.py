@@ -1,13 +1,12 @@
-"""The slow flow: how a little friction carries a top from its launch to its steady state.
+"""Slow flow: the averaged motion under weak viscous friction, from a launch to its steady state.
 
-For small mu the tilt nutates as on a smooth table, lambda is constant, and what else the nutation
-leaves alone, L3 and the energy, drifts at a rate proportional to mu: by friction's torque and power
-averaged over one nutation (`tippetop.theory.dissipation`). Time enters only as mu t, which is why
-the time to turn over goes as 1 / mu. The nutation dies away, and what is left follows the
-precessions of the smooth table.
+For small mu the tilt nutates as on a smooth table and lambda is constant. The other constants of
+the nutation, L3 and the energy, drift at rates proportional to mu: by the torque and the power of
+friction averaged over one nutation (`tippetop.theory.dissipation`). Time enters only as mu t, so
+the time to turn over is proportional to 1 / mu. The nutation decays, and the flow then follows the
+steady precessions of the smooth table.
 
-It is the limit of runs only while the nutation needs no pull of a table that pushes: beyond, they
-fly.
+The flow is the limit of runs only while the table need not pull: beyond that, the top takes off.
 """
 
 import math
@@ -25,30 +24,36 @@ from tippetop.mechanics.view import Angles
 from tippetop.problem.problem import Problem
 from tippetop.support.errors import Described, InvalidInput, is_number, is_whole
 from tippetop.theory.nutation import numbers_of
-from tippetop.theory.nutation_decay import Goals, Nutation, Stage, follow_nutation, launched
+from tippetop.theory.nutation_decay import (
+    Goals,
+    Nutation,
+    Stage,
+    follow_nutation,
+    nutation_of_angles,
+)
 from tippetop.theory.prediction import stable_by_energy
 from tippetop.theory.steady import jellett_of_launch, steady_states
 
 
 @dataclass(frozen=True)
 class SlowFlow:
-    """The tilt of a launch in the limit of small friction, as a function of mu t."""
+    """Tilt of a launch in the limit of small friction, as a function of mu t."""
 
     mu_time: Array
     """mu t, s^2/m, increasing, shape (n,)."""
     tilt_low: Array
     tilt_high: Array
-    """Least and largest tilt of the nutation at that time, rad, shape (n,): equal once it has died
-    away.
+    """Least and largest tilt of the nutation at that time, rad, shape (n,): equal once the nutation
+    has decayed.
     """
     final_tilt: float
-    """Tilt of the steady state the flow ends in, rad; nan if it cannot be followed that far: it
-    ends where a table that only pushes does not hold so wide a nutation.
+    """Tilt of the steady state that the flow ends in, rad; nan if the flow ends before, because the
+    table would have to pull.
     """
 
     def tilts(self, mu_times: Array) -> tuple[Array, Array]:
-        """Least and largest tilt at these values of mu t (s^2/m), rad: nan outside those
-        followed.
+        """Return the least and largest tilt, rad, at values of mu t, s^2/m; nan outside
+        `mu_time`.
         """
         low, high = (
             PchipInterpolator(self.mu_time, tilts, extrapolate=False)(mu_times)
@@ -58,21 +63,23 @@ class SlowFlow:
 
 
 TOLERANCE = 1e-9
-"""Error of the logarithms of the amplitudes in a step."""
+"""Error of the logarithms of the amplitudes per step: far below what a plot or a test resolves, and
+reached in a few tens of steps.
+"""
 
 
 def averaged_flow(
     problem: Problem, distance: float = 1e-6, samples: int = 200, tolerance: float = TOLERANCE
 ) -> SlowFlow:
-    """The slow flow of a launch of an eccentric sphere with viscous friction; the size of mu does
-    not matter.
+    """Return the slow flow of a launch of an eccentric sphere with viscous friction.
 
-    The horizontal velocity of its centre of mass has no part: it dies away by itself, unless one
-    nutation brings the axis round just once (Limits in docs/theory/slow.md).
+    The value of mu does not matter. The horizontal velocity of the centre of mass is neglected: it
+    decays by itself, unless the axis turns exactly once in one nutation (Limits in
+    docs/theory/slow.md).
 
-    The flow is followed to a `distance` from the final tilt, rad. Each of its parts, from one pole,
-    and if it comes nearer, the other, is given at so many `samples` at least. The `tolerance` is
-    the error of the logarithms of the amplitudes in a step.
+    The flow is followed to a `distance` from the final tilt, rad. Each of its stages, about one
+    pole and, if that comes nearer, about the other, is sampled at least `samples` times. The
+    `tolerance` is the error of the logarithms of the amplitudes per step.
 
     Raises `InvalidInput` if the body is no eccentric sphere, its friction is not viscous, the
     launch is exactly vertical, or a setting is refused.
@@ -86,13 +93,13 @@ def averaged_flow(
         times = np.union1d(even, stage.knots)
         parts.append(np.array([begin + times, *np.broadcast_arrays(*stage.tilts(times))]))
         begin = float(parts[-1][0, -1])
-    # Each begins where the one before ends.
+    # The first instant of each stage is the last one of the stage before.
     time, low, high = np.hstack([parts[0][:, :1], *(part[:, 1:] for part in parts)])
     return SlowFlow(time / float(problem.top.gravity), low, high, stages[-1].final_tilt)
 
 
 def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
-    """The parts of the slow flow, each from the pole that the nutation is nearer to."""
+    """Return the stages of the slow flow, each about the pole that the nutation is nearer to."""
     for field, value in {"distance": distance, "tolerance": tolerance}.items():
         if not (is_number(value) and value > 0.0):
             raise InvalidInput(field, value, "a finite number greater than 0")
@@ -102,11 +109,11 @@ def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
         raise InvalidInput(
             "body.shape",
             Described("a centred sphere"),
-            "an eccentric one: no other nutates by its weight",
+            "an eccentric sphere: the weight makes no other nutate",
         )
     if not isinstance(top.friction, ViscousLaw):
         raise InvalidInput(
-            "friction", Described("this law"), "viscous friction; no other slip averages out"
+            "friction", Described("this law"), "viscous friction: the average exists for no other"
         )
     if problem.launch.tilt in (0.0, math.pi) and problem.launch.tilt_rate == 0.0:
         raise InvalidInput(
@@ -126,20 +133,19 @@ def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
 
 
 def nutation_of_launch(problem: Problem) -> Nutation:
-    """The nutation that a launch of an eccentric sphere would keep on a smooth table, in natural
-    units.
+    """Return the nutation of a launch of an eccentric sphere on a smooth table, natural units.
 
     Raises `InvalidInput` if the body is of another shape.
     """
     launch, time = problem.launch, float(natural_units(problem.top).time)
     rates = (launch.tilt_rate * time, 0.0, launch.precession * time, launch.spin * time)
-    return launched(Angles(launch.tilt, *rates, (0.0, 0.0)), numbers_of(problem.top))
+    return nutation_of_angles(Angles(launch.tilt, *rates, (0.0, 0.0)), numbers_of(problem.top))
 
 
 def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
-    """Limit for small mu of mu times the flip time, s^2/m.
+    """Return the limit of mu times the flip time for small mu, s^2/m.
 
-    The flip time is the first at which the tilt is within `distance` (rad) of its end. Raises
+    The flip time is the first instant with the tilt within `distance` (rad) of its end. Raises
     `InvalidInput` as `averaged_flow`, and if the flow cannot be followed to its end.
     """
     stages = _stages(problem, distance, TOLERANCE)
@@ -156,36 +162,37 @@ def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
 
 
 def _no_end(problem: Problem, stages: list[Stage]) -> InvalidInput:
-    """The refusal of a launch whose slow flow is not followed to its end."""
+    """Return the refusal of a launch whose slow flow cannot be followed to its end."""
     if stages[0].begin.grazes:
-        other = (
-            "far enough from the unstable vertical: here rounding decides how the nutation begins"
-        )
-        return InvalidInput("launch.tilt", problem.launch.tilt, other)
+        accepted = "far enough from the unstable vertical: so near, rounding decides the nutation"
+        return InvalidInput("launch.tilt", problem.launch.tilt, accepted)
     pulled = stages[-1].pulled
     launch = (
-        "one that needs a pull of the table"
+        "one for which the table would have to pull"
         if pulled
-        else "one whose nutation is not seen to die away"
+        else "one whose nutation does not decay in the time followed"
     )
-    return InvalidInput("launch", Described(launch), "one whose nutation dies away without a pull")
+    return InvalidInput(
+        "launch", Described(launch), "one whose nutation decays on a table that only pushes"
+    )
 
 
 def _first_near(stage: Stage, final: float, distance: float) -> float | None:
-    """First time at which a nutation is near its end, which it may pass long before it has died
-    away.
+    """Return the first time at which the tilt is near its end, or None.
+
+    A wide nutation may pass its end long before it has decayed.
     """
 
-    def away(times: Array) -> Array:
-        """How far the end is outside of the nutation, beyond what is near."""
+    def excess(times: Array) -> Array:
+        """Return the distance of the final tilt from the range of the nutation, less `distance`."""
         low, high = stage.tilts(times)
         return np.maximum(low - final, final - high) - distance
 
-    def apart(times: Array) -> Array:
+    def amplitude_difference(times: Array) -> Array:
         fast, slow, _ = stage.points(times)
         return np.asarray(fast - slow)
 
-    def beyond(times: Array) -> Array:
+    def middle_offset(times: Array) -> Array:
         low, high = stage.tilts(times)
         return low + high - 2.0 * final
 
@@ -194,33 +201,35 @@ def _first_near(stage: Stage, final: float, distance: float) -> float | None:
 
     shares = np.linspace(stage.knots[:-1], stage.knots[1:], _PER_STEP, endpoint=False).T.ravel()
     times = np.append(shares, stage.knots[-1])
-    # It may be near for an instant only: where it goes through a vertical, or its middle through
-    # the end.
-    for through in (apart, beyond):
+    # The tilt may be near its end for an instant only: where the nutation passes a vertical, or its
+    # middle passes the final tilt.
+    for through in (amplitude_difference, middle_offset):
         ahead = through(times) > 0.0
         turns = np.flatnonzero(ahead[:-1] != ahead[1:])
         roots = [crossing(of_one(through), float(times[i]), float(times[i + 1])) for i in turns]
         times = np.union1d(times, roots)
     # Or where it comes near and turns back.
-    values = away(times)
+    values = excess(times)
     around = np.pad(values, 1, constant_values=math.inf)
     lowest = (values <= 0.0) | (values <= np.minimum(around[:-2], around[2:]))
     for i in np.flatnonzero(lowest).tolist():
-        before, here, after = times[[max(i - 1, 0), i, min(i + 1, len(times) - 1)]].tolist()
+        before, middle, after = times[[max(i - 1, 0), i, min(i + 1, len(times) - 1)]].tolist()
         least = values[i]
         if least > 0.0:
-            here, least = dip(of_one(away), before, after)
+            middle, least = dip(of_one(excess), before, after)
         if least <= 0.0:
-            return here if i == 0 and values[0] <= 0.0 else crossing(of_one(away), before, here)
+            return (
+                middle if i == 0 and values[0] <= 0.0 else crossing(of_one(excess), before, middle)
+            )
     return None
 
 
 def local_exponent(mu: Array, flip_time: Array) -> Array:
-    """Exponent d ln t / d ln mu along a table of flip times, shape (n,): -1 where t goes as 1 /
-    mu.
-    """
+    """Return the exponent d ln t / d ln mu of flip times, shape (n,): -1 where t ~ 1 / mu."""
     return np.asarray(np.gradient(np.log(flip_time), np.log(mu)))
 
 
 _PER_STEP = 40
+"""Instants per step at which it is checked whether the end is near."""
 _MOST_STAGES = 20
+"""Changes of the pole after which the flow is given up: real launches change once or twice."""

@@ -1,8 +1,8 @@
-"""What a run says about the theory: gyroscopic balance, constants of the smooth table, envelope.
+"""Theoretical quantities along a run: gyroscopic balance, constants of a smooth table, envelope.
 
 All functions take the axis n and the angular momentum L about the centre of mass (kg m^2/s) of a
-run, shape (n, 3), and have no singularity where the axis is vertical, except for quantities that
-are infinite there.
+run, shape (n, 3), and are regular where the axis is vertical, except for quantities that are
+infinite there.
 """
 
 import numpy as np
@@ -16,10 +16,10 @@ from tippetop.theory import nutation
 
 
 def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:
-    """Xi = I1 phi' cos(theta) - I3 omega3, kg m^2/s, shape (n,); nan where the axis is vertical.
+    """Return xi = I1 phi' cos(theta) - I3 omega3, kg m^2/s, shape (n,); nan where n is vertical.
 
-    A spinning body is in gyroscopic balance where xi is small beside I3 omega3: its nutation is
-    then fast, and its tilt moves slowly (Moffatt and Shimomura 2002; Ueda, Sasaki and Watanabe
+    A spinning body is in gyroscopic balance where xi is small compared with I3 omega3: its nutation
+    is then fast, and its tilt moves slowly (Moffatt and Shimomura 2002; Ueda, Sasaki and Watanabe
     2005).
     """
     n, L = _vector(axis), _vector(momentum)
@@ -30,27 +30,27 @@ def gyroscopic_balance(axis: Array, momentum: Array, top: Top) -> Array:
 
 
 def smooth_constants(axis: Array, momentum: Array, top: Top) -> nutation.Constants:
-    """What a smooth table would leave alone from each instant on: L_z, L3 and energy as arrays,
-    shape (n,).
+    """Return L_z, L3 and the energy, which a smooth table would conserve; each of shape (n,).
 
-    The energy is that without the horizontal motion of the centre of mass, for a body on the table.
+    The energy is that of a body on the table without horizontal motion of its centre of mass.
     """
     return nutation.constants(_vector(axis), _vector(momentum), top)
 
 
 def potential_at(index: int, axis: Array, momentum: Array, top: Top, tilts: Array) -> Array:
-    """Effective potential, J, of these tilts (rad, between 0 and pi, shape (k,)) at one instant of
-    a run.
+    """Return the effective potential, J, at tilts (rad, between 0 and pi, shape (k,)).
+
+    Its constants are those of the run at the instant number `index`.
     """
     values = smooth_constants(axis[index : index + 1], momentum[index : index + 1], top)
     return np.asarray(nutation.effective_potential(np.asarray(tilts, dtype=float), values, top, np))
 
 
 def nutation_envelope(axis: Array, momentum: Array, top: Top) -> tuple[Array, Array]:
-    """Least and largest tilt of the nutation that a smooth table would leave the top in, rad, shape
-    (n,).
+    """Return the least and largest tilt, rad, of the nutation on a smooth table from each instant
+    on.
 
-    Raises `InvalidInput` if the body is not an eccentric sphere.
+    Both have shape (n,). Raises `InvalidInput` if the body is not an eccentric sphere.
     """
     numbers = nutation.numbers_of(top)
     values = nutation.natural_constants(smooth_constants(axis, momentum, top), top)
@@ -58,6 +58,6 @@ def nutation_envelope(axis: Array, momentum: Array, top: Top) -> tuple[Array, Ar
 
 
 def _vector(rows: Array) -> Vector:
-    """The three components of vectors in rows."""
+    """Return the three components of vectors in rows."""
     x, y, z = np.asarray(rows, dtype=float).T
     return x, y, z

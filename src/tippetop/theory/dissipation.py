@@ -1,4 +1,4 @@
-"""What a little friction takes from a nutation, on average: torque, power, decay of its
+"""Dissipation of a nutation by weak friction: mean torque and power, and rates of its
 amplitudes.
 """
 
@@ -9,9 +9,7 @@ from tippetop.theory.nutation import Amplitudes, Numbers, Orbit, excess_slope, o
 
 
 class Dissipation(NamedTuple):
-    """What friction takes from a nutation, on average, per unit of friction coefficient, in natural
-    units.
-    """
+    """Mean rates of a nutation's constants per unit friction coefficient, in natural units."""
 
     axial: float
     """Rate of L3."""
@@ -20,27 +18,25 @@ class Dissipation(NamedTuple):
 
 
 class AmplitudeRates(NamedTuple):
-    """How friction changes a nutation, on average, per unit of friction coefficient, in natural
-    units.
+    """Mean rates of a nutation's amplitudes per unit friction coefficient, in natural units.
 
-    Jellett's integral and the amplitudes leave two choices of the third root, which can meet: it is
-    followed too.
+    Jellett's integral and the amplitudes allow two values of the third root, which can meet;
+    therefore its rate is needed too.
     """
 
     fast: float
     slow: float
     """Logarithmic rates of the amplitudes."""
     root: float
-    """Rate of sqrt(|p3|), which goes on to negative values where p3 touches zero."""
+    """Rate of sqrt(|p3|), which continues to negative values where p3 touches zero."""
 
 
 def phases(path: Orbit) -> tuple[float, ...]:
-    """Cosines of as many equidistant phases psi between 0 and pi as an average over the nutation
-    needs.
+    """Return cosines of equidistant phases psi between 0 and pi, enough to average over a nutation.
 
     The error falls as exp(-2 n kappa) for n phases, with cosh(kappa) the distance of the third root
-    from the middle of the nutation over its half-width; as many are taken as make it 1e-12, at most
-    64.
+    from the middle of the nutation over its half-width. n is the least number with an error of
+    1e-12, at most 64.
     """
     reach = abs(path.far - path.middle) / path.half if path.half > 0.0 else math.inf
     kappa = math.acosh(reach) if reach > 1.0 else 0.0
@@ -60,13 +56,12 @@ _PHASES = tuple(
 
 
 def mean_dissipation(path: Orbit, numbers: Numbers) -> Dissipation:
-    """What friction takes from a nutation on average: torque about the axis and power, per unit of
-    friction.
+    """Return the mean torque about the axis and the mean power of friction over a nutation.
 
     The centre of mass rests horizontally, as it does on average: its own motion decays as exp(-mu g
-    t) and turns with no nutation. Then the slip is (omega x a) along the table, v_X = -h theta' and
-    s v_Y = s^2 omega3 - (L_z - L3 c)(c - alpha) / I1, and the torque about the axis is -mu N s v_Y.
-    N is that of the smooth table, 1 + z'' with z = 1 - alpha c.
+    t) and does not follow the nutation. The slip is then (omega x a) along the table, v_X = -h
+    theta' and s v_Y = s^2 omega3 - (L_z - L3 c)(c - alpha) / I1, and the torque about the axis is
+    -mu N s v_Y. N is the reaction of the smooth table, 1 + z'' with z = 1 - alpha c.
     """
     I1, I3, alpha = numbers
     middle, half, far, excess, axial, _ = path
@@ -88,15 +83,13 @@ def mean_dissipation(path: Orbit, numbers: Numbers) -> Dissipation:
 
 
 def least_reaction(path: Orbit, numbers: Numbers) -> float:
-    """Least reaction of the table over a nutation, in weights: negative where it would have to
-    pull.
-    """
+    """Return the least reaction of the table over a nutation, in weights; negative for a pull."""
     places = (path.middle + path.half * cosine for cosine in (1.0, *phases(path), -1.0))
     return min(_motion(p, path, numbers).reaction for p in places)
 
 
 class _Motion(NamedTuple):
-    """A nutation at one tilt."""
+    """Motion of a nutation at one tilt, in natural units."""
 
     inertia: float
     rate_squared: float
@@ -124,21 +117,21 @@ def _motion(p: float, path: Orbit, numbers: Numbers) -> _Motion:
 def amplitude_rates(
     pair: Amplitudes, root: float, jellett: float, numbers: Numbers
 ) -> AmplitudeRates:
-    """Rates of a nutation's amplitudes per unit of friction coefficient, in natural units.
+    """Return the rates of a nutation's amplitudes per unit friction coefficient, in natural units.
 
-    The rates of L3 and of the energy, at constant Jellett's integral, carried over by
+    They follow from the rates of L3 and of the energy at constant Jellett's integral, by
     differentiating the sum of the cubic's roots, the sum of their products in pairs, and L_z - L3.
     """
     I1, I3, alpha = numbers
     path = orbit_of_amplitudes(pair, root, jellett, numbers)
-    taken = mean_dissipation(path, numbers)
+    lost = mean_dissipation(path, numbers)
     far, excess, axial = path.far, path.excess, path.axial
     root = math.copysign(math.sqrt(abs(far)), root)
     difference, both = pair.fast - pair.slow, 2.0 * path.middle
     slope = excess_slope(numbers)
-    axial_rate = taken.axial
+    axial_rate = lost.axial
     excess_rate = (alpha - 1.0) * axial_rate
-    swing_rate = taken.energy - axial / I3 * axial_rate
+    swing_rate = lost.energy - axial / I3 * axial_rate
     total_rate = (swing_rate + axial * axial_rate / I1) / alpha
     pairs_rate = (2.0 * swing_rate - (excess * axial_rate + axial * excess_rate) / I1) / alpha
 

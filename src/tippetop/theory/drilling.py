@@ -1,14 +1,14 @@
-"""Drilling: what the table's torque takes from a top that stands, and how long that top can stand.
+"""Drilling friction: loss of spin of a standing top, and the time for which it can stand.
 
 A torque M about the vertical changes Jellett's integral of a sphere at the rate lambda' = M h, h
 the height of the centre of mass. Under Contensou's friction with a patch of radius R a steady
-state, which has no slip, feels M = -(3 pi / 16) mu m g R, whatever its spin and for both pressures:
-lambda' is a slow clock. A vertical spin loses |M| / I3 per second, exactly, and stands until too
-little is left for stability.
+state, which has no slip, has the torque M = -(3 pi / 16) mu m g R at any spin and for both
+pressures. A vertical spin loses |M| / I3 per second, exactly, and stands until its spin falls below
+the threshold of stability.
 
-The torque takes from the vertical part of L alone, so that L leans the more the less of it is left:
-while the spin is stable, a small tilt decays as its eigenvalue says and grows as 1 / omega3, which
-is often quicker.
+The torque reduces only the vertical component of L, so that L leans more as that decreases: while
+the spin is stable, a small tilt decays at the rate of its eigenvalue and grows as 1 / omega3, which
+is often faster.
 """
 
 import math
@@ -30,38 +30,36 @@ from tippetop.theory.steady import (
     state_of,
     vertical_spin,
 )
-from tippetop.theory.thresholds import critical_spin, stands
+from tippetop.theory.thresholds import can_stand, critical_spin
 
 
 def spin_rate(steady: SteadyState[float], top: Top) -> float:
-    """Rate omega3' of the axial spin that drilling takes from a vertical spin, rad/s^2; 0 without
-    drilling.
+    """Return the rate omega3' of a vertical spin by drilling, rad/s^2; 0 without drilling.
 
     Raises `InvalidInput` if friction has no linear motion about a vertical spin.
     """
     axis, momentum, velocity = state_of(steady, top)
     turning = angular_velocity(axis, momentum, top)[2]
-    # On the branch of a law that drills without slip.
+    # `drilling` gives the branch of the law for drilling without slip.
     touch = contact(axis, momentum, velocity, drilling(top, np.array([turning])))
     return float(touch.torque[2]) * math.cos(steady.tilt) / float(top.axial_inertia)
 
 
 def standing_time(problem: Problem) -> float:
-    """How long drilling lets a vertical spin stand, s: until it is stable no longer, or turns no
-    more.
+    """Return the time, s, after which drilling has made a vertical spin unstable or stopped it.
 
-    Exact for a launch at tilt 0 or pi, which the torque of drilling alone changes. For any other
-    launch of an eccentric sphere it is the time of the inverted spin with its Jellett's integral:
-    how long it could stand if it turned over at once. inf without drilling, and 0 where the spin is
-    not stable to begin with, or the centre of mass is not above the table. A small tilt may grow
-    meanwhile, but hardly more than as 1 / omega3.
+    The time is exact for a launch at tilt 0 or pi, which only the drilling torque changes. For any
+    other launch of an eccentric sphere it is that of the inverted spin with its Jellett's integral:
+    the time for which it could stand if it turned over at once. The result is inf without drilling,
+    and 0 if the spin is unstable from the start or the centre of mass is not above the table. A
+    small tilt may grow meanwhile, but hardly faster than 1 / omega3.
 
     Raises
     ------
     InvalidInput
-        If there is no linear motion about a vertical spin: a dry point rubs, rolling is resisted,
-        or nothing spins. If a body other than an eccentric sphere is not launched at tilt 0 or pi,
-        or it has several surfaces.
+        If there is no linear motion about a vertical spin: under dry friction of a point, with
+        rolling resistance, or without spin. If a body other than an eccentric sphere is not
+        launched at tilt 0 or pi, or has several surfaces.
 
     Examples
     --------
@@ -78,17 +76,17 @@ def standing_time(problem: Problem) -> float:
     if tilt not in (0.0, math.pi):
         require_sphere(top)
     kind = SteadyKind.INVERTED if tilt else SteadyKind.UPRIGHT
-    if not stands(kind, top):  # and no spin has any lambda
+    if not can_stand(kind, top):  # lambda of any spin may then be 0
         return 0.0
     spin = jellett_of_launch(problem) / vertical_spin(kind, top, 1.0).jellett
     return time_to_stand(vertical_spin(kind, top, spin), top)
 
 
 def time_to_stand(steady: SteadyState[float], top: Top) -> float:
-    """How long drilling lets a vertical spin stand, s; see `standing_time`.
+    """Return the time for which drilling lets a vertical spin stand, s; see `standing_time`.
 
-    Raises `InvalidInput` if it is another steady state, there is no linear motion about it, or a
-    torque changes with the spin.
+    Raises `InvalidInput` if the steady state is another one, there is no linear motion about it, or
+    the torque depends on the spin.
     """
     if steady.kind not in VERTICAL_SPINS:
         raise InvalidInput("kind", steady.kind.value, "a vertical spin")

@@ -1,9 +1,8 @@
-"""Which tops turn over: a map of the eccentric sphere by gamma = I1 / I3 and alpha, its
-eccentricity.
+"""Classification of eccentric spheres by gamma = I1 / I3 and their eccentricity alpha.
 
 The stable steady states are the minima over the tilt of the least energy at a given Jellett's
-integral. For the eccentric sphere everything about them follows from D(c) = alpha - (1 - gamma) c,
-c = cos(theta):
+integral. For the eccentric sphere all of them follow from D(c) = alpha - (1 - gamma) c, c =
+cos(theta):
 
 - There is a steady precession at this tilt where D > 0.
 - Its Jellett's integral is lambda^2 = m g R^3 I3 alpha P^2 / D with P = gamma (1 - c^2) + (c -
@@ -13,8 +12,8 @@ c = cos(theta):
 
 Three groups follow from the sign of D at the two ends: gamma = 1 - alpha and gamma = 1 + alpha are
 their boundaries (Ebenfeld and Scheck 1995; Ueda, Sasaki and Watanabe 2005; Ciocci, Malengier,
-Langerock and Grimonprez 2012). Where the fold is divides them further, into six kinds; the letters
-are not those of the last of these papers, whose IIb is IIa here.
+Langerock and Grimonprez 2012). The place of the fold divides them further, into six kinds; the
+letters are not those of the last of these papers, whose IIb is IIa here.
 """
 
 import math
@@ -29,7 +28,7 @@ from tippetop.theory.thresholds import critical_jellett
 
 
 class Group(StrEnum):
-    """How an eccentric sphere behaves when it is spun ever faster near theta = 0."""
+    """Group of eccentric spheres with the same behaviour as they are spun faster near theta = 0."""
 
     IA = "Ia"
     IB = "Ib"
@@ -40,7 +39,7 @@ class Group(StrEnum):
 
     @property
     def description(self) -> str:
-        """What the group does, in a sentence."""
+        """Behaviour of the group, in a sentence."""
         return _DESCRIPTIONS[self]
 
     @property
@@ -55,8 +54,8 @@ class Group(StrEnum):
 
     @property
     def coexistence(self) -> bool:
-        """Whether two steady states are stable at some spins, so that the launch decides between
-        them.
+        """Whether two steady states are stable at some spins, so that the launch decides the
+        end.
         """
         return self not in (Group.IIA, Group.III)
 
@@ -84,7 +83,7 @@ _DESCRIPTIONS = {
 
 
 class Fold(NamedTuple):
-    """Where the Jellett's integral of the steady precessions is least, inside the branch."""
+    """Precession with the least Jellett's integral, if that is inside the branch."""
 
     tilt: float
     """theta, rad."""
@@ -93,10 +92,10 @@ class Fold(NamedTuple):
 
 
 def classify(gamma: float, alpha: float) -> Group:
-    """Group of the eccentric sphere with inertia ratio gamma = I1 / I3 and eccentricity alpha.
+    """Return the group of the eccentric sphere with gamma = I1 / I3 and eccentricity alpha.
 
-    Raises `InvalidInput` if alpha is not between 0 and 1, or gamma is less than 1/2, as for no
-    body.
+    Raises `InvalidInput` if alpha is not between 0 and 1, or gamma is less than 1/2, which no body
+    has.
     """
     if not 0.0 < alpha < 1.0:
         raise InvalidInput("alpha", alpha, "a number greater than 0 and less than 1")
@@ -113,51 +112,49 @@ def classify(gamma: float, alpha: float) -> Group:
 
 
 def classify_top(top: Top) -> Group:
-    """Group of an eccentric sphere; `InvalidInput` if the top does not conserve Jellett's
-    integral.
+    """Return the group of an eccentric sphere.
+
+    Raises `InvalidInput` if the top does not conserve Jellett's integral.
     """
     require_jellett(top)
     return classify(inertia_ratio(top), eccentricity(top))
 
 
 def inertia_ratio(top: Top) -> float:
-    """Gamma = I1 / I3."""
+    """Return gamma = I1 / I3."""
     return float(top.transverse_inertia / top.axial_inertia)
 
 
 def eccentricity(top: Top) -> float:
-    """Alpha of an eccentric sphere: how far its centre is above the centre of mass, in radii."""
+    """Return alpha of an eccentric sphere: its centre's height above the centre of mass, in
+    radii.
+    """
     return float(-top.surface.slope(0.0) / top.surface.size)
 
 
 def upright_boundary(alpha: float) -> float:
-    """Gamma of the boundary between groups I and II: below it the upright spin is stable at any
-    spin.
-    """
+    """Return gamma between groups I and II: below it the upright spin is stable at any spin."""
     return 1.0 - alpha
 
 
 def inverted_boundary(alpha: float) -> float:
-    """Gamma of the boundary between groups II and III: above it the inverted spin is stable at no
-    spin.
-    """
+    """Return gamma between groups II and III: above it the inverted spin is stable at no spin."""
     return 1.0 + alpha
 
 
 def jump_boundary(alpha: float) -> float:
-    """Gamma of the boundary between groups IIb and IIa, where the fold enters at theta = 0.
+    """Return gamma between groups IIb and IIa, where the fold enters at theta = 0.
 
-    The larger root of 4 gamma^2 - (1 - alpha)(7 + alpha) gamma + 3 (1 - alpha)^2.
+    It is the larger root of 4 gamma^2 - (1 - alpha)(7 + alpha) gamma + 3 (1 - alpha)^2.
     """
     return (1.0 - alpha) / 8.0 * (7.0 + alpha + math.sqrt(1.0 + 14.0 * alpha + alpha**2))
 
 
 def precession_boundaries(alpha: float) -> tuple[float, float]:
-    """Gammas between which no precession is stable (groups Ib and IIc), where the fold leaves at
-    theta = pi.
+    """Return the values of gamma between which no precession is stable (groups Ib and IIc).
 
-    The roots of 4 gamma^2 - (1 + alpha)(7 - alpha) gamma + 3 (1 + alpha)^2; (nan, nan) where there
-    are none, for alpha > 7 - 4 sqrt(3) = 0.0718.
+    There the fold leaves at theta = pi. They are the roots of 4 gamma^2 - (1 + alpha)(7 - alpha)
+    gamma + 3 (1 + alpha)^2; (nan, nan) if there are none, for alpha > 7 - 4 sqrt(3) = 0.0718.
     """
     discriminant = 1.0 - 14.0 * alpha + alpha**2
     if discriminant < 0.0:
@@ -167,18 +164,16 @@ def precession_boundaries(alpha: float) -> tuple[float, float]:
 
 
 def equal_thresholds(alpha: float) -> float:
-    """Gamma in group II at which both vertical spins change stability together, lambda_up =
-    lambda_down.
+    """Return gamma in group II at which both vertical spins change stability at the same lambda.
 
-    Below it the upright spin outlasts the coming of the inverted one, so that a top that leaves it
-    turns over completely at once.
+    Below it both vertical spins are stable over a range of lambda, so that a top that leaves the
+    upright spin turns over completely at once.
     """
     return (1.0 - alpha**2) * (1.0 + 3.0 * alpha**2) / (1.0 + 6.0 * alpha**2 + alpha**4)
 
 
 def fold(top: Top) -> Fold | None:
-    """The fold of the branch of steady precessions of an eccentric sphere, or None if it has none
-    inside.
+    """Return the fold of the steady precessions of an eccentric sphere; None without one.
 
     Raises `InvalidInput` if the top does not conserve Jellett's integral.
     """
@@ -191,7 +186,7 @@ def fold(top: Top) -> Fold | None:
 
 
 def coexistence(top: Top) -> tuple[float, float] | None:
-    """Sizes of Jellett's integral between which two steady states are stable, kg m^3/s, or None.
+    """Return the sizes of Jellett's integral between which two steady states are stable, or None.
 
     Raises `InvalidInput` if the top does not conserve Jellett's integral.
     """
@@ -204,7 +199,5 @@ def coexistence(top: Top) -> tuple[float, float] | None:
 
 
 def _fold_measure(gamma: float, alpha: float) -> float:
-    """D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 where there is none and every D is
-    larger.
-    """
+    """Return D at the fold, sqrt(gamma (1 - gamma - alpha^2) / 3); 0 if every D is larger."""
     return math.sqrt(max(gamma * (1.0 - gamma - alpha**2) / 3.0, 0.0))

@@ -1,4 +1,4 @@
-"""Level spins: an axis that lies, as of an egg on its side or of hurricane balls at rest on both.
+"""Level spins: bodies with a horizontal axis, as an egg on its side or hurricane balls on both.
 
 An egg that lies on its waist and turns about the vertical at the rate Omega is in a steady state at
 any Omega. Slip that creeps makes it rise where the branch of steady precessions reaches the
@@ -9,9 +9,9 @@ horizontal, which with the support function h(c) is at
 For a spheroid h'' = (along^2 - across^2) / across (Moffatt and Shimomura, Nature 416 (2002) 385,
 have this rate in the limit of small friction).
 
-A body that lies on two of its surfaces rolls on both up to the rate at which one of them carries it
-alone, with the centre of mass at rest: beyond, the other lifts (for hurricane balls of radius R,
-Omega^2 = 5 g / (2 R)).
+A body that lies on two of its surfaces rolls on both up to the rate at which one of them carries
+the weight with the centre of mass at rest: beyond that rate the second surface lifts off (for
+hurricane balls of radius R, Omega^2 = 5 g / (2 R)).
 """
 
 import math
@@ -23,36 +23,38 @@ from tippetop.theory.prediction import touching_tilts
 from tippetop.theory.resting_center import resting_center_on
 from tippetop.theory.steady import has_level_spin
 
-APART = 1e-4
-"""Tilt, rad, by which a surface is lifted to see whether the body then rolls faster: far above
+LIFT = 1e-4
+"""Tilt, rad, by which a surface is lifted to find whether the body then rolls faster: far above
 rounding, and far below the tilts over which the rate turns back.
 """
 
 
 class Lying(NamedTuple):
-    """How a body lies, and the least rate about the vertical at which it rises from there."""
+    """How a body lies, and the least rate about the vertical at which it rises from that."""
 
     tilt: float
     """theta, rad."""
     surfaces: tuple[int, ...]
     """Numbers of the surfaces that it lies on: its waist on one, or two."""
     rate: float
-    """Least rate at which it rises, or lifts one of the two surfaces, rad/s; inf if at none."""
+    """Least rate at which it rises, or lifts one of the two surfaces, rad/s; inf if there is
+    none.
+    """
 
 
 def lying(top: Top, tilt: float) -> Lying | None:
-    """Return how a body lies at the tilt next to one, rad; None if it does not lie there.
+    """Return how a body lies at the tilt nearest to `tilt`, rad; None if it does not lie.
 
-    Of a body of several surfaces, the one that is active carries it, and another touches at the
-    nearest tilt where both do. It lies there if the centre of mass is between the contact points.
+    A body of several surfaces lies on the active one and another, at the nearest tilt where both
+    touch, if the centre of mass is between the contact points.
     """
     if not isinstance(top.surface, Hull):
         return Lying(math.pi / 2, (0,), rising_rate(top)) if has_level_spin(top) else None
     ends = touching_tilts(top.surface, tilt)
     for at in sorted(ends, key=lambda at: abs(at - tilt)):
-        other = top.surface._replace(active=ends[at])
-        if top.surface.slope(math.cos(at)) * other.slope(math.cos(at)) < 0.0:
-            surfaces = tuple(sorted((top.surface.active, other.active)))
+        second = top.surface._replace(active=ends[at])
+        if top.surface.slope(math.cos(at)) * second.slope(math.cos(at)) < 0.0:
+            surfaces = tuple(sorted((top.surface.active, second.active)))
             return Lying(at, surfaces, lifting_rate(at, top))
     return None
 
@@ -72,14 +74,14 @@ def lifting_rate(tilt: float, top: Top) -> float:
     """Return the least rate, rad/s, at which one of two surfaces carries a rolling body alone.
 
     `tilt`, rad, is that at which both touch, and `top` has the surface active that stays. The
-    result is inf where the body rolls slower, not faster, the farther the other surface is lifted.
+    result is inf if the body rolls more slowly the farther the second surface is lifted.
     """
     rolling = resting_center_on(tilt, top)
 
     def reach(at: float) -> float:
         return float(top.surface.height(math.cos(at)) - outer_height(top.surface, math.cos(at)))
 
-    lifted = max((tilt - APART, tilt + APART), key=reach)
+    lifted = max((tilt - LIFT, tilt + LIFT), key=reach)
     farther = resting_center_on(lifted, top)
     if rolling is None or farther is None or farther.precession < rolling.precession:
         return math.inf

@@ -1,5 +1,4 @@
-"""Nutation of an eccentric sphere on a smooth table: its constants, its turning points, its two
-amplitudes.
+"""Nutation of an eccentric sphere on a smooth table: constants, turning points and amplitudes.
 
 Without friction L_z, L3 = L.n and the energy are constant, and the tilt swings between two turning
 points. In units of mass, radius and gravity, with p = 1 - cos(theta), q = L_z - L3 and e the energy
@@ -12,11 +11,11 @@ with s^2 = p (2 - p) and p1 <= p2 <= 2 <= p3. The substitution p = (p1 + p2)/2 +
 cos(psi) makes time a smooth function of the phase psi down to p1 = p2, and averages over a nutation
 converge exponentially with equidistant phases.
 
-The tilt swings as if the axis were the sum of two circular motions, a fast and a slow one, as it is
-near theta = 0: sin(theta/2) at the turning points is the sum and the difference of two amplitudes,
-whose squares are named `fast` and `slow` here. They stay good where one of them vanishes (a steady
-precession of a smooth table) and where they are equal (a nutation through the vertical), and near
-theta = 0 friction makes them grow or decay exponentially.
+The tilt swings as if the axis were the sum of a fast and a slow circular motion, as it is near
+theta = 0: sin(theta/2) at the turning points is the sum and the difference of two amplitudes, whose
+squares are named `fast` and `slow`. These coordinates are regular where one of them vanishes (a
+steady precession on a smooth table) and where they are equal (a nutation through the vertical), and
+near theta = 0 friction makes them grow or decay exponentially.
 """
 
 import math
@@ -35,7 +34,7 @@ from tippetop.theory.requirements import require_sphere
 
 
 class Constants(NamedTuple):
-    """What a nutation on a smooth table leaves alone."""
+    """Constants of a nutation on a smooth table."""
 
     vertical: Scalar
     axial: Scalar
@@ -45,7 +44,7 @@ class Constants(NamedTuple):
 
 
 class Numbers(NamedTuple):
-    """The dimensionless numbers of an eccentric sphere: inertias in m R^2, and alpha."""
+    """Dimensionless numbers of an eccentric sphere: inertias in m R^2, and alpha."""
 
     transverse: float
     axial: float
@@ -53,12 +52,12 @@ class Numbers(NamedTuple):
 
     @property
     def turned(self) -> Self:
-        """Those of the same top with its axis drawn the other way: -alpha for alpha."""
+        """Numbers of the same top with its axis reversed: -alpha for alpha."""
         return self._replace(alpha=-self.alpha)
 
 
 class Orbit(NamedTuple):
-    """A nutation of a smooth table, in units of mass, radius and gravity."""
+    """Nutation on a smooth table, in units of mass, radius and gravity."""
 
     middle: Scalar
     half: Scalar
@@ -81,14 +80,14 @@ class Amplitudes(NamedTuple):
 
 
 def constants(axis: Vector, momentum: Vector, top: Top) -> Constants:
-    """The constants of the smooth table at an instant, SI; arrays of them too."""
+    """Return the constants of the nutation at an instant, or arrays of them, SI."""
     resting = on_table(SlidingState(axis, momentum, (0.0, 0.0)), top)
     axial = top.axial_inertia * axial_spin(axis, momentum, top)
     return Constants(momentum[2], axial, energy(resting, top))
 
 
 def natural_constants(values: Constants, top: Top) -> Constants:
-    """The constants in units of mass, radius and gravity."""
+    """Return the constants in units of mass, radius and gravity."""
     units = natural_units(top)
     momentum = units.angular_momentum
     return Constants(
@@ -97,8 +96,9 @@ def natural_constants(values: Constants, top: Top) -> Constants:
 
 
 def numbers_of(top: Top) -> Numbers:
-    """The dimensionless numbers of an eccentric sphere; `InvalidInput` if the top is of another
-    shape.
+    """Return the dimensionless numbers of an eccentric sphere.
+
+    Raises `InvalidInput` if the top is of another shape.
     """
     require_sphere(top)
     transverse, axial = top.numbers[:2]
@@ -106,11 +106,10 @@ def numbers_of(top: Top) -> Numbers:
 
 
 def effective_potential(tilt: Scalar, values: Constants, top: Top, functions: Functions) -> Scalar:
-    """Potential energy, J, in which the tilt (rad) moves on a smooth table: any shape, 0 < tilt <
-    pi.
+    """Return the potential energy, J, in which the tilt moves on a smooth table.
 
-    (L_z - L3 c)^2 / (2 I1 s^2) + L3^2 / (2 I3) + m g h(c); the tilt swings where it is below the
-    energy.
+    It is (L_z - L3 c)^2 / (2 I1 s^2) + L3^2 / (2 I3) + m g h(c) for any shape and 0 < tilt < pi;
+    the tilt, rad, stays where it is below the energy.
     """
     s, c = functions.sin(tilt), functions.cos(tilt)
     turning = (values.vertical - values.axial * c) ** 2 / (2.0 * top.transverse_inertia * s**2)
@@ -119,18 +118,20 @@ def effective_potential(tilt: Scalar, values: Constants, top: Top, functions: Fu
 
 
 _NEWTON_STEPS = 40
+"""Steps of Newton's method: enough from any start, and cheap beside finding out when to stop."""
 
 
 def orbit(values: Constants, numbers: Numbers) -> Orbit:
-    """The nutation with these constants, both in natural units; arrays of them too."""
+    """Return the nutation with these constants, or arrays of them, in natural units."""
     axial = values.axial
     swing = values.energy - axial**2 / (2.0 * numbers.axial) - (1.0 - numbers.alpha)
     return _orbit(values.vertical - axial, axial, swing, numbers)
 
 
 def orbit_of_angles(angles: Angles, numbers: Numbers) -> Orbit:
-    """The nutation that a motion belongs to, both in natural units: without cancellation near theta
-    = 0.
+    """Return the nutation that a motion belongs to, in natural units.
+
+    There is no cancellation near theta = 0.
     """
     I1, I3, alpha = numbers
     sine_squared = math.sin(angles.tilt) ** 2
@@ -143,11 +144,11 @@ def orbit_of_angles(angles: Angles, numbers: Numbers) -> Orbit:
 
 
 def _orbit(excess: Scalar, axial: Scalar, swing: Scalar, numbers: Numbers) -> Orbit:
-    """The nutation with these constants of `Orbit`.
+    """Return the nutation with the constants q = `excess`, L3 = `axial` and e = `swing`.
 
-    Newton's method from beyond the root that is off the others converges to it monotonically, and
-    the other two follow without cancellation. Constants that rounding has put beyond those of a
-    steady precession give it.
+    Newton's method, started beyond the root that is separate from the others, converges to it
+    monotonically, and the other two follow without cancellation. Constants that rounding has put
+    beyond those of a steady precession give that precession.
     """
     I1, _, alpha = numbers
     total = (swing + axial**2 / (2.0 * I1)) / alpha + 2.0
@@ -165,28 +166,26 @@ def _orbit(excess: Scalar, axial: Scalar, swing: Scalar, numbers: Numbers) -> Or
 
 
 def amplitudes(path: Orbit) -> Amplitudes:
-    """The two amplitudes of a nutation, or of arrays of them: the fast one is the larger where L_z
-    > L3.
-    """
+    """Return the amplitudes of a nutation, or of arrays of them: fast > slow where L_z > L3."""
     apart = np.copysign(np.sqrt(np.maximum(path.middle**2 - path.half**2, 0.0)), path.excess)
     return Amplitudes((path.middle + apart) / 4.0, (path.middle - apart) / 4.0)
 
 
 # translate: skip
 def turning_tilts(pair: Amplitudes) -> tuple[Scalar, Scalar]:
-    """Least and largest tilt of a nutation with these amplitudes, rad; arrays of them too."""
+    """Return the least and largest tilt, rad, of a nutation, or of arrays of them."""
     fast, slow = np.sqrt(pair.fast), np.sqrt(pair.slow)
     low, high = np.minimum(abs(fast - slow), 1.0), np.minimum(fast + slow, 1.0)
     return 2.0 * np.arcsin(low), 2.0 * np.arcsin(high)
 
 
 def orbit_of_amplitudes(pair: Amplitudes, root: float, jellett: float, numbers: Numbers) -> Orbit:
-    """The nutation with these amplitudes and this Jellett's integral, sqrt(|p3|) near `root`;
-    natural units.
+    """Return the nutation with these amplitudes and Jellett's integral, in natural units.
 
     L_z - L3 and L3 are linear in r = sqrt(|p3|), and eliminating the energy from the coefficients
-    of the cubic leaves a quadratic equation for r. Newton's method improves the root given, the
-    less the closer the other one is, and smoothly so: a flow may pass where the two meet.
+    of the cubic leaves a quadratic equation for r. Newton's method improves the estimate `root` of
+    r. Its steps shrink smoothly where the two solutions approach each other, because a flow may
+    pass a point where they meet.
     """
     I1, _, alpha = numbers
     difference = pair.fast - pair.slow
@@ -211,16 +210,18 @@ def orbit_of_amplitudes(pair: Amplitudes, root: float, jellett: float, numbers: 
 
 
 def excess_slope(numbers: Numbers) -> float:
-    """What L_z - L3 is of sqrt(|p3|) times the difference of the amplitudes."""
+    """Return the ratio of L_z - L3 to sqrt(|p3|) times the difference of the amplitudes."""
     return 2.0 * math.sqrt(2.0 * numbers.transverse * abs(numbers.alpha))
 
 
 _CLOSE = 1e-3
+"""Relative slope of the quadratic below which Newton's steps shrink: two roots nearly meet."""
 
 
-def upside_down(path: Orbit, numbers: Numbers) -> Orbit:
-    """The same nutation of the turned top: p = 1 + cos(theta). Near theta = pi its amplitudes stay
-    good.
+def turned_orbit(path: Orbit, numbers: Numbers) -> Orbit:
+    """Return the same nutation of the top with its axis reversed: p = 1 + cos(theta).
+
+    Its amplitudes are regular near theta = pi.
     """
     return Orbit(
         2.0 - path.middle,

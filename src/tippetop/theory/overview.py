@@ -1,4 +1,4 @@
-"""Everything the theory says of a launch, in one record."""
+"""Collection of all that the theory says of a launch: `outlook` returns an `Outlook`."""
 
 import math
 from dataclasses import dataclass, replace
@@ -18,8 +18,8 @@ from tippetop.theory.prediction import (
     hull_of,
     on_surface,
     predicted,
-    steady_launch,
-    tilts_held,
+    single_contact_tilts,
+    steady_state_of_launch,
 )
 from tippetop.theory.requirements import creeps, sticks
 from tippetop.theory.resting_center import RestingCenter, resting_center_on
@@ -37,20 +37,20 @@ from tippetop.theory.steady import (
 from tippetop.theory.steady import steady_states as all_steady_states
 from tippetop.theory.thresholds import (
     CriticalSpins,
+    can_stand,
     critical_jellett,
     critical_spin,
     stability_limits,
-    stands,
 )
 
 
 @dataclass(frozen=True)
-class Judged:
-    """A steady state with the eigenvalues of its linear motion."""
+class AnalysedState:
+    """Steady state with the eigenvalues of its linear motion."""
 
     state: SteadyState[float]
     spectrum: Spectrum | None
-    """None where the motion about it is not linear, or the state does not last."""
+    """None if the motion about it is not linear, or the state does not last."""
 
     @property
     def stable(self) -> bool:
@@ -59,12 +59,12 @@ class Judged:
 
 
 NEAR_POLE = 0.5 * math.sqrt(2.0)
-"""Sine of the tilt from which on a launch has little to do with standing on end."""
+"""Sine of the tilt beyond which a launch is no attempt to stand the body on end."""
 
 
 @dataclass(frozen=True)
 class Standing:
-    """How a top-heavy body stands on its axis, at the end that the launch is nearer to."""
+    """Stability of a top-heavy body on its axis, at the end that the launch is nearer to."""
 
     kind: SteadyKind
     """The upright or the inverted spin."""
@@ -73,110 +73,104 @@ class Standing:
     rolling: Sleeping
     """Its gyroscopic threshold where the contact rolls without slip."""
     pivot: Sleeping
-    """Its gyroscopic threshold on a fixed point where it touches, as in textbooks."""
+    """Its gyroscopic threshold about a fixed point of contact, as in textbooks."""
     creep_spin: float
-    """Axial spin, rad/s, above which slip that creeps does not tip it either; inf if at none."""
+    """Axial spin, rad/s, above which creep does not tip it either; inf if there is none."""
     creep_time: float
-    """Time in which creep below `creep_spin` makes a small tilt e times larger, s, under the
-    viscous friction that does so fastest: at the launch's spin if it is between the thresholds, and
-    else half-way between them; inf where it never does.
+    """Time in which creep makes a small tilt e times larger, s, under the viscous friction that
+    does so fastest, at `creep_time_spin`; inf if it never does.
     """
     creep_time_spin: float
-    """That spin, rad/s."""
+    """Spin of the launch if it is between the thresholds, and otherwise half-way between, rad/s."""
 
 
 @dataclass(frozen=True)
 class Outlook:
-    """What can be said of a launch without simulating it."""
+    """Theoretical results about a launch."""
 
     inertia_ratio: float | None
     eccentricity: float | None
     """gamma = I1 / I3 and alpha; None for a shape other than an eccentric sphere."""
     group: Group | None
-    """How such tops behave, or None; also on a tip that the centre of mass is outside of."""
+    """Group of the eccentric sphere; None for other shapes, and for a centre of mass outside."""
     lambda_up: float | None
     lambda_down: float | None
-    """Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted gains
-    stability; None where slip does not creep (see `creeps`).
+    """Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted spin gains
+    stability; None without creep (see `creeps`).
     """
     critical_spins: CriticalSpins | None
-    """The spins of launches with this one's tilt and rates, rad/s, that have those integrals; None
-    where slip does not creep.
+    """Spins, rad/s, of launches with this tilt and rates that have these integrals; None without
+    creep.
     """
     tilt: float
     """Tilt of this launch, rad."""
     jellett: float
-    """lambda of this launch, kg m^3/s."""
-    stays: Judged | None
-    """The steady state that it is exactly on, and so stays in until it is disturbed, or None."""
+    """Jellett's integral lambda of this launch, kg m^3/s."""
+    stays: AnalysedState | None
+    """Steady state that the launch starts in exactly, and stays in until disturbed, or None."""
     swings: tuple[float, float] | None
-    """Without friction, the least and the largest tilt between which it swings for ever, rad, if it
-    is of an eccentric sphere; None with friction.
+    """Least and largest tilt of an eccentric sphere without friction, rad; None for other
+    shapes, and with friction.
     """
     prediction: Prediction | None
-    """Where it can end, from beside a steady state if it is on one; None where nothing conserved
-    says so, or nothing takes energy.
+    """Possible ends of the launch, slightly disturbed if it starts in a steady state; None if
+    Jellett's integral is not conserved, or there is no friction.
     """
-    steady: tuple[Judged, ...]
-    """Steady states, by tilt: all with the launch's lambda, or for a shape that does not conserve
-    it, the two vertical spins at the launch's axial spin and the level spin at its precession.
+    steady: tuple[AnalysedState, ...]
+    """Steady states, by tilt: all with the launch's lambda; for a shape that does not conserve it,
+    both vertical spins with the launch's axial spin and the level spin with its precession.
     """
     mu_flip_time: float | None
     """mu times the time (s^2/m) until within 0.01 rad of the end, in the limit of small friction;
-    None where there is none, or no friction.
+    None if there is no limit, or no friction.
     """
     flip_time: float | None
-    """The same divided by the problem's mu, s."""
+    """`mu_flip_time` divided by the problem's mu, s."""
     flip_time_needs: str | None
-    """What a launch must be for these to be known, where it moves on viscous friction and they are
-    not.
-    """
+    """What kind of launch has these times; None if they are known or friction is not viscous."""
     conserved: bool
     """Whether Jellett's integral is constant: for an eccentric sphere under friction without
     torque.
     """
     standing_time: float | None
-    """Under friction that drills, how long a vertical spin stands, s: that of the launch, or else
-    the inverted one with its lambda; None without drilling, and for a body that leans and is no
-    sphere.
+    """Time for which drilling lets a vertical spin stand, s: the launch's own, or else the inverted
+    one with its lambda; None without drilling, and for a tilted body that is no sphere.
     """
     creeps: bool
-    """Whether friction is proportional to small slip. It is not under dry friction of a point,
-    which sticks, with rolling resistance, and of a body that lies flat.
+    """Whether friction is proportional to small slip: not under dry friction of a point, which
+    sticks, not with rolling resistance, and not for a body that lies flat.
     """
     sticks: bool
     """Whether slip ends, under dry friction of a point; the top then rolls without loss."""
     standing: Standing | None
-    """Of a body that is top-heavy at its nearer end; None for others."""
+    """Stability on end of a body that is top-heavy at its nearer end; None for others."""
     lying: Lying | None
-    """How the body lies, and when it rises from there; None if it does not."""
+    """How the body lies, and when it rises from there; None if it does not lie."""
     resting_center: RestingCenter | None
-    """How it rolls at the launch's tilt with its centre of mass at rest; None if it does not."""
+    """Rolling at the launch's tilt with the centre of mass at rest; None if there is none."""
     surface: int = 0
     tilts: tuple[float, float] = (0.0, math.pi)
-    """Number of the surface that it is launched on, which alone all this is of, and the tilts, rad,
-    between which no other touches.
+    """Number of the surface of the launch, to which all results apply, and the tilts, rad, between
+    which no other surface touches.
     """
 
 
 def outlook(problem: Problem) -> Outlook:
-    """Return what the theory says of a launch: of several surfaces, on the one it is launched on.
+    """Return what the theory says of a launch, on the surface that it is launched on.
 
-    Raises `InvalidInput` if it turns so fast that the theory cannot tell, or hardly on dry
+    Raises `InvalidInput` if the launch turns too fast for the theory, or hardly turns on dry
     friction of a patch.
     """
     top = problem.top
     if isinstance(top.surface, Hull):
-        return _on_one_of_several(problem)
+        return _outlook_of_several_surfaces(problem)
     jellett = jellett_of_launch(problem)
     sphere, vertical = top.conserves_jellett, problem.launch.tilt in (0.0, math.pi)
     drills, smooth = not top.torque_free, problem.friction.vanishes
     edge, creeping = is_edge(top.surface), creeps(top)
-    stays = None if drills or edge or sticks(top) else steady_launch(problem)
+    stays = None if drills or edge or sticks(top) else steady_state_of_launch(problem)
     grouped = sphere and 0.0 < eccentricity(top) < 1.0
-    limit, time, known_of = (
-        _flip_times(problem) if grouped and stays is None else (None, None, None)
-    )
+    limit, time, needs = _flip_times(problem) if grouped and stays is None else (None, None, None)
     return Outlook(
         inertia_ratio=inertia_ratio(top) if sphere else None,
         eccentricity=eccentricity(top) if sphere else None,
@@ -186,13 +180,13 @@ def outlook(problem: Problem) -> Outlook:
         critical_spins=stability_limits(problem) if creeping else None,
         tilt=problem.launch.tilt,
         jellett=jellett,
-        stays=None if stays is None else _judged(stays, top),
+        stays=None if stays is None else _analysed(stays, top),
         swings=_swings(problem) if top.surface.spherical and smooth else None,
         prediction=predicted(problem) if sphere and creeping and not smooth else None,
-        steady=tuple(_judged(state, top) for state in steady_states(problem)),
+        steady=tuple(_analysed(state, top) for state in steady_states(problem)),
         mu_flip_time=limit,
         flip_time=time,
-        flip_time_needs=known_of,
+        flip_time_needs=needs,
         conserved=sphere,
         standing_time=standing_time(problem)
         if creeping and drills and (vertical or top.surface.spherical)
@@ -205,16 +199,16 @@ def outlook(problem: Problem) -> Outlook:
     )
 
 
-def _judged(state: SteadyState[float], top: Top) -> Judged:
-    return Judged(state, spectrum(state, top) if has_spectrum(state.kind, top) else None)
+def _analysed(state: SteadyState[float], top: Top) -> AnalysedState:
+    return AnalysedState(state, spectrum(state, top) if has_spectrum(state.kind, top) else None)
 
 
 def _standing(problem: Problem, top: Top) -> Standing | None:
-    """How a top-heavy body stands on the end that its launch is nearer to."""
+    """Return the stability of a top-heavy body on the end that its launch is nearer to, or None."""
     launch, kind = problem.launch, SteadyKind.UPRIGHT
     if launch.tilt > math.pi / 2:
         kind = SteadyKind.INVERTED
-    if not stands(kind, top):
+    if not can_stand(kind, top):
         return None
     smooth, rolling = (sleeping(kind, top, launch.spin, rolls=rolls) for rolls in (False, True))
     if not rolling.spin or math.sin(launch.tilt) > NEAR_POLE:
@@ -232,26 +226,26 @@ def _standing(problem: Problem, top: Top) -> Standing | None:
     return Standing(kind, smooth, rolling, pivot, creep, time, spin)
 
 
-def _on_one_of_several(problem: Problem) -> Outlook:
-    """The outlook on one of several surfaces, as far as no other touches.
+def _outlook_of_several_surfaces(problem: Problem) -> Outlook:
+    """Return the outlook of a launch on one of several surfaces, for tilts where no other touches.
 
-    How it gets there is not told: another surface may touch on the way.
+    It says nothing of the motion between two surfaces.
     """
     hull = hull_of(problem)
-    found = outlook(on_surface(problem, hull.active))
-    low, high = tilts_held(hull, problem.launch.tilt)
+    single = outlook(on_surface(problem, hull.active))
+    low, high = single_contact_tilts(hull, problem.launch.tilt)
     try:
-        prediction = predicted(problem) if found.prediction else None
+        prediction = predicted(problem) if single.prediction else None
     except InvalidInput:
         prediction = None
     return replace(
-        found,
+        single,
         prediction=prediction,
-        steady=tuple(judged for judged in found.steady if low <= judged.state.tilt <= high),
+        steady=tuple(judged for judged in single.steady if low <= judged.state.tilt <= high),
         mu_flip_time=None,
         flip_time=None,
         flip_time_needs=None,
-        standing=found.standing if low == 0.0 or high == math.pi else None,
+        standing=single.standing if low == 0.0 or high == math.pi else None,
         lying=lying(problem.top._replace(surface=hull), problem.launch.tilt),
         surface=hull.active,
         tilts=(low, high),
@@ -259,17 +253,17 @@ def _on_one_of_several(problem: Problem) -> Outlook:
 
 
 def steady_states(problem: Problem) -> list[SteadyState[float]]:
-    """Steady states that a launch might end in, by increasing tilt.
+    """Return the steady states that a launch might end in, by increasing tilt.
 
-    All with its Jellett's integral, or where that is not conserved, both vertical spins at its
-    axial spin, and the level spin at its precession. Of a body of several surfaces, those on the
-    one that it is launched on, at tilts where no other touches. A body that lies flat when its axis
-    is vertical has none of these.
+    They are all those with its Jellett's integral or, if that is not conserved, both vertical spins
+    with its axial spin and the level spin with its precession. Those of a body of several surfaces
+    are on the surface that it is launched on, at tilts where no other touches. A body that lies
+    flat when its axis is vertical has none.
 
     Raises
     ------
     InvalidInput
-        If it turns so fast that the theory cannot tell.
+        If the launch turns too fast for the theory.
 
     Examples
     --------
@@ -283,7 +277,7 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
     require_problem(problem)
     if isinstance(problem.top.surface, Hull):
         hull = hull_of(problem)
-        low, high = tilts_held(hull, problem.launch.tilt)
+        low, high = single_contact_tilts(hull, problem.launch.tilt)
         states = steady_states(on_surface(problem, hull.active))
         return [state for state in states if low <= state.tilt <= high]
     top, launch = problem.top, problem.launch
@@ -298,18 +292,16 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
 
 
 def _swings(problem: Problem) -> tuple[float, float]:
-    """Turning tilts on a smooth table, rad; that of the launch is between them, whatever rounding
-    says.
-    """
+    """Return the least and largest tilt on a smooth table, rad, including that of the launch."""
     low, high = nutation_of_launch(problem).tilts
     return min(low, problem.launch.tilt), max(high, problem.launch.tilt)
 
 
 def _flip_times(problem: Problem) -> tuple[float | None, float | None, str | None]:
-    """Limit of mu times the flip time, and the flip time, where friction is viscous and the axis
-    moves.
+    """Return the limit of mu times the flip time, the flip time, and which launches have them.
 
-    And, where the limit is not known, what a launch must be for that.
+    The last is None if both are known. All are None for vertical spins and for friction that is not
+    viscous.
     """
     launch, friction = problem.launch, problem.friction
     vertical = launch.tilt in (0.0, math.pi) and launch.tilt_rate == 0.0

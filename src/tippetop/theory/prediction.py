@@ -1,12 +1,12 @@
-"""Where a launch ends: the stable steady states that have its Jellett's integral.
+"""Prediction of the end of a launch: the stable steady states that have its Jellett's integral.
 
-Friction without drilling torque leaves lambda alone and takes energy as long as there is slip, in
-flight and in impacts too. So a run ends in a steady state with the lambda of its launch, and a
-stable one unless it was put exactly on another. Where two are stable, energy may decide: the tilt
-can only move where the least energy that goes with lambda is below what is left, and a steady state
-behind a barrier higher than that is out of reach.
+Friction without drilling torque conserves lambda and dissipates energy as long as there is slip, in
+flights and impacts too. So a run ends in a steady state with the lambda of its launch, and in a
+stable one unless it starts exactly in another. If two are stable, the energy may decide: the tilt
+can only move where the least energy for this lambda is below the current energy, so that a steady
+state behind a higher barrier cannot be reached.
 
-This holds while the table only pushes. A bilateral contact that pulls can give energy.
+This holds while the table only pushes. A bilateral contact that pulls can add energy.
 """
 
 import math
@@ -42,41 +42,40 @@ from tippetop.theory.steady import (
 
 @dataclass(frozen=True)
 class Prediction:
-    """What Jellett's integral and the energy say of the end of a launch."""
+    """Possible ends of a launch by Jellett's integral and the energy."""
 
     jellett: float
     """lambda of the launch, kg m^3/s."""
     stable: tuple[SteadyState[float], ...]
     """All stable steady states with this lambda, the one of least energy first."""
     reachable: tuple[SteadyState[float], ...]
-    """Those among them that the energy of the launch does not bar, in the same order."""
+    """Those of `stable` that the energy of the launch allows, in the same order."""
     surface: int = 0
-    """Number of the body's surface that it ends on."""
+    """Number of the body's surface that the launch ends on."""
 
     @property
     def final(self) -> SteadyState[float]:
-        """The reachable stable state of least energy: the end of the launch, if it is `certain`."""
+        """Reachable stable state of least energy: the end of the launch if that is `certain`."""
         return self.reachable[0]
 
     @property
     def certain(self) -> bool:
-        """Whether only one stable state is within reach; otherwise the launch's details decide."""
+        """Whether only one stable state can be reached; otherwise details of the launch decide."""
         return len(self.reachable) == 1
 
 
 def predict(problem: Problem) -> Prediction:
-    """The steady states a launch of an eccentric sphere can end in.
+    """Return the steady states that a launch of an eccentric sphere can end in.
 
-    Of a body of several surfaces it tells the end on the one that it is launched on, if that is a
-    sphere and the energy keeps the others off the table. A launch exactly on an unstable steady
-    state, such as one at tilt 0 with no perturbation, stays there; the prediction is for one beside
-    it.
+    A body of several surfaces must be launched on a sphere, with too little energy for the others
+    to touch. A launch exactly in an unstable steady state, such as one at tilt 0 without a
+    perturbation, stays there; the prediction is that of a slightly perturbed one.
 
     Raises
     ------
     InvalidInput
-        If Jellett's integral is not conserved, a dry point rubs, there is no friction, or another
-        surface of the body can touch.
+        If Jellett's integral is not conserved, friction is dry friction of a point or zero, or
+        another surface of the body can touch.
 
     Examples
     --------
@@ -91,10 +90,10 @@ def predict(problem: Problem) -> Prediction:
 
 
 def predicted(problem: Problem) -> Prediction:
-    """Return what `predict` does, also of a part of a body, and without a warning."""
+    """Return the result of `predict` without its warning, also for a part of a body."""
     top = problem.top
     if isinstance(top.surface, Hull):
-        return _on_one_of_several(problem, hull_of(problem))
+        return _prediction_of_several_surfaces(problem, hull_of(problem))
     require_jellett(top)
     require_creep(top)
     if problem.friction.vanishes:
@@ -103,94 +102,90 @@ def predicted(problem: Problem) -> Prediction:
     states = steady_states(top, jellett)
     minima = stable_by_energy(states)
     available = float(energy(problem.start(), top))
-    low, high = _reach(states, problem.launch.tilt, available)
+    low, high = _reachable_tilts(states, problem.launch.tilt, available)
     within = [state for state in minima if low <= state.tilt <= high]
     return Prediction(jellett, _by_energy(minima), _by_energy(within or minima))
 
 
-def _on_one_of_several(problem: Problem, hull: Hull) -> Prediction:
-    """The end on the surface of the launch, where the energy of the launch keeps all others off the
-    table.
+def _prediction_of_several_surfaces(problem: Problem, hull: Hull) -> Prediction:
+    """Return the end on the surface of the launch, if its energy excludes contact of all others.
 
-    Jellett's integral holds on one surface. When another touches, it begins anew with a number that
-    the whole motion decides. So does, with more energy than that takes, whether it touches at all:
-    only where friction is weak does the tilt follow a path that the theory knows, and how far it
-    nods beside that path goes with the launch and the friction.
+    Jellett's integral is conserved on one surface. When another touches, its new value depends on
+    the details of the motion. With enough energy for another surface to touch, these details also
+    decide whether it does: only under weak friction does the tilt follow a path that the theory
+    knows, with a nutation about it that depends on the launch and on friction.
     """
-    alone = on_surface(problem, hull.active)
-    found = predicted(alone)
-    available = float(energy(alone.start(), alone.top))
+    single = on_surface(problem, hull.active)
+    prediction = predicted(single)
+    available = float(energy(single.start(), single.top))
     ends = touching_tilts(hull, problem.launch.tilt)
     for tilt, number in ends.items():
-        needed = float(least_energy(tilt, found.jellett, alone.top, math))
+        needed = float(least_energy(tilt, prediction.jellett, single.top, math))
         if needed <= available:
             shown = Described(f"one whose surface {number} can touch, at a tilt of {tilt:.4g} rad")
             accepted = (
-                f"one surface, or a launch of less than the {needed:.4g} J that this takes; it has"
-                f" {available:.4g} J, with which the whole motion decides whether that surface"
-                " touches, and with what Jellett's integral the top goes on then: run it instead"
+                f"one surface, or a launch with less energy than the {needed:.4g} J for which"
+                f" that surface can touch; this launch has {available:.4g} J, and no theory says"
+                " how it goes on after the second surface touches: simulate it instead"
             )
             raise InvalidInput("body.shape", shown, accepted)
-    low, high = tilts_held(hull, problem.launch.tilt)
-    stable = tuple(state for state in found.stable if low <= state.tilt <= high)
-    return replace(found, stable=stable, surface=hull.active)
+    low, high = single_contact_tilts(hull, problem.launch.tilt)
+    stable = tuple(state for state in prediction.stable if low <= state.tilt <= high)
+    return replace(prediction, stable=stable, surface=hull.active)
 
 
 def hull_of(problem: Problem) -> Hull:
-    """The surfaces of a body that has several; that of the launch is active."""
+    """Return the surfaces of a body that has several, with that of the launch active."""
     hull = problem.standing().surface
     assert isinstance(hull, Hull)
     return hull
 
 
 def on_surface(problem: Problem, number: int) -> Problem:
-    """The problem with one of the body's surfaces alone."""
+    """Return the problem with only one of the body's surfaces."""
     body = problem.body.model_copy(update={"shape": problem.body.shapes[number]})
     return problem.model_copy(update={"body": body})
 
 
-def tilts_held(hull: Hull, tilt: float) -> tuple[float, float]:
-    """The tilts around one, rad, between which no other surface touches beside the active one."""
+def single_contact_tilts(hull: Hull, tilt: float) -> tuple[float, float]:
+    """Return the tilts around `tilt`, rad, between which only the active surface touches."""
     return nearest(touching_tilts(hull, tilt), tilt)
 
 
 def nearest(tilts: Iterable[float], tilt: float) -> tuple[float, float]:
-    """The last of some tilts up to one, and the first above it, rad; 0 and pi where there is
-    none.
-    """
+    """Return the last of some tilts up to `tilt`, or 0, and the first above it, or pi, rad."""
     below, above = [at for at in tilts if at <= tilt], [at for at in tilts if at > tilt]
     return max(below, default=0.0), min(above, default=math.pi)
 
 
 def touching_tilts(hull: Hull, tilt: float) -> dict[float, int]:
-    """The tilts next to one, rad, at which another surface touches beside the active one, and its
-    number.
+    """Return the nearest tilts on both sides of `tilt`, rad, at which another surface touches too.
+
+    The values are the numbers of these surfaces.
     """
-    found: dict[float, int] = {}
-    for number, other in enumerate(hull.each):
+    numbers: dict[float, int] = {}
+    for number, second in enumerate(hull.each):
         if number != hull.active:
-            for at in _meetings(hull, other):
-                found[at] = number
-    return {at: found[at] for at in nearest(found, tilt) if at in found}
+            for at in _common_tilts(hull, second):
+                numbers[at] = number
+    return {at: numbers[at] for at in nearest(numbers, tilt) if at in numbers}
 
 
-def _meetings(one: Hull, other: Hull) -> list[float]:
-    """The tilts at which two surfaces touch together, rad, and change places, however soon
-    again.
-    """
+def _common_tilts(first: Hull, second: Hull) -> list[float]:
+    """Return the tilts, rad, at which two surfaces touch together and the lower one changes."""
 
     def gap(at: float) -> float:
-        return float(one.height(math.cos(at)) - other.height(math.cos(at)))
+        return float(first.height(math.cos(at)) - second.height(math.cos(at)))
 
-    return roots_between(gap, 0.0, math.pi, ROUNDING * float(one.size))
+    return roots_between(gap, 0.0, math.pi, ROUNDING * float(first.size))
 
 
 # translate: skip
-def steady_launch(problem: Problem) -> SteadyState[float] | None:
-    """The steady state that a launch is exactly on, to rounding, or None: nothing but its azimuth
-    changes.
+def steady_state_of_launch(problem: Problem) -> SteadyState[float] | None:
+    """Return the steady state that a launch starts in, to rounding, or None.
 
-    Raises `InvalidInput` if it turns too fast for the theory.
+    Only the azimuth of such a launch changes. Raises `InvalidInput` if it turns too fast for the
+    theory.
     """
     top, launch, start = problem.top, problem.launch, problem.start()
     jellett, units = jellett_of_launch(problem), natural_units(top)
@@ -223,31 +218,32 @@ def steady_launch(problem: Problem) -> SteadyState[float] | None:
 
 
 def is_held(state: State, top: Top, closeness: float) -> NDArray[np.bool_]:
-    """Whether the energy that is left holds an eccentric sphere's tilt within `closeness`, rad, for
-    good.
+    """Return whether the energy confines an eccentric sphere's tilt to within `closeness`, rad.
 
-    It does where the least energy that goes with Jellett's integral is above it on both sides: the
-    tilt cannot pass there, and a stable steady state lies between. Beyond a vertical axis there is
-    nothing to bar.
+    It does so for ever if the least energy for its Jellett's integral is above the current energy
+    at both bounds: the tilt cannot pass there, and a stable steady state lies between. A bound
+    beyond a vertical axis needs no barrier.
 
-    Every number of the states is of shape (n,); the top has numbers or arrays of that shape.
+    All numbers of the states have shape (n,); those of the top may have it too.
     """
     tilt = np.arctan2(axis_sine(state.axis), state.axis[2])
-    left, integral = energy(state, top), jellett(state, top)
+    available, integral = energy(state, top), jellett(state, top)
     below, above = tilt - closeness, tilt + closeness
-    bars_below = (below < 0.0) | (least_energy(np.maximum(below, 0.0), integral, top, np) > left)
+    bars_below = (below < 0.0) | (
+        least_energy(np.maximum(below, 0.0), integral, top, np) > available
+    )
     bars_above = (above > math.pi) | (
-        least_energy(np.minimum(above, math.pi), integral, top, np) > left
+        least_energy(np.minimum(above, math.pi), integral, top, np) > available
     )
     held: NDArray[np.bool_] = bars_below & bars_above
     return held
 
 
 def stable_by_energy(states: list[SteadyState[float]]) -> list[SteadyState[float]]:
-    """Those of all steady states with one Jellett's integral, by their tilts, that are minima of
-    the energy.
+    """Return the steady states that are minima of the energy.
 
-    They are the extrema of the least energy over the tilt, which are minima and maxima in turn.
+    `states` are all steady states with one Jellett's integral, by tilt. They are the extrema of the
+    least energy over the tilt: minima and maxima in turn.
     """
     energies = [math.inf, *(state.energy for state in states), math.inf]
     minima = [
@@ -259,18 +255,21 @@ def stable_by_energy(states: list[SteadyState[float]]) -> list[SteadyState[float
 
 
 ROUNDING = 1e-12
-"""What counts as the same number, relative to the largest it is made of."""
+"""Relative difference below which numbers are equal: above it steady launches would be missed, and
+far below it rounding would hide them."""
 
 
 def _by_energy(states: list[SteadyState[float]]) -> tuple[SteadyState[float], ...]:
     return tuple(sorted(states, key=lambda state: state.energy))
 
 
-def _reach(states: list[SteadyState[float]], tilt: float, available: float) -> tuple[float, float]:
-    """Tilts between the nearest barriers on both sides: steady states with more energy than is
-    available.
+def _reachable_tilts(
+    states: list[SteadyState[float]], tilt: float, available: float
+) -> tuple[float, float]:
+    """Return the tilts of the nearest barriers on both sides, rad.
 
-    A minimum of the energy is between them, the lowest if nothing else.
+    Barriers are steady states with more energy than is available. A minimum of the energy always
+    lies between them.
     """
     rounding = ROUNDING * max(abs(state.energy) for state in states)
     return nearest([state.tilt for state in states if state.energy > available + rounding], tilt)

@@ -1,6 +1,4 @@
-"""What a toy can be expected to do, from its body alone: does it turn over, and can it stand on its
-stem.
-"""
+"""Prospects of a toy by its body alone: whether it turns over, and can stand on its stem."""
 
 import math
 from dataclasses import dataclass
@@ -29,61 +27,66 @@ from tippetop.theory.thresholds import (
 
 @dataclass(frozen=True)
 class StemTest:
-    """What it takes to stand on a stem: the inverted spin of the sphere at its tip holds above
-    this.
-    """
+    """Conditions for standing on a stem: those of the inverted spin of the sphere at its tip."""
 
     jellett: float
-    """Jellett's integral about the tip, -L.a, kg m^3/s; inf if nothing is enough."""
+    """Least Jellett's integral about the tip, -L.a, kg m^3/s; inf if none is enough."""
     spin: float
-    """The axial spin that goes with it when the axis is vertical, rad/s."""
+    """Axial spin of a vertical axis with this integral, rad/s."""
     launch: float
     """Spin of launches, rad/s, that rise slowly on the sphere and have this integral when the tip
-    first touches; nan where something else touches before it. What is lost while both touch comes
-    on top.
+    first touches; nan if another surface touches before. Losses while both touch are not included.
     """
 
 
 @dataclass(frozen=True)
 class Touch:
-    """Where another surface first comes to the table, and what it takes to get there."""
+    """First contact of a second surface, and the least spin that leads to it."""
 
     tilt: float
     """theta, rad."""
     surface: int
     """Number of that surface."""
     spin: float
-    """Least spin of launches, rad/s, whose end on the sphere alone is beyond; inf if there is none.
+    """Least spin of launches, rad/s, that would end beyond this tilt on the sphere alone; inf if
+    there is none.
     """
 
 
 @dataclass(frozen=True)
 class Prospects:
-    """What is known of a toy that is launched on its sphere."""
+    """Theoretical results about a toy that is launched on its sphere."""
 
     eccentricity: float
     """alpha: how far the centre of mass is below the centre of the sphere, in radii."""
     group: Group
-    """How such eccentric spheres behave."""
+    """Group of such eccentric spheres."""
     critical_spins: CriticalSpins
-    """For launches at `tilt`, at rest in tilt, rad/s."""
+    """Critical spins of launches with tilt `tilt` and no tilt rate, rad/s."""
     tilt: float
-    """That tilt, rad."""
+    """Tilt of the launches, rad."""
     touch: Touch | None
-    """Where another surface first touches; None if there is none."""
+    """First contact of a second surface; None if there is none."""
     stem: StemTest | None
-    """What it takes to stand on the sphere at the other end; None if there is none."""
+    """Conditions for standing on the sphere at the other end; None if there is none."""
 
 
 def prospects(
     body: Body, shapes: list[Shape], gravity: float = 9.8, tilt: float = 0.1
 ) -> Prospects | None:
-    """What a toy can be expected to do; None if it does not lie on a sphere, below the centre of
-    that.
+    """Return the prospects of a toy; None unless it lies on a sphere, with its centre of mass below
+    the centre of that.
 
-    Of the body count its mass and moments of inertia; its surfaces are given from the one it stands
-    on upright to the one it stands on inverted. `gravity` is in m/s^2, `tilt` that of the launches
-    meant, rad.
+    Parameters
+    ----------
+    body
+        The body, of which only the mass and the moments of inertia are used.
+    shapes
+        Its surfaces, from the one it stands on upright to the one it stands on inverted.
+    gravity
+        Acceleration of gravity, m/s^2.
+    tilt
+        Tilt of the launches, rad.
     """
     sphere = shapes[0]
     if isinstance(sphere, Sphere) and 0.0 < sphere.center < sphere.radius:
@@ -112,8 +115,7 @@ def _touch(problem: Problem, surfaces: tuple[Surface, ...], group: Group) -> Tou
     beyond = [at for at in ends if at > problem.launch.tilt]
     if not beyond:
         return None
-    # From upright it rises along the steady precessions once they have no stable one before this
-    # tilt.
+    # From upright the top rises along the steady precessions until one is stable.
     needed = max(
         critical_jellett(SteadyKind.UPRIGHT, problem.top), branch_jellett(beyond[0], problem.top)
     )
@@ -126,22 +128,21 @@ def _stem(problem: Problem, surfaces: tuple[Surface, ...], touch: Touch | None) 
     top = Top(body.mass, body.I1, body.I3, surfaces[-1], ViscousLaw(1.0), problem.gravity)
     least, launch = critical_jellett(inverted, top), math.nan
     if touch is not None and touch.surface == len(surfaces) - 1:
-        share = _handed_over(touch.tilt, problem.top, surfaces[-1])
+        ratio = _jellett_ratio(touch.tilt, problem.top, surfaces[-1])
         launch = max(
-            touch.spin, jellett_line(problem).spin_at(least / share) if share > 0.0 else math.inf
+            touch.spin, jellett_line(problem).spin_at(least / ratio) if ratio > 0.0 else math.inf
         )
     return StemTest(least, critical_spin(inverted, top), launch)
 
 
-def _handed_over(tilt: float, top: Top, other: Surface) -> float:
-    """Jellett's integral about another surface, of the motion that has the least energy with that
-    of one: 1.
+def _jellett_ratio(tilt: float, top: Top, second: Surface) -> float:
+    """Return the ratio of Jellett's integrals about a second surface and about that of the top.
 
-    That motion, L along I a, is the precession without slip, to which a rise comes the closer the
-    slower.
+    The motion is that of least energy, with L along I a: the precession without slip, which a slow
+    rise approaches.
     """
     axis: Vector = (math.sin(tilt), 0.0, math.cos(tilt))
-    arm, new = contact_vector(axis, top.surface), contact_vector(axis, other)
+    arm, new = contact_vector(axis, top.surface), contact_vector(axis, second)
     along, across = dot(arm, axis), top.transverse_inertia
     momentum = add(scale(across, arm), scale((top.axial_inertia - across) * along, axis))
     return float(dot(momentum, new) / dot(momentum, arm))

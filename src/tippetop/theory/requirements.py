@@ -1,4 +1,4 @@
-"""What the theory asks of a top, with a sentence for those it does not hold for."""
+"""Conditions of the theory on a top, and the refusals of tops that do not meet them."""
 
 from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
 from tippetop.mechanics.surfaces.hull import Hull, is_edge
@@ -7,18 +7,18 @@ from tippetop.support.errors import Described, InvalidInput
 
 
 def require_one_surface(top: Top) -> None:
-    """Refuse a body of several surfaces, with `InvalidInput`."""
+    """Raise `InvalidInput` if the body has several surfaces."""
     if isinstance(top.surface, Hull):
         raise InvalidInput(
             "body.shape",
-            Described("of several surfaces"),
+            Described("a body of several surfaces"),
             "one of them at a time",
             "is beyond the theory",
         )
 
 
 def require_sphere(top: Top) -> None:
-    """Refuse a body that is no eccentric sphere, with `InvalidInput`."""
+    """Raise `InvalidInput` if the body is no eccentric sphere."""
     require_one_surface(top)
     if not top.surface.spherical:
         raise InvalidInput(
@@ -29,7 +29,7 @@ def require_sphere(top: Top) -> None:
 
 
 def require_jellett(top: Top) -> None:
-    """Refuse a top that does not conserve Jellett's integral, with `InvalidInput`."""
+    """Raise `InvalidInput` if the top does not conserve Jellett's integral."""
     require_sphere(top)
     if top.rolling_resistance is not None:
         arm = top.rolling_resistance.length
@@ -45,13 +45,12 @@ def require_jellett(top: Top) -> None:
 
 
 def require_creep(top: Top) -> None:
-    """Refuse friction that is not proportional to small slip about a vertical spin, with
-    `InvalidInput`.
+    """Raise `InvalidInput` unless friction is proportional to small slip about a vertical spin.
 
-    There is no linear motion then: a point on dry friction sticks, and rolls for ever whatever is
-    stable, and resistance to rolling holds an axis that hardly moves. A patch on dry friction does
-    creep, by drilling. A body of several surfaces is refused too, and one that lies flat when its
-    axis is vertical.
+    Otherwise there is no linear motion: a point on dry friction sticks and then rolls for ever, and
+    rolling resistance holds an axis that hardly moves. A patch on dry friction does creep, by
+    drilling. Bodies of several surfaces, and bodies that lie flat when their axis is vertical, are
+    refused too.
     """
     require_one_surface(top)
     if is_edge(top.surface):
@@ -82,6 +81,6 @@ def sticks(top: Top) -> bool:
 def creeps(top: Top) -> bool:
     """Return whether friction is proportional to small slip about a vertical spin.
 
-    Of a body of several surfaces, the active one counts.
+    For a body of several surfaces the active one decides.
     """
     return not (is_edge(top.surface) or top.resists_rolling or sticks(top))

@@ -1,6 +1,4 @@
-"""Rolling steadily while the centre of mass is at rest: disks, hurricane balls, and any other
-body.
-"""
+"""Steady rolling with the centre of mass at rest: disks, hurricane balls and all other bodies."""
 
 import math
 from typing import NamedTuple
@@ -11,22 +9,21 @@ from tippetop.mechanics.top import Top
 
 
 class RestingCenter(NamedTuple):
-    """A way to roll with the centre of mass at rest."""
+    """Rolling motion whose centre of mass is at rest."""
 
     precession: float
-    """Rate at which the axis, and the contact point, go round the vertical, rad/s."""
+    """Rate of the axis and of the contact point about the vertical, rad/s."""
     spin: float
     """Angular velocity about the axis, omega3, rad/s."""
 
 
 def resting_center(tilt: float, top: Top) -> RestingCenter | None:
-    """How a body of revolution rolls at this tilt (rad) while its centre of mass is at rest;
-    floats.
+    """Return how a body of revolution rolls at a tilt, rad, with its centre of mass at rest.
 
     Returns
     -------
     RestingCenter or None
-        None where no rate of precession holds the tilt.
+        None if no rate of precession keeps the tilt constant.
 
     Notes
     -----
@@ -44,13 +41,13 @@ def resting_center(tilt: float, top: Top) -> RestingCenter | None:
 
 
 def resting_center_on(tilt: float, top: Top) -> RestingCenter | None:
-    """Return how a body rolls on its active surface; see `resting_center`."""
+    """Return how a body rolls on its active surface, or None; see `resting_center`."""
     s, c = math.sin(tilt), math.cos(tilt)
     x, _, z = contact_vector((s, 0.0, c), top.surface)
     along, across = x * s + z * c, -x * c + z * s
-    resisting = s * (top.axial_inertia * s * along / across - top.transverse_inertia * c)
-    turned = top.mass * top.gravity * (across * c - along * s)
-    if resisting * turned <= 0.0:
+    gyroscopic = s * (top.axial_inertia * s * along / across - top.transverse_inertia * c)
+    weight = top.mass * top.gravity * (across * c - along * s)
+    if gyroscopic * weight <= 0.0:
         return None
-    precession = math.sqrt(turned / resisting)
+    precession = math.sqrt(weight / gyroscopic)
     return RestingCenter(precession, precession * s * along / across)

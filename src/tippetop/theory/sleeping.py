@@ -1,4 +1,4 @@
-"""Gyroscopic thresholds: the spin from which a top stands upright although it is top-heavy.
+"""Gyroscopic thresholds: the spin from which a top-heavy top stands upright.
 
 To first order in p = n_x + i n_y, a body that spins about the vertical with omega_z = w moves as
 
@@ -26,12 +26,12 @@ from tippetop.theory.steady import SteadyKind
 
 
 class Sleeping(NamedTuple):
-    """The gyroscopic threshold of a vertical spin."""
+    """Gyroscopic threshold of a vertical spin, with the growth rates of a small tilt."""
 
     spin: float
     """Least axial spin at which the body stands, rad/s; 0 if it stands at any."""
     growth_rate: float
-    """Rate at which a small tilt grows at the spin of the launch, 1/s; 0 where it does not."""
+    """Rate at which a small tilt grows at the spin of the launch, 1/s; 0 if it does not grow."""
     growth_rate_at_rest: float
     """Rate at which a small tilt grows without spin, 1/s; 0 if the body stands at any spin."""
 

@@ -1,7 +1,7 @@
-"""The time a launch takes to its end under weak viscous friction, in plain numbers.
+"""Time to the end of a launch under weak viscous friction, in plain numbers.
 
-`tippetop.theory.averaging` has the same slow flow as a function of time. Here it is followed by
-steps of Dormand and Prince's method, only to when it first is near its end.
+`tippetop.theory.averaging` computes the same slow flow as a function of time. This module
+integrates it by steps of Dormand and Prince's method up to the first instant near its end.
 """
 
 import math
@@ -21,40 +21,40 @@ from tippetop.theory.nutation_decay import (
     LEAST_AMPLITUDE,
     Nutation,
     amplitudes_of,
-    launched,
+    nutation_of_angles,
     rates_at,
 )
 from tippetop.theory.steady import jellett_of_launch
 
 LOG_TOLERANCE = 1e-6
-"""Error of the logarithms of the amplitudes in a step: the time is told in two digits."""
+"""Error of the logarithms of the amplitudes per step: the time is shown with two digits."""
 
 MOST_STEPS = 200
 MOST_STAGES = 20
 PARTS = 16
-"""Instants of a step at which it is seen whether the end is near."""
+"""Instants of a step at which it is checked whether the end is near."""
 
 
 class SlowPath(NamedTuple):
-    """A part of the slow flow, seen from one pole, and the tilt it leads to."""
+    """Part of the slow flow about one pole, and the tilt that it leads to."""
 
     jellett: float
     """Jellett's integral, in natural units."""
     numbers: Numbers
-    """Numbers of the top, with alpha as it is seen from that pole."""
+    """Numbers of the top, with alpha for that pole."""
     turned: bool
-    """Whether that pole is theta = pi."""
+    """Whether the pole is theta = pi."""
     goal: float
     """Tilt of the end, rad."""
     distance: float
-    """How near to it is near, rad."""
+    """Distance from the end within which the time is counted, rad."""
 
     def rates(self, point: Point) -> Point:
         """Return the rates of a `Nutation.point` over mu t."""
         return rates_at(point, self.jellett, self.numbers)
 
     def beyond(self, point: Point) -> float:
-        """Return how far the end is outside the tilts of a nutation, beyond `distance`, rad."""
+        """Return how far, beyond `distance`, the end is outside the tilts of a nutation, rad."""
         fast, slow = math.exp(0.5 * point[0]), math.exp(0.5 * point[1])
         low = 2.0 * math.asin(min(abs(fast - slow), 1.0))
         high = 2.0 * math.asin(min(fast + slow, 1.0))
@@ -63,12 +63,13 @@ class SlowPath(NamedTuple):
 
 
 def time_to_end(problem: Problem, goal: float, distance: float) -> float:
-    """Return about when the tilt of a launch first is near its end under weak friction, s.
+    """Return the approximate time, s, at which the tilt of a launch first comes near its end.
 
-    The time is exact for weak friction, and a few per cent off where friction turns the top over
-    within a few precessions. `goal` is the tilt of the end, `distance` what is near, both in rad.
-    The time is nan for bodies that are no eccentric spheres, friction that is not viscous, launches
-    exactly upright or inverted, launches above the table, and where the table would have to pull.
+    It is the limit for weak friction, and a few per cent off if friction turns the top over within
+    a few precessions. `goal` is the tilt of the end and `distance` the distance from it that counts
+    as near, both in rad. The time is nan for bodies that are no eccentric spheres, friction that is
+    not viscous, launches exactly upright or inverted, launches above the table, and flows for which
+    the table would have to pull.
     """
     launch, top = problem.launch, problem.top
     law, surface = top.friction, top.surface
@@ -89,7 +90,7 @@ def time_to_end(problem: Problem, goal: float, distance: float) -> float:
         (0.0, 0.0),
     )
     jellett = jellett_of_launch(problem) / float(units.jellett)
-    nutation, passed = launched(angles, numbers), 0.0
+    nutation, passed = nutation_of_angles(angles, numbers), 0.0
     for _ in range(MOST_STAGES):
         seen_numbers = numbers.turned if nutation.turned else numbers
         path = SlowPath(jellett, seen_numbers, nutation.turned, goal, distance)
@@ -102,10 +103,10 @@ def time_to_end(problem: Problem, goal: float, distance: float) -> float:
 
 
 def _follow(path: SlowPath, begin: Nutation, unilateral: bool) -> tuple[float, Nutation | None]:
-    """Return mu t, in natural units, until the end is near, and None; or until the other pole is
-    nearer, and the nutation there.
+    """Return mu t, in natural units, and None if the end is near then, or the nutation at that time
+    if the other pole is nearer.
 
-    mu t is nan, beside None, where the flow does not lead on.
+    mu t is nan, with None, if the flow cannot be followed.
     """
     point, passed = begin.point, 0.0
     if path.beyond(point) <= 0.0:
@@ -139,9 +140,9 @@ def largest(point: Point) -> float:
 
 
 def _first_near(path: SlowPath, step: RungeKuttaStep) -> float:
-    """Return the first part of a step at which the end is near; nan if there is none.
+    """Return the first fraction of a step at which the end is near; nan if there is none.
 
-    Where the amplitudes pass each other the nutation goes through the pole for an instant.
+    Where both amplitudes are equal the nutation passes the pole for an instant.
     """
 
     def at(part: float) -> Point:
@@ -150,7 +151,7 @@ def _first_near(path: SlowPath, step: RungeKuttaStep) -> float:
     def beyond(part: float) -> float:
         return path.beyond(at(part))
 
-    def apart(part: float) -> float:
+    def amplitude_difference(part: float) -> float:
         point = at(part)
         return point[0] - point[1]
 
@@ -160,11 +161,11 @@ def _first_near(path: SlowPath, step: RungeKuttaStep) -> float:
         point = step.between(after)
         instants = [after]
         passes = (point[0] - point[1]) * difference < 0.0
-        if passes and apart(before) * apart(after) < 0.0:
-            instants = [crossing(apart, before, after), after]
+        if passes and amplitude_difference(before) * amplitude_difference(after) < 0.0:
+            instants = [crossing(amplitude_difference, before, after), after]
         for instant in instants:
             if path.beyond(step.between(instant)) <= 0.0 and beyond(instant) <= 0.0:
-                # No instant between the last step's end and this one was near by the cubic.
+                # The cubic was not near between the instant before and this one.
                 return crossing(beyond, 0.0 if beyond(before) <= 0.0 else before, instant)
         before, difference = after, point[0] - point[1]
     return math.nan

@@ -1,18 +1,18 @@
-"""Linear stability of the steady states, in a frame that turns with the precession.
+"""Linear stability of steady states, in a frame that turns with the precession.
 
 A steady precession is an equilibrium of the equations of motion written in the frame that turns
 about the vertical at its rate phi'. There the linear motion has constant coefficients, and its
-eigenvalues decide. Three of them mean nothing: that the axis is a unit vector takes one away, and
-two are zero whatever the parameters, those of the turned and of the neighbouring steady states.
-They are divided out exactly, because together they form a Jordan block, whose eigenvalues rounding
+eigenvalues decide. Three of them have no meaning: one belongs to the length of the axis, which is
+a unit vector, and two are zero by symmetry, those of the turned and of the neighbouring steady
+states. They are divided out exactly, because they form a Jordan block, whose eigenvalues rounding
 would spread over 1e-8 of the others.
 
 The Jacobian is that of `tippetop.mechanics.motion.sliding_rates` itself, differentiated exactly.
 
-A vertical spin that drills loses spin, but no more to first order when it is disturbed: its
-spectrum is that of the spin it has, and drilling makes dry friction viscous there, with mu_viscous
-= (3 pi / 8) mu / (R omega) for a patch of radius R with Hertz's pressure and mu / (rho omega) for
-an ellipsoidal limit surface.
+A vertical spin that drills loses spin, but at a rate that a disturbance does not change to first
+order: its spectrum is that of its current spin. Drilling makes dry friction viscous there, with
+mu_viscous = (3 pi / 8) mu / (R omega) for a patch of radius R with Hertz's pressure and mu / (rho
+omega) for an ellipsoidal limit surface.
 """
 
 import math
@@ -59,20 +59,21 @@ NEUTRAL = {
     SteadyKind.PRECESSION: (TURNED, NEIGHBOUR),
     SteadyKind.LEVEL: (TURNED, NEIGHBOUR),
 }
-"""The zero eigenvalues of each kind of steady state, by their motion: not counted in a `Spectrum`.
-"""
+"""Motions of the zero eigenvalues of each kind of steady state, which a `Spectrum` omits."""
 
-ROUNDING = 1e-12
-"""Growth rates below this fraction of the largest eigenvalue are taken for zero."""
+NEUTRAL_GROWTH = 1e-12
+"""Growth rate, relative to the largest eigenvalue, that counts as zero: a few times the rounding of
+eigenvalues, below which stable and unstable states could not be distinguished."""
 
-SLOWEST = 1e-6
-"""Spin in natural units from which on a dry patch drills; with less, all but friction is rounding.
+LEAST_DRILLING = 1e-6
+"""Least spin of a drilling dry patch, natural units: at a lower one friction is so strong that the
+other terms of the Jacobian are lost in rounding.
 """
 
 
 @dataclass(frozen=True)
 class Spectrum:
-    """The eigenvalues of the linear motion about a steady state, but for its neutral directions."""
+    """Eigenvalues of the linear motion about a steady state, without its neutral directions."""
 
     eigenvalues: Complex
     """1/s, by decreasing real part: 5 for a precession, 6 for a vertical spin."""
@@ -81,7 +82,7 @@ class Spectrum:
     of a vertical spin's eigenvalues shift by the difference.
     """
     neutral: tuple[str, ...]
-    """Names of the zero eigenvalues that were divided out, which are those of symmetry."""
+    """Motions of the zero eigenvalues that were divided out, which symmetry implies."""
 
     @property
     def growth_rate(self) -> float:
@@ -100,18 +101,18 @@ class Spectrum:
 
     @property
     def _rounding(self) -> float:
-        return ROUNDING * float(np.abs(self.eigenvalues).max())
+        return NEUTRAL_GROWTH * float(np.abs(self.eigenvalues).max())
 
 
 def spectrum(steady: SteadyState[float], top: Top, frame_rate: float | None = None) -> Spectrum:
-    """Eigenvalues of the linear motion about a steady state; here the top's friction matters.
+    """Return the eigenvalues of the linear motion about a steady state, under the top's friction.
 
-    It is that in a frame which turns about the vertical at `frame_rate`, rad/s; if this is None, at
-    the state's precession, which for a vertical spin is 0: a frame at rest. Only a vertical spin is
+    The motion is that in a frame which turns about the vertical at `frame_rate`, rad/s, or by
+    default at the state's precession, which for a vertical spin is 0. Only a vertical spin is
     steady in other frames; for other states `frame_rate` is ignored.
 
-    Raises `InvalidInput` if there is no linear motion: friction of a point is dry, rolling is
-    resisted, or the top drills on anything but a vertical spin, or on one that hardly turns.
+    Raises `InvalidInput` if there is no linear motion: under dry friction of a point, with rolling
+    resistance, and with drilling unless the state is a vertical spin that turns fast enough.
     """
     rate = steady.precession
     if frame_rate is not None and steady.kind in VERTICAL_SPINS:
@@ -120,10 +121,9 @@ def spectrum(steady: SteadyState[float], top: Top, frame_rate: float | None = No
 
 
 def eigenvalues(steady: SteadyState[Scalar], top: Top, frame_rate: Scalar = None) -> Complex:
-    """Eigenvalues about n steady states of one kind, 1/s, by decreasing real part, shape (n, 5 or
-    6).
+    """Return the eigenvalues about n steady states of one kind, 1/s, shape (n, 5 or 6).
 
-    As of a `spectrum`; nan where there is no such state.
+    They are those of `spectrum`, by decreasing real part; nan where there is no such state.
     """
     frame = steady.precession if frame_rate is None else frame_rate
     tilt, precession, spin, frame = (
@@ -136,13 +136,13 @@ def eigenvalues(steady: SteadyState[Scalar], top: Top, frame_rate: Scalar = None
     )
     values: Complex = np.linalg.eigvals(linear.matrix).astype(complex) / linear.units.time
     order = np.lexsort((values.imag, -values.real))
-    found = np.full((tilt.size, values.shape[-1]), complex(math.nan, math.nan))
-    found[exists] = np.take_along_axis(values, order, axis=-1)
-    return found
+    ordered = np.full((tilt.size, values.shape[-1]), complex(math.nan, math.nan))
+    ordered[exists] = np.take_along_axis(values, order, axis=-1)
+    return ordered
 
 
 def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
-    """Growth rates of the vertical spin at these axial spins (rad/s), 1/s, shape (n,)."""
+    """Return the growth rates of a vertical spin, 1/s, at axial spins of shape (n,), rad/s."""
     return np.asarray(eigenvalues(vertical_spin(kind, top, spins), top)[:, 0].real)
 
 
@@ -152,10 +152,10 @@ def has_spectrum(kind: SteadyKind, top: Top) -> bool:
 
 
 def fastest_growth(kind: SteadyKind, top: Top, spin: float) -> float:
-    """Return the growth rate of a vertical spin, 1/s, under the viscous friction that tips it most.
+    """Return the largest growth rate of a vertical spin, 1/s, under viscous friction of any size.
 
-    The result is not positive where no viscous friction does. Friction of both extremes does not:
-    without any there is no creep, and with very much the contact rolls.
+    The result is not positive if no viscous friction tips the spin. Very weak friction does not,
+    because there is no creep, nor does very strong friction, under which the contact rolls.
     """
     unit = natural_units(top)
     rates = [
@@ -168,10 +168,10 @@ def fastest_growth(kind: SteadyKind, top: Top, spin: float) -> float:
 
 
 def linear_tilts(steady: SteadyState[float], top: Top, start: SlidingState, times: Array) -> Array:
-    """Distance of the axis from the vertical in the linear motion about a vertical spin, rad, shape
-    (n,).
+    """Return the angle of the axis to the vertical in the linear motion about a vertical spin, rad.
 
-    It starts in a state close to this, SI; the times after it, s, are of shape (n,).
+    The motion starts in a state close to the spin, SI; the times after it, s, have shape (n,), and
+    so has the result.
     """
     point = (np.array([steady.tilt]), np.zeros(1), np.array([steady.spin]))
     linear = _linear(steady.kind, *point, np.zeros(1), top)
@@ -187,8 +187,8 @@ def linear_tilts(steady: SteadyState[float], top: Top, start: SlidingState, time
 
 
 class _Linear(NamedTuple):
-    """Linear motion about n steady states in natural units: its matrix, on a basis of what
-    counts.
+    """Linear motion about n steady states in natural units: its matrix on a basis of the directions
+    that are not divided out.
     """
 
     basis: Array
@@ -199,13 +199,15 @@ class _Linear(NamedTuple):
 def _linear(
     kind: SteadyKind, tilt: Array, precession: Array, spin: Array, frame: Array, top: Top
 ) -> _Linear:
-    """Linear motion about n steady states of one kind, shapes (n, 8, k) and (n, k, k)."""
+    """Return the linear motion about n steady states of one kind, shapes (n, 8, k) and (n, k,
+    k).
+    """
     units = Units(*(float(unit) for unit in natural_units(top)))
     if kind not in VERTICAL_SPINS and not top.friction.torque_free:
         raise InvalidInput(
             "friction",
             Described("this law"),
-            "one without torque; no precession is steady under it",
+            "one without torque: no precession is steady under this one",
         )
     scaled = natural(drilling(top, spin))
     angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))
@@ -214,32 +216,31 @@ def _linear(
     point = [np.broadcast_to(np.asarray(number, dtype=float), tilt.shape) for number in eight]
 
     matrix = jacobian(_rates_in_frame(scaled, frame * units.time), point)
-    away = _meaningless(kind, angles, point, scaled)
-    basis = np.linalg.qr(away, mode="complete").Q[..., away.shape[-1] :]
+    excluded = _divided_out(kind, angles, point, scaled)
+    basis = np.linalg.qr(excluded, mode="complete").Q[..., excluded.shape[-1] :]
     return _Linear(basis, np.swapaxes(basis, -1, -2) @ matrix @ basis, units)
 
 
 def drilling(top: Top, turning: Array) -> Top:
-    """The top with the branch of its law that holds where it hardly slips and turns at these rates,
-    rad/s.
+    """Return the top with the branch of its law for drilling with hardly any slip.
 
-    Raises `InvalidInput` if friction has no linear motion about a vertical spin, or it hardly turns
-    on dry friction.
+    `turning` are its rates about the vertical, rad/s. Raises `InvalidInput` if friction has no
+    linear motion about a vertical spin, or if the top hardly turns on dry friction.
     """
     require_creep(top)
     if not is_set_valued(top.friction):
         return top
     slowest, time = float(np.min(np.abs(turning))), float(natural_units(top).time)
-    if slowest * time < SLOWEST:
+    if slowest * time < LEAST_DRILLING:
         accepted = (
-            f"at least {SLOWEST / time:.2g} rad/s: without drilling dry friction lets it stick"
+            f"at least {LEAST_DRILLING / time:.2g} rad/s: without drilling the contact sticks"
         )
         raise InvalidInput("spin", slowest, accepted)
     return on_branch(top, (0.0, 0.0, 1.0))
 
 
 def _rates_in_frame(top: Top, frame: Array) -> Callable[[Sequence[Any]], list[Any]]:
-    """Rates of the 8 numbers n, L, u seen from a frame that turns about the vertical."""
+    """Return the function of the 8 numbers n, L, u that gives their rates in a turning frame."""
 
     def rates(y: Sequence[Any]) -> list[Any]:
         seen = list(sliding_rates(SlidingState.unpack(y), top).pack())
@@ -251,15 +252,13 @@ def _rates_in_frame(top: Top, frame: Array) -> Callable[[Sequence[Any]], list[An
 
 
 def _turned(y: Sequence[Scalar]) -> tuple[Scalar, ...]:
-    """Products z x n, z x L and z x u: how the 8 numbers change as the state turns about the
-    vertical.
-    """
+    """Return z x n, z x L and z x u: the change of the 8 numbers by a turn about the vertical."""
     return (-y[1], y[0], 0.0, -y[4], y[3], 0.0, -y[7], y[6])
 
 
-def _meaningless(kind: SteadyKind, angles: Angles, point: list[Array], top: Top) -> Array:
-    """The directions to divide out, shape (n, 8, 2 or 3): off the unit sphere, and the neutral
-    ones.
+def _divided_out(kind: SteadyKind, angles: Angles, point: list[Array], top: Top) -> Array:
+    """Return the directions to divide out, shape (n, 8, 2 or 3): off the unit sphere, and
+    neutral.
     """
     zero = np.zeros_like(point[0])
     off_sphere = [*point[:3], *[zero] * 5]
@@ -276,8 +275,9 @@ def _meaningless(kind: SteadyKind, angles: Angles, point: list[Array], top: Top)
 
 
 def _along_branch(angles: Angles, top: Top) -> list[Array]:
-    """Derivative of the steady precession by its tilt, that of its rate from the balance of the
-    moments.
+    """Return the derivative of the steady precession by its tilt.
+
+    The derivative of its rate follows from the balance of the moments.
     """
 
     def unbalanced(tilt: Array) -> Scalar:

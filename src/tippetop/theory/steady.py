@@ -1,14 +1,14 @@
 """Steady states of a body of revolution on a table: no slip, no friction, constant tilt.
 
 In a steady precession the axis turns about the vertical at the rate phi' with constant tilt and
-axial spin omega3, the centre of mass rests and the contact point does not slip. That slip vanishes
-gives omega3 = phi' (c + h' / (h - h' c)), and the balance of the moments phi'^2 (I3 omega3 / phi' -
-I1 c) = m g h', with c = cos(theta) and the support function h(c). For the eccentric sphere these
-are equation (2.17) of the report, omega3 = phi' (c - alpha), and phi'^2 = m g R alpha / (I1 c + I3
+axial spin omega3, the centre of mass rests and the contact point does not slip. Zero slip gives
+omega3 = phi' (c + h' / (h - h' c)), and the balance of the moments phi'^2 (I3 omega3 / phi' - I1 c)
+= m g h', with c = cos(theta) and the support function h(c). For the eccentric sphere these are
+equation (2.17) of the report, omega3 = phi' (c - alpha), and phi'^2 = m g R alpha / (I1 c + I3
 (alpha - c)).
 
-Friction does not enter: the same states serve every friction law. What counts them is Jellett's
-integral.
+Friction does not enter: the states are the same under every friction law. Jellett's integral labels
+them.
 """
 
 import math
@@ -34,7 +34,7 @@ Number = TypeVar("Number", float, Array)
 
 
 class SteadyKind(StrEnum):
-    """What a steady state looks like."""
+    """Kind of a steady state."""
 
     UPRIGHT = "upright"
     INVERTED = "inverted"
@@ -48,9 +48,9 @@ VERTICAL_SPINS = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
 
 @dataclass(frozen=True)
 class SteadyState(Generic[Number]):
-    """A motion that friction leaves alone, or many of one kind: floats, or arrays of one shape.
+    """Motion without slip that friction does not change, or many of one kind.
 
-    Those with arrays do not compare.
+    The numbers are floats, or arrays of one shape; states with arrays cannot be compared.
     """
 
     kind: SteadyKind
@@ -58,8 +58,8 @@ class SteadyState(Generic[Number]):
     tilt: Number
     """theta, rad."""
     precession: Number
-    """phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning;
-    nan, as what follows, where nothing precesses steadily at this tilt.
+    """phi', rad/s; 0 by convention for a vertical spin, where only the axial spin has a meaning. It
+    and the following numbers are nan where no precession at this tilt is steady.
     """
     spin: Number
     """Axial spin omega3, rad/s."""
@@ -70,7 +70,7 @@ class SteadyState(Generic[Number]):
 
 
 class RollingPrecession(NamedTuple):
-    """A precession without slip, per unit precession, whether steady or not."""
+    """Precession without slip, per unit precession, whether steady or not."""
 
     axis: Vector
     """Axis n."""
@@ -81,8 +81,9 @@ class RollingPrecession(NamedTuple):
 
 
 def rolling_precession(tilt: Scalar, top: Top, functions: Functions) -> RollingPrecession:
-    """The precession without slip at a tilt, rad, leaning along x: L = phi' I1 (z - c n) + I3
-    omega3 n.
+    """Return the precession without slip at a tilt, rad, with the axis in the xz plane.
+
+    Its angular momentum is L = phi' I1 (z - c n) + I3 omega3 n.
     """
     axis = (functions.sin(tilt), 0.0, functions.cos(tilt))
     along = scale(gyroscopic_reaction(axis[2], top), axis)
@@ -91,7 +92,7 @@ def rolling_precession(tilt: Scalar, top: Top, functions: Functions) -> RollingP
 
 
 def rolling_spin(c: Scalar, surface: Surface) -> Scalar:
-    """Ratio omega3 / phi' of a precession without slip, c + h' / (h - h' c): (2.17) for the
+    """Return omega3 / phi' of a precession without slip, c + h' / (h - h' c): (2.17) for the
     sphere.
     """
     slope = surface.slope(c)
@@ -99,24 +100,23 @@ def rolling_spin(c: Scalar, surface: Surface) -> Scalar:
 
 
 def gyroscopic_reaction(c: Scalar, top: Top) -> Scalar:
-    """Gyroscopic moment of a precession without slip, I3 omega3 / phi' - I1 c, in phi'^2
-    sin(theta).
+    """Return the gyroscopic moment of a precession without slip over phi'^2 sin(theta), kg m^2.
+
+    It is I3 omega3 / phi' - I1 c.
     """
     return top.axial_inertia * rolling_spin(c, top.surface) - top.transverse_inertia * c
 
 
 def weight_moment(c: Scalar, top: Top) -> Scalar:
-    """Moment of the table's support over sin(theta), m g h', J: what the gyroscopic moment
-    balances.
-    """
+    """Return the moment of the weight over sin(theta), m g h', J."""
     return top.mass * top.gravity * top.surface.slope(c)
 
 
 def balance_of_moments(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) -> Scalar:
-    """Return what is zero where the precession without slip at a tilt, rad, with this Jellett's
-    integral is steady: lambda^2 (I3 omega3 / phi' - I1 c) - m g h' (lambda / phi')^2.
+    """Return lambda^2 (I3 omega3 / phi' - I1 c) - m g h' (lambda / phi')^2, the balance of moments.
 
-    It is regular where the precession is not, and changes sign at the extrema of `least_energy`.
+    It vanishes where the precession without slip at a tilt, rad, with this Jellett's integral is
+    steady. It is regular where phi' is infinite, and changes sign at the extrema of `least_energy`.
     """
     c = functions.cos(tilt)
     rolling = rolling_precession(tilt, top, functions).jellett
@@ -124,15 +124,16 @@ def balance_of_moments(tilt: Scalar, jellett: Scalar, top: Top, functions: Funct
 
 
 def precession_rate_squared(c: Scalar, top: Top) -> Scalar:
-    """phi'^2 of the steady precession, rad^2/s^2: there is none where it is not positive."""
+    """Return phi'^2 of the steady precession, rad^2/s^2; there is none if this is not positive."""
     return weight_moment(c, top) / gyroscopic_reaction(c, top)
 
 
 # translate: skip
 def precession_branch(top: Top, tilts: Array) -> SteadyState[Array]:
-    """The steady precessions with phi' > 0 at these tilts (rad, any shape), 0 and pi as limits.
+    """Return the steady precessions with phi' > 0 at tilts of any shape, rad; 0 and pi as limits.
 
-    Those with phi' < 0 are their mirror images. Where there is none, all but the tilt is nan.
+    Those with phi' < 0 are their mirror images. Where there is none, all numbers but the tilt are
+    nan.
     """
     tilts = np.asarray(tilts, dtype=float)
     rolling = rolling_precession(tilts, top, np)
@@ -143,8 +144,8 @@ def precession_branch(top: Top, tilts: Array) -> SteadyState[Array]:
 
 
 def branch_jellett(tilt: float, top: Top) -> float:
-    """Size of Jellett's integral of the steady precession at a tilt, kg m^3/s; inf where there is
-    none.
+    """Return the size of Jellett's integral of the steady precession at a tilt, kg m^3/s; inf if
+    there is none.
     """
     rolling = rolling_precession(tilt, top, math)
     try:
@@ -155,7 +156,7 @@ def branch_jellett(tilt: float, top: Top) -> float:
 
 
 def vertical_spin(kind: SteadyKind, top: Top, spin: Number) -> SteadyState[Number]:
-    """The vertical spin at theta = 0 or pi with this axial spin omega3, rad/s, finite."""
+    """Return the vertical spin at theta = 0 or pi with a finite axial spin omega3, rad/s."""
     c = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
     still = 0.0 * abs(spin)
     tilt = still if kind is SteadyKind.UPRIGHT else still + math.pi
@@ -165,17 +166,16 @@ def vertical_spin(kind: SteadyKind, top: Top, spin: Number) -> SteadyState[Numbe
 
 
 def level_spin(top: Top, precession: float) -> SteadyState[float]:
-    """The spin with horizontal axis at this precession, rad/s, of a shape that has one."""
+    """Return the spin with horizontal axis at a precession, rad/s, of a shape that has one."""
     momentum = (0.0, 0.0, top.transverse_inertia * precession)
     return _steady(SteadyKind.LEVEL, math.pi / 2, precession, 0.0, (1.0, 0.0, 0.0), momentum, top)
 
 
 def steady_states(top: Top, jellett: float) -> list[SteadyState[float]]:
-    """All steady states with this Jellett's integral lambda, kg m^3/s, by increasing tilt, whatever
-    friction.
+    """Return all steady states with a Jellett's integral lambda, kg m^3/s, by increasing tilt.
 
-    For an eccentric sphere it is conserved, and these are all the states a motion can end in; for
-    other shapes it only labels them.
+    For an eccentric sphere it is conserved, and these are all the states that a motion can end in;
+    for other shapes it only labels them. Friction does not matter.
 
     Notes
     -----
@@ -184,8 +184,8 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState[float]]:
     eccentric sphere).
     """
     units = [vertical_spin(kind, top, 1.0) for kind in VERTICAL_SPINS]
-    # Where the centre of mass is on the table, no spin about the vertical has any of it.
-    least = NO_JELLETT * top.axial_inertia * top.surface.size
+    # With the centre of mass on the table, lambda of every vertical spin is 0.
+    least = ZERO_JELLETT * top.axial_inertia * top.surface.size
     vertical = [
         vertical_spin(unit.kind, top, jellett / unit.jellett)
         for unit in units
@@ -197,19 +197,21 @@ def steady_states(top: Top, jellett: float) -> list[SteadyState[float]]:
     return sorted([*vertical, *between], key=lambda state: state.tilt)
 
 
-NO_JELLETT = 1e-13
-"""What counts as no Jellett's integral of a spin, in its rate times I3 and the size."""
+ZERO_JELLETT = 1e-13
+"""Jellett's integral of a unit spin, over I3 and the size, that counts as zero: rounding of a
+centre of mass on the table.
+"""
 
 
 def has_level_spin(top: Top) -> bool:
-    """Whether the body can spin with its axis horizontal at any rate."""
+    """Return whether the body can spin with its axis horizontal at any rate."""
     return bool(top.surface.slope(0.0) == 0.0)
 
 
 def jellett_of_launch(problem: Problem) -> float:
-    """Jellett's integral of a launch, kg m^3/s.
+    """Return Jellett's integral of a launch, kg m^3/s.
 
-    Raises `InvalidInput` if it turns so fast that rounding hides what the weight does.
+    Raises `InvalidInput` if it turns so fast that the weight is lost in rounding.
     """
     fastest = FASTEST / float(natural_units(problem.top).time)
     for name in ("spin", "tilt_rate", "precession"):
@@ -222,12 +224,11 @@ def jellett_of_launch(problem: Problem) -> float:
 
 
 def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) -> Scalar:
-    """Least energy, J, that a body with this tilt (rad) and this Jellett's integral (kg m^3/s) can
-    have.
+    """Return the least energy, J, of a body with a tilt, rad, and a Jellett's integral, kg m^3/s.
 
-    lambda^2 / (2 a.I a) + m g h: its minima over the tilt are the stable steady states, because
-    friction only takes energy and leaves lambda alone (Bou-Rabee, Marsden and Romero 2004; Ebenfeld
-    and Scheck 1995).
+    It is lambda^2 / (2 a.I a) + m g h. Its minima over the tilt are the stable steady states,
+    because friction only dissipates energy and conserves lambda (Bou-Rabee, Marsden and Romero
+    2004; Ebenfeld and Scheck 1995).
     """
     axis = (functions.sin(tilt), 0.0, functions.cos(tilt))
     potential = energy(_at_rest(axis, (0.0, 0.0, 0.0), top), top)
@@ -239,19 +240,19 @@ def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) 
 
 # translate: skip
 def state_of(steady: SteadyState[float], top: Top) -> SlidingState:
-    """The mechanical state of a steady state, leaning along x."""
+    """Return the mechanical state of a steady state, with the axis in the xz plane."""
     angles = Angles(steady.tilt, 0.0, 0.0, steady.precession, steady.spin, (0.0, 0.0))
     return state_from_angles(angles, top, math)
 
 
 def _at_rest(axis: Vector, momentum: Vector, top: Top) -> State:
-    """The body on the table with its centre of mass at rest."""
+    """Return the state of the body on the table with its centre of mass at rest."""
     zero = (0.0, 0.0, 0.0)
     return State(axis, momentum, zero, top.surface.height(axis[2]))
 
 
 def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState[float]:
-    """The steady precession at a tilt known to be one for this Jellett's integral."""
+    """Return the steady precession at a tilt at which there is one with this Jellett's integral."""
     rolling = rolling_precession(tilt, top, math)
     return _precession(tilt, jellett / rolling.jellett, rolling, top)
 
@@ -259,7 +260,7 @@ def precession_at(tilt: float, jellett: float, top: Top) -> SteadyState[float]:
 def _precession(
     tilt: Number, rate: Number, rolling: RollingPrecession, top: Top
 ) -> SteadyState[Number]:
-    """The steady precession at this tilt and rate, of which that without slip is known."""
+    """Return the steady precession at a tilt and rate, from the rolling one at this tilt."""
     spin, momentum = (
         rate * rolling_spin(rolling.axis[2], top.surface),
         scale(rate, rolling.momentum),
@@ -276,21 +277,19 @@ def _steady(
     momentum: Vector,
     top: Top,
 ) -> SteadyState[Number]:
-    """The steady state with these angles and rates, and this axis and angular momentum."""
-    whole = _at_rest(axis, momentum, top)
-    return SteadyState(kind, tilt, precession, spin, jellett(whole, top), energy(whole, top))
+    """Return the steady state with these angles, rates, axis and angular momentum."""
+    state = _at_rest(axis, momentum, top)
+    return SteadyState(kind, tilt, precession, spin, jellett(state, top), energy(state, top))
 
 
 FASTEST = 1e8
-"""Angular velocity in natural units beyond which the theory says nothing: beside it, weight is
+"""Largest angular velocity of the theory, natural units: at higher ones the weight is lost in
 rounding.
 """
 
 
 def _precession_tilts(top: Top, jellett: float) -> list[float]:
-    """Tilts of the steady precessions with this Jellett's integral, roots of a balance smooth in
-    c.
-    """
+    """Return the tilts of the steady precessions with a Jellett's integral."""
     scaled, integral = natural(top), jellett / float(natural_units(top).jellett)
     square = integral**2
 

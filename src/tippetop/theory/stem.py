@@ -1,4 +1,4 @@
-"""What it takes to stand on a stem: the least Jellett's integral about its tip."""
+"""Condition for standing on a stem: the least Jellett's integral about its tip."""
 
 from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.surfaces.hull import each_surface
@@ -12,7 +12,7 @@ from tippetop.theory.thresholds import critical_jellett
 
 
 def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -> float:
-    """Least size of Jellett's integral about a stem's tip with which a top stands upright on it.
+    """Return the least Jellett's integral about a stem's tip with which a top stands upright on it.
 
     Parameters
     ----------
@@ -26,13 +26,13 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
     Returns
     -------
     float
-        lambda = -L.a, kg m^3/s, with the contact vector a of the tip: 0 where the top stands at
-        rest, infinite where it stands at no spin.
+        lambda = -L.a, kg m^3/s, with the contact vector a of the tip: 0 if the top stands at rest,
+        infinite if it stands at no spin.
 
     Raises
     ------
     InvalidInput
-        If the body has no such surface, or it is no sphere; if there is no such gravity.
+        If the body has no such surface, the surface is no sphere, or gravity is not positive.
 
     Notes
     -----
@@ -42,8 +42,8 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
 
         lambda > sqrt(m g I3 zeta / (r (zeta + r (1 - I1 / I3)))) (r + zeta)^2,
 
-    which is the condition of an inverted tippe top, whose sphere the tip takes the place of
-    (Rauch-Wojciechowski, Skoldstam and Glad, Regular and Chaotic Dynamics 10 (2005) 333-362).
+    which is the condition of an inverted tippe top with the tip as its sphere (Rauch-Wojciechowski,
+    Skoldstam and Glad, Regular and Chaotic Dynamics 10 (2005) 333-362).
 
     Examples
     --------
@@ -69,12 +69,10 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
         )
     if tip.slope(0.0) >= 0.0:
         return 0.0
-    alone = Top(body.mass, body.I1, body.I3, tip, ViscousLaw(1.0), gravity)
-    return critical_jellett(SteadyKind.INVERTED, alone)
+    top = Top(body.mass, body.I1, body.I3, tip, ViscousLaw(1.0), gravity)
+    return critical_jellett(SteadyKind.INVERTED, top)
 
 
 def jellett_about(surface: int, axis: Vector, momentum: Vector, top: Top) -> float:
-    """Jellett's integral -L.a about one of a top's surfaces, whether it touches or not, kg m^3/s;
-    floats.
-    """
+    """Return -L.a about one of a top's surfaces, whether it touches or not, kg m^3/s."""
     return -float(dot(momentum, contact_vector(axis, each_surface(top.surface)[surface])))

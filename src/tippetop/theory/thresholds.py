@@ -1,4 +1,4 @@
-"""Critical spins: where a vertical spin gains or loses its stability.
+"""Critical spins, at which a vertical spin gains or loses its stability.
 
 A vertical spin changes stability where the branch of steady precessions reaches the vertical, so
 its critical Jellett's integral is the limit of the branch at the pole:
@@ -28,8 +28,9 @@ from tippetop.theory.steady import (
     vertical_spin,
 )
 
-ROUNDING = 1e-14
-"""Height of the centre of mass above the table, in sizes, that is none."""
+ZERO_HEIGHT = 1e-14
+"""Height of the centre of mass above the table, in sizes, that counts as zero: rounding of a body
+whose centre of mass is on the table."""
 
 
 @dataclass(frozen=True)
@@ -37,35 +38,36 @@ class CriticalSpins:
     """Spins of a launch, rad/s, at which the two vertical spins change stability."""
 
     upright: float
-    """omega_c1: an eccentric sphere launched with more spin leaves theta = 0; inf if it never does.
+    """omega_c1: an eccentric sphere launched with more spin leaves theta = 0; inf if it never
+    does.
     """
     inverted: float
-    """omega_c2: launched with more spin it stays at theta = pi once there; inf if it never does."""
+    """omega_c2: launched with more spin it stays at theta = pi once it is there; inf if it never
+    does.
+    """
 
 
 def critical_jellett(kind: SteadyKind, top: Top) -> float:
-    """Jellett's integral at which a vertical spin changes stability, kg m^3/s: inf where it never
-    does.
+    """Return Jellett's integral at which a vertical spin changes stability, kg m^3/s; inf if none.
 
-    Nor does it where the centre of mass is not above the table: as of one of two balls on top of
-    the other. An eccentric sphere's upright spin is stable below, lambda_up, and its inverted one
-    above, lambda_down.
+    An eccentric sphere's upright spin is stable below lambda_up, and its inverted spin above
+    lambda_down. The result is inf if the centre of mass is not above the table.
     """
     return (
-        branch_jellett(vertical_spin(kind, top, 0.0).tilt, top) if stands(kind, top) else math.inf
+        branch_jellett(vertical_spin(kind, top, 0.0).tilt, top)
+        if can_stand(kind, top)
+        else math.inf
     )
 
 
-def stands(kind: SteadyKind, top: Top) -> bool:
-    """Whether the centre of mass is above the table when the axis is vertical."""
+def can_stand(kind: SteadyKind, top: Top) -> bool:
+    """Return whether the centre of mass is above the table when the axis is vertical."""
     height = float(top.surface.height(1.0 if kind is SteadyKind.UPRIGHT else -1.0))
-    return height > ROUNDING * float(top.surface.size)
+    return height > ZERO_HEIGHT * float(top.surface.size)
 
 
 def critical_spin(kind: SteadyKind, top: Top) -> float:
-    """Axial spin at which a vertical spin changes stability, by formula, rad/s; inf where it never
-    does.
-    """
+    """Return the axial spin at which a vertical spin changes stability, rad/s; inf if none."""
     critical = critical_jellett(kind, top)
     return (
         critical if math.isinf(critical) else critical / abs(vertical_spin(kind, top, 1.0).jellett)
@@ -73,17 +75,17 @@ def critical_spin(kind: SteadyKind, top: Top) -> float:
 
 
 def critical_spins(problem: Problem) -> CriticalSpins:
-    """Critical spins of a launch: with its tilt and its rates, and any axial spin.
+    """Return the critical spins of launches with the tilt and the rates of this one.
 
-    The Jellett's integral of a launch is linear in its spin; for one at rest in tilt it is R I3
-    spin (cos(tilt) - alpha). Its sign does not matter, and the larger of the two spins is returned.
-    Where it is not conserved, they are those of the vertical spins themselves: under Contensou's
-    friction, which takes spin from them, they change stability when that is left.
+    Jellett's integral of a launch is linear in its spin; without tilt rate and precession it is R
+    I3 spin (cos(tilt) - alpha). Its sign does not matter, and the larger of the two spins is
+    returned. If it is not conserved, the critical spins are those of the vertical spins themselves:
+    under Contensou's friction, which reduces their spin, they change stability at that value.
 
     Raises
     ------
     InvalidInput
-        If a dry point rubs, or rolling is resisted: nothing is linear there.
+        If friction is dry friction of a point, or rolling is resisted: there is no linear motion.
 
     Examples
     --------
@@ -98,7 +100,7 @@ def critical_spins(problem: Problem) -> CriticalSpins:
 
 
 def stability_limits(problem: Problem) -> CriticalSpins:
-    """Return what `critical_spins` does, also of a part of a body, and without a warning."""
+    """Return the result of `critical_spins` without its warning, also for a part of a body."""
     require_creep(problem.top)
     if not problem.top.conserves_jellett:
         return CriticalSpins(*(critical_spin(kind, problem.top) for kind in VERTICAL_SPINS))
@@ -109,24 +111,24 @@ def stability_limits(problem: Problem) -> CriticalSpins:
 
 
 class JellettLine(NamedTuple):
-    """Jellett's integral of a launch as a function of its spin."""
+    """Jellett's integral of a launch as a linear function of its spin."""
 
     at_rest: float
     per_spin: float
 
     def at(self, spin: Scalar) -> Scalar:
-        """The integral at a spin, rad/s."""
+        """Return the integral at a spin, rad/s."""
         return self.at_rest + self.per_spin * spin
 
     def spin_at(self, critical: float) -> float:
-        """The larger of the two spins at which the size of the integral is critical."""
+        """Return the larger of the two spins at which the integral's size is critical, rad/s."""
         if self.per_spin == 0.0 or math.isinf(critical):
             return math.inf
         return critical / abs(self.per_spin) - self.at_rest / self.per_spin
 
 
 def jellett_line(problem: Problem) -> JellettLine:
-    """Jellett's integral over the spin of a launch whose other numbers are kept."""
+    """Return Jellett's integral of launches that differ from this one only in their spin."""
     still = {"spin": 0.0, "tilt_rate": 0.0, "precession": 0.0}
     at_rest, per_spin = (
         jellett_of_launch(
