@@ -35,7 +35,7 @@ def seen(problem: tt.Problem = PROBLEM, **changes: Any) -> Monitor:
     }
     for name, change in changes.items():
         told[name] = told[name] + np.array([0.0, 0.0, change])
-    monitor.see(**told)
+    monitor.check(**told)
     return monitor
 
 
@@ -102,7 +102,7 @@ def test_many_launches_are_held_against_what_each_keeps() -> None:
         size, *others, jellett = (number[None] for number in told)
         size[0, 2] += off
         jellett[0, :2] += off
-        monitor.see(size, *others, jellett, np.zeros((1, 3)))
+        monitor.check(size, *others, jellett, np.zeros((1, 3)))
         assert monitor.is_trusted(1e-9).tolist() == [True, not off, not off]
 
 
@@ -140,8 +140,8 @@ def test_what_a_motion_seemed_to_come_to_is_not_told_of_one_that_cannot_be_trust
             tt.Outcome.LYING_FLAT,
             tt.Outcome.STOPPED,
         )
-        assert kept.judged(outcome, 1e-12) is outcome
-        assert off.judged(outcome, 1e-12) is (tt.Outcome.INACCURATE if ends else outcome)
+        assert kept.trusted_outcome(outcome, 1e-12) is outcome
+        assert off.trusted_outcome(outcome, 1e-12) is (tt.Outcome.INACCURATE if ends else outcome)
 
 
 @pytest.mark.slow

@@ -153,7 +153,7 @@ def test_a_field_is_given_once(twice: str) -> None:
 )
 def test_a_field_is_not_given_beside_its_whole(twice: list[str]) -> None:
     done = CliRunner().invoke(app, ["problem", *twice])
-    assert str(done.exception).startswith("launch.slip.0: 3 stands beside a value of ")
+    assert str(done.exception).startswith("launch.slip.0: 3 is given beside a value of ")
 
 
 def test_a_place_is_written_in_one_way() -> None:

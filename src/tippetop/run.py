@@ -1,4 +1,4 @@
-"""Run a problem: follow its launch from mode to mode, and label what came of it."""
+"""Simulation of a problem: `simulate` follows a launch from mode to mode and labels the result."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, overload
@@ -21,11 +21,11 @@ from tippetop.mechanics.units import Units
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.results.dataset import assemble
-from tippetop.results.event_functions import EventSearch, OwnEvent, Value
+from tippetop.results.event_functions import EventSearch, FunctionEvent, Value
 from tippetop.results.metrics import metrics
 from tippetop.results.observables import Recorder
-from tippetop.results.run_metrics import Tally
-from tippetop.results.run_solution import Begin, RunSolution
+from tippetop.results.run_metrics import RunMetrics
+from tippetop.results.run_solution import NaturalLaunch, RunSolution
 from tippetop.results.sample_times import sample_times
 from tippetop.results.samples import event_in_si
 from tippetop.support.errors import InvalidInput, require
@@ -71,7 +71,7 @@ def simulate(
 ) -> tuple[xr.Dataset, RunSolution]: ...
 
 
-@np.errstate(all="ignore")  # What grows beyond all numbers is the outcome's matter.
+@np.errstate(all="ignore")  # numbers that overflow end the run with an outcome of their own
 def simulate(
     problem: Problem,
     duration: float,
@@ -88,12 +88,12 @@ def simulate(
     step_limit: int = STEP_LIMIT,
     callback: Callable[[float], None] | None = None,
 ) -> xr.Dataset | tuple[xr.Dataset, RunSolution]:
-    """Simulate a problem; warn with `Implausible` of numbers that no top has.
+    """Simulate a problem and return its run; warn with `Implausible` of numbers that no top has.
 
     Parameters
     ----------
     problem
-        The physics.
+        The problem.
     duration
         Length of the run, s; or a text such as "1 min", or a quantity of pint.
     samples
@@ -101,33 +101,32 @@ def simulate(
     times
         Sample times instead, s: increasing, from 0 to `duration`.
     events
-        Functions of the state (see `tippetop.extend.MotionState`) by the names of their events: a
-        function that changes sign is an event, located to rounding on the dense solution and told
-        among the others. A function may have a `direction`, and be `terminal`: see
+        Functions of the state (see `tippetop.extend.MotionState`) by the names of their events:
+        each change of sign of a function is an event, located to rounding on the dense solution and
+        reported with the others. A function may have a `direction`, and be `terminal`: see
         `tippetop.extend.EventFunction`.
     until
-        What ends the run early, with the outcome "stopped": the name of an event, of `events` or of
-        the run's own kinds such as "lift-off" or "stick", or a function whose first change of sign
-        does. Where an impact ends it, the last sample is just before that, and the numbers of the
-        end are just after.
+        Event that ends the run early, with the outcome "stopped": the name of a function in
+        `events`, a kind of event such as "lift-off" or "stick", or a function whose first change
+        of sign ends the run. If an impact ends it, the last sample is just before the impact, and
+        the numbers of the end are those just after.
     dense
-        Whether to return the solution, which has the state at any time, beside the run.
+        Whether to return the dense solution too, which has the state at any time.
     integrator
         "taylor", "collocation", "dop853", "rk45", "radau", "bdf", "lsoda" or "rk4"; None for
-        "taylor", which "collocation" relieves where friction is stiff; or an object of one's own,
-        which follows motions as `tippetop.integrators.base.Integrator` does.
+        "taylor", replaced by "collocation" where friction is stiff; or an object with the methods
+        of `tippetop.extend.Integrator`.
     tolerance
-        Relative error per step; None for the integrator's own default. Only with an integrator by
-        name.
+        Relative error per step; None for the integrator's default. Only for an integrator by name.
     step
-        Step size of "rk4", s; for no other.
+        Step size, s; only for "rk4".
     phase_limit
-        How many modes (slides and flights) the run may go through before it ends early.
+        Number of contact modes, such as sliding and flight, after which the run ends early.
     step_limit
-        How many steps of the integrator it may take before it ends early: they are counted piece by
-        piece, of up to 4096 steps.
+        Number of steps of the integrator after which the run ends early; it is checked after every
+        mode, and within a mode every 4096 steps at the latest.
     callback
-        Told now and then which part of the run is done, between 0 and 1.
+        Function that is called from time to time with the completed fraction of the run.
 
     Returns
     -------
@@ -137,16 +136,15 @@ def simulate(
         Single numbers: those of `METRICS`, which are events and extremes of the motion and do not
         depend on the samples, and of `MONITORS`. Attributes: problem (JSON), outcome,
         outcome_advice, integrator (every one that took steps), tolerance (the largest) or step,
-        tippetop_version, Conventions. When the run ends before `duration`, the last sample is its
-        end, unless its numbers grew beyond all bounds.
+        tippetop_version, Conventions. If the run ends before `duration`, the last sample is at its
+        end, unless its numbers overflowed.
     RunSolution
-        With ``dense=True``, beside the dataset: the state, and all variables, at any time.
+        Only with ``dense=True``: the state, and all variables, at any time.
 
     Raises
     ------
     InvalidInput
-        If the problem is none, or the duration, samples, events, integrator, tolerance, step, a
-        limit or the callback cannot be, or a function of `events` gives no number.
+        If an argument is not accepted, or a function of `events` returns no finite number.
     Unavailable
         If the integrator is not installed.
 
@@ -181,12 +179,12 @@ def simulate(
     trajectory = Trajectory(
         automaton, launch, duration / units.time, method, phase_limit, step_limit
     )
-    start = Begin(top, units, state, problem.launch.azimuth, launch.energy_lost)
-    recorder, tally = start.recorder(grid / units.time), Tally(top, state)
+    start = NaturalLaunch(top, units, state, problem.launch.azimuth, launch.energy_lost)
+    recorder, run_metrics = start.recorder(grid / units.time), RunMetrics(top, state)
     segments = list[Segment]()
     for block in search.blocks_of(trajectory):
         recorder.take(block)
-        tally.take(block)
+        run_metrics.take(block)
         if dense:
             segments += block.segments
         if callback is not None:
@@ -207,22 +205,22 @@ def simulate(
                 ),
             )
         ),
-        **_method_attributes([method, *tally.methods.values()], units),
+        **_method_attributes([method, *run_metrics.methods.values()], units),
         "tippetop_version": __version__,
     }
-    readers = recorder, tally
+    readers = recorder, run_metrics
     run = read_off(start, readers, trajectory, outcome, grid, duration, search.events, attributes)
     return (run, RunSolution(start, segments, run)) if dense else run
 
 
 def read_off(
-    start: Begin,
-    readers: tuple[Recorder, Tally],
+    start: NaturalLaunch,
+    readers: tuple[Recorder, RunMetrics],
     trajectory: Trajectory,
     outcome: Outcome,
     grid: NDArray[np.float64],
     duration: float,
-    own_events: Sequence[OwnEvent] = (),
+    function_events: Sequence[FunctionEvent] = (),
     attributes: Mapping[str, Any] | None = None,
 ) -> xr.Dataset:
     """Return the dataset of a trajectory that has ended, from the readers that took its blocks.
@@ -232,24 +230,24 @@ def read_off(
     start
         The launch, with the top and the units of the trajectory.
     readers
-        The recorder and the tally that took the trajectory's blocks.
+        The recorder and the metrics that took the trajectory's blocks.
     trajectory
-        Where the trajectory ended, and its events.
+        The trajectory.
     outcome
-        How it ended.
+        The outcome of the run.
     grid, duration
-        The sample times, shape (k,), and the length that were asked for, s.
-    own_events
-        Events of the user's functions.
+        The requested sample times, shape (k,), and length of the run, s.
+    function_events
+        Events of users' functions.
     attributes
         Attributes of the dataset.
     """
-    recorder, tally = readers
+    recorder, run_metrics = readers
     top, units, state = start.top, start.units, start.state
     early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
-    found = recorder.finish(trajectory.time, trajectory.state, early)
-    ends = tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
-    peak_tilt, peak_time = tally.peak
+    sampled = recorder.finish(trajectory.time, trajectory.state, early)
+    ends = run_metrics.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
+    peak_tilt, peak_time = run_metrics.peak
     begin = State.unpack([np.float64(number) for number in state.pack()])
     end_time = duration if trajectory.time == trajectory.end else trajectory.time * units.time
     scalars = metrics(ends, begin, top, units) | {
@@ -258,17 +256,17 @@ def read_off(
         "impact_energy_lost": ends.struck * units.energy,
         "peak_tilt": peak_tilt,
         "peak_time": peak_time * units.time,
-        "settled_since": tally.settled_since * units.time,
-        "evaluations": tally.evaluations,
+        "settled_since": run_metrics.settled_since * units.time,
+        "evaluations": run_metrics.evaluations,
         "energy_error": recorder.monitor.energy_error,
         "jellett_drift": recorder.monitor.jellett_drift,
     }
-    lists = _event_arrays(trajectory.events, own_events, units)
-    lists |= _flight_arrays(tally.flights.rows, units)
-    times = np.append(grid, end_time)[: len(found.times)]
+    lists = _event_arrays(trajectory.events, function_events, units)
+    lists |= _flight_arrays(run_metrics.flights.rows, units)
+    times = np.append(grid, end_time)[: len(sampled.times)]
     if early:
         times[-1] = end_time
-    variables, modes = start.variables(found), (found.mode, recorder.modes)
+    variables, modes = start.variables(sampled), (sampled.mode, recorder.modes)
     return assemble(times, variables, modes, scalars, lists, attributes or {})
 
 
@@ -278,7 +276,7 @@ def integrator_of(
     step: float | None,
     units: Units,
 ) -> Integrator:
-    """The integrator asked for, with its step in natural units, or the default."""
+    """Return the requested integrator, with its step in natural units, or the default one."""
     if integrator is None or isinstance(integrator, str):
         return make_integrator(integrator, tolerance, step, units.time)
     for setting, value in {"tolerance": tolerance, "step": step}.items():
@@ -287,24 +285,24 @@ def integrator_of(
                 setting,
                 value,
                 "none",
-                "stands beside an integrator object, which has its own",
-                "leave it out",
+                "is given with an integrator object, which has its own",
+                "omit it",
             )
     method, *texts = (getattr(integrator, name, None) for name in ("integrate", "name", "caution"))
-    told = all(isinstance(text, str) for text in texts)
-    if isinstance(integrator, type) or not (callable(method) and told):
-        accepted = "a name, or an object with a method integrate, and as texts a name and a caution"
+    has_texts = all(isinstance(text, str) for text in texts)
+    if isinstance(integrator, type) or not (callable(method) and has_texts):
+        accepted = "a name, or an object with a method integrate and the texts name and caution"
         raise InvalidInput("integrator", integrator, accepted)
     return integrator
 
 
 def _event_arrays(
-    events: Sequence[Event], own: Sequence[OwnEvent], units: Units
+    events: Sequence[Event], of_functions: Sequence[FunctionEvent], units: Units
 ) -> dict[str, NDArray[Any]]:
-    """Return the values over the events in SI: those of the run and the user's own, in order."""
-    told = [event_in_si(event, units) for event in events]
-    rows = [(one.time, one.kind.value, one.impulse, one.energy_lost, one.surface) for one in told]
-    rows += [(time * units.time, name, 0.0, 0.0, 0) for time, name in own]
+    """Return the variables over the events in SI, those of users' functions included, by time."""
+    in_si = [event_in_si(event, units) for event in events]
+    rows = [(one.time, one.kind.value, one.impulse, one.energy_lost, one.surface) for one in in_si]
+    rows += [(time * units.time, name, 0.0, 0.0, 0) for time, name in of_functions]
     rows.sort(key=lambda row: row[0])
     columns = list(zip(*rows, strict=True)) or [()] * 5
     names = ("time", "kind", "impulse", "energy_lost", "surface")
@@ -318,7 +316,7 @@ def _event_arrays(
 def _flight_arrays(
     flights: Sequence[tuple[float, float, float]], units: Units
 ) -> dict[str, NDArray[Any]]:
-    """Values over the flights, in SI."""
+    """Return the variables over the flights in SI."""
     starts, ends, gaps = np.array(flights).reshape(-1, 3).T
     return {
         "flight_start": starts * units.time,
@@ -328,7 +326,7 @@ def _flight_arrays(
 
 
 def _method_attributes(methods: Sequence[Integrator], units: Units) -> dict[str, str | float]:
-    """The methods that took the steps, and their one setting: of tolerances the largest."""
+    """Return the names of the methods that took steps, and their step or largest tolerance."""
     settings: dict[str, str | float] = {"integrator": ", ".join(method.name for method in methods)}
     if hasattr(methods[0], "step"):
         settings["step"] = float(methods[0].step) * units.time

@@ -312,9 +312,9 @@ def test_an_egg_with_a_stem_has_an_oval_and_a_sphere():
     assert (kinds[0], kinds[-1]) == ("oval", "sphere")
 
 
-def test_a_curve_that_is_cut_off_may_be_taken_as_whole(tmp_path):
+def test_an_incomplete_curve_may_be_accepted(tmp_path):
     bowl = '<path d="M 30 60 C 44 60 48 52 48 44 H 30 Z"/>'
-    with pytest.raises(tt.InvalidInput, match=r"a curve cut off, from tilt 0 to .*--whole"):
+    with pytest.raises(tt.InvalidInput, match=r"a curve of which only tilts 0 to .*--whole"):
         tt.Body.turned(drawing(tmp_path, bowl), 700.0)
     body = tt.Body.turned(drawing(tmp_path, bowl), 700.0, whole=True)
     assert "oval" in [shape.kind for shape in body.shapes]

@@ -109,7 +109,7 @@ def test_what_may_touch_with_its_stem_is_refused_where_the_stem_touches():
     tilt = math.acos(-0.016 / 0.02)
     assert list(touching_tilts(STEMMED.top.surface, 0.1)) == pytest.approx([tilt], abs=1e-12)
     with pytest.raises(
-        InvalidInput, match=rf"surface 1 can touch, at a tilt of {tilt:.4g} rad.*run it"
+        InvalidInput, match=rf"surface 1 can touch, at a tilt of {tilt:.4g} rad.*simulate it"
     ):
         predict(STEMMED)
 

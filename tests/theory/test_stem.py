@@ -70,7 +70,7 @@ STEMMED = tt.presets.report_problem().model_copy(update={"body": tt.presets.REPO
 
 def test_critical_spins_are_of_one_surface_and_not_told_of_several() -> None:
     with pytest.raises(
-        tt.InvalidInput, match=r"body\.shape: of several surfaces is beyond the theory"
+        tt.InvalidInput, match=r"body\.shape: a body of several surfaces is beyond the theory"
     ):
         tt.critical_spins(STEMMED)
 

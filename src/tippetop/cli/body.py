@@ -197,13 +197,13 @@ def _prospects(workpiece: "tt.Workpiece") -> dict[str, Any]:
     """Return what theory predicts for the body; every value is None unless it stands on a
     sphere.
     """
-    from tippetop.problem.turned import touching  # noqa: PLC0415 - slow to import
+    from tippetop.problem.turned import touching_surfaces  # noqa: PLC0415 - slow to import
     from tippetop.theory.prospects import prospects  # noqa: PLC0415
 
     mass, _, I1, I3 = workpiece.mass_properties
     outlook = None
     with suppress(InvalidInput):
-        shapes = touching(workpiece, whole=True)
+        shapes = touching_surfaces(workpiece, completed=True)
         outlook = prospects(tt.Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
     if outlook is None:
         sphere = (

@@ -88,7 +88,7 @@ export function weighed(table) {
   };
 }
 
-/** The body that a workpiece is; surfaces that are cut off may be taken as whole. */
+/** Return the body that a workpiece makes; with `whole`, incomplete surfaces are accepted. */
 export function turned(table, whole = false) {
   const [mass, shapes, I1, I3, profile] = m.turned_fields(new m.Workpiece(table), whole);
   const shape = shapes.length === 1 ? shapes[0] : shapes;

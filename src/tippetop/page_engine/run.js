@@ -27,7 +27,7 @@ const HEIGHT = 9;
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole);
 const RATES = 8;
 const FORCE = 7;
-const conserved = (mode, y) => m.kept(mode.state(y), mode.top);
+const conserved = (mode, y) => m.monitored_quantities(mode.state(y), mode.top);
 const CONSERVED = 5;
 
 // What is integrated along a run. The first six stand in `Rates` at the same place.
@@ -115,7 +115,7 @@ class Run {
     const watchesForce = mode.touching && !this.flightRecord.rows.length;
     for (let step = 0; step < solution.count; step += 1) {
       const values = readConserved(segment.numbersAt(step, 0));
-      this.monitor.see(values[0], values[1], values[2], values[3], values[4], this.sums[WORK]);
+      this.monitor.check(values[0], values[1], values[2], values[3], values[4], this.sums[WORK]);
       this.integrate(segment, step);
       if (watchesForce) this.includeForce(segment, step);
       this.includeAxis(solution, step);
@@ -187,12 +187,12 @@ class Run {
   finish() {
     const { trajectory, units } = this;
     const { outcome, detail, state } = trajectory;
-    const judged = this.monitor.concluded(outcome, state, this.sums[WORK], this.tolerance);
+    const trusted = this.monitor.final_outcome(outcome, state, this.sums[WORK], this.tolerance);
     this.outcome = {
-      name: judged.name.toLowerCase(),
-      advice: [judged.value, detail, m.ambiguity_of(trajectory.events)].filter(Boolean).join(" "),
+      name: trusted.name.toLowerCase(),
+      advice: [trusted.value, detail, m.ambiguity_of(trajectory.events)].filter(Boolean).join(" "),
     };
-    this.early = judged !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
+    this.early = trusted !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
     const completed = outcome === m.Outcome.COMPLETED;
     this.endTime = completed ? this.duration : trajectory.time * units.time;
     const events = trajectory.events.map((event) => m.event_in_si(event, units));
@@ -202,14 +202,14 @@ class Run {
       end: end * units.time,
       highest_gap: gap * units.length,
     }));
-    const ends = this.ends(judged);
+    const ends = this.ends(trusted);
     const metrics = m.metrics(ends, this.start, this.top, units);
     this.metrics = Object.fromEntries(metrics.entries());
     metrics.set("end_time", this.endTime);
     const peak = [m.highest_seen(ends), this.peakTime() * units.time];
     const flights = this.flights.map(({ start, end }) => [start, end]);
     const since = this.since(m.settled_band(ends.settled)) * units.time;
-    this.facts = new m.Facts(this.problem, judged, metrics, peak, since, events, flights);
+    this.facts = new m.Facts(this.problem, trusted, metrics, peak, since, events, flights);
     if (!this.segments.length) this.addLaunch();
   }
 

@@ -1,9 +1,10 @@
-"""The physics of a run as users state it, checked: `Problem` and its parts.
+"""Statement of the physics of a run, validated: `Problem` and its parts.
 
 Read `problem` first. Its parts are one file each: `bodies` (and the `shapes` of their surfaces),
 `frictions`, `launch`, and `contact_rules`, which say what may happen where contact begins or ends.
-`presets` holds bodies and problems known by name, `hertz_patch` the size of a contact patch.
-`plausibility` says what is implausible about a problem, and `implausible` warns of it.
+`presets` holds named bodies and problems, `turned` makes bodies of workpieces, `hertz_patch`
+computes the size of a contact patch, and `function_law` makes friction laws of functions.
+`plausibility` lists what is implausible about a problem, and `implausible` warns of it.
 """
 
 import lazy_loader

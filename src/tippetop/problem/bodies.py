@@ -1,4 +1,4 @@
-"""Bodies of revolution as users state them, validated, and as a lathe makes them."""
+"""Bodies of revolution as users state them, validated, and as they are turned on a lathe."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 
 # translate: skip
-def _a_profile(
+def _validated_profile(
     points: tuple[tuple[float, ...], ...] | None,
 ) -> tuple[tuple[float, ...], ...] | None:
-    """Refuse points of which no body could be turned."""
+    """Return the points of a profile; raise `InvalidInput` if no body has them."""
     if points is not None:
         from tippetop.lathe.profile import profile_of  # noqa: PLC0415 - slow to import
 
@@ -30,24 +30,23 @@ def _a_profile(
 
 
 class Body(Part):
-    """A rigid body of revolution.
+    """Rigid body of revolution.
 
     Attributes
     ----------
     mass
         Mass, kg.
     shape
-        Outer surface, and where the centre of mass is in it; or several, whose convex hull the body
-        is.
+        Outer surface, with the position of the centre of mass in it; or several surfaces, whose
+        convex hull the body is.
     I1
         Moment of inertia about the centre of mass, transverse to the axis of symmetry, kg m^2.
     I3
         Moment of inertia about the axis of symmetry, kg m^2; at most 2 I1.
     profile
-        What the body looks like, as pictures of it show it where it fits its surfaces: points
-        (distance from the axis, height above the centre of mass) or, at the end of an arc,
-        (distance, height, radius), m, as those of `tippetop.lathe.workpiece.Workpiece`. Without it,
-        pictures show the hull of its surfaces.
+        Profile that pictures show if it fits the surfaces: points (distance from the axis, height
+        above the centre of mass) or, at the end of an arc, (distance, height, radius), m, as those
+        of `tippetop.lathe.workpiece.Workpiece`. Without it, pictures show the hull of the surfaces.
 
     Examples
     --------
@@ -68,7 +67,9 @@ class Body(Part):
     ]
     I3: Annotated[Positive, Quantity("kg m2", "moment of inertia along the axis of symmetry")]
     profile: Annotated[
-        Points | None, AfterValidator(_a_profile), Quantity("m", "profile that pictures show")
+        Points | None,
+        AfterValidator(_validated_profile),
+        Quantity("m", "profile that pictures show"),
     ] = None
 
     @model_validator(mode="after")
@@ -88,18 +89,18 @@ class Body(Part):
                     Described(numbers),
                     "",
                     "is enclosed by the others",
-                    "leave it out",
+                    "omit it",
                 )
         return self
 
     @property
     def shapes(self) -> tuple[Shape, ...]:
-        """Its surfaces."""
+        """Surfaces of the body."""
         return self.shape if isinstance(self.shape, tuple) else (self.shape,)
 
     @property
     def surface(self) -> Surface:
-        """Its surface, from the centre of mass, as the mechanics takes it: a `Hull` of several."""
+        """Surface in the form that the mechanics uses: a `Hull` if there are several."""
         if isinstance(self.shape, tuple):
             return Hull.of(tuple(shape.surface for shape in self.shape))
         return self.shape.surface
@@ -117,11 +118,11 @@ class Body(Part):
         axis: str | None = None,
         whole: bool = False,
     ) -> Self:
-        """The body that a lathe makes: mass, moments of inertia and the surfaces it touches the
-        table with.
+        """Return the body that a lathe turns: mass, moments of inertia and touching surfaces.
 
         They are exact for the profile, whose edges are straight or arcs of circles, and which
-        pictures show. Points in a row along a smooth curve stand for arcs, within the tolerance.
+        pictures show. Rows of points along a smooth curve are replaced by arcs, within the
+        tolerance.
 
         Parameters
         ----------
@@ -135,23 +136,23 @@ class Body(Part):
             Cavities and weights: `tippetop.lathe.workpiece.Insert` or their fields, profile and
             density.
         unit
-            What the numbers of the profile are in: "m" if left out; of a drawing, its physical
-            size, and of a mesh mm.
+            Unit of the profile's numbers: by default "m", for a drawing its physical size, and for
+            a mesh "mm".
         tolerance
-            How far the body may be from the points of the profile, in sizes of it: 1e-4 if left
-            out; with 0, every edge is as it is stated.
+            Largest distance of the body from the points of the profile, in sizes of it: 1e-4 by
+            default; with 0, every edge is as stated.
         axis
-            Where the axis of a drawing is, as "x=10", or its direction in a mesh, as "z"; it is
-            found if left out.
+            Place of the axis in a drawing, as "x=10", or its direction in a mesh, as "z"; sought by
+            default.
         whole
-            Take spheres and rings that the body has only a part of as whole. Otherwise it is
-            refused if it does not stay within them.
+            Accept surfaces of which the body has only a part, such as a cut sphere, as if they were
+            complete. Otherwise the body is refused if such a surface reaches out of it.
 
         Raises
         ------
         InvalidInput
-            If the profile is no body's, or if no surfaces that are known make up what it touches
-            with.
+            If the profile is not that of a body, or if the touching surfaces are not of the
+            supported kinds.
         FileTrouble
             If a file cannot be read.
         """
@@ -159,46 +160,45 @@ class Body(Part):
         from tippetop.lathe.workpiece import Workpiece  # noqa: PLC0415
         from tippetop.problem.turned import turned_fields  # noqa: PLC0415
 
-        given = {"density": density, "inserts": inserts, "unit": unit, "tolerance": tolerance}
-        fields = {name: value for name, value in given.items() if value is not None}
+        settings = {"density": density, "inserts": inserts, "unit": unit, "tolerance": tolerance}
+        fields = {name: value for name, value in settings.items() if value is not None}
         if axis is not None and not isinstance(profile, str | Path):
             raise InvalidInput("axis", axis, "none: the profile is stated from the axis")
         match profile:
             case Workpiece():
-                piece = profile.model_copy(update=fields)
+                workpiece = profile.model_copy(update=fields)
             case str() | Path():
-                piece = read_workpiece(profile, axis=axis, **fields)
+                workpiece = read_workpiece(profile, axis=axis, **fields)
             case _:
-                piece = Workpiece(**{"profile": profile, **fields})
-        mass, shapes, I1, I3, shown = turned_fields(piece, whole)
+                workpiece = Workpiece(**{"profile": profile, **fields})
+        mass, shapes, I1, I3, shown = turned_fields(workpiece, whole)
         shape = shapes[0] if len(shapes) == 1 else shapes
         return cls(mass=mass, shape=shape, I1=I1, I3=I3, profile=shown)
 
 
-LOOKS, SEARCHES = 64, 5
-"""Looks at the tilts where a surface may be outermost, repeated so often around the best of them.
-"""
+TILTS, SEARCHES = 64, 5
+"""Tilts at which it is checked whether a surface is outermost, and repetitions around the best."""
 
 REACH = 1e-9
-"""How far a surface must reach beyond the others, in its sizes, to be one of the body's."""
+"""Length by which a surface must reach beyond the others, in its sizes: above rounding."""
 
 
 def _reaches_out(number: int, shapes: tuple[Shape, ...]) -> bool:
-    """Whether a surface touches the table at some tilt; also where no computer can tell."""
-    own = shapes[number].surface
+    """Return whether a surface touches the table at some tilt; True if arithmetic overflows."""
+    surface = shapes[number].surface
     others = [shape.surface for place, shape in enumerate(shapes) if place != number]
     low, high = 0.0, math.pi
     for _ in range(SEARCHES):
-        looks = [low + (high - low) * k / LOOKS for k in range(LOOKS + 1)]
+        tilts = [low + (high - low) * k / TILTS for k in range(TILTS + 1)]
         try:
             ahead = [
-                own.height(c) - max(other.height(c) for other in others)
-                for c in map(math.cos, looks)
+                surface.height(c) - max(second.height(c) for second in others)
+                for c in map(math.cos, tilts)
             ]
         except ArithmeticError:
             return True
-        if max(ahead) > REACH * own.size:
+        if max(ahead) > REACH * surface.size:
             return True
         best = ahead.index(max(ahead))
-        low, high = looks[max(best - 1, 0)], looks[min(best + 1, LOOKS)]
+        low, high = tilts[max(best - 1, 0)], tilts[min(best + 1, TILTS)]
     return False

@@ -1,4 +1,4 @@
-"""What happens where contact begins or ends, as users state it, validated."""
+"""Rules for the begin and the end of contact, as users state them, validated."""
 
 from typing import Annotated, Any, Literal
 
@@ -12,27 +12,27 @@ Fraction = Annotated[float, Field(ge=0, le=1), NO_WORD]
 
 
 class Contact(Variant):
-    """What happens when the table would have to pull.
+    """Rules for lift-off and impacts.
 
-    A subclass with a field `kind` is a contact of its own, if it has rules.
+    A subclass with a field `kind` and a method `rules` is a contact with modes of its own.
 
     Attributes
     ----------
     liftoff
-        "fly": the top leaves the table; "stop": the run ends there; "ignore": the table pulls
-        (bilateral contact).
+        What happens when the table would have to pull. "fly": the top leaves the table; "stop": the
+        run ends; "ignore": the table pulls (bilateral contact).
     restitution
         Ratio of the normal impulses of restitution and compression in an impact (Poisson), in [0,
         1].
     indeterminate
-        What the table does where strong friction leaves the contact force indeterminate (Painleve's
-        paradox), so that both an impact and a lift-off agree with the laws of mechanics and
-        friction: "impact" or "lift_off".
+        What happens where strong friction makes the contact force indeterminate (Painleve's
+        paradox), so that both an impact and a lift-off satisfy the laws of mechanics and friction:
+        "impact" or "lift_off".
 
     Examples
     --------
     >>> import tippetop as tt
-    >>> tt.Contact()  # it may leave the table, and does not bounce
+    >>> tt.Contact()  # the top may leave the table, and does not bounce
     Contact(liftoff='fly', restitution=0.0, indeterminate='impact')
     """
 
@@ -42,19 +42,18 @@ class Contact(Variant):
 
     # translate: skip
     def rules(self, top: Top, units: Units) -> Any:
-        """What follows where contact begins or ends, in natural units, where that is not as
-        described here.
+        """Return an automaton of contact modes that replaces the package's own, or None.
 
         Parameters
         ----------
         top
             The top in natural units.
         units
-            Those units.
+            The natural units, in SI.
 
         Returns
         -------
-        tippetop.contact.automaton.Automaton or None
-            None, unless a subclass has rules of its own.
+        tippetop.extend.Automaton or None
+            Always None, unless a subclass has modes of its own.
         """
         return None

@@ -1,4 +1,4 @@
-"""The friction of the table: its laws as users state them, validated."""
+"""Friction laws of the table as users state them, validated."""
 
 from abc import abstractmethod
 from typing import Annotated, Literal
@@ -13,21 +13,23 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.support.validation import NO_WORD, NotNegative, Positive, Quantity, Variant
 
 LEAST_PATCH = 1e-9
-"""Least radius of a contact patch in units of the body's size: smaller, its drilling is lost in
-rounding.
+"""Least radius of a contact patch in units of the body's size: the drilling torque of a smaller one
+is lost in rounding.
 """
 
 LEAST_EPS = 1e-100
-"""Least slip speed that a law is smoothed below, m/s: the square of a much smaller one is 0."""
+"""Least slip speed below which a law may be smoothed, m/s: the square of a much smaller one
+underflows to 0.
+"""
 
 
 class Friction(Variant):
-    """The friction of the table; a kind of it is a subclass.
+    """Base class of the friction laws of the table.
 
     Attributes
     ----------
     kind
-        The word for the kind, in a subclass with a default: ``kind: Literal["wet"] = "wet"``.
+        Name of the law; a subclass declares it: ``kind: Literal["wet"] = "wet"``.
 
     Examples
     --------
@@ -41,10 +43,10 @@ class Friction(Variant):
     @property
     @abstractmethod
     def law(self) -> FrictionLaw:
-        """The law as the mechanics takes it."""
+        """Law in the form that the mechanics uses."""
 
     def fits(self, size: Scalar) -> bool:
-        """Whether the contact of a body of this size, m, can be so; of arrays, an array of it."""
+        """Return whether a body of this size, m, can have such a contact; arrays give an array."""
         return True
 
     @property
@@ -73,7 +75,7 @@ class ViscousFriction(Friction):
 
     @property
     def law(self) -> FrictionLaw:
-        """The law as the mechanics takes it."""
+        """Law in the form that the mechanics uses."""
         return ViscousLaw(self.mu)
 
 
@@ -106,16 +108,15 @@ class RegularizedCoulombFriction(Friction):
 
     @property
     def law(self) -> FrictionLaw:
-        """The law as the mechanics takes it."""
+        """Law in the form that the mechanics uses."""
         return RegularizedCoulombLaw(self.mu, self.eps)
 
 
 class CoulombFriction(Friction):
-    """Dry friction, Coulomb's law as it is: ``-mu N v / |v|`` for slip velocity v and normal force
-    N.
+    """Dry friction by Coulomb's law: ``-mu N v / |v|`` for slip velocity v and normal force N.
 
-    Where v = 0 the force is what keeps it so, up to mu N: the top sticks, and rolls. Drilling,
-    which is turning about the vertical on the spot, is not resisted.
+    At v = 0 the force is any one up to mu N, as needed to keep v = 0: the contact sticks, and the
+    top rolls. Drilling, which is turning about the vertical on the spot, is not resisted.
 
     Attributes
     ----------
@@ -136,15 +137,16 @@ class CoulombFriction(Friction):
 
     @property
     def law(self) -> FrictionLaw:
-        """The law as the mechanics takes it."""
+        """Law in the form that the mechanics uses."""
         return CoulombLaw(self.mu)
 
 
 class ContensouFriction(Friction):
-    """Dry friction of a round patch that slides and drills at once (Contensou 1963).
+    """Dry friction of a round contact patch that slides and drills (Contensou 1963).
 
-    Every part of the patch rubs by Coulomb's law against its own velocity: drilling makes sliding
-    easier, and sliding makes drilling easier. The top sticks while neither is needed to hold it.
+    Coulomb's law acts on every element of the patch, against its own velocity: drilling reduces the
+    resistance to sliding, and sliding reduces that to drilling. The contact sticks while force and
+    torque are within the limit surface.
 
     Attributes
     ----------
@@ -153,9 +155,9 @@ class ContensouFriction(Friction):
     patch_radius
         Radius R of the patch, m; see `hertz_patch_radius`.
     pressure
-        "hertz": the pressure of Hertz's contact, its law exact; "ellipsoidal": the approximation of
-        its limit surface by an ellipsoid that drills as hard, semi-axis (3 pi/16) R (Leine and
-        Glocker 2003).
+        "hertz": the exact law for the pressure of Hertz's contact; "ellipsoidal": its limit surface
+        approximated by an ellipsoid with the same drilling torque, semi-axis (3 pi/16) R (Leine
+        and Glocker 2003).
 
     Examples
     --------
@@ -163,7 +165,7 @@ class ContensouFriction(Friction):
     >>> law = tt.ContensouFriction(mu=0.3, patch_radius=1e-3).law
     >>> slip, still, spinning = (0.001, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 100.0)
     >>> slow, fast = (law.traction(slip, spin).force[0] for spin in (still, spinning))
-    >>> round(slow, 4), round(fast, 4)  # drilling makes sliding easier
+    >>> round(slow, 4), round(fast, 4)  # drilling reduces the resistance to sliding
     (-0.3, -0.0035)
     """
 
@@ -174,12 +176,12 @@ class ContensouFriction(Friction):
 
     @property
     def law(self) -> FrictionLaw:
-        """The law as the mechanics takes it."""
+        """Law in the form that the mechanics uses."""
         return (HertzLaw if self.pressure == "hertz" else EllipsoidalLaw)(
             self.mu, self.patch_radius
         )
 
     def fits(self, size: Scalar) -> bool:
-        """As `Friction.fits`: a patch is no larger than the body, and more than a point."""
+        """Return whether the patch is no larger than the body, and not too small to drill."""
         fits: bool = (self.patch_radius >= LEAST_PATCH * size) & (self.patch_radius <= size)
         return fits

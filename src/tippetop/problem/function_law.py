@@ -1,4 +1,4 @@
-"""Friction laws that a user writes as one function: the law and the friction made of it."""
+"""Friction laws that a user writes as one function."""
 
 import inspect
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from tippetop.support.units import KINDS, exponents_of
 from tippetop.support.validation import Number, Quantity
 
 Force = Callable[..., tuple[Scalar, Scalar]]
-"""A function of the slip velocity, the angular velocity and the coefficients that returns the
+"""Function of the slip velocity, the angular velocity and the coefficients that returns the
 friction force per unit normal force.
 """
 
@@ -25,7 +25,7 @@ RESERVED_NAMES = {"kind", "law", *dir(Friction)}
 
 
 class FunctionLaw(tuple[Scalar, ...]):
-    """A law whose force is a function; a tuple of its coefficients."""
+    """Law whose force is a function: a tuple of its coefficients."""
 
     force: ClassVar[Force]
     exponents: ClassVar[dict[str, tuple[int, ...]]]
@@ -34,7 +34,7 @@ class FunctionLaw(tuple[Scalar, ...]):
     torque_free = True
 
     def __new__(cls, *coefficients: Scalar) -> Self:
-        """Make the law of its coefficients, in their order."""
+        """Make the law from its coefficients, in their order."""
         return super().__new__(cls, coefficients)
 
     def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
@@ -52,7 +52,7 @@ class FunctionLaw(tuple[Scalar, ...]):
 
 
 def friction_law(**units: str) -> Callable[[Force], type[Friction]]:
-    """Return a decorator that makes a kind of friction, without torque, of a function.
+    """Return a decorator that makes a kind of friction without torque from a function.
 
     The function takes the slip velocity of the contact point, m/s, as its two horizontal
     components, the angular velocity, rad/s, as three, and the coefficients of the law by their
@@ -67,7 +67,7 @@ def friction_law(**units: str) -> Callable[[Force], type[Friction]]:
     Raises
     ------
     InvalidInput
-        If the function does not take these coefficients, or a unit or a name cannot be.
+        If the function does not take these coefficients, or a unit or a name is not accepted.
 
     Examples
     --------
@@ -88,10 +88,10 @@ def friction_law(**units: str) -> Callable[[Force], type[Friction]]:
             raise not_one_of(name, unit, list(KINDS))
 
     def kind_of(force: Force) -> type[Friction]:
-        taken = [*inspect.signature(force).parameters][2:]
+        names = [*inspect.signature(force).parameters][2:]
         word = force.__name__
-        if set(taken) != set(units):
-            shown = Described(f"a function of the coefficients {', '.join(taken) or 'none'}")
+        if set(names) != set(units):
+            shown = Described(f"a function of the coefficients {', '.join(names) or 'none'}")
             raise InvalidInput(word, shown, f"those with a unit: {', '.join(units) or 'none'}")
         home = {"__module__": force.__module__, "__qualname__": force.__qualname__}
         exponents = {name: exponents_of(unit) for name, unit in units.items()}
@@ -110,7 +110,7 @@ def friction_law(**units: str) -> Callable[[Force], type[Friction]]:
             return made
 
         shell = type(word, (), {"law": property(make_law)})
-        make: Any = create_model  # its types are those of fields known when types are checked
+        make: Any = create_model  # its signature is for fields that a type checker knows
         kind: type[Friction] = make(
             word,
             __base__=(shell, Friction),

@@ -1,6 +1,4 @@
-"""The patch of two elastic bodies pressed together (Hertz 1882; Johnson, Contact Mechanics, chapter
-4).
-"""
+"""Contact patch of two elastic bodies (Hertz 1882; Johnson, Contact Mechanics, chapter 4)."""
 
 import math
 from typing import Annotated
@@ -12,7 +10,7 @@ from tippetop.support.validation import NO_WORD, Part, Positive
 
 
 class Material(Part):
-    """An isotropic elastic material.
+    """Isotropic elastic material.
 
     Attributes
     ----------
@@ -39,15 +37,15 @@ WOOD = Material(modulus=12e9, poisson=0.29)
 PLASTIC = Material(modulus=2.8e9, poisson=0.33)
 MATERIALS = {"glass": GLASS, "steel": STEEL, "wood": WOOD, "plastic": PLASTIC}
 """Soda-lime glass, plain carbon steel, Douglas fir along its grain and polystyrene (Callister,
-Materials Science and Engineering, 7th edition, appendix B). Wood is not isotropic: for it the patch
-is an order of magnitude.
+Materials Science and Engineering, 7th edition, appendix B). Wood is not isotropic: its patch is
+right only in the order of magnitude.
 """
 
 
 def hertz_patch_radius(
     load: float, radius: float, body: Material, table: Material | None = None
 ) -> float:
-    """Radius of the contact patch of a sphere on a plane, (3 P r / (4 E*))^(1/3), m.
+    """Return the radius of the contact patch of a sphere on a plane, (3 P r / (4 E*))^(1/3), m.
 
     Parameters
     ----------
@@ -56,12 +54,12 @@ def hertz_patch_radius(
     radius
         Radius r of the sphere at the contact, m.
     body, table
-        Their materials; a table of None is rigid. 1/E* = (1 - nu^2)/E of both added up.
+        Their materials; a table of None is rigid. 1/E* is the sum of (1 - nu^2)/E of both.
 
     Raises
     ------
     InvalidInput
-        If the load or the radius is not positive, or far too small or large, or a material is none.
+        If the load or the radius is not positive or overflows, or an argument is no material.
 
     Examples
     --------
@@ -78,9 +76,9 @@ def hertz_patch_radius(
     if table is not None:
         require("table", table, Material, "a Material, or None for a rigid one")
     compliance = sum((1.0 - m.poisson**2) / m.modulus for m in (body, table) if m is not None)
-    found = float((0.75 * load * radius * compliance) ** (1.0 / 3.0))
-    if not 0.0 < found < math.inf:
+    patch = float((0.75 * load * radius * compliance) ** (1.0 / 3.0))
+    if not 0.0 < patch < math.inf:
         raise InvalidInput(
             "load", load, "a number whose product with the radius is neither 0 nor infinite"
         )
-    return found
+    return patch

@@ -1,4 +1,4 @@
-"""Warnings of implausible problems: the category, and its sentences."""
+"""Warnings of implausible problems: the category and its sentences."""
 
 import sys
 import warnings
@@ -10,7 +10,7 @@ from tippetop.problem.problem import Problem
 SENTENCES = {
     "moment": (
         "{name} = {value} is above m r^2 = {bound}, r = {radius}:"
-        " no mass inside the surface has as much"
+        " no distribution of the mass inside the surface has so large a moment"
     ),
     "core": "{name} = {value} is less than a thousandth of m r^2 = {bound}, r = {radius}",
     "centre": "the centre of mass is {distance} outside the surface",
@@ -25,28 +25,28 @@ SENTENCES = {
     "heavy": "the centre of mass is {height} above the ball's centre: it does not turn over",
     "light": "a mass of {value} in a volume of {volume} floats on air",
 }
-"""What is said of each kind of doubt; gaps in braces."""
+"""Sentence of each kind of doubt, with its numbers in braces."""
 
 
 # translate: skip
 class Implausible(UserWarning):
-    """A problem is simulated whose numbers no top has, or that were meant in other units.
+    """Warning of a problem whose numbers no real top has, perhaps because of a wrong unit.
 
     Examples
     --------
     >>> import tippetop as tt, warnings
     >>> heavy = tt.presets.report_problem().replace({"body.mass": 20.0})
-    >>> with warnings.catch_warnings(record=True, action="always") as said:
+    >>> with warnings.catch_warnings(record=True, action="always") as caught:
     ...     run = tt.simulate(heavy, duration=0.1)
-    >>> print(said[-1].message)
+    >>> print(caught[-1].message)
     the mass is 20 kg; most tops have 0.1 g to 5 kg
-    >>> warnings.filterwarnings("ignore", category=tt.Implausible)  # says none of them any more
+    >>> warnings.filterwarnings("ignore", category=tt.Implausible)  # no such warnings any more
     """
 
 
 # translate: skip
 def sentence(doubt: Doubt) -> str:
-    """Return a doubt in words."""
+    """Return the sentence of a doubt."""
     return SENTENCES[doubt.kind].format(**dict(doubt.gaps))
 
 
@@ -59,7 +59,7 @@ def warn_if_implausible(problem: Problem) -> None:
 
 # translate: skip
 def warn(text: str) -> None:
-    """Warn with `Implausible`, in the line outside of this package that led here."""
+    """Warn with `Implausible`, at the line outside this package that called it."""
     frame, level = sys._getframe(1), 2
     while frame.f_back and frame.f_globals.get("__name__", "").startswith(CALLERS):
         frame, level = frame.f_back, level + 1
@@ -68,4 +68,4 @@ def warn(text: str) -> None:
 
 # translate: skip
 CALLERS = ("tippetop.", "numpy.")
-"""Modules whose lines nobody looks for a warning in: numpy's wrap ours."""
+"""Beginnings of the names of modules at whose lines no warning is shown: numpy calls ours."""

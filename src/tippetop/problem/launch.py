@@ -1,4 +1,4 @@
-"""How a top is set on the table, as users state it, validated."""
+"""Launch of a top as users state it, validated."""
 
 import math
 from typing import Annotated, Any, Literal, Self
@@ -22,7 +22,7 @@ LEANING = (
 
 
 class Launch(Part):
-    """How the top is set on the table.
+    """Initial state of the top.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class Launch(Part):
         psi_dot: Any = 0.0,
         **others: Any,
     ) -> Self:
-        """Return the launch with these Euler angles and rates.
+        """Return the launch with given Euler angles and rates.
 
         Parameters
         ----------
@@ -119,14 +119,14 @@ class Launch(Part):
         >>> tt.Launch.from_euler(theta="60 deg", phi_dot=10.0, psi_dot=100.0).spin
         105.0
         """
-        own = number_in("psi_dot", psi_dot, "rad s-1")
+        rotation = number_in("psi_dot", psi_dot, "rad s-1")
         launch = cls(
             **others, tilt=theta, azimuth=phi, tilt_rate=theta_dot, precession=phi_dot, spin=0.0
         )
-        if not is_number(own):
+        if not is_number(rotation):
             raise InvalidInput("psi_dot", psi_dot, "a finite number")
         turn = launch.precession * math.cos(launch.tilt)
-        return launch.model_copy(update={"spin": own + turn})
+        return launch.model_copy(update={"spin": rotation + turn})
 
     # translate: skip
     def euler(self) -> dict[str, float]:
@@ -150,14 +150,14 @@ class Launch(Part):
         frame: Literal["table", "body"] = "table",
         **others: Any,
     ) -> Self:
-        """Return the launch with an angular velocity.
+        """Return the launch with a given angular velocity.
 
         Parameters
         ----------
         omega
             Its three components, rad/s.
         tilt, azimuth
-            Of the axis, rad.
+            Tilt and azimuth of the axis, rad.
         frame
             "table": components along x, y and z. "body": along 1, 2 and 3 of the body, where 3 is
             its axis, 2 is horizontal, 90 degrees to the left of the direction into which the axis
@@ -167,8 +167,8 @@ class Launch(Part):
 
         Notes
         -----
-        A vertical axis leans in no direction. Where omega makes it lean, the azimuth of the launch
-        is the direction of that, whatever is given.
+        A vertical axis leans in no direction. If omega makes it lean, the azimuth of the launch is
+        the direction into which it begins to lean, and the argument `azimuth` is ignored.
 
         Examples
         --------
@@ -181,10 +181,10 @@ class Launch(Part):
             raise not_one_of("frame", frame, FRAMES)
         launch = cls(**others, tilt=tilt, azimuth=azimuth, spin=0.0)
         first, second, third = launch.frame
-        given = _components(omega)
+        components = _components(omega)
         if frame == "table":
-            given = (dot(given, first), dot(given, second), dot(given, third))
-        across, tilt_rate, spin = given
+            components = (dot(components, first), dot(components, second), dot(components, third))
+        across, tilt_rate, spin = components
         rates = {"tilt_rate": tilt_rate, "spin": spin}
         sine = PoleExact(math).sin(launch.tilt)
         if sine:
@@ -201,11 +201,14 @@ class Launch(Part):
         """Return the angular velocity, rad/s, in a frame of `from_angular_velocity`."""
         if frame not in FRAMES:
             raise not_one_of("frame", frame, FRAMES)
-        own = (-self.precession * PoleExact(math).sin(self.tilt), self.tilt_rate, self.spin)
+        components = (-self.precession * PoleExact(math).sin(self.tilt), self.tilt_rate, self.spin)
         if frame == "body":
-            return own
+            return components
         first, second, third = self.frame
-        return add(add(scale(own[0], first), scale(own[1], second)), scale(own[2], third))
+        return add(
+            add(scale(components[0], first), scale(components[1], second)),
+            scale(components[2], third),
+        )
 
     # translate: skip
     @property
@@ -219,12 +222,14 @@ class Launch(Part):
 
 
 FRAMES = ("table", "body")
-"""Where the components of an angular velocity may be along."""
+"""Frames in which the components of an angular velocity may be given."""
 
 
 # translate: skip
 def _components(omega: Any) -> Vector:
-    """The three numbers of an angular velocity, rad/s; refuses others."""
+    """Return the three components of an angular velocity, rad/s; raise `InvalidInput` for
+    others.
+    """
     try:
         numbers = Quantity("rad s-1", "angular velocity").in_si(
             omega.tolist() if isinstance(omega, np.ndarray) else omega

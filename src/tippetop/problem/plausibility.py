@@ -1,4 +1,4 @@
-"""What is implausible about a problem: numbers that no body has, or that were meant in other units.
+"""Checks of a problem for implausible numbers, such as those of a wrong unit.
 
 A mass element at the distance r from the axis and the height z above the centre of mass adds r^2 to
 I3 and r^2 / 2 + z^2 to I1, per mass. So three moments are m times the mean of a function over the
@@ -6,15 +6,15 @@ mass, whose mean height is 0:
 
     I3: r^2        I1 - I3 / 2: z^2        I1 + I3 / 2: r^2 + z^2, the distance squared.
 
-All mass is inside the body's outside, the convex hull of its surfaces. The mean of a function f is
-at most the least concave function of z above f there, at z = 0; and as these are convex, a line in
-z that is above f at the corners (r_i, z_i) of a polygon is above f in all of it. Hence
+All mass is inside the convex hull of the body's surfaces. The mean of a function f is at most the
+least concave function of z above f there, at z = 0. As the three functions are convex, a line in z
+that is above f at the corners (r_i, z_i) of a polygon is above f in all of it. Hence
 
     mean of f  <=  min over slopes s of max over i of (f(r_i, z_i) - s z_i),
 
-with equality where all mass is at two corners, one above the centre of mass and one below it. For
-z^2 that is the product of how far the body reaches up and down. For a sphere of radius R whose
-centre is c from the centre of mass, all three are m (R^2 - c^2).
+with equality if all mass is at two corners, one above the centre of mass and one below it. For z^2
+the bound is the product of the body's extents above and below the centre of mass. For a sphere of
+radius R whose centre is c from the centre of mass, all three bounds are m (R^2 - c^2).
 """
 
 import math
@@ -26,61 +26,64 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.problem import Problem
 
 CORNERS = 25
-"""Corners of the polygon inscribed in half a meridian; its r^2 and z^2 are 0.5 % less at most."""
+"""Corners of the polygon inscribed in half a meridian; its r^2 and z^2 are at most 0.5 % less."""
 
 POLE = 1e-4
 """Tilt of the first corner, rad: at a pole a ring has no single point of contact."""
 
 SLACK = 0.01
-"""Share of the largest r^2 and z^2 by which a moment may exceed its bound: an edge that is called
-sharp is a little round, numbers are rounded, and the polygon is inscribed.
+"""Share of the largest r^2 and z^2 by which a moment may exceed its bound: real sharp edges are a
+little round, numbers are rounded, and the polygon is inscribed.
 """
 
 FAR = 1e-3
-"""Share of a bound that a moment of a real body exceeds: a core of a thirtieth of its size."""
+"""Share of a bound below which a moment is implausible: all mass in a core of a thirtieth of the
+size.
+"""
 
 MASSES, SIZES = (1e-4, 5.0), (1e-3, 0.5)
 """Masses, kg, and largest diameters, m, of tops that people spin on a table."""
 
 WIDEST_PATCH = 0.5
-"""Radius of a contact patch in radii of the body; laws of friction are those of small patches."""
+"""Largest plausible radius of a contact patch, in radii of the body: the laws of friction are those
+of small patches.
+"""
 
 HALF_TURN = 0.5 * math.pi + 1e-3
-"""Tilt at launch, rad, above which the axis points down, however pi / 2 is rounded."""
+"""Tilt at launch, rad, above which the axis points down; more than any rounding of pi / 2."""
 
 FASTEST = 1e4
-"""Spin, rad/s: no toy goes faster, and spins in rpm that are taken for rad/s do."""
+"""Largest plausible spin, rad/s: no toy is faster, but spins in rpm read as rad/s are."""
 
 AIR = 1.2
 """Density of air, kg/m^3."""
 
-
 ROUNDING = 1e-12
-"""Relative difference that is none."""
+"""Relative difference below which two numbers are equal but for rounding."""
 
 
 class Doubt(NamedTuple):
-    """Something implausible about a problem."""
+    """Implausible property of a problem."""
 
     kind: str
-    """What kind of thing, by the name of its sentence in `implausible.SENTENCES`."""
+    """Name of its sentence in `implausible.SENTENCES`."""
     gaps: tuple[tuple[str, str], ...]
-    """Names and texts of the gaps in that sentence."""
+    """Names and texts of the numbers in that sentence."""
 
 
 class Outside(NamedTuple):
-    """How far a body reaches from its centre of mass.
+    """Extents of a body from its centre of mass.
 
-    The means are the largest ones over any mass inside; infinite if all of the body is above its
-    centre of mass, or below it.
+    The means are the largest ones over any distribution of mass inside; infinite if all of the body
+    is above its centre of mass, or below it.
     """
 
     across: Scalar
     """Largest distance from the axis, m."""
     below: Scalar
-    """How far it reaches down along the axis, m; negative if it is all above."""
+    """Extent below the centre of mass along the axis, m; negative if the body is all above."""
     above: Scalar
-    """How far it reaches up along the axis, m."""
+    """Extent above the centre of mass along the axis, m."""
     mean_width: Scalar
     """Largest mean of the squared distance from the axis, m^2."""
     mean_square: Scalar
@@ -100,7 +103,7 @@ Check: TypeAlias = tuple[str, Scalar, tuple[tuple[str, Scalar, str], ...]]
 
 
 def doubts(problem: Problem) -> list[Doubt]:
-    """Return what is implausible about a problem, one doubt of a kind."""
+    """Return what is implausible about a problem, at most one doubt of each kind."""
     distinct: list[Doubt] = []
     for kind, holds, numbers in checks(problem, outside_of(problem.body.surface)):
         if holds and kind not in [doubt.kind for doubt in distinct]:
@@ -112,7 +115,7 @@ def doubts(problem: Problem) -> list[Doubt]:
 def checks(problem: Problem, outside: Outside) -> list[Check]:
     """Return kinds of doubts, whether each holds, and names, values and units of its numbers.
 
-    The numbers of the problem and of its outside may be arrays, and so are the answers then.
+    The numbers of the problem and of its outside may be arrays; the checks then hold arrays too.
     """
     body, launch = problem.body, problem.launch
     mass, spin, tilt = body.mass, launch.spin, launch.tilt
@@ -139,7 +142,7 @@ def checks(problem: Problem, outside: Outside) -> list[Check]:
     rows.append(("spin", abs(spin) > FASTEST, (("value", spin, "rad/s"),)))
     heavy = (outside.top_heaviness > 0.0) & (tilt <= HALF_TURN)
     rows.append(("heavy", heavy, (("height", outside.top_heaviness, "m"),)))
-    # That of a spheroid; a cylinder has half as much again.
+    # The volume of a spheroid; a cylinder has 1.5 times as much.
     volume = 2.0 / 3.0 * math.pi * across * across * height
     rows.append(("light", mass < AIR * volume, (("value", mass, "kg"), ("volume", volume, "m^3"))))
     return rows
@@ -148,15 +151,15 @@ def checks(problem: Problem, outside: Outside) -> list[Check]:
 def _moment_checks(
     name: str, moment: Scalar, mass: Scalar, mean: Scalar, slack: Scalar
 ) -> list[Check]:
-    """Return the checks of a moment that is neither above m times its largest mean nor far below
-    it.
-    """
+    """Return the checks that a moment is neither above m times its largest mean nor far below."""
     above = _bound_check(name, moment, mass, mean, slack)
     return [above, ("core", (moment < FAR * mass * mean) & (mean < math.inf), above[2])]
 
 
 def _bound_check(name: str, moment: Scalar, mass: Scalar, mean: Scalar, slack: Scalar) -> Check:
-    """Return the check that a moment is not above m times its largest mean, but for the slack."""
+    """Return the check that a moment is not above m times its largest mean by more than the
+    slack.
+    """
     numbers = (
         ("name", name, ""),
         ("value", moment, "kg m^2"),
@@ -167,9 +170,9 @@ def _bound_check(name: str, moment: Scalar, mass: Scalar, mean: Scalar, slack: S
 
 
 def outside_of(surface: Surface) -> Outside:
-    """Return how far a body with this surface, or hull of surfaces, reaches.
+    """Return the extents of a body with this surface, or hull of surfaces.
 
-    Numbers that are too large or too small to compute with are nan, which no check holds for.
+    If arithmetic overflows all are nan, for which no check holds.
     """
     try:
         return _measured(surface)
@@ -179,9 +182,7 @@ def outside_of(surface: Surface) -> Outside:
 
 
 def _measured(surface: Surface) -> Outside:
-    """Return how far a body reaches, from the corners of the polygon in its meridian; of a sphere
-    exactly.
-    """
+    """Return the extents of a body: exact for a sphere, else from a polygon in its meridian."""
     if surface.spherical and not isinstance(surface, Hull):
         return _measured_sphere(surface)
     corners = [
@@ -206,7 +207,7 @@ def _measured(surface: Surface) -> Outside:
 
 
 def _measured_sphere(surface: Surface) -> Outside:
-    """Return how far a sphere reaches."""
+    """Return the extents of a sphere."""
     center = -surface.slope(1.0)
     radius = surface.height(1.0) + center
     mean = radius**2 - center**2
@@ -224,9 +225,7 @@ def _measured_sphere(surface: Surface) -> Outside:
 
 
 def _corner(surface: Surface, tilt: float) -> tuple[float, float]:
-    """Return the point that touches the table at a tilt: distance from the axis, and height along
-    it above the centre of mass, m.
-    """
+    """Return the contact point at a tilt: distance from the axis, and height along it, m."""
     c, s = math.cos(tilt), math.sin(tilt)
     slope = surface.slope(c)
     across = surface.height(c) - c * slope
@@ -236,8 +235,8 @@ def _corner(surface: Surface, tilt: float) -> tuple[float, float]:
 def _largest_mean(points: list[tuple[float, float]]) -> float:
     """Return the largest mean of a quantity over points (height, quantity) whose mean height is 0.
 
-    It is the value at 0 of a line through two points, one on either side, that no point is above.
-    Infinite if all points are on one side.
+    It is the value at 0 of the line through two points, one on either side, with no point above it;
+    infinite if all points are on one side.
     """
     below = [point for point in points if point[0] <= 0.0]
     above = [point for point in points if point[0] >= 0.0]
@@ -269,7 +268,7 @@ def _highest(points: list[tuple[float, float]], slope: float) -> tuple[float, fl
 
 
 def _top_heaviness(surface: Surface) -> float:
-    """Return how much higher the centre of mass is than that of the ball below; see `Outside`."""
+    """Return `Outside.top_heaviness` of a surface."""
     lowest = lowest_surface(surface, 1.0)
     if not acting(lowest).spherical:
         return 0.0

@@ -1,4 +1,4 @@
-"""Bodies and problems known by name.
+"""Named bodies and problems.
 
 "The report" is "The Dynamics of Tippe Top and Numerical Simulation", a student's project report.
 """
@@ -14,17 +14,23 @@ from tippetop.support.suggestions import not_one_of
 
 _MASS, _RADIUS = 0.02, 0.02
 _TWO_FIFTHS = 2 / 5 * _MASS * _RADIUS**2
-_OTHER = 131 / 350 * _MASS * _RADIUS**2
+_TRANSVERSE = 131 / 350 * _MASS * _RADIUS**2
 
 REPORT = Body(
-    mass=_MASS, shape=EccentricSphere(radius=_RADIUS, eccentricity=0.3), I1=_OTHER, I3=_TWO_FIFTHS
+    mass=_MASS,
+    shape=EccentricSphere(radius=_RADIUS, eccentricity=0.3),
+    I1=_TRANSVERSE,
+    I3=_TWO_FIFTHS,
 )
 """The top of the report "The Dynamics of Tippe Top and Numerical Simulation", a student's project
 report: a sphere of 2 cm and 20 g, with the inertias of its listing, which give its results.
 """
 
 REPORT_TABLE_1 = Body(
-    mass=_MASS, shape=EccentricSphere(radius=_RADIUS, eccentricity=0.3), I1=_TWO_FIFTHS, I3=_OTHER
+    mass=_MASS,
+    shape=EccentricSphere(radius=_RADIUS, eccentricity=0.3),
+    I1=_TWO_FIFTHS,
+    I3=_TRANSVERSE,
 )
 """The report's top as its Table 1 prints it, with the two inertias exchanged."""
 
@@ -40,7 +46,7 @@ sphere, the stem's.
 
 
 def _ball_with_tip(mass: float, ball: Sphere, tip: Sphere, I1: float, I3: float) -> Body:
-    """A body of two spheres, one of which reaches out of the other; this is what it is drawn as."""
+    """Return a body of two spheres, the tip reaching out of the ball, with its profile."""
     (R, a), (r, b) = ((sphere.radius, sphere.center) for sphere in (ball, tip))
     seam = (R * R - r * r + b * b - a * a) / (2 * (b - a))
     around = math.sqrt(R * R - (seam - a) ** 2)
@@ -51,11 +57,10 @@ def _ball_with_tip(mass: float, ball: Sphere, tip: Sphere, I1: float, I3: float)
 _LEINE_BALL, _LEINE_TIP = Sphere(radius=1.5e-2, center=3e-3), Sphere(radius=5e-3, center=1.6e-2)
 
 LEINE_GLOCKER_STEM = _ball_with_tip(6e-3, _LEINE_BALL, _LEINE_TIP, I1=8e-7, I3=7e-7)
-"""The whole of Leine and Glocker's top: its sphere, and the smaller one at the end of the stem."""
+"""Leine and Glocker's complete top: its sphere, and the smaller one at the end of the stem."""
 
 FRIEDL = _ball_with_tip(6e-3, _LEINE_BALL, _LEINE_TIP, I1=9e-7, I3=7e-7)
-"""Friedl's top that hangs at a tilt between: Leine and Glocker's, which is his, with more inertia
-across.
+"""Friedl's top that stops at an intermediate tilt: Leine and Glocker's with a larger I1.
 
 C. Friedl, "Der Stehaufkreisel", thesis, University of Augsburg, 1997.
 """
@@ -63,16 +68,16 @@ C. Friedl, "Der Stehaufkreisel", thesis, University of Augsburg, 1997.
 
 def _report_with(tip: Sphere) -> Body:
     ball = Sphere(radius=_RADIUS, center=0.3 * _RADIUS)
-    return _ball_with_tip(_MASS, ball, tip, I1=_OTHER, I3=_TWO_FIFTHS)
+    return _ball_with_tip(_MASS, ball, tip, I1=_TRANSVERSE, I3=_TWO_FIFTHS)
 
 
 REPORT_STEM = _report_with(Sphere(radius=0.012, center=0.017))
-"""The report's top with a stem so blunt that it stands up on it when launched as in the report's
-Fig. 4.
+"""The report's top with a blunt stem, on which it stands up when launched as in the report's Fig.
+4.
 """
 
 REPORT_THIN_STEM = _report_with(Sphere(radius=0.004, center=0.026))
-"""The report's top with a stem so thin that it falls back from it."""
+"""The report's top with a thin stem, from which it falls back."""
 
 COHEN = Body(
     mass=0.015, shape=EccentricSphere(radius=0.025, eccentricity=0.2), I1=3.75e-6, I3=3.75e-6
@@ -84,9 +89,7 @@ R. J. Cohen, "The tippe top revisited", American Journal of Physics 45 (1977) 12
 
 
 def _bored_ball(diameter: float, bore: float, depth: float, spindle: float, height: float) -> Body:
-    """A ball of wood that is bored flat from above, with a spindle that is round at its end;
-    inches.
-    """
+    """Return a wooden ball with a flat bore and a spindle with a round end; lengths in inches."""
     ball, hole, stem = diameter / 2, bore / 2, spindle / 2
     mouth = math.sqrt(ball * ball - hole * hole)
     floor, end = mouth - depth, mouth + height
@@ -100,16 +103,16 @@ WOODEN = _bored_ball(diameter=1.25, bore=0.875, depth=0.382, spindle=0.25, heigh
 6.35 mm.
 
 E. Pfau's table for balls of 1 1/4 inches (Waxhaw Woodturners, August 2011): spindle 1/4,
-counterbore 7/8 and 0.382 deep, spindle 0.490 above it. Depth and height are taken from the
-counterbore's edge, which the table leaves open: the height over the diameter is then 1.249, and 36
-to 29 mm of one that is sold (Curious Minds, "Flip Over Top") is 1.241. Ours are the spindle's round
-end and one wood for both parts, beech or hard maple of 720 kg/m^3; mass, centre of mass and
-inertias follow from the profile.
+counterbore 7/8 and 0.382 deep, spindle 0.490 above it. The table does not say from where depth and
+height are measured; here it is the counterbore's edge. The height over the diameter is then 1.249;
+that of a sold top of 36 by 29 mm (Curious Minds, "Flip Over Top") is 1.241. Assumed are the round
+end of the spindle and one wood for both parts, beech or hard maple of 720 kg/m^3. Mass, centre of
+mass and inertias follow from the profile.
 """
 
 
 def _cylinder(mass: float, radius: float, thickness: float) -> Body:
-    """A solid cylinder with sharp edges, which a disk, a coin or a rod are."""
+    """Return a solid cylinder with sharp edges, such as a disk, a coin or a rod."""
     edges = tuple(Ring(radius=radius, center=side * thickness / 2) for side in (-1, 1))
     return Body(
         mass=mass,
@@ -120,26 +123,23 @@ def _cylinder(mass: float, radius: float, thickness: float) -> Body:
 
 
 EULER_DISK = _cylinder(0.4, 0.0375, 0.0125)
-"""Euler's disk, the toy, as large and heavy as in H. K. Moffatt, Nature 404 (2000) 833-834.
+"""Euler's disk, the toy, with the size and mass of H. K. Moffatt, Nature 404 (2000) 833-834.
 
-That it is 12.5 mm thick, with sharp edges, is assumed; of steel of 7,850 kg/m^3 it would be 11.5
-mm.
+A thickness of 12.5 mm and sharp edges are assumed; steel of 7,850 kg/m^3 would be 11.5 mm thick.
 """
 
 COIN = _cylinder(7.5e-3, 0.023_25 / 2, 2.33e-3)
-"""A coin of one euro by its specification: 7.5 g, 23.25 mm across, 2.33 mm thick, as if of one
-metal.
+"""Coin of one euro by its specification: 7.5 g, 23.25 mm across, 2.33 mm thick.
 
-Diameter and mass stand in Council Regulation (EC) No 975/98, the thickness in the European Central
-Bank's list of euro coins; that it is of one metal all through, with flat faces and sharp edges, is
-assumed.
+Diameter and mass are those of Council Regulation (EC) No 975/98, the thickness that of the European
+Central Bank's list of euro coins. A uniform density, flat faces and sharp edges are assumed.
 """
 
 _BALL, _BALL_RADIUS = 0.032, 0.01
 
 
 def _welded(radius: float, weld: float) -> tuple[tuple[float, ...], ...]:
-    """The profile of two balls that touch at the centre of mass, held together there."""
+    """Return the profile of two balls that are welded together at the centre of mass."""
     seam = radius - math.sqrt(radius**2 - weld**2)
     lower = ((0.0, -2 * radius), (radius, -radius, radius), (weld, -seam, radius))
     return (*lower, (weld, seam), (radius, radius, radius), (0.0, 2 * radius, radius))
@@ -154,9 +154,9 @@ HURRICANE_BALLS = Body(
 )
 """Two balls of steel, 20 mm across and 32 g each, welded together.
 
-As in D. P. Jackson, D. Mertens and B. J. Pearson, American Journal of Physics 83 (2015) 959-968,
-but for their size, which is assumed, and the weld, which is only drawn: how they roll depends on
-the radius alone.
+They are those of D. P. Jackson, D. Mertens and B. J. Pearson, American Journal of Physics 83 (2015)
+959-968, except for their size, which is assumed, and the weld, which is only drawn: their rolling
+depends on the radius alone.
 """
 
 EGG = Body(
@@ -165,10 +165,10 @@ EGG = Body(
     I1=0.057 * (0.022**2 + 0.028**2) / 5,
     I3=2 / 5 * 0.057 * 0.022**2,
 )
-"""A hard-boiled hen's egg of common size, as a spheroid that is the same all through.
+"""Hard-boiled hen's egg of common size, as a homogeneous spheroid.
 
-Typical dimensions, assumed: 44 by 56 mm, and a mass within the class M of 53 to 63 g of Commission
-Regulation (EC) No 589/2008. A real egg is blunter at one end, and not quite the same all through.
+Typical dimensions are assumed: 44 by 56 mm, and a mass within the class M of 53 to 63 g of
+Commission Regulation (EC) No 589/2008. A real egg is blunter at one end, and not quite homogeneous.
 """
 
 BODIES = {
@@ -190,7 +190,7 @@ BODIES = {
 
 
 def body(name: str) -> Body:
-    """The body of this name; `InvalidInput` if there is no such preset."""
+    """Return the body of this name; raise `InvalidInput` if there is no such preset."""
     try:
         return BODIES[name]
     except (KeyError, TypeError):
@@ -198,8 +198,7 @@ def body(name: str) -> Body:
 
 
 def report_problem(spin: float = 155.0, tilt: float = 0.1, mu: float = 0.3) -> Problem:
-    """The report's top and table, launched at rest in tilt: spin in rad/s, tilt in rad, mu in
-    s/m.
+    """Return the report's problem, without tilt rate: spin in rad/s, tilt in rad, mu in s/m.
 
     The report is "The Dynamics of Tippe Top and Numerical Simulation", a student's project report.
     """
@@ -209,10 +208,9 @@ def report_problem(spin: float = 155.0, tilt: float = 0.1, mu: float = 0.3) -> P
 
 
 def leine_glocker_problem(spin: float = 180.0, tilt: float = 0.1, mu: float = 0.3) -> Problem:
-    """Leine and Glocker's top on dry friction, without drilling: spin in rad/s, tilt in rad, mu a
-    number.
+    """Return Leine and Glocker's top on regularized dry friction without drilling.
 
-    See `LEINE_GLOCKER` for the reference.
+    Spin in rad/s, tilt in rad, mu a pure number. See `LEINE_GLOCKER` for the reference.
     """
     return Problem(
         body=LEINE_GLOCKER,

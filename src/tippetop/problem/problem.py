@@ -1,6 +1,6 @@
-"""The physics of a run, complete and validated: body, friction, launch, contact and gravity.
+"""`Problem`: the complete, validated physics of a run, with its reading and writing.
 
-Every part is frozen, refuses what cannot be, and reads and writes TOML and JSON.
+A problem has a body, a friction law, a launch, rules of contact and gravity. All parts are frozen.
 """
 
 import json
@@ -50,24 +50,24 @@ from tippetop.support.validation import (
 
 
 class Problem(Part):
-    """Everything physical about a run.
+    """Physics of a run.
 
     Attributes
     ----------
     body
-        What spins.
+        The body.
     friction
-        The law of the table.
+        The friction law of the table.
     launch
-        How it is set going.
+        The initial state.
     contact
-        What becomes of a contact that would have to pull, and of impacts.
+        The rules for lift-off and impacts.
     gravity
         Acceleration of gravity, m/s^2.
     rolling_resistance
-        Arm of the normal force's couple against rolling beside any law of friction, m, no longer
-        than the body is large: the table resists the horizontal angular velocity w_t with the
-        torque N rolling_resistance, and holds it at zero where less is enough for that.
+        Arm of the couple of the normal force that resists rolling, m, at most the size of the body.
+        In addition to friction, the table opposes the horizontal angular velocity w_t with the
+        torque N rolling_resistance, and holds w_t at zero if a smaller torque is enough.
 
     Examples
     --------
@@ -91,7 +91,7 @@ class Problem(Part):
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
-        _refuse_what_does_not_fit(self)
+        _require_fitting_patch(self)
         if _lies_flat(self):
             raise InvalidInput(
                 "launch.tilt",
@@ -100,7 +100,7 @@ class Problem(Part):
                 "lays the body flat on its face",
             )
         if not (math.isfinite(_resistance(self)) and math.isfinite(_largest_square(self))):
-            raise _out_of_reach(self)
+            raise _overflow_refusal(self)
         if self.contact.liftoff == "fly":
             return self
         if isinstance(self.top.surface, Hull):
@@ -114,23 +114,23 @@ class Problem(Part):
                 f"launch.{field}",
                 getattr(launch, field),
                 "0",
-                "starts off the table, or leaves it, where contact.liftoff is not 'fly'",
-                "leave it out, or let the body fly",
+                "lets the body leave the table, but contact.liftoff is not 'fly'",
+                "omit it, or write contact.liftoff = 'fly'",
             )
         if not _resistance(self) > 0:
             raise InvalidInput(
                 "launch.slip",
                 self.launch.slip,
                 "less slip or less friction",
-                "is too much: here any push of the table would drag the body further into it"
-                " (Painleve's paradox)",
+                "is too much: any normal force would accelerate the contact point into the"
+                " table (Painleve's paradox)",
                 "write less slip or less friction, or contact.liftoff = 'fly'",
             )
         return self
 
     @property
     def top(self) -> Top:
-        """The problem's numbers as the mechanics takes them, SI."""
+        """Numbers of the problem in the form that the mechanics uses, SI."""
         body, arm = self.body, self.rolling_resistance
         resistance = None if isinstance(arm, (int, float)) and not arm else RollingResistance(arm)
         return Top(
@@ -138,15 +138,16 @@ class Problem(Part):
         )
 
     def standing(self, functions: Functions = math) -> Top:
-        """The top on the surface that reaches lowest at launch."""
+        """Return the top with the surface active that is lowest at launch."""
         top, cosine = self.top, PoleExact(functions).cos(self.launch.tilt)
         if not isinstance(top.surface, Hull):
             return top
         return top._replace(surface=lowest_surface(top.surface, cosine))
 
     def start(self, functions: Functions = math) -> State:
-        """The state at launch, SI; with sine and cosine for whatever the fields are, such as
-        arrays.
+        """Return the state at launch, SI.
+
+        `functions` has the sine and cosine for the type of the fields, such as arrays.
         """
         launch, top = self.launch, self.standing(functions)
         angles = Angles(
@@ -161,35 +162,34 @@ class Problem(Part):
         velocity = touching.velocity
         if launch.velocity is not None:
             x, y, up = launch.velocity
-            # A horizontal velocity on the table has the vertical part that keeps contact.
+            # A horizontal velocity on the table gets the vertical component that maintains contact.
             velocity = (x, y, up + (up == 0.0) * (launch.gap == 0.0) * velocity[2])
         return touching._replace(height=touching.height + launch.gap, velocity=velocity)
 
     # translate: skip
     def replace(self, changes: Mapping[str, Any]) -> Self:
-        """Copy with some fields replaced, named with dots: ``problem.replace({"launch.spin":
-        100.0})``.
+        """Return a copy with some fields replaced, by dotted names: ``{"launch.spin": 100.0}``.
 
-        Another `kind` of a part keeps the fields that the new one has too, and may be given the
-        rest.
+        With another `kind` of a part, fields that both kinds have keep their values, and values for
+        the others may be given.
 
         Raises
         ------
         InvalidInput
-            If there is no such field, it cannot have such a value, or is given again within
-            another's.
+            If there is no such field, it does not accept the value, or a value is given for both a
+            part and a field in it.
         """
         if not (isinstance(changes, Mapping) and all(isinstance(name, str) for name in changes)):
             raise InvalidInput("changes", changes, "a dict of values by the names of fields")
         for name in changes:
-            whole = next((other for other in changes if name.startswith(f"{other}.")), None)
-            if whole is not None:
+            part_name = next((outer for outer in changes if name.startswith(f"{outer}.")), None)
+            if part_name is not None:
                 raise InvalidInput(
                     name,
                     changes[name],
                     "",
-                    f"stands beside a value of {whole}, which holds it",
-                    "leave out one",
+                    f"is given beside a value of {part_name}, which contains it",
+                    "omit one of them",
                 )
         fields = self.model_dump()
         renewed = set()
@@ -198,11 +198,11 @@ class Problem(Part):
             part = part_at(self, where) if last == "kind" else None
             if isinstance(part, Variant) and value != getattr(part, "kind", None):
                 renewed.add(where)
-                table, kept = table_at(fields, where), part.fields_of(value)
-                for field in table.keys() - kept:
+                table, common = table_at(fields, where), part.fields_of(value)
+                for field in table.keys() - common:
                     del table[field]
-        for given, new in changes.items():
-            name, value = with_its_list(fields, given, new)
+        for path, new in changes.items():
+            name, value = with_its_list(fields, path, new)
             where, _, last = name.rpartition(".")
             table = table_at(fields, where)
             if last not in table and where not in renewed:
@@ -214,18 +214,18 @@ class Problem(Part):
 
     # translate: skip
     def to_toml(self) -> str:
-        """Write the problem as TOML."""
+        """Return the problem as a TOML text."""
         return tomli_w.dumps(json.loads(self.to_json()))
 
     # translate: skip
     def to_json(self) -> str:
-        """Write the problem as JSON."""
+        """Return the problem as a JSON text."""
         return self.model_dump_json(exclude_none=True)
 
     # translate: skip
     @classmethod
     def from_toml(cls, text: str) -> Self:
-        """Read a problem from TOML text.
+        """Return the problem that a TOML text states.
 
         Raises
         ------
@@ -237,7 +237,7 @@ class Problem(Part):
     # translate: skip
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Read a problem from JSON text.
+        """Return the problem that a JSON text states.
 
         Raises
         ------
@@ -249,7 +249,7 @@ class Problem(Part):
     # translate: skip
     @classmethod
     def read(cls, path: Path | str) -> Self:
-        """Read a problem from a .toml or .json file.
+        """Return the problem that a .toml or .json file states.
 
         Raises
         ------
@@ -267,14 +267,14 @@ class Problem(Part):
 
 # translate: skip
 PLACES = declare_places(Problem)
-"""The full names of all fields by their last names, for whoever writes a field elsewhere."""
+"""Full names of all fields by their last names, to suggest the right place of a field."""
 
 
 # translate: skip
 def get(problem: Problem, path: str) -> Any:
-    """Return the value of a field of a problem, or a part of it, named with dots.
+    """Return the value of a field of a problem, or a part, by its dotted name.
 
-    The paths are those of `Problem.replace` and of the axes of a sweep.
+    The names are those of `Problem.replace` and of the axes of a sweep.
 
     Raises
     ------
@@ -293,11 +293,11 @@ def get(problem: Problem, path: str) -> Any:
     require_problem(problem)
     require("path", path, str, "the name of a field with dots, such as launch.spin")
     where, _, last = path.rpartition(".")
-    whole = part_at(problem, where)
-    if isinstance(whole, Part) and last in type(whole).model_fields:
-        return getattr(whole, last)
-    if isinstance(whole, tuple) and is_place(last, whole):
-        return whole[int(last)]
+    part = part_at(problem, where)
+    if isinstance(part, Part) and last in type(part).model_fields:
+        return getattr(part, last)
+    if isinstance(part, tuple) and is_place(last, part):
+        return part[int(last)]
     meant = likely(path, list(dotted_names(problem.model_dump())), problem.places)
     hint = f"did you mean {meant}?" if meant else ""
     raise InvalidInput("path", path, "the name of a field, such as launch.spin", hint=hint)
@@ -305,12 +305,12 @@ def get(problem: Problem, path: str) -> Any:
 
 # translate: drop
 def require_problem(problem: object) -> None:
-    """Refuse what is no problem, with `InvalidInput`."""
+    """Raise `InvalidInput` unless a value is a problem."""
     require("problem", problem, Problem, "a Problem, such as presets.report_problem() makes")
 
 
-def _refuse_what_does_not_fit(problem: Problem) -> None:
-    """Refuse a patch, or an arm, that is larger than the body, or a patch that is but a point."""
+def _require_fitting_patch(problem: Problem) -> None:
+    """Raise `InvalidInput` for a patch or an arm larger than the body, or a far too small patch."""
     size = max(sizes(problem.body.surface))
     if not problem.friction.fits(size):
         accepted = f"a radius from {_inside(LEAST_PATCH * size, 1.0)} to {_inside(size, -1.0)} m"
@@ -319,7 +319,7 @@ def _refuse_what_does_not_fit(problem: Problem) -> None:
             getattr(problem.friction, "patch_radius", MISSING),
             accepted,
             "does not fit this body",
-            f"write {accepted}; for a smaller patch, a point, there is coulomb",
+            f"write {accepted}; for a point contact use the kind coulomb",
         )
     if problem.rolling_resistance > size:
         raise InvalidInput(
@@ -330,7 +330,7 @@ def _refuse_what_does_not_fit(problem: Problem) -> None:
 
 
 def _resistance(problem: Problem) -> float:
-    """The resistance of the contact at launch; nan where its arithmetic breaks down."""
+    """Return the inverse effective mass of the contact at launch; nan if arithmetic overflows."""
     try:
         start, top = along_table(problem.start()), problem.standing()
         if is_set_valued(problem.friction.law) and not is_slipping(*start, top):
@@ -342,9 +342,7 @@ def _resistance(problem: Problem) -> float:
 
 
 def _largest_square(problem: Problem) -> float:
-    """The largest square among the numbers of the launch in natural units, and in SI; nan without
-    one.
-    """
+    """Return the largest square of the launch's numbers, natural and SI; nan if it overflows."""
     try:
         units = natural_units(problem.top)
         start = natural_state(problem.start(), units)
@@ -357,7 +355,7 @@ def _largest_square(problem: Problem) -> float:
 
 
 def _lies_flat(problem: Problem) -> bool:
-    """Whether the top is launched on a ring that is parallel to the table, all around."""
+    """Return whether the top is launched on a ring that is parallel to the table."""
     try:
         edge = is_edge(problem.standing().surface)
     except ArithmeticError:
@@ -365,12 +363,12 @@ def _lies_flat(problem: Problem) -> bool:
     return edge and PoleExact(math).sin(problem.launch.tilt) ** 2 <= POLE
 
 
-def _out_of_reach(problem: Problem) -> InvalidInput:
-    """The refusal of numbers with which no computer can reckon, about the one furthest from 1."""
+def _overflow_refusal(problem: Problem) -> InvalidInput:
+    """Return the refusal of numbers that overflow, about the one furthest from 1."""
     numbers = {name: value for name, value in numbers_of(problem.model_dump()) if value}
     distance = {name: abs(math.log(abs(value))) for name, value in numbers.items()}
     worst = max(distance, key=lambda name: distance[name])
-    others = sum(2 * other > distance[worst] for other in distance.values()) - 1
+    others = sum(2 * value > distance[worst] for value in distance.values()) - 1
     fault = (
         "is too large to be computed with"
         if abs(numbers[worst]) > 1.0
@@ -380,7 +378,7 @@ def _out_of_reach(problem: Problem) -> InvalidInput:
 
 
 def _inside(bound: float, side: float) -> str:
-    """A bound in three digits, not beyond it: no less if the side is 1, and no more if it is -1."""
+    """Return a bound in three digits, rounded up if the side is 1 and down if it is -1."""
     near = float(f"{bound:.3g}")
     if (near - bound) * side < 0.0:
         near += side * 10.0 ** (math.floor(math.log10(bound)) - 2)

@@ -1,4 +1,4 @@
-"""Outer surfaces of bodies as users state them, validated, with the centre of mass in them."""
+"""Outer surfaces of bodies as users state them, with the position of the centre of mass."""
 
 import math
 from abc import abstractmethod
@@ -20,13 +20,12 @@ Center = Annotated[Number, Quantity("m", "height of the surface's middle above t
 
 
 class Shape(Variant):
-    """The outer surface of a body, and where the centre of mass is in it; a kind of it is a
-    subclass.
+    """Base class of the outer surfaces of bodies, with the position of the centre of mass in them.
 
     Attributes
     ----------
     kind
-        The word for the kind, in a subclass with a default: ``kind: Literal["cone"] = "cone"``.
+        Name of the shape; a subclass declares it: ``kind: Literal["cone"] = "cone"``.
 
     Examples
     --------
@@ -42,11 +41,11 @@ class Shape(Variant):
     @property
     @abstractmethod
     def surface(self) -> Surface:
-        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        """Surface about the centre of mass, in the form that the mechanics uses."""
 
 
 class EccentricSphere(Shape):
-    """A sphere whose centre of mass is off its centre: the tippe top.
+    """Sphere whose centre of mass is below its centre: the tippe top.
 
     Attributes
     ----------
@@ -73,12 +72,12 @@ class EccentricSphere(Shape):
 
     @property
     def surface(self) -> Surface:
-        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        """Surface about the centre of mass, in the form that the mechanics uses."""
         return SphereSurface(self.radius, self.eccentricity * self.radius)
 
 
 class Sphere(Shape):
-    """A sphere whose centre is anywhere on the axis: the tip of a stem, or one of two hurricane
+    """Sphere with its centre anywhere on the axis: the tip of a stem, or one of two hurricane
     balls.
 
     Attributes
@@ -103,12 +102,12 @@ class Sphere(Shape):
 
     @property
     def surface(self) -> Surface:
-        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        """Surface about the centre of mass, in the form that the mechanics uses."""
         return SphereSurface(self.radius, self.center)
 
 
 class Ring(Shape):
-    """A ring about the axis, sharp or round: the edge of a disk or a coin.
+    """Ring about the axis, sharp or round: the edge of a disk or a coin.
 
     Attributes
     ----------
@@ -117,7 +116,7 @@ class Ring(Shape):
     center
         Height of its plane above the centre of mass, along the axis, m.
     tube
-        Radius by which the ring is thick, m; 0 for a sharp edge.
+        Radius of the ring's cross-section, m; 0 for a sharp edge.
 
     Examples
     --------
@@ -133,12 +132,12 @@ class Ring(Shape):
 
     @property
     def surface(self) -> Surface:
-        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        """Surface about the centre of mass, in the form that the mechanics uses."""
         return RingSurface(self.radius, self.center, self.tube)
 
 
 DEGREE = 16
-"""Degree of the support functions of ovals: they are within 1e-5 of eggs as slender as 2 to 1."""
+"""Degree of the support functions of ovals: enough for eggs as slender as 2 to 1 within 1e-5."""
 
 Support = Annotated[
     tuple[Number, ...],
@@ -148,7 +147,7 @@ Support = Annotated[
 
 
 class Oval(Shape):
-    """A smooth convex surface, by its support function as a polynomial: an egg, or a drawn body.
+    """Smooth convex surface whose support function is a polynomial: an egg, or a drawn body.
 
     Attributes
     ----------
@@ -170,8 +169,8 @@ class Oval(Shape):
     @model_validator(mode="after")
     def _is_convex(self) -> Self:
         surface = self.surface
-        for look in range(TILTS + 1):
-            c = math.cos(math.pi * look / TILTS)
+        for step in range(TILT_STEPS + 1):
+            c = math.cos(math.pi * step / TILT_STEPS)
             slope = surface.slope(c)
             across = surface.height(c) - c * slope
             if not (across > 0.0 and across + surface.curvature(c) * (1.0 - c * c) > 0.0):
@@ -181,21 +180,21 @@ class Oval(Shape):
 
     @property
     def surface(self) -> Surface:
-        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        """Surface about the centre of mass, in the form that the mechanics uses."""
         return OvalSurface(self.support)
 
 
-TILTS = 180
-"""Steps of the tilt at which an oval is looked at."""
+TILT_STEPS = 180
+"""Steps of the tilt at which the convexity of an oval is checked."""
 
 MOST_ASPECT = 1e6
-"""Ratio of a spheroid's semi-axes; the square of it is still far from rounding, as its curvature
-needs.
+"""Largest ratio of a spheroid's semi-axes: its curvature needs the square, which is then still
+above rounding.
 """
 
 
 class Spheroid(Shape):
-    """A spheroid: the spinning egg.
+    """Spheroid, such as a spinning egg.
 
     Attributes
     ----------
@@ -228,5 +227,5 @@ class Spheroid(Shape):
 
     @property
     def surface(self) -> Surface:
-        """The outer surface, from the centre of mass, as the mechanics takes it."""
+        """Surface about the centre of mass, in the form that the mechanics uses."""
         return SpheroidSurface(self.across, self.along, self.center)

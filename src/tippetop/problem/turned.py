@@ -1,4 +1,4 @@
-"""Bodies as a lathe makes them: the surfaces that a workpiece touches the table with."""
+"""Bodies turned on a lathe: the surfaces with which a workpiece touches the table."""
 
 # translate module: numpy
 
@@ -10,21 +10,21 @@ from tippetop.lathe.workpiece import Workpiece
 from tippetop.problem.shapes import DEGREE, EccentricSphere, Oval, Ring, Shape, Sphere, Spheroid
 from tippetop.support.errors import Described, InvalidInput
 
-CUT_OFF = "would reach out of the body where it goes on"
-AS_WHOLE = "take surfaces as whole with whole=True, at the command line --whole"
+PROTRUDES = "would reach out of the body if it were complete"
+ACCEPT_COMPLETED = "accept incomplete surfaces with whole=True, at the command line --whole"
 
-MOST = 12
-"""Most surfaces of a turned body."""
+MOST_SURFACES = 12
+"""Most surfaces of a turned body: each costs time at every step of a run."""
 
-PROTRUDING = 1e-6
-"""How far a surface taken as whole may reach out of the body, in sizes of this."""
+PROTRUSION = 1e-6
+"""Length by which a completed surface may reach out of the body, in sizes of it: above rounding."""
 
-OFF_OVAL = 1e-3
-"""How far an oval may be from the curve that it stands for, in sizes of the body."""
+OVAL_DEVIATION = 1e-3
+"""Largest distance of an oval from the curve that it replaces, in sizes of the body."""
 
 
 class TurnedFields(NamedTuple):
-    """The fields of the body that a workpiece is."""
+    """Fields of the body that a workpiece makes."""
 
     mass: float
     shapes: list[Shape]
@@ -33,51 +33,55 @@ class TurnedFields(NamedTuple):
     profile: list[tuple[float, ...]]
 
 
-def turned_fields(piece: Workpiece, whole: bool = False) -> TurnedFields:
-    """Return the fields of the body that a workpiece is; see `touching` for what is refused."""
-    mass, center, I1, I3 = piece.mass_properties
-    profile = piece.outline.points_above(center)
-    return TurnedFields(mass, touching(piece, whole), I1, I3, profile)
+def turned_fields(workpiece: Workpiece, completed: bool = False) -> TurnedFields:
+    """Return the fields of the body that a workpiece makes.
 
-
-def touching(piece: Workpiece, whole: bool = False) -> list[Shape]:
-    """The surfaces that a turned body touches the table with, as seen from its centre of mass.
-
-    Smooth curves that are no circles become ovals. Raises `InvalidInput` if there are others than
-    spheres, rings, ovals and one spheroid; or, unless they may be taken as whole, if one of these,
-    were it whole, would be outside of the body.
+    Raises `InvalidInput` as `touching_surfaces` does.
     """
-    center, hull = piece.mass_properties.center, piece.hull
-    reach = allowance(piece)
+    mass, center, I1, I3 = workpiece.mass_properties
+    profile = workpiece.outline.points_above(center)
+    return TurnedFields(mass, touching_surfaces(workpiece, completed), I1, I3, profile)
+
+
+def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Shape]:
+    """Return the surfaces with which a turned body touches the table, about its centre of mass.
+
+    Smooth curves that are no circles become ovals. Raises `InvalidInput` if there are surfaces
+    other than spheres, rings, ovals and one spheroid. Unless incomplete surfaces may be
+    `completed`, it also raises if one of them, continued beyond its part of the body, would reach
+    out of it.
+    """
+    center, hull = workpiece.mass_properties.center, workpiece.hull
+    reach = allowance(workpiece)
     spheroid = hull.spheroid(reach) if len(hull.zones) > 2 else None
     if spheroid is not None:
         across, along, height = spheroid
         return [Spheroid(across=across, along=along, center=height - center)]
     smooth = hull.smooth_parts(reach)
-    ovals = [_oval(piece, *part, whole) for part in smooth]
+    ovals = [_oval(workpiece, *part, completed) for part in smooth]
 
-    def is_left(zone: Zone) -> bool:
+    def is_separate(zone: Zone) -> bool:
         return not any(low <= zone.low and zone.high <= high for low, high in smooth)
 
-    zones = [zone for zone in hull.zones if is_left(zone)]
-    if len(zones) > MOST:
+    zones = [zone for zone in hull.zones if is_separate(zone)]
+    if len(zones) > MOST_SURFACES:
         raise InvalidInput(
             "profile",
             Described(f"a body that stands on {len(zones)} surfaces"),
-            f"at most {MOST}",
+            f"at most {MOST_SURFACES}",
             "has too many",
             "draw arcs rather than many short edges",
         )
     shapes = [_shape(zone, zone.height - center) for zone in zones]
     for zone in zones:
-        if hull.protrusion(zone)[0] > reach and not whole:
+        if hull.protrusion(zone)[0] > reach and not completed:
             part = Described(
-                f"a {zone.name} cut off, left from tilt {zone.low:.6g} to {zone.high:.6g}"
+                f"a {zone.name} of which only tilts {zone.low:.6g} to {zone.high:.6g} exist"
             )
-            raise InvalidInput("profile", part, "", CUT_OFF, AS_WHOLE)
+            raise InvalidInput("profile", part, "", PROTRUDES, ACCEPT_COMPLETED)
     if ovals:
-        own = [shape for k, shape in enumerate(shapes) if shape not in shapes[:k]]
-        return [*ovals, *own]
+        distinct = [shape for k, shape in enumerate(shapes) if shape not in shapes[:k]]
+        return [*ovals, *distinct]
     outer = [_shape(zone, zone.height - center) for zone in hull.whole(reach)]
     first = outer[0]
     if len(outer) == 1 and isinstance(first, Sphere) and 0.0 < first.center < first.radius:
@@ -85,18 +89,18 @@ def touching(piece: Workpiece, whole: bool = False) -> list[Shape]:
     return outer
 
 
-def allowance(piece: Workpiece) -> float:
-    """How far surfaces that a turned body touches the table with may reach out of it, m."""
-    return PROTRUDING * piece.outline.size + 2.0 * piece.deviation
+def allowance(workpiece: Workpiece) -> float:
+    """Return the length by which touching surfaces may reach out of a turned body, m."""
+    return PROTRUSION * workpiece.outline.size + 2.0 * workpiece.deviation
 
 
-def _oval(piece: Workpiece, low: float, high: float, whole: bool) -> Shape:
-    """The smooth surface that a turned body stands on between two tilts."""
-    center = piece.mass_properties.center
-    support, apart = polynomial_support(piece.hull, low, high, center, DEGREE, whole)
-    if apart > OFF_OVAL * piece.outline.size:
-        part = Described(f"a curve cut off, from tilt {low:.4g} to {high:.4g}")
-        raise InvalidInput("profile", part, "", CUT_OFF, AS_WHOLE)
+def _oval(workpiece: Workpiece, low: float, high: float, completed: bool) -> Shape:
+    """Return the smooth surface that touches the table between two tilts, as an oval."""
+    center = workpiece.mass_properties.center
+    support, deviation = polynomial_support(workpiece.hull, low, high, center, DEGREE, completed)
+    if deviation > OVAL_DEVIATION * workpiece.outline.size:
+        part = Described(f"a curve of which only tilts {low:.4g} to {high:.4g} exist")
+        raise InvalidInput("profile", part, "", PROTRUDES, ACCEPT_COMPLETED)
     return Oval(support=tuple(support))
 
 
@@ -106,5 +110,5 @@ def _shape(zone: Zone, center: float) -> Shape:
     if zone.radius > 0.0:
         return Ring(radius=zone.radius, center=center, tube=zone.tube)
     part = "a sharp tip" if zone.name == "tip" else "an arc around a point beyond the axis"
-    wanted = "part of a body that stands on spheres, rings and smooth curves"
-    raise InvalidInput("profile", Described(part), wanted, hint="round it, by 1 mm or so")
+    accepted = "part of a body that stands on spheres, rings and smooth curves"
+    raise InvalidInput("profile", Described(part), accepted, hint="round it by about 1 mm")

@@ -1,8 +1,10 @@
-"""What is read off a run, and how it is labelled and filed.
+"""Results of a run: their computation, labels, files and description in words.
 
-Read `catalogue` first: it names every variable of a result. `samples` and `observables` compute
-them along a run, and `derived` what follows from them; `metrics` defines each single number and
-`run_metrics` accumulates them, `monitor` checks what must be conserved. `dataset` labels the
-result, `flags` turns numbers of flags into words, `dataframes` makes tables of it, `summary` picks
-the few numbers that people want, `netcdf` files a run.
+Read `catalogue` first: it names every variable of a result. `observables` and `samples` compute
+them along a run, and `derived` what follows from them. `metrics` defines each single number,
+`run_metrics` accumulates them, `settling` says where a motion stays, and `monitor` checks what must
+be conserved. `dataset` labels the result, `flags` turns numbers of flags into words, `dataframes`
+makes tables, `summary` picks the main numbers, `account` and `description` put a run in words, and
+`netcdf` writes and reads files. `event_functions`, `motion_state` and `run_solution` serve users'
+functions and dense output.
 """

@@ -1,8 +1,9 @@
-"""The account of a run: what became of a launch, as clauses of a name and numbers.
+"""Account of a run: its launch, motion and end as clauses with a name and numbers.
 
-`account_of` makes the clauses of the facts of a run and of what theory says of its launch. It is
-translated for the page. `describe` reads the facts off a run, and the texts of the clauses are in a
-catalogue per language (`account_en.json` here, the part "account" of `web/texts/de.json`).
+`account_of` makes the clauses from the facts of a run and from the theory of its launch; it is
+translated for the page. `tippetop.results.description.describe` collects the facts of a run. The
+texts of the clauses are in one catalogue per language (`account_en.json` here, the part "account"
+of `web/texts/de.json`).
 """
 
 import math
@@ -22,46 +23,46 @@ from tippetop.theory.slow_time import time_to_end
 from tippetop.theory.steady import SteadyKind, SteadyState
 from tippetop.theory.thresholds import CriticalSpins, stability_limits
 
-SLIPS = 1e-9
-"""Slip at launch, in m/s, from which on it is told: less is rounding."""
+LEAST_SLIP = 1e-9
+"""Slip at launch, m/s, below which it is rounding and not mentioned."""
 
 
 class Facts(NamedTuple):
-    """What is known of a run, in SI."""
+    """Facts of a run that its account uses, in SI."""
 
     problem: Problem
     outcome: Outcome
     metrics: Mapping[str, float]
     """Numbers of `tippetop.results.catalogue.METRICS`."""
     peak: tuple[float, float]
-    """Largest tilt within the run, rad, and when it was reached, s."""
+    """Largest tilt within the run, rad, and its time, s."""
     settled_since: float
-    """Time since which the tilt stays near that at which it settles, s; nan until it has."""
+    """Time since which the tilt stays near its final value, s; nan if it has not settled."""
     events: Sequence[Event]
     flights: Sequence[tuple[float, float]]
     """Begin and end of every flight, s."""
 
 
 class Clause(NamedTuple):
-    """One statement of an account."""
+    """Statement of an account."""
 
     name: str
-    """Which statement it is: a key of the catalogues of texts."""
+    """Key of its text in the catalogues."""
     numbers: Mapping[str, float]
-    """Its numbers in SI, by the names of the gaps in its text."""
+    """Numbers in SI, by the names of the placeholders in the text."""
     part: str
-    """Where it stands: "launch", "motion", "end" or "theory"."""
+    """Part of the account: "launch", "motion", "end" or "theory"."""
 
 
 def account_of(facts: Facts) -> list[Clause]:
-    """Return the clauses of a run: its launch, motion and end, and what theory says beside them."""
+    """Return the clauses of a run: of its launch, its motion, its end, and of theory."""
     if facts.outcome is Outcome.INACCURATE:
         return [_ended_early(facts)]
     return [*_launch(facts), *_motion(facts), *_end(facts), *_theory(facts)]
 
 
-def known_end(problem: Problem) -> Prediction | None:
-    """Return the steady states that a launch heads for; None where theory does not say."""
+def predicted_end(problem: Problem) -> Prediction | None:
+    """Return the steady states that a launch can end in; None if theory does not know them."""
     if problem.friction.vanishes:
         return None
     try:
@@ -71,9 +72,9 @@ def known_end(problem: Problem) -> Prediction | None:
     return prediction if prediction.reachable else None
 
 
-def known_spins(problem: Problem) -> CriticalSpins | None:
-    """Return the critical spins of a launch; None where Jellett's integral is not conserved, or
-    there are none.
+def predicted_spins(problem: Problem) -> CriticalSpins | None:
+    """Return the critical spins of a launch; None if Jellett's integral is not conserved, or there
+    are none.
     """
     if not problem.top.conserves_jellett or problem.friction.vanishes:
         return None
@@ -84,7 +85,7 @@ def known_spins(problem: Problem) -> CriticalSpins | None:
 
 
 def _launch(facts: Facts) -> list[Clause]:
-    """Return how the launch begins: in the air, with an impact, with slip or without."""
+    """Return the clauses of the launch: in the air, with an impact, with slip or without."""
     problem = facts.problem
     if problem.launch.gap > 0.0:
         drop = Clause("drops", {"height": problem.launch.gap}, "launch")
@@ -98,14 +99,13 @@ def _launch(facts: Facts) -> list[Clause]:
         clauses.append(Clause("strikes_at_launch", {"energy": lost}, "launch"))
     speed = _slip_at_launch(problem)
     if any(event.time == 0.0 and event.kind is EventKind.STICK for event in facts.events):
-        # That it rolls on is told of the motion.
-        return clauses
+        return clauses  # the clauses of the motion say that it rolls
     if any(event.time == 0.0 and event.kind is EventKind.LIFT_OFF for event in facts.events):
         return clauses
-    if speed > SLIPS:
+    if speed > LEAST_SLIP:
         clauses.append(Clause("slips_at_launch", {"speed": speed}, "launch"))
     elif not struck:
-        # Dry friction that could hold the top would make it stick at launch.
+        # Dry friction strong enough to hold the top would have made it stick at launch.
         name = "starts_to_slip" if problem.friction.kind == "coulomb" else "starts_without_slip"
         clauses.append(Clause(name, {}, "launch"))
     return clauses
@@ -121,8 +121,9 @@ def _slip_at_launch(problem: Problem) -> float:
 
 
 def _motion(facts: Facts) -> list[Clause]:
-    """Return what happened on the way, in order of time: passing the horizontal, flights, rocking,
-    sticking, a fall.
+    """Return the clauses of the motion in order of time.
+
+    They are about passing the horizontal, flights, rocking, sticking and a fall.
     """
     clauses = list[Clause]()
     turned, final = facts.metrics["turns_over"], facts.metrics["final_theta"]
@@ -162,7 +163,7 @@ def _motion(facts: Facts) -> list[Clause]:
 
 
 def _pulled(facts: Facts) -> list[Clause]:
-    """Return that only a table that pulls holds the top down, where it does."""
+    """Return the clause that the table would have to pull, if it would."""
     force = facts.metrics["least_normal_force"]
     if facts.problem.contact.liftoff != "ignore" or force >= 0.0:
         return []
@@ -170,12 +171,12 @@ def _pulled(facts: Facts) -> list[Clause]:
 
 
 def _time_of(clause: Clause) -> float:
-    """Return when the event of a clause is, s; 0 where it has no time."""
+    """Return the time of the event of a clause, s; 0 if it has none."""
     return clause.numbers.get("time", 0.0)
 
 
 def _flights(facts: Facts) -> list[Clause]:
-    """Return how often the top leaves the table."""
+    """Return the clause of the flights, if there are any."""
     flights = [
         flight for flight in facts.flights if flight[0] > 0.0 or facts.problem.launch.gap == 0.0
     ]
@@ -188,9 +189,7 @@ def _flights(facts: Facts) -> list[Clause]:
 
 
 def _sticks_since(facts: Facts) -> float:
-    """Return since when the top rolls without slip and without loss until its end, s; nan if it
-    does not.
-    """
+    """Return the time since which the top rolls without slip or loss to the end, s, or nan."""
     if not facts.problem.top.torque_free or facts.outcome is not Outcome.COMPLETED:
         return math.nan
     changes = [
@@ -204,7 +203,7 @@ def _sticks_since(facts: Facts) -> float:
 
 
 def _fell_back(facts: Facts) -> bool:
-    """Return whether the top rose and came down again, as an ending of a sweep has it."""
+    """Return whether the top rose and fell back, by the definition of `Ending.FELL_BACK`."""
     final, (highest, _) = facts.metrics["final_theta"], facts.peak
     launched = facts.problem.launch.tilt
     if facts.outcome in (Outcome.LIFTED_OFF, Outcome.FAILED, Outcome.INACCURATE):
@@ -216,12 +215,14 @@ def _fell_back(facts: Facts) -> bool:
 
 
 def _end(facts: Facts) -> list[Clause]:
-    """Return where the motion is at its end, whether it is settled there, and on what it stands."""
+    """Return the clauses of the end: the tilt, whether it is settled, and the surfaces in
+    contact.
+    """
     final, spin = facts.metrics["final_theta"], facts.metrics["final_omega3"]
     outcome, time = facts.outcome, _end_time(facts)
     clauses = list[Clause]()
     if outcome is Outcome.LYING_FLAT:
-        name = "lies_flat" if abs(spin) < STILL else "lies_flat_and_spins"
+        name = "lies_flat" if abs(spin) < LEAST_SPIN else "lies_flat_and_spins"
         clauses.append(Clause(name, {"time": time, "spin": abs(spin)}, "end"))
     elif outcome is Outcome.AT_REST:
         clauses.append(Clause("comes_to_rest", {"tilt": final, "time": time}, "end"))
@@ -243,7 +244,7 @@ def _end(facts: Facts) -> list[Clause]:
 
 
 def _moving(facts: Facts) -> Clause:
-    """Return where a top is that still moves when its run ends."""
+    """Return the clause of a top that still moves when its run ends."""
     final, highest = facts.metrics["final_theta"], facts.peak[0]
     numbers = {"tilt": final, "time": _end_time(facts)}
     name = "still_moves"
@@ -268,12 +269,12 @@ def _is_aloft(facts: Facts) -> bool:
     return any(end >= _end_time(facts) for _, end in facts.flights)
 
 
-STILL = 1e-6
-"""Spin that is none, rad/s."""
+LEAST_SPIN = 1e-6
+"""Spin below which a body that lies flat counts as at rest, rad/s."""
 
 
 def _is_undisturbed(facts: Facts) -> bool:
-    """Return whether the axis was exactly vertical all along."""
+    """Return whether the axis was exactly vertical during the whole run."""
     return (
         facts.problem.launch.tilt in (0.0, math.pi)
         and facts.metrics["final_theta"] == facts.problem.launch.tilt
@@ -282,7 +283,7 @@ def _is_undisturbed(facts: Facts) -> bool:
 
 
 def _settled(facts: Facts) -> Clause:
-    """Return where the motion has settled, and since when it stays there."""
+    """Return the clause of a settled motion, with the time since which it has settled."""
     final, since = facts.metrics["final_theta"], facts.settled_since
     launch = facts.problem.launch.tilt
     numbers = {"tilt": final, "time": since}
@@ -299,7 +300,7 @@ def _settled(facts: Facts) -> Clause:
 
 
 def _standing(facts: Facts) -> list[Clause]:
-    """Return on which of its surfaces a body of several stands at the end."""
+    """Return the clause of the surface that a body of several surfaces stands on at the end."""
     surface = facts.problem.top.surface
     if (
         not isinstance(surface, Hull)
@@ -322,7 +323,7 @@ def _standing(facts: Facts) -> list[Clause]:
 
 
 def _standing_on_two(surface: Hull, first: int, second: int) -> Clause:
-    """Return on which two surfaces of a body, by number, it stands; a sphere first."""
+    """Return the clause of two surfaces, by number, on which a body stands; a sphere first."""
     spheres = [surface.units[number].spherical for number in (first, second)]
     if spheres[1] and not spheres[0]:
         return _standing_on_two(surface, second, first)
@@ -344,12 +345,12 @@ def _standing_on_two(surface: Hull, first: int, second: int) -> Clause:
 
 
 def _ended_early(facts: Facts) -> Clause:
-    """Return why a run ended before its time."""
+    """Return the clause of the reason why a run ended early."""
     return Clause(f"ended_{facts.outcome.name}", {"time": _end_time(facts)}, "end")
 
 
 def _theory(facts: Facts) -> list[Clause]:
-    """Return what theory says beside a run that it explains, or whose end it knows."""
+    """Return the clauses of the theory: what explains the run, and where it ends."""
     problem = facts.problem
     launch, settled = problem.launch, facts.metrics["is_settled"] == 1
     if problem.friction.vanishes:
@@ -366,12 +367,12 @@ def _theory(facts: Facts) -> list[Clause]:
     if not problem.top.torque_free:
         numbers = {"spin": facts.metrics["final_omega3"]}
         return [Clause("torque_takes_spin", numbers, "theory")]
-    clauses, spins, spin = list[Clause](), known_spins(problem), abs(launch.spin)
+    clauses, spins, spin = list[Clause](), predicted_spins(problem), abs(launch.spin)
     low = launch.tilt < RISE and facts.peak[0] < RISE
     if spins is not None and low and spin < spins.upright:
         name = "too_slow_to_rise" if math.isfinite(spins.upright) else "never_rises"
         clauses.append(Clause(name, {"spin": spins.upright}, "theory"))
-    end = None if settled else known_end(problem)
+    end = None if settled else predicted_end(problem)
     if end is None:
         return clauses
     if _is_undisturbed(facts):
@@ -390,7 +391,7 @@ def _theory(facts: Facts) -> list[Clause]:
 
 
 def _of_state(verb: str, state: SteadyState[float]) -> Clause:
-    """Return the clause of a steady state that a launch, or one beside it, heads for."""
+    """Return the clause of a steady state that a launch, or one near it, tends to."""
     numbers = {"tilt": state.tilt, "spin": state.spin, "precession": state.precession}
     name = "upright"
     if state.kind is SteadyKind.INVERTED:

@@ -1,4 +1,4 @@
-"""Every variable of a result: what it is called, what it is, its SI unit and how plots name it."""
+"""Catalogue of the variables of a result: name, meaning, SI unit and label of each."""
 
 # translate module: by hand in tables.js
 
@@ -10,29 +10,29 @@ from typing import Any, NamedTuple
 import numpy as np
 
 NEAR_POLE = 0.1
-"""Tilt from the vertical, rad, up to which a launch counts as ending upright or inverted."""
+"""Largest final tilt from the vertical, rad, that counts as upright or inverted."""
 
 NEAR_FINAL = 0.01
-"""How close the tilt must be to that at which it settles to count as arrived, rad: the report's
-distance. A smaller one asks for more of the decay, which takes the longer the less there is left.
+"""Distance from its final value within which the tilt counts as arrived, rad: the report's
+definition. The decay is exponential, so that a smaller distance takes longer.
 """
 
 RISE = 0.35
-"""Angle, rad, by which a top must rise, and come down again, to have fallen back: 20 degrees, more
-than a tippe top nutates.
+"""Angle, rad, by which a top must rise and come down again to have fallen back: 20 degrees, more
+than the nutation of a tippe top.
 """
 
 LEANS_AT_LAUNCH = 0.8
-"""Tilt at launch, rad, from which on passing the horizontal is no turning over."""
+"""Tilt at launch, rad, beyond which passing the horizontal does not count as turning over."""
 
 
 class Ending(IntEnum):
-    """What became of a launch: the numbers for which a sweep's outcomes stand.
+    """Outcome of a launch, as the numbers of a sweep's variable `outcome`.
 
-    Upright, inverted and tilted are settled ends: the tilt stays there for good (see
-    `tippetop.results.settling`). Their like with MOVING are where a top was when its run ended
-    before that. One that fell back had risen by more than 20 degrees and came down by as much. One
-    that rolls has stopped slipping and loses no energy any more.
+    Upright, inverted and tilted are settled ends: the tilt stays there for ever (see
+    `tippetop.results.settling`). The members that begin with MOVING say where a top was whose run
+    ended before that. A top that fell back had risen by more than 20 degrees and came down by as
+    much. A top that rolls has stopped slipping and loses no energy any more.
 
     Examples
     --------
@@ -72,11 +72,11 @@ FRAMES: Mapping[str, str] = {
         " seen from above, z up; the table's directions where the axis is vertical"
     ),
 }
-"""The frames in which variables have their components: right-handed, with the attribute `frame`."""
+"""Right-handed frames in which variables have their components, by their attribute `frame`."""
 
 
 class Fault(IntEnum):
-    """Why there is no such problem as a cell of a sweep asks for."""
+    """Reason why a cell of a sweep has no valid problem."""
 
     NONE = 0
     VALUE_OUT_OF_RANGE = 1
@@ -85,62 +85,62 @@ class Fault(IntEnum):
 
 
 class Variable(NamedTuple):
-    """A variable of a result."""
+    """Description of a variable of a result."""
 
     long_name: str
-    """What it is."""
+    """Meaning of the variable."""
     units: str = ""
-    """Its SI unit; none for flags and words."""
+    """SI unit; "" for flags and words."""
     label: str = ""
-    """How plots name it, in TeX between dollars, without the unit."""
+    """Label in plots, in TeX between dollars, without the unit."""
     dimensions: tuple[str, ...] = ()
-    """Its dimensions after that of its table."""
+    """Dimensions after the first one, which is that of its table."""
     dtype: str = "float64"
-    """How it is stored."""
+    """NumPy type in which it is stored."""
     flags: tuple[str, ...] = ()
-    """The meanings of the numbers 0, 1, ..., of a variable of flags."""
+    """Meanings of the numbers 0, 1, ... of a variable of flags."""
     frame: str = ""
-    """The frame of its components, among `FRAMES`; none for scalars."""
+    """Frame of its components, a key of `FRAMES`; "" for scalars."""
     convention: str = ""
-    """Its sign, its origin or the order of its components."""
+    """Sign, origin or order of components."""
     lasting: bool = False
-    """Whether it does not depend on the length of the run, once it is a number."""
+    """Whether a longer run does not change the variable once it is a number."""
 
     @property
     def missing(self) -> Any:
-        """What stands where nothing is known."""
+        """Value for "not known"."""
         return np.nan if self.dtype.startswith("float") else -1
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """The attributes by the CF conventions."""
-        found: dict[str, Any] = {"long_name": self.long_name}
+        """Attributes by the CF conventions."""
+        attributes: dict[str, Any] = {"long_name": self.long_name}
         if self.units:
-            found["units"] = self.units
+            attributes["units"] = self.units
         if self.frame:
-            found["frame"] = self.frame
+            attributes["frame"] = self.frame
         if self.convention:
-            found["convention"] = self.convention
+            attributes["convention"] = self.convention
         if self.flags:
-            found["flag_values"] = np.arange(len(self.flags), dtype=self.dtype)
-            found["flag_meanings"] = " ".join(self.flags)
-        return found
+            attributes["flag_values"] = np.arange(len(self.flags), dtype=self.dtype)
+            attributes["flag_meanings"] = " ".join(self.flags)
+        return attributes
 
 
 def written_unit(units: str) -> str:
-    """A unit of CF as people write it: rad/s for rad s-1."""
+    """Return a unit of CF as people write it: rad/s for rad s-1."""
     powers = [re.fullmatch(r"([A-Za-z]+)(-?\d*)", unit) for unit in units.split()]
     sides: dict[bool, list[str]] = {False: [], True: []}
-    for found in filter(None, powers):
-        power = found[2].lstrip("-")
-        sides[found[2].startswith("-")].append(
-            found[1] + (f"^{power}" if power not in ("", "1") else "")
+    for match in filter(None, powers):
+        power = match[2].lstrip("-")
+        sides[match[2].startswith("-")].append(
+            match[1] + (f"^{power}" if power not in ("", "1") else "")
         )
     return "/".join([" ".join(sides[False]) or "1", *sides[True]])
 
 
 def meanings(flags: type[IntEnum]) -> tuple[str, ...]:
-    """The words of a variable of flags."""
+    """Return the words of a variable of flags."""
     return tuple(flag.name.lower() for flag in flags)
 
 
@@ -282,7 +282,7 @@ SAMPLED: Mapping[str, Variable] = {
         convention="scalar first: w, x, y, z; it turns vectors from the body frame to the table's",
     ),
 }
-"""The variables over time that Python and the page's engine compute, but the contact mode."""
+"""Variables over time that Python and the page's engine compute, except the contact mode."""
 
 DERIVED: Mapping[str, Variable] = {
     "angular_velocity": Variable(
@@ -332,7 +332,7 @@ DERIVED: Mapping[str, Variable] = {
         "kinetic energy of the turning of the axis", "J", "energy of turning"
     ),
 }
-"""The variables over time that follow from those of `SAMPLED`; the page's engine leaves them out.
+"""Variables over time that follow from those of `SAMPLED`; the page's engine omits them.
 
 The four parts of the energy add up to `energy`.
 """
@@ -409,10 +409,10 @@ METRICS: Mapping[str, Variable] = {
     "end_time": Variable("time at which the run ended", "s", "end"),
     "steps": Variable("steps of the integrator", "1", "steps", dtype="int32"),
 }
-"""The numbers of a launch: of a run, and over the cells of a sweep."""
+"""Single numbers of a launch: of a run, and over the cells of a sweep."""
 
 LASTING = tuple(name for name, variable in METRICS.items() if variable.lasting)
-"""Those that a longer run does not change, once they are numbers."""
+"""Metrics that a longer run does not change once they are numbers."""
 
 MONITORS: Mapping[str, Variable] = {
     "energy_start": Variable("energy at launch", "J"),
@@ -432,37 +432,35 @@ MONITORS: Mapping[str, Variable] = {
         "range of Jellett's integral over the run, relative to |L| h at launch", "1"
     ),
 }
-"""What is monitored in a run beside them."""
+"""Further single numbers of a run."""
 
 SWEPT: Mapping[str, Variable] = {
     "outcome": Variable(
-        f"what became of it (upright, inverted: within {NEAR_POLE} rad; moving: not settled)",
+        f"outcome (upright, inverted: within {NEAR_POLE} rad; moving: not settled)",
         label="outcome",
         dtype="int8",
         flags=meanings(Ending),
     ),
     "fault": Variable(
-        "why there is no such launch", label="fault", dtype="int8", flags=meanings(Fault)
+        "why the launch is not valid", label="fault", dtype="int8", flags=meanings(Fault)
     ),
     **METRICS,
 }
-"""Every variable over the cells of a sweep but the status."""
+"""Variables over the cells of a sweep, except the status."""
 
 LISTED: Mapping[str, Variable] = {
-    "event_time": Variable("when it happened", "s"),
-    "event_kind": Variable("what happened"),
+    "event_time": Variable("time of the event", "s"),
+    "event_kind": Variable("kind of event"),
     "event_impulse": Variable(
         "normal impulse of the table",
         "N s",
         frame="table",
         convention=SAMPLED["normal_force"].convention,
     ),
-    "event_energy_lost": Variable("energy lost in it", "J"),
-    "event_surface": Variable(
-        "number of the body's surface to which it happened", "1", dtype="int8"
-    ),
-    "flight_start": Variable("when the flight began", "s"),
-    "flight_end": Variable("when it ended", "s"),
-    "flight_highest_gap": Variable("highest gap in it", "m", frame="table"),
+    "event_energy_lost": Variable("energy lost in the event", "J"),
+    "event_surface": Variable("number of the body's surface in the event", "1", dtype="int8"),
+    "flight_start": Variable("time at which the flight began", "s"),
+    "flight_end": Variable("time at which the flight ended", "s"),
+    "flight_highest_gap": Variable("highest gap in the flight", "m", frame="table"),
 }
-"""The variables over the events and the flights of a run, by the word before their underscore."""
+"""Variables over the events and over the flights of a run; the prefix of the name says which."""

@@ -1,4 +1,4 @@
-"""Results as tables of pandas: samples, events and flights of a run, cells of a sweep."""
+"""Conversion of results to tables of pandas: samples, events and flights, or cells of a sweep."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -24,8 +24,7 @@ def to_dataframe(result: xr.Dataset, table: str | None = None) -> pd.DataFrame:
     result
         A run as `simulate` returns it, or a sweep as `sweep` does.
     table
-        Of a run: "samples", which is meant if left out, "events" or "flights". A sweep has one
-        table.
+        Table of a run: "samples", the default, "events" or "flights". A sweep has one table.
 
     Returns
     -------
@@ -96,7 +95,7 @@ def _list(run: xr.Dataset, table: str) -> tuple[pd.DataFrame, dict[str, str]]:
 
 
 def _cells(sweep: xr.Dataset) -> tuple[pd.DataFrame, dict[str, str]]:
-    # One cell alone has no dimension left, and pandas no table for it.
+    # A single cell has no dimension, and pandas makes no table of it.
     cells = decoded(sweep if sweep.sizes else sweep.expand_dims("cell"))
     table = cells.to_dataframe().reset_index()
     order = [name for name in table if name in sweep.coords]
@@ -106,5 +105,5 @@ def _cells(sweep: xr.Dataset) -> tuple[pd.DataFrame, dict[str, str]]:
 
 
 def _plain(value: Any) -> Any:
-    """Return the value as Python's own, which JSON can hold."""
+    """Return the value as a type of Python, which JSON can hold."""
     return value.tolist() if hasattr(value, "tolist") else value

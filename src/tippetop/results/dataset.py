@@ -1,4 +1,4 @@
-"""Results as labelled datasets: names, units, provenance."""
+"""Labelling of results as datasets, with names, units and provenance."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -26,22 +26,22 @@ NAMED = {
     name: PandasIndex(np.array(list(components)), name, coord_dtype=np.dtype("<U1"))
     for name, components in {"space": "xyz", "quaternion": "wxyz"}.items()
 }
-"""The components of vectors and quaternions."""
+"""Indexes of the components of vectors and quaternions."""
 
 LABELS = {name: index.create_variables()[name] for name, index in NAMED.items()}
-"""Their names as coordinates."""
+"""Names of the components, as coordinates."""
 
 TIME = {"long_name": "time since launch", "units": "s", "standard_name": "time"}
 CONVENTIONS = "CF-1.11"
 
 
 def require_run(run: object) -> None:
-    """Raise `InvalidInput` unless something is a run, as `simulate` returns it, or some of its
-    samples.
+    """Raise `InvalidInput` unless a value is a run that `simulate` returned, or some samples of
+    one.
     """
     named = {"time", *SAMPLED, *DERIVED, *METRICS, *MONITORS, *LISTED}
     if not (isinstance(run, xr.Dataset) and named <= set(run.variables) and run.sizes.get("time")):
-        raise InvalidInput("run", run, "a run that simulate returned, whole or some of its samples")
+        raise InvalidInput("run", run, "a run that simulate returned, or some of its samples")
     for name in ("problem", "outcome", "outcome_advice", "integrator"):
         if name not in run.attrs:
             raise InvalidInput(
@@ -57,12 +57,22 @@ def assemble(
     lists: Mapping[str, NDArray[Any]],
     attributes: Mapping[str, Any],
 ) -> xr.Dataset:
-    """Label the arrays of a run as `tippetop.results.catalogue` says.
+    """Return the arrays of a run as a dataset, labelled by `tippetop.results.catalogue`.
 
-    Over the sample times, s, shape (k,): the variables of `SAMPLED` and `DERIVED`,
-    shape (k, ...), and the numbers of the contact modes, shape (k,), with the names that they stand
-    for. Single numbers are those of `METRICS` and `MONITORS`, lists those of `LISTED`; the
-    attributes are the provenance.
+    Parameters
+    ----------
+    times
+        Sample times, s, shape (k,).
+    samples
+        Variables of `SAMPLED` and `DERIVED`, shape (k, ...).
+    modes
+        Numbers of the contact modes, shape (k,), and the names by these numbers.
+    numbers
+        Single numbers: those of `METRICS` and `MONITORS`.
+    lists
+        Variables of `LISTED`.
+    attributes
+        Provenance.
     """
     variables: dict[Any, xr.Variable] = {}
     for name, values in samples.items():
@@ -80,13 +90,13 @@ def assemble(
         dimension = name.partition("_")[0]
         variables[name] = xr.Variable((dimension,), values, LISTED[name].attributes, fastpath=True)
         lengths[dimension] = len(values)
-    # What xarray would find out about the times is known.
+    # A ready index saves xarray the analysis of the times.
     instants = PandasIndex(pd.Index(times, name="time"), "time", times.dtype, fastpath=True)
     indexes: dict[Any, Index] = {"time": instants, **NAMED}
     variables |= instants.create_variables()
     variables |= {name: labels.copy(deep=False) for name, labels in LABELS.items()}
     variables["time"].attrs = dict(TIME)
-    # The public constructor would align and merge what is aligned: it takes five times as long.
+    # The public constructor would align and merge aligned variables: it takes five times as long.
     return xr.Dataset._construct_direct(
         variables, set(indexes), lengths, {"Conventions": CONVENTIONS, **attributes}, indexes
     )

@@ -1,6 +1,4 @@
-"""Variables over time that follow from the others: parts of the energy, and vectors in the body
-frame.
-"""
+"""Derived variables over time: parts of the energy, and vectors in the body frame."""
 
 import numpy as np
 

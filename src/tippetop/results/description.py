@@ -1,6 +1,4 @@
-"""Accounts of runs in words: the clauses of `tippetop.results.account` read off a run, and their
-English.
-"""
+"""Descriptions of runs in words: the facts of a run for its account, and the English texts."""
 
 import json
 import math
@@ -18,11 +16,11 @@ from tippetop.results.catalogue import METRICS
 from tippetop.results.dataset import require_run
 
 MILLISECONDS, TENS = 0.01, 10.0
-"""Times below the first, s, are written in milliseconds, and from the second on in four digits."""
+"""Times below the first, s, are written in milliseconds; those above the second in four digits."""
 
 
 class Account(NamedTuple):
-    """What became of a launch, as clauses; `str` is English."""
+    """Account of a run as clauses; `str` gives English sentences."""
 
     clauses: tuple[Clause, ...]
 
@@ -35,13 +33,13 @@ class Account(NamedTuple):
 
     @property
     def headline(self) -> str:
-        """What it does and where it ends, as one phrase without its subject."""
+        """Motion and end, as one phrase without a subject."""
         clauses = [clause for clause in self.clauses if clause.part in ("motion", "end")]
         return "; ".join(phrase(clause) for clause in clauses)
 
     @property
     def details(self) -> tuple[str, ...]:
-        """How it begins and what theory says, as sentences."""
+        """Launch and theory, as sentences."""
         pronoun = _english()["pronoun"]
         clauses = [clause for clause in self.clauses if clause.part in ("launch", "theory")]
         return tuple(f"{pronoun} {phrase(clause)}." for clause in clauses)
@@ -52,9 +50,9 @@ class Account(NamedTuple):
 
 
 def describe(run: xr.Dataset) -> Account:
-    """Return the account of a run: how it begins, what happens, where it ends, what theory says.
+    """Return the account of a run: its launch, motion and end, and what theory says of them.
 
-    Raises `InvalidInput` if the run is none.
+    Raises `InvalidInput` if the argument is no run.
 
     Examples
     --------
@@ -75,7 +73,7 @@ def describe(run: xr.Dataset) -> Account:
         run["event_surface"].values.tolist(),
         strict=True,
     )
-    # Events of the user's own have other names; an account tells of the run's.
+    # Events of users' functions have other names, and no clauses.
     kinds = {kind.value for kind in EventKind}
     events = [Event(EventKind(kind), *numbers) for kind, *numbers in rows if kind in kinds]
     flights = zip(
@@ -108,7 +106,7 @@ def _english() -> dict[str, Any]:
 
 
 def written(gap: str, value: float, units: Mapping[str, str]) -> str:
-    """Return a number for people, with the unit that the gap of a text asks for."""
+    """Return a number for people, with the unit for its placeholder in a text."""
     match gap:
         case "time" | "duration":
             if 0.0 < value < MILLISECONDS:
@@ -132,7 +130,7 @@ def written(gap: str, value: float, units: Mapping[str, str]) -> str:
 
 
 def _digits(value: float, count: int) -> str:
-    """Return a number of so many digits, with a true minus sign and none before zero."""
+    """Return a number with `count` digits, a true minus sign, and no sign before zero."""
     rounded = float(f"{value:.{count}g}")
     if abs(rounded) < ZERO:
         return "0"
@@ -142,4 +140,4 @@ def _digits(value: float, count: int) -> str:
 
 
 ZERO = 1e-4
-"""Numbers for people that are zero, in the units that they are told in: less is rounding."""
+"""Size below which a number for people is written as 0, in its unit: it is rounding."""

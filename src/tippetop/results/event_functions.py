@@ -1,9 +1,9 @@
-"""Events of the user's own: changes of sign of functions of the state, found during a run.
+"""Events of users' functions: changes of sign of functions of the state, located during a run.
 
-Every function is located on the dense solution of each step, whatever it is made of: Python code
-that looks at numbers cannot be recorded and compiled as the guards of contact modes are, and the
-dense solution is exact to rounding, so that one mechanism serves all functions. The integrator
-takes the same steps with and without them.
+Crossings are located on the dense solution of each step: Python code that branches on numbers
+cannot be recorded and compiled as the guards of contact modes are, and the dense solution is exact
+to rounding, so that one mechanism serves all functions. The integrator takes the same steps with
+and without them.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -23,34 +23,33 @@ from tippetop.results.motion_state import MotionState, states_in
 from tippetop.support.errors import InvalidInput, is_number
 from tippetop.support.suggestions import not_one_of
 
-LOOKS = 16
-"""Intervals of a step at whose ends a function is evaluated. A step is short beside the radius of
-convergence of the motion; with fewer, functions that vary faster than the motion lose crossings,
-with more, every step costs more.
+INTERVALS_PER_STEP = 16
+"""Intervals of a step at whose ends a function is evaluated. With fewer, crossings of functions
+that vary faster than the motion are missed; with more, every step costs more.
 """
 
 KINDS = tuple(kind.value for kind in EventKind)
 """Names of the events that every run reports."""
 
 UNTIL = "until"
-"""Name of the event of a function that a run is asked to end at."""
+"""Name of the event of a function passed as `until`."""
 
 Value = Callable[[MotionState], Any]
 
 
 @dataclass(frozen=True)
 class EventFunction:
-    """A function of the state whose changes of sign are events, with their direction.
+    """Function of the state whose changes of sign are events.
 
-    A function without this class may have the same attributes `direction` and `terminal`, as with
-    `scipy.integrate.solve_ivp`.
+    Instead of an instance, a function may be passed that has the attributes `direction` and
+    `terminal`, as for `scipy.integrate.solve_ivp`.
 
     Attributes
     ----------
     function
-        From a `MotionState` to a number.
+        Function of a `MotionState` that returns a number.
     direction
-        1 for crossings from below alone, -1 for those from above alone, 0 for both.
+        1 for crossings from below only, -1 for those from above only, 0 for both.
     terminal
         Whether the first crossing ends the run.
 
@@ -72,43 +71,43 @@ class EventFunction:
         return self.function(state)
 
 
-class OwnEvent(NamedTuple):
-    """A change of sign of a function."""
+class FunctionEvent(NamedTuple):
+    """Change of sign of a user's function."""
 
     time: float
-    """When, in the units of the run."""
+    """Time, in the units of the run."""
     name: str
     """Name of the function."""
 
 
 class Stop(NamedTuple):
-    """The end of a run at an event that it was asked to end at."""
+    """End of a run at a terminal event."""
 
     block: Block
-    """The steps of the block up to there."""
+    """Steps of the block up to the event."""
     time: float
     state: State
-    """When, and the state, in the units of the run."""
+    """Time and state of the event, in the units of the run."""
     name: str
     """Name of the event."""
 
 
 class EventSearch:
-    """Search for the events of functions, block by block, and for the event that ends the run.
+    """Search for events of functions, and for the event that ends the run, block by block.
 
     Parameters
     ----------
     events
         Functions of the state by the names of their events.
     until
-        What ends the run: the name of one of them or of one of the run's own kinds, or a function.
+        Event that ends the run: the name of a function or of a kind of event, or a function.
     units
         Units of the run.
 
     Raises
     ------
     InvalidInput
-        If there is no such event, or a function or its attributes cannot be.
+        If there is no such event, or a function or its attributes are not accepted.
     """
 
     def __init__(
@@ -125,11 +124,11 @@ class EventSearch:
             self.kind = str(until)
         elif until is not None:
             raise not_one_of("until", until, ["a function", *self.functions, *KINDS])
-        self.events = list[OwnEvent]()
+        self.events = list[FunctionEvent]()
         self._signs = dict[str, float]()
 
     def blocks_of(self, trajectory: Trajectory) -> Iterator[Block]:
-        """Follow a trajectory to its end, or to the event that ends it, block by block."""
+        """Yield the blocks of a trajectory up to its end, or to the event that ends it."""
         if self._is_end(trajectory.start):
             trajectory.events += trajectory.start.events
             self._end(trajectory, 0.0, trajectory.start.state, str(self.kind))
@@ -149,24 +148,24 @@ class EventSearch:
         trajectory.end_at(time, state, Outcome.STOPPED, when)
 
     def _is_end(self, transition: Transition) -> bool:
-        """Whether an event in a transition is of the kind that ends the run."""
+        """Return whether a transition has an event of the kind that ends the run."""
         return self.kind in [event.kind.value for event in transition.events]
 
     def _take(self, block: Block) -> Stop | None:
-        """Search a block; return where the run ends in it, if it does."""
+        """Record the events of functions in a block; return the end of the run if it is in it."""
         stop = self._stop_at_kind(block)
         if not self.functions or not len(block.starts):
             return stop
-        step = np.repeat(np.arange(len(block.starts)), LOOKS + 1)
-        part = np.tile(np.linspace(0.0, 1.0, LOOKS + 1), len(block.starts))
+        step = np.repeat(np.arange(len(block.starts)), INTERVALS_PER_STEP + 1)
+        part = np.tile(np.linspace(0.0, 1.0, INTERVALS_PER_STEP + 1), len(block.starts))
         states = states_in(block, step, part, self.units)
-        events = list[OwnEvent]()
+        events = list[FunctionEvent]()
         for name, function in self.functions.items():
             values = _values(name, function, states)
             crossing = self._crossings(name, function, block, (step, part, values))
             for in_step, at in zip(*crossing, strict=True):
                 time = float(block.starts[in_step] + at * block.spans[in_step])
-                events.append(OwnEvent(time, name))
+                events.append(FunctionEvent(time, name))
                 if function.terminal and (stop is None or time < stop.time):
                     stop = Stop(*block.until(int(in_step), float(at)), name)
                     break
@@ -174,7 +173,9 @@ class EventSearch:
         return stop
 
     def _stop_at_kind(self, block: Block) -> Stop | None:
-        """Return the end of the first segment after which an event of the kind asked for is."""
+        """Return the end of the first segment that ends with an event of the kind sought, or
+        None.
+        """
         if self.kind is None:
             return None
         for number, segment in enumerate(block.segments):
@@ -189,13 +190,13 @@ class EventSearch:
         name: str,
         function: EventFunction,
         block: Block,
-        looks: tuple[NDArray[np.intp], Array, Array],
+        probes: tuple[NDArray[np.intp], Array, Array],
     ) -> tuple[NDArray[np.intp], Array]:
-        """Return the steps in which a function changes sign, and the parts of them passed then.
+        """Return the steps in which a function changes sign, and the fraction of each step then.
 
-        `looks` has the steps, the parts and the values where the function was evaluated.
+        `probes` has the steps, the fractions and the values at which the function was evaluated.
         """
-        # SciPy is slow to import, and needed only by who has functions.
+        # SciPy is slow to import, and needed only if there are functions.
         from scipy.optimize.elementwise import find_root  # noqa: PLC0415
 
         def evaluate(part: Array, step: Array) -> Array:
@@ -204,8 +205,8 @@ class EventSearch:
             states = states_in(block, which, part.ravel(), self.units)
             return _values(name, function, states).reshape(part.shape)
 
-        step, part, values = _with_dips(evaluate, *looks)
-        # The sign with which the block before ended stands before the first look.
+        step, part, values = _with_dips(evaluate, *probes)
+        # The sign at the end of the block before precedes the first probe.
         signs = np.concatenate([[self._signs.get(name, 0.0)], np.sign(values)])
         nonzero = np.flatnonzero(signs)
         if len(nonzero):
@@ -215,38 +216,43 @@ class EventSearch:
         if function.direction:
             changes &= signs[after] == np.sign(function.direction)
         low, high = before[changes] - 1, after[changes] - 1
-        # Where looks at zero lie between, the first of them is where it crosses; where a step
-        # ends between, the start of the next: zero lies in rounding there, or an impact jumps it.
+        # If probes at zero lie between, the first of them is the crossing. If a step ends between,
+        # it is the start of the next one: zero is there to rounding, or an impact jumps over it.
         place = low + 1
-        found_step, found_part = step[place], part[place]
+        crossing_step, crossing_part = step[place], part[place]
         inside = np.flatnonzero((high == place) & (low >= 0) & (step[low] == step[place]))
         if len(inside):
             ends = np.stack([low[inside], place[inside]])
-            root = find_root(evaluate, tuple(part[ends]), args=(found_step[inside].astype(float),))
-            # A look within rounding of zero may have the other sign when it is evaluated again.
+            root = find_root(
+                evaluate, tuple(part[ends]), args=(crossing_step[inside].astype(float),)
+            )
+            # A value within rounding of zero may have the other sign when evaluated again.
             sizes = np.abs(values[ends])
             nearest = np.where(sizes[0] < sizes[1], part[ends[0]], part[ends[1]])
-            found_part[inside] = np.where(root.success, root.x, nearest)
-        return found_step, found_part
+            crossing_part[inside] = np.where(root.success, root.x, nearest)
+        return crossing_step, crossing_part
 
 
 def _with_dips(
     evaluate: Callable[[Array, Array], Array], step: NDArray[np.intp], part: Array, values: Array
 ) -> tuple[NDArray[np.intp], Array, Array]:
-    """Add to looks those between them where a function dips through zero and comes back."""
+    """Return the probes with further ones where a function dips through zero and comes back."""
     from scipy.optimize.elementwise import find_minimum  # noqa: PLC0415 - see `_crossings`
 
-    table = values.reshape(-1, LOOKS + 1)
-    which, look = np.indices(table.shape)
-    middle = np.clip(look, 1, LOOKS - 1)
-    left, here, right = (table[which, middle + k] for k in (-1, 0, 1))
+    table = values.reshape(-1, INTERVALS_PER_STEP + 1)
+    which, probe = np.indices(table.shape)
+    middle = np.clip(probe, 1, INTERVALS_PER_STEP - 1)
+    before, at, after = (table[which, middle + k] for k in (-1, 0, 1))
     sign = np.sign(table)
-    bend = sign * (left - 2.0 * here + right)
+    bend = sign * (before - 2.0 * at + after)
     with np.errstate(all="ignore"):
-        vertex = (middle + 0.5 * sign * (left - right) / bend) / LOOKS
-    low, high = np.maximum(look - 1, 0) / LOOKS, np.minimum(look + 1, LOOKS) / LOOKS
+        vertex = (middle + 0.5 * sign * (before - after) / bend) / INTERVALS_PER_STEP
+    low, high = (
+        np.maximum(probe - 1, 0) / INTERVALS_PER_STEP,
+        np.minimum(probe + 1, INTERVALS_PER_STEP) / INTERVALS_PER_STEP,
+    )
     near = (bend > 0.0) & (np.abs(table) <= bend) & (vertex > low) & (vertex < high)
-    near &= (np.sign(left) == sign) & (np.sign(right) == sign)
+    near &= (np.sign(before) == sign) & (np.sign(after) == sign)
     if not near.any():
         return step, part, values
     in_step, signs = which[near].astype(float), sign[near]
@@ -272,13 +278,13 @@ def _checked(events: Mapping[str, Value] | None) -> dict[str, EventFunction]:
         raise InvalidInput("events", events, "a table of functions by the names of their events")
     for name in events:
         if not isinstance(name, str) or not name or name in (*KINDS, UNTIL):
-            own = f"a name, and none that runs have themselves: {', '.join((*KINDS, UNTIL))}"
-            raise InvalidInput("events", name, own)
+            accepted = f"a name other than those of the run's events: {', '.join((*KINDS, UNTIL))}"
+            raise InvalidInput("events", name, accepted)
     return {name: _event_function(name, function) for name, function in events.items()}
 
 
 def _event_function(name: str, function: Value, terminal: bool | None = None) -> EventFunction:
-    """Return a function with its attributes, or with one that is given."""
+    """Return a function with its attributes; `terminal`, if not None, replaces its own."""
     field = _field(name)
     if not callable(function):
         raise InvalidInput(field, function, "a function of the state that returns a number")
@@ -294,11 +300,11 @@ def _event_function(name: str, function: Value, terminal: bool | None = None) ->
 def _values(name: str, function: EventFunction, states: MotionState) -> Array:
     """Return the values of a function at n instants, shape (n,).
 
-    It is called once for all of them; where it cannot take arrays, once for each.
+    It is called once for all of them, or once for each if it does not accept arrays.
     """
     try:
         values = np.asarray(function(states))
-    except Exception:  # noqa: BLE001 - whatever it is, the calls with numbers say
+    except Exception:  # noqa: BLE001 - the calls with single numbers say what is wrong
         values = np.empty(0)
     if values.shape != states.time.shape or values.dtype.kind not in "iuf":
         values = np.array([_value(name, function, state) for state in states.each()])
@@ -320,11 +326,11 @@ def _value(name: str, function: EventFunction, state: MotionState) -> float:
 
 
 def _no_number(name: str, time: float, value: object) -> InvalidInput:
-    """Return the error of a function that gives such a value, or such an error, at a time, s."""
+    """Return the refusal of a function that returns or raises `value` at a time, s."""
     accepted = f"a function of the state that returns a finite number, also at {time:.4g} s"
     return InvalidInput(_field(name), value, accepted)
 
 
 def _field(name: str) -> str:
-    """Return how users write the function of an event."""
+    """Return the name of the argument that holds the function of an event."""
     return UNTIL if name == UNTIL else f"events[{name!r}]"

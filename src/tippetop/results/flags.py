@@ -1,4 +1,4 @@
-"""Variables of flags: numbers with CF's flag_meanings in files, words for people."""
+"""Variables of flags: numbers with CF's flag_meanings in files, words in datasets."""
 
 from typing import Any
 
@@ -8,18 +8,16 @@ from numpy.typing import NDArray
 
 
 def flag_words(numbers: NDArray[Any], meanings: str) -> NDArray[np.str_]:
-    """Return the word of each number, by CF's flag_meanings; an empty one where nothing is
-    known.
-    """
+    """Return the word of each number, by CF's flag_meanings; "" for other numbers."""
     words = np.array([*meanings.split(), ""])
     return np.asarray(words[np.where((numbers >= 0) & (numbers < len(words)), numbers, -1)])
 
 
 def decoded(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset with words for the numbers of flags.
+    """Return the dataset with the numbers of flags replaced by words.
 
-    The attribute flag_meanings stays and lists the words; flag_values goes. What is read when it
-    is used is decoded then.
+    The attribute flag_meanings stays and lists the words; flag_values is removed. Lazy arrays are
+    decoded when they are read.
     """
     words = dict[Any, xr.DataArray]()
     for name, variable in dataset.data_vars.items():
@@ -41,7 +39,7 @@ def decoded(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def encoded(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset with the numbers of flags for words, -1 for an empty word."""
+    """Return the dataset with the words of flags replaced by numbers, "" by -1."""
     numbers = dict[Any, xr.DataArray]()
     for name, variable in dataset.data_vars.items():
         if not _has_flags(variable) or np.issubdtype(variable.dtype, np.integer):

@@ -1,8 +1,7 @@
-"""Each number of a launch, defined once: for one launch and for arrays of them.
+"""Metrics of launches, each defined once for one launch and for arrays of launches.
 
-A number is an event or an extreme of the motion itself, never of its samples. `Ends` is what an
-executor finds on its way, in natural units; `metrics` makes every number of
-`tippetop.results.catalogue.METRICS` of it.
+A metric is an event or an extreme of the motion itself, never of its samples. An executor collects
+`Ends` in natural units; `metrics` computes all of `tippetop.results.catalogue.METRICS` from them.
 """
 
 from collections.abc import Sequence
@@ -29,19 +28,19 @@ from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, R
 from tippetop.results.settling import is_barred, tilt
 
 OUTCOMES = tuple(Outcome)
-"""How a launch can end, by number."""
+"""Outcomes by number."""
 
 Flags = NDArray[np.bool_]
 
 
 @dataclass
 class Ends:
-    """What was found of launches, in natural units: all of shape (n,), or numbers of one."""
+    """Ends of n launches and what led to them, in natural units: shape (n,), or numbers of one."""
 
     state: State
-    """The states at the end."""
+    """States at the end."""
     time: Scalar
-    """When that was."""
+    """Times of the end."""
     outcome: Scalar
     """Numbers of `OUTCOMES`."""
     steps: Scalar
@@ -50,7 +49,7 @@ class Ends:
     least_force: Scalar
     """Least normal force; 0 where the top left the table."""
     lift_off: Scalar
-    """First time the table let go; nan if it never did."""
+    """Time of the first lift-off; nan without one."""
     struck: Scalar
     drilled: Scalar
     rolled: Scalar
@@ -58,27 +57,25 @@ class Ends:
     airborne: Scalar
     highest_gap: Scalar
     highest: Scalar
-    """Time spent in the air, and there the largest gap and the largest height of the centre of
-    mass.
-    """
+    """Time in the air, and the largest gap and height of the centre of mass in flights."""
     down: Scalar
     up: Scalar
     """Least and largest n_z."""
     turned: Scalar
-    """First time n_z fell through 0; nan if it never did."""
+    """First time at which n_z fell through 0; nan if it never did."""
     settled: Scalar
-    """Tilt near which the motion stays for good; nan if it may move (see
+    """Tilt near which the motion stays for ever; nan if it may leave it (see
     `tippetop.results.settling`).
     """
     arrived: Scalar
-    """First time n_z was in the band of `settled_band`; nan if it never was."""
+    """First time at which n_z was in the band of `settled_band`; nan if it never was."""
     rolls: Scalar
-    """1 where it rolls without slip and without loss at the end, else 0."""
+    """1 if the top rolls without slip and without loss at the end, else 0."""
 
     # translate: skip
     @classmethod
     def unknown(cls, count: int) -> "Ends":
-        """Ends that nothing is known of yet."""
+        """Return ends of launches that have not been followed yet."""
         unknown: dict[str, Any] = {field.name: np.full(count, np.nan) for field in fields(cls)}
         none = {
             name: np.zeros(count)
@@ -106,10 +103,10 @@ class Ends:
         settling: tuple[float, float, float],
         rolls: float,
     ) -> "Ends":
-        """The ends of one launch.
+        """Return the ends of one launch.
 
-        `resisted` has the energy lost to drilling and to rolling; `least`, the least values of the
-        normal force, n_z, -n_z and, in flights, the negative height; `settling`, the numbers
+        `resisted` holds the energy lost to drilling and to rolling, `least` the least values of the
+        normal force, n_z, -n_z and, in flights, the negative height, and `settling` the numbers
         `turned`, `settled` and `arrived`.
         """
         lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
@@ -134,72 +131,69 @@ class Ends:
         )
 
     # translate: skip
-    def put(self, where: NDArray[np.intp], found: "Ends") -> None:
-        """Put what was found of some launches in its places."""
+    def put(self, where: NDArray[np.intp], ends: "Ends") -> None:
+        """Copy the ends of some launches to their places."""
         for field in fields(self):
-            mine, theirs = getattr(self, field.name), getattr(found, field.name)
+            mine, theirs = getattr(self, field.name), getattr(ends, field.name)
             if field.name == "state":
-                for kept, number in zip(mine.pack(), theirs.pack(), strict=True):
-                    kept[where] = number
+                for column, number in zip(mine.pack(), theirs.pack(), strict=True):
+                    column[where] = number
             else:
                 mine[where] = theirs
 
 
 # translate: skip
 def turning_time(tip: Polynomials) -> Array:
-    """First times at which n_z falls through 0 from above, nan where it does not, shape (n,).
+    """Return the first times at which n_z falls through 0, shape (n,); nan where it does not.
 
-    A top that starts beyond a right angle turns over when it passes it from below.
+    A top that starts beyond a right angle must first return below it.
     """
     return tip.first_fall(from_above=True)
 
 
 # translate: skip
 def arrival_time(tip: Polynomials, low: Scalar, high: Scalar) -> Array:
-    """First times at which n_z is between `low` and `high`, shape (n,); nan where it is not."""
+    """Return the first times at which n_z is between `low` and `high`, shape (n,), or nan."""
     start = tip.unit[0]
     above, below = start > high, start < low
-    # From above n_z falls to the upper end, from below its negative to that of the lower.
+    # From above, n_z falls to the upper bound; from below, -n_z falls to minus the lower bound.
     sign, shift = np.where(above, 1.0, -1.0), np.where(above, -high, low)
     falls = tip.some(np.arange(len(tip.span)), sign, shift).first_fall()
-    found: Array = np.where(above | below, falls, 0.0)
-    return found
+    times: Array = np.where(above | below, falls, 0.0)
+    return times
 
 
 # translate: skip
 def last_outside(tip: Polynomials, low: Scalar, high: Scalar) -> Array:
-    """Last times at which n_z is not between `low` and `high`, shape (n,); nan where it always
-    is.
-    """
+    """Return the last times at which n_z is not between `low` and `high`, shape (n,), or nan."""
     last, back = tip.values[-1], tip.backward()
     every = np.arange(len(tip.span))
     exits = [back.some(every, sign, at).first_fall() for sign, at in ((-1.0, high), (1.0, -low))]
     within = tip.span - np.fmin(*exits)
-    found: Array = np.where((last > high) | (last < low), tip.span, within)
-    return found
+    times: Array = np.where((last > high) | (last < low), tip.span, within)
+    return times
 
 
 def settled_band(settled: Scalar) -> tuple[Scalar, Scalar]:
-    """Return the least and the largest n_z near tilts at which motions settle, each of shape (n,);
-    nan where they do not.
+    """Return the bounds of n_z near the tilts at which motions settle, shape (n,), or nan.
 
-    A band about a pole is open there: rounding takes n_z beyond 1.
+    A band about a pole has no bound there, because rounding can make n_z larger than 1.
     """
     low = np.where(settled + NEAR_FINAL < np.pi, np.cos(settled + NEAR_FINAL), -OPEN)
     high = np.where(settled - NEAR_FINAL > 0.0, np.cos(settled - NEAR_FINAL), OPEN)
-    known = settled == settled
-    return np.where(known, low, np.nan), np.where(known, high, np.nan)
+    settles = settled == settled
+    return np.where(settles, low, np.nan), np.where(settles, high, np.nan)
 
 
 OPEN = 2.0
-"""A number that n_z never reaches."""
+"""Bound of n_z that is never reached."""
 
 
 def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArray[Any]]:
-    """Every number of `tippetop.results.catalogue.METRICS` in SI, by name, each of shape (n,).
+    """Return all of `tippetop.results.catalogue.METRICS` in SI, by name, each of shape (n,).
 
-    `start` has the states at launch in natural units, every number of shape (n,); `top` and
-    `units`, the tops in natural units and those units, have numbers, or arrays of shape (n,).
+    `start` has the states at launch in natural units, shape (n,). `top` has the tops in natural
+    units and `units` these units; their numbers may have shape (n,) too.
     """
     end = ends.state
     with np.errstate(all="ignore"):
@@ -239,31 +233,32 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
 
 
 def highest_seen(ends: Ends) -> Array:
-    """Return the largest tilts that were met on the way, rad."""
+    """Return the largest tilts of the launches, rad."""
     sine = np.sqrt(np.maximum(1.0 - ends.down**2, 0.0))
-    found: Array = np.arctan2(sine, ends.down)
-    return found
+    tilts: Array = np.arctan2(sine, ends.down)
+    return tilts
 
 
 # translate: skip
 def ending(ends: Ends, start: State) -> NDArray[np.int8]:
-    """Return numbers of `tippetop.results.catalogue.Ending`, shape (n,), given the states at
-    launch.
+    """Return the endings of launches as numbers of `tippetop.results.catalogue.Ending`.
+
+    `start` has the states at launch; the result has shape (n,).
     """
     final, risen = tilt(ends.state), highest_seen(ends)
     near = [final <= NEAR_POLE, final >= np.pi - NEAR_POLE]
     settled = np.isfinite(ends.settled)
-    found = np.where(
+    endings = np.where(
         settled,
         np.select(near, [Ending.UPRIGHT, Ending.INVERTED], Ending.TILTED),
         np.select(near, [Ending.MOVING_UPRIGHT, Ending.MOVING_INVERTED], Ending.MOVING_TILTED),
     )
-    found[~settled & (np.asarray(ends.rolls) > 0.0)] = Ending.ROLLING
+    endings[~settled & (np.asarray(ends.rolls) > 0.0)] = Ending.ROLLING
     for number, outcome in enumerate(OUTCOMES):
         if outcome is not Outcome.COMPLETED:
-            found[ends.outcome == number] = getattr(Ending, outcome.name, Ending.FAILED)
+            endings[ends.outcome == number] = getattr(Ending, outcome.name, Ending.FAILED)
     came_down = risen - np.maximum(final, tilt(start)) > RISE
     below = np.isfinite(ends.turned) & (tilt(start) < LEANS_AT_LAUNCH) & (final < 0.5 * np.pi)
-    known = ~np.isin(found, [Ending.FAILED, Ending.INACCURATE, Ending.LIFTED_OFF])
-    found[known & came_down & (below | settled)] = Ending.FELL_BACK
-    return found.astype(np.int8)
+    is_followed = ~np.isin(endings, [Ending.FAILED, Ending.INACCURATE, Ending.LIFTED_OFF])
+    endings[is_followed & came_down & (below | settled)] = Ending.FELL_BACK
+    return endings.astype(np.int8)

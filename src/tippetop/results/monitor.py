@@ -1,4 +1,4 @@
-"""What every motion keeps, and how far a run is off it: the same for one launch and for many."""
+"""Monitoring of conserved quantities, which tells whether a run can be trusted."""
 
 import numpy as np
 
@@ -11,30 +11,29 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, length
 
 LEAST_MOMENT = 1e-6
-"""Size |L| h of Jellett's integral at launch, in natural units, below which its drift says nothing.
+"""Least size |L| h of Jellett's integral at launch, natural units, for which its relative drift is
+used: below it the drift is rounding.
 """
 
-WORST, ACCUMULATED = 1e-6, 1e4
-"""How far, relatively, a run may be off what every motion keeps: this, or this many times its
-tolerance.
+LARGEST_ERROR, ERROR_PER_TOLERANCE = 1e-6, 1e4
+"""Largest relative error of conserved quantities in a run that is trusted: the first, or the second
+times the tolerance of the steps. Correct runs stay well below both, defects exceed them.
 """
 
-WAYS_TO_END = (
+OUTCOMES_OF_MOTION = (
     Outcome.COMPLETED,
     Outcome.LIFTED_OFF,
     Outcome.AT_REST,
     Outcome.LYING_FLAT,
     Outcome.STOPPED,
 )
-"""Outcomes that tell what the motion came to, which is not known of a run that cannot be trusted;
-the others say why it is not told.
+"""Outcomes that describe the motion, which a run that cannot be trusted does not have; all others
+say why a run failed.
 """
 
 
-def kept(state: State, top: Top) -> tuple[Scalar, Scalar, Scalar, Scalar, Scalar]:
-    """What `Monitor.see` sees of a state but the work: |n|, n_z, height, energy and Jellett's
-    integral.
-    """
+def monitored_quantities(state: State, top: Top) -> tuple[Scalar, Scalar, Scalar, Scalar, Scalar]:
+    """Return |n|, n_z, the height, the energy and Jellett's integral of a state."""
     return (
         length(state.axis),
         state.axis[2],
@@ -45,9 +44,7 @@ def kept(state: State, top: Top) -> tuple[Scalar, Scalar, Scalar, Scalar, Scalar
 
 
 class Monitor:
-    """How far launches go off what they begin with, in natural units: one, or n with arrays for
-    numbers.
-    """
+    """Monitor of conserved quantities of one launch, or of n with arrays, in natural units."""
 
     def __init__(self, top: Top, start: State) -> None:
         self.top = top
@@ -70,38 +67,34 @@ class Monitor:
 
     @property
     def inaccuracy(self) -> Scalar:
-        """How far, relatively, the run is off what every motion keeps: energy and work, |n|,
-        lambda, gaps.
-
-        No number if one of these is none.
-        """
-        telling = self._moment > LEAST_MOMENT
-        drift = np.where(telling, self.jellett_drift, 0.0) if self.top.conserves_jellett else 0.0
+        """Largest relative error of energy and work, |n|, lambda and penetration; nan if one is."""
+        is_large = self._moment > LEAST_MOMENT
+        drift = np.where(is_large, self.jellett_drift, 0.0) if self.top.conserves_jellett else 0.0
         with np.errstate(invalid="ignore"):
             imbalance = self._imbalance / self._largest
         return np.maximum(np.maximum(imbalance, self._off_unit), np.maximum(drift, self._sunk))
 
     def is_trusted(self, tolerance: float) -> Scalar:
-        """Whether that is little, for steps of a relative error: a truth value, or an array of
-        them.
-        """
-        return self.inaccuracy <= max(WORST, ACCUMULATED * tolerance)
+        """Return whether the inaccuracy is small enough for steps of a relative tolerance."""
+        return self.inaccuracy <= max(LARGEST_ERROR, ERROR_PER_TOLERANCE * tolerance)
 
-    def judged(self, outcome: Outcome, tolerance: float) -> Outcome:
-        """How one launch ended: as its motion came to end only if it can be trusted."""
+    def trusted_outcome(self, outcome: Outcome, tolerance: float) -> Outcome:
+        """Return the outcome of one launch, or INACCURATE if its run cannot be trusted."""
         return (
             Outcome.INACCURATE
-            if outcome in WAYS_TO_END and not self.is_trusted(tolerance)
+            if outcome in OUTCOMES_OF_MOTION and not self.is_trusted(tolerance)
             else outcome
         )
 
-    def concluded(self, outcome: Outcome, state: State, work: Scalar, tolerance: float) -> Outcome:
-        """How one launch ended, by its last state, too, and all work since launch; see `judged`."""
-        if outcome in WAYS_TO_END:
-            self.see(*kept(state, self.top), work)
-        return self.judged(outcome, tolerance)
+    def final_outcome(
+        self, outcome: Outcome, state: State, work: Scalar, tolerance: float
+    ) -> Outcome:
+        """Return `trusted_outcome` after checking the last state with all work since launch."""
+        if outcome in OUTCOMES_OF_MOTION:
+            self.check(*monitored_quantities(state, self.top), work)
+        return self.trusted_outcome(outcome, tolerance)
 
-    def see(
+    def check(
         self,
         size: Scalar,
         cosine: Scalar,
@@ -110,9 +103,10 @@ class Monitor:
         jellett: Scalar,
         work: Scalar,
     ) -> None:
-        """See some instants: |n|, n_z, and of work all since launch.
+        """Update the largest errors by the quantities at some instants.
 
-        Numbers, or arrays of one shape whose first axis is that of the instants.
+        `size` is |n|, `cosine` n_z, and `work` all work since launch. All are numbers, or arrays
+        of one shape whose first axis is that of the instants.
         """
         imbalance = np.max(np.abs(energy - self._energy - work), 0)
         self._imbalance = np.maximum(self._imbalance, imbalance)
@@ -121,7 +115,7 @@ class Monitor:
         self._least = np.minimum(self._least, np.min(jellett, 0))
         self._most = np.maximum(self._most, np.max(jellett, 0))
         if isinstance(self.top.surface, Hull):
-            # The axis is a unit vector to rounding, and its cosine may be beyond 1.
+            # The axis is a unit vector only to rounding, so that |n_z| may exceed 1.
             cosine = np.minimum(np.maximum(cosine, -1.0), 1.0)
             sunk = outer_height(self.top.surface, cosine) - height
             self._sunk = np.maximum(self._sunk, np.max(sunk, 0))

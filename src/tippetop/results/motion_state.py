@@ -1,4 +1,4 @@
-"""The state of the top at instants of a run, in SI: what a user's functions and solutions see."""
+"""State of the top at instants of a run, in SI, for users' functions and dense solutions."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ from tippetop.mechanics.view import axis_sine
 
 
 class MotionState(NamedTuple):
-    """The state of the top at an instant, or at n instants, in SI units.
+    """State of the top at an instant, or at n instants, in SI units.
 
     At one instant numbers are floats and vectors have shape (3,); at n instants numbers have shape
     (n,) and vectors shape (3, n), so that ``s.axis[2]`` is n_z of either. Vectors are in the
@@ -56,7 +56,7 @@ class MotionState(NamedTuple):
 
     @classmethod
     def of(cls, time: Array, instants: Instants, units: Units) -> "MotionState":
-        """Return the states at n times, s, from what is read off them in natural units."""
+        """Return the states at n times, s, from readings in natural units."""
         state = instants.state
         return cls(
             time,
@@ -74,7 +74,9 @@ class MotionState(NamedTuple):
         )
 
     def each(self) -> Iterator["MotionState"]:
-        """Return the states at n instants one by one, as floats and vectors of shape (3,)."""
+        """Return an iterator over the states at n instants, with floats and vectors of shape
+        (3,).
+        """
         columns: list[Any] = [
             value.T.copy() if value.ndim > 1 else value.tolist() for value in self
         ]
@@ -91,11 +93,11 @@ def states_in(
     block
         The steps.
     step, part
-        The step of each instant, and the part of that step that has passed, both of shape (m,).
+        The step of each instant, and the fraction of that step that has passed, both of shape (m,).
     units
-        The units that the block is in.
+        Units of the block.
     time
-        Times of the instants, s, shape (m,); computed from step and part where left out.
+        Times of the instants, s, shape (m,); by default computed from step and part.
     """
     rows = np.empty((TOLD, len(step)))
     for _, where, numbers in block.sampled(step, part):

@@ -1,9 +1,8 @@
-"""Runs in NetCDF files, read back as they were written or not at all.
+"""Writing and reading of runs as NetCDF files with a checksum.
 
-A file ends in a line with the digest of all that stands before it. HDF5, and so every reader of
-NetCDF, passes over what follows its own end. Here nothing is made of a file before its digest is
-found right: HDF5 itself takes damaged numbers and words for good ones, and may crash where a file
-is damaged elsewhere.
+A file ends in a line with the digest of everything before it, which HDF5, and so every reader of
+NetCDF, ignores. `read_run` checks the digest first: HDF5 reads damaged numbers and words without an
+error, and may crash on other damage.
 """
 
 import hashlib
@@ -24,19 +23,18 @@ from tippetop.support.files import (
 )
 
 SEAL = b"\ntippetop sha256 "
-"""What stands between the NetCDF and its digest."""
+"""Bytes between the NetCDF file and its digest."""
 
 _LENGTH = len(SEAL) + 2 * hashlib.sha256().digest_size + 1
 
 
 def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
-    """Write a result as NetCDF, beside its place first, so that no half-written file is ever left
-    there.
+    """Write a result as a NetCDF file, and return its path; never leave a half-written file.
 
     Raises
     ------
     InvalidInput
-        If it is no dataset, or the name ends as that of another kind of file.
+        If the result is no dataset, or the name has the ending of another kind of file.
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
 
@@ -50,7 +48,7 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     require("run", run, xr.Dataset, "a dataset, such as simulate returns")
     refuse_ending_of_others("path", path_of(path))
     place_for(path, overwrite)
-    # In memory first: where a disk is full HDF5 takes the whole process with it.
+    # In memory first, because HDF5 aborts the process if the disk is full.
     memory = BytesIO()
     run.to_netcdf(memory, engine="h5netcdf")
     content = memory.getvalue()
@@ -61,9 +59,9 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
 
 
 def read_run(path: Path | str) -> xr.Dataset:
-    """Read a result written by `write_run`, which nobody has changed since.
+    """Return a result that `write_run` wrote.
 
-    What is not as it was written is for `xarray.open_dataset`, which does not check it.
+    A file that was changed since is refused; `xarray.open_dataset` opens it without a check.
 
     Raises
     ------
@@ -81,7 +79,7 @@ def read_run(path: Path | str) -> xr.Dataset:
     True
     """
     with in_words(path, "read"):
-        content = _whole(Path(path))
+        content = _checked_content(Path(path))
         try:
             with xr.open_dataset(BytesIO(content), engine="h5netcdf", decode_times=False) as opened:
                 run = opened.load()
@@ -95,23 +93,23 @@ def _sealed(content: bytes | memoryview) -> bytes:
     return SEAL + hashlib.sha256(content).hexdigest().encode() + b"\n"
 
 
-def _whole(path: Path) -> bytes:
-    """What a file holds that is, to the last bit, as it was written, and for which there is memory
-    twice.
+def _checked_content(path: Path) -> bytes:
+    """Return the content of a file; raise `FileTrouble` if it is damaged or too large for
+    memory.
     """
     size, free = path.stat().st_size, psutil.virtual_memory().available
     if not path.is_file():
         raise FileTrouble(f"{named(path)} cannot be read: it is no file")
     if 2 * size > free:
         raise FileTrouble(
-            f"{named(path)} cannot be read: it has {size:,} bytes, twice as many are needed, and"
-            f" {free:,} of memory are free"
+            f"{named(path)} cannot be read: it needs {2 * size:,} bytes of memory, and {free:,}"
+            " are free"
         )
     content = path.read_bytes()
     if not content[-_LENGTH:].startswith(SEAL):
         raise FileTrouble(
-            f"{named(path)} cannot be read: it is not a result of this program, or no longer all"
-            " of it"
+            f"{named(path)} cannot be read: it is not a result of this program, or its end is"
+            " missing"
         )
     if content[-_LENGTH:] != _sealed(memoryview(content)[:-_LENGTH]):
         raise FileTrouble(f"{named(path)} cannot be read: it is damaged")

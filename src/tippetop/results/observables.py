@@ -1,6 +1,4 @@
-"""What is read off a run on its way: its samples, what is integrated along it, and what it must
-keep.
-"""
+"""Recording of a run: samples, integrals along it, and the check of conserved quantities."""
 
 import numpy as np
 
@@ -16,7 +14,7 @@ from tippetop.integrators.dense import parts_of, powers
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
-from tippetop.results.monitor import Monitor, kept
+from tippetop.results.monitor import Monitor, monitored_quantities
 from tippetop.results.samples import Samples
 
 _INTEGRALS = np.array(
@@ -28,23 +26,30 @@ _INTEGRALS = np.array(
         for unit in np.eye(len(NODES))
     ]
 )
-"""The integrals of Lagrange's polynomials on Gauss's points, from 0, in powers from -1 to 1 over a
-step.
+"""Integrals from 0 of Lagrange's polynomials on Gauss's points, in powers of a variable from -1 to
+1 over a step.
 """
 
 
-def kept_in(mode: Mode, y: Row) -> tuple[Scalar, ...]:
-    """What the monitor sees of the numbers of a mode."""
-    return kept(mode.state(y), mode.top)
+def monitored_in(mode: Mode, y: Row) -> tuple[Scalar, ...]:
+    """Return the monitored quantities of the numbers of a mode."""
+    return monitored_quantities(mode.state(y), mode.top)
 
 
 class Recorder:
-    """Takes the samples of a launch on its way, and what is integrated along it; all in natural
-    units.
+    """Recorder of a launch's samples and of the integrals along it, in natural units.
 
-    It is made of the top, the state at launch, the direction `azimuth` into which the axis leans
-    there, rad (the marker lies in the plane of axis and vertical), increasing sample times, shape
-    (k,), and the energy `lost` in an impact at launch.
+    Parameters
+    ----------
+    top, start
+        The top, and the state at launch.
+    azimuth
+        Direction into which the axis leans at launch, rad; the marker lies in the plane of axis and
+        vertical.
+    times
+        Increasing sample times, shape (k,).
+    lost
+        Energy lost in an impact at launch.
     """
 
     def __init__(
@@ -53,10 +58,10 @@ class Recorder:
         self.top, self.times = top, times
         self._parts: list[Array] = []
         self.modes = [SLIPS, Flight.name]
-        self._taken = 0
+        self._sampled = 0
         self._last: tuple[Block, tuple[Array, Array, Array, Array]] | None = None
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
-        # A law without torque has nothing to lose by drilling or rolling.
+        # A law without torque dissipates no energy by drilling or rolling.
         self._resisted = not top.torque_free
         self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._resisted)
         self._struck = lost
@@ -68,19 +73,19 @@ class Recorder:
             return
         integrals = self._integrate(block)
         until = int(np.searchsorted(self.times, block.ends[-1], side="right"))
-        times = self.times[self._taken : until]
-        self._taken = until
+        times = self.times[self._sampled : until]
+        self._sampled = until
         self._last = block, integrals
         if len(times):
             self._sample(block, times, *integrals)
 
     def outcome_of(self, trajectory: Trajectory) -> Outcome:
-        """How a trajectory of which all was taken ended, by what it kept on its way and keeps at
-        its end.
+        """Return the outcome of a trajectory whose blocks were all taken, checked by the
+        monitor.
         """
         assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
         tolerance = getattr(trajectory.integrator, "tolerance", 0.0)
-        return self.monitor.concluded(
+        return self.monitor.final_outcome(
             trajectory.outcome, trajectory.state, self._sums[3], tolerance
         )
 
@@ -96,8 +101,8 @@ class Recorder:
             self._parts.append(self._single(state))
         rows = np.concatenate(self._parts, axis=1) if len(self._parts) > 1 else self._parts[0]
         times, mode, x, y, turn, work, drilled, rolled, struck, pole = rows[:10]
-        told, lost = Instants.unpack(rows[10:]), (struck, drilled, rolled)
-        return Samples(times, told, x, y, turn, work, *lost, pole, mode.astype(np.int8))
+        readings, lost = Instants.unpack(rows[10:]), (struck, drilled, rolled)
+        return Samples(times, readings, x, y, turn, work, *lost, pole, mode.astype(np.int8))
 
     def _sample(
         self, block: Block, times: Array, rates: Array, values: Array, poles: Array, struck: Array
@@ -112,19 +117,19 @@ class Recorder:
         rows = np.empty((10 + TOLD, len(times)))
         rows[0], rows[2:6], rows[6:8] = times, sums[:4], -sums[4:] if self._resisted else 0.0
         rows[8], rows[9] = struck[step], poles[step]
-        for mode, here, numbers in block.sampled(step, part):
-            rows[10:, here] = numbers
+        for mode, chosen, numbers in block.sampled(step, part):
+            rows[10:, chosen] = numbers
             if mode.label not in self.modes:
                 self.modes.append(mode.label)
-            rows[1, here] = self.modes.index(mode.label)
+            rows[1, chosen] = self.modes.index(mode.label)
         self._parts.append(rows)
 
     def _single(self, state: State) -> Array:
         """Return the sample of a launch that ended as it began."""
         mode, numbers = initial_mode(state, self.top)
-        told = read(instants, mode, np.array([numbers]).T)[:, 0]
+        readings = read(instants, mode, np.array([numbers]).T)[:, 0]
         sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole]
-        return np.array([[0.0, 0.0, *sums, *told]]).T
+        return np.array([[0.0, 0.0, *sums, *readings]]).T
 
     def _integrate(self, block: Block) -> tuple[Array, Array, Array, Array]:
         """Integrate along the steps of a block.
@@ -132,20 +137,20 @@ class Recorder:
         Returns
         -------
         tuple
-            Rates of the quadratures at Gauss's points, shape (q, 8, k), their values where the
-            steps begin, shape (q, k), the charts of the angle, and what impacts took before, both
-            of shape (k,). The quadratures are x, y, the angle and the work, and beside them, for a
+            Rates of the quadratures at Gauss's points, shape (q, 8, k), their values at the starts
+            of the steps, shape (q, k), the charts of the angle, and the energy lost in impacts
+            before, both of shape (k,). The quadratures are x, y, the angle and the work and, for a
             law with a torque, the work of drilling and of rolling.
         """
         count = len(block.starts)
         rates, axis = np.empty((len(self._sums), len(NODES), count)), np.empty((2, count))
         poles = np.empty(count)
         for group in block.groups:
-            found = group.nodes[: len(rates)]
+            at_nodes = group.nodes[: len(rates)]
             if len(group.which) == count:
-                rates = found
+                rates = at_nodes
             else:
-                rates[:, :, group.which] = found
+                rates[:, :, group.which] = at_nodes
             axis[:, group.which], poles[group.which] = group.terms[:, :2, 0].T, group.poles
         gains = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
         changes = poles - np.concatenate([[self._pole], poles[:-1]])
@@ -164,18 +169,18 @@ class Recorder:
         self._sums, self._pole = values[:, -1], float(poles[-1])
         for group in block.groups:
             size, cosine, height, energy, jellett = read(
-                kept_in, group.mode, group.begun, total=len(group.which)
+                monitored_in, group.mode, group.begun, total=len(group.which)
             )
-            with np.errstate(invalid="ignore"):  # of edges on which the axis is vertical
-                self.monitor.see(size, cosine, height, energy, jellett, values[3, group.which])
+            with np.errstate(invalid="ignore"):  # edges have nan where the axis is vertical
+                self.monitor.check(size, cosine, height, energy, jellett, values[3, group.which])
         return rates, values[:, :-1], poles, struck[:-1]
 
 
 def evenly_summed(gains: Array) -> Array:
-    """Sums of the first gains, from none to all, without adding up the rounding of many that are
-    alike.
+    """Return the cumulative sums of the gains, from 0, with less rounding for nearly equal
+    gains.
     """
     mean = np.mean(gains)
-    found: Array = mean * np.arange(len(gains) + 1.0)
-    found[1:] += np.cumsum(gains - mean)
-    return found
+    sums: Array = mean * np.arange(len(gains) + 1.0)
+    sums[1:] += np.cumsum(gains - mean)
+    return sums

@@ -1,6 +1,4 @@
-"""What is found on the way of one launch, block by block: events and extremes of the dense
-solution.
-"""
+"""Accumulation of the metrics of one launch from the dense solution, block by block."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -31,8 +29,8 @@ from tippetop.results.metrics import (
 from tippetop.results.settling import settled_tilt_of_one
 
 AT_ONCE = 4
-"""Steps that are searched together for when something happens first; then so many times more, and
-again.
+"""Steps in the first batch of a search for the first time of an event; the factor by which batches
+grow.
 """
 
 END_SPACINGS = 4.0
@@ -42,11 +40,11 @@ may be said not to have turned over; with many, one that ends before it to have.
 """
 
 FORCE_DEGREE = 20
-"""Degree of the polynomials in which the least normal force is looked for."""
+"""Degree of the polynomials whose minimum is the least normal force."""
 
 
-class Tally:
-    """What is found on the way of one launch, block by block."""
+class RunMetrics:
+    """Metrics accumulated while a run is integrated."""
 
     def __init__(self, top: Top, start: State) -> None:
         self._top, self._start, self._rolls = top, start, False
@@ -61,14 +59,12 @@ class Tally:
         self.steps = self.evaluations = 0
         self.methods = dict[str, Integrator]()
         self.peak = self._tilt_at(float(start.axis[2])), 0.0
-        """Largest tilt on the way, rad, and when it was first reached; known after `ends`."""
+        """Largest tilt, rad, and its first time; set by `ends`."""
         self.settled_since = math.nan
-        """Time since which n_z stays in the band where it settles; nan if it has not. Known after
-        `ends`.
-        """
+        """Time since which n_z stays in the band where it settles, or nan; set by `ends`."""
 
     def take(self, block: Block) -> None:
-        """Take in the steps of a block."""
+        """Accumulate the metrics of a block."""
         self.steps += sum(segment.steps for segment in block.segments)
         self.evaluations += sum(segment.evaluations for segment in block.segments)
         for segment in block.segments:
@@ -80,17 +76,17 @@ class Tally:
             mode = segment.mode
             self._rolls = mode.status == STICKS and mode.top.torque_free
         for group in block.groups:
-            self._see(group, block.starts[group.which])
+            self._take_tip(group, block.starts[group.which])
             if not group.mode.touching:
-                self._rise(group)
+                self._take_height(group)
                 continue
             if not self.flights.rows:
-                self._press(group)
+                self._take_force(group)
             if not group.mode.top.torque_free:
-                self._resistance(group)
+                self._take_work(group)
 
-    def _see(self, group: ModeSteps, starts: Array) -> None:
-        """Take in the motion of the tip of the axis."""
+    def _take_tip(self, group: ModeSteps, starts: Array) -> None:
+        """Accumulate the extremes of n_z and the time of turning over."""
         tip = Polynomials.of_unit(np.ascontiguousarray(group.terms[:, 2].T), group.spans)
         seen = Rates(*group.nodes).axis
         least, most, sag = seen.min(axis=0), seen.max(axis=0), tip.sag
@@ -103,29 +99,29 @@ class Tally:
         self._lowest_begin.append(starts[lowest])
         self._turned = _first(self._turned, tip, starts, (low <= 0.0) & (high >= 0.0), turning_time)
 
-    def _rise(self, group: ModeSteps) -> None:
-        """Take in the height of the centre of mass in flights."""
+    def _take_height(self, group: ModeSteps) -> None:
+        """Accumulate the height of the centre of mass in flights."""
         self._raised.append(Polynomials.of_unit(-group.terms[:, 9].T, group.spans))
 
-    def _press(self, group: ModeSteps) -> None:
-        """Take in the normal force."""
+    def _take_force(self, group: ModeSteps) -> None:
+        """Accumulate the normal force."""
         force = Rates(*group.nodes).force
         least = force.min(axis=0)
-        # Between Gauss's points, and beyond them, it is lower by a small part of what it varies by
-        # there.
+        # Between and beyond Gauss's points the force is lower by at most a small part of its range
+        # at them.
         near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
         places, transform, to_powers = chebyshev(FORCE_DEGREE)
         unit = to_powers @ (transform @ Rates(*group.at(places, near)).force)
         self._pressed.append(Polynomials.of_unit(unit, group.spans[near]))
 
-    def _resistance(self, group: ModeSteps) -> None:
-        """Take in the work of drilling and of rolling."""
+    def _take_work(self, group: ModeSteps) -> None:
+        """Accumulate the work of drilling and of rolling."""
         shares, rates = WEIGHTS[:, None] * group.spans, Rates(*group.nodes)
         self._drilled -= float(np.sum(shares * rates.drilling))
         self._rolled -= float(np.sum(shares * rates.rolling))
 
     def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
-        """Return all that was accumulated, given how and where the launch ended."""
+        """Return the accumulated `Ends` of a launch with this last state, time and outcome."""
         last = State.unpack([np.float64(number) for number in state.pack()])
         leasts = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
         self._take_peak(leasts[1])
@@ -156,51 +152,53 @@ class Tally:
         return bool(end > 0.0 > rate and abs(state.axis[2]) <= off)
 
     def _take_peak(self, least: Least) -> None:
-        """Take in the least n_z on the way, which the launch may be below already."""
+        """Set `peak` from the least n_z of the motion, unless the launch has a lower one."""
         if least.value < self._start.axis[2]:
             begin = np.concatenate(self._lowest_begin)[least.row]
             self.peak = self._tilt_at(least.value), float(begin + least.time)
 
     @staticmethod
     def _tilt_at(cosine: float) -> float:
-        """Return the tilt, rad, at some n_z."""
+        """Return the tilt, rad, for n_z = `cosine`."""
         return math.atan2(math.sqrt(max(1.0 - cosine**2, 0.0)), cosine)
 
     def arrival(self, low: Scalar, high: Scalar) -> float:
-        """First time at which n_z is between `low` and `high`; nan if it never is."""
-        found = float(np.nan)
+        """Return the first time at which n_z is between `low` and `high`; nan if it never is."""
+        first = float(np.nan)
         if np.isnan(low):
-            return found
+            return first
         for tip, starts, least, most in self._tips:
             near = (least <= high) & (most >= low)
-            found = _first(found, tip, starts, near, lambda some: arrival_time(some, low, high))
-        return found
+            first = _first(first, tip, starts, near, lambda some: arrival_time(some, low, high))
+        return first
 
     def _since(self, low: Scalar, high: Scalar) -> float:
-        """Return the time since which n_z stays between `low` and `high`; nan of a band of nan."""
-        found = math.nan if np.isnan(low) else 0.0
+        """Return the time since which n_z stays between `low` and `high`; nan if these are nan."""
+        since = math.nan if np.isnan(low) else 0.0
         for tip, starts, least, most in self._tips:
             outside = np.flatnonzero((least < low) | (most > high))
             latest, count = outside[np.argsort(-starts[outside], kind="stable")], AT_ONCE
-            while len(latest) and starts[latest[0]] + tip.span[latest[0]] > found:
+            while len(latest) and starts[latest[0]] + tip.span[latest[0]] > since:
                 which, latest, count = latest[:count], latest[count:], AT_ONCE * count
                 times = last_outside(tip.some(which), low, high) + starts[which]
                 if not np.all(np.isnan(times)):
-                    found = max(found, float(np.fmax.reduce(times)))
+                    since = max(since, float(np.fmax.reduce(times)))
                     break
-        return found
+        return since
 
 
 def _first(
-    known: float, tip: Polynomials, starts: Array, near: Flags, find: Callable[[Polynomials], Array]
+    earliest: float,
+    tip: Polynomials,
+    starts: Array,
+    near: Flags,
+    find: Callable[[Polynomials], Array],
 ) -> float:
-    """Return the first time that `find` gives on the steps marked in `near`, or `known` if that is
-    earlier.
-    """
-    which, count = np.flatnonzero(near & ~(starts > known)), AT_ONCE
+    """Return the first time that `find` returns for the steps marked in `near`, or `earliest`."""
+    which, count = np.flatnonzero(near & ~(starts > earliest)), AT_ONCE
     while len(which):
         some, which, count = which[:count], which[count:], AT_ONCE * count
         times = find(tip.some(some)) + starts[some]
         if not np.all(np.isnan(times)):
-            return float(np.fmin(known, np.fmin.reduce(times)))
-    return known
+            return float(np.fmin(earliest, np.fmin.reduce(times)))
+    return earliest

@@ -1,4 +1,4 @@
-"""The dense solution of a run: its state, and all its variables, at any time."""
+"""Dense solution of a run: its state, and all its variables, at any time."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -30,8 +30,8 @@ from tippetop.results.samples import Samples, continuous, observe
 from tippetop.support.errors import InvalidInput
 
 
-class Begin(NamedTuple):
-    """The launch of a run, in natural units."""
+class NaturalLaunch(NamedTuple):
+    """Launch of a run in natural units, with these units."""
 
     top: Top
     units: Units
@@ -42,7 +42,7 @@ class Begin(NamedTuple):
     """Energy lost in an impact at launch."""
 
     def recorder(self, times: Array) -> Recorder:
-        """Return a recorder of samples at increasing times, shape (k,)."""
+        """Return a recorder of samples at increasing times of shape (k,)."""
         return Recorder(self.top, self.state, self.azimuth, times, self.lost)
 
     def variables(self, samples: Samples) -> dict[str, Array]:
@@ -54,10 +54,10 @@ class Begin(NamedTuple):
 
 
 class RunSolution:
-    """The solution of a run between its samples, as exact as they are.
+    """Solution of a run at any time, as accurate as its samples.
 
     ``solution(t)`` is the state at a time, or at several: a `tippetop.extend.MotionState` in SI.
-    It is what `simulate` returns beside the run with ``dense=True``.
+    `simulate` returns it with the run if ``dense=True``.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class RunSolution:
     2
     """
 
-    def __init__(self, begin: Begin, segments: Sequence[Segment], run: xr.Dataset) -> None:
+    def __init__(self, begin: NaturalLaunch, segments: Sequence[Segment], run: xr.Dataset) -> None:
         self.run, self.end_time = run, float(run["end_time"])
         self._begin, self._block = begin, Block(segments)
 
@@ -89,7 +89,7 @@ class RunSolution:
         Raises
         ------
         InvalidInput
-            If a time is no number, or not between the launch and the end of the run.
+            If a time is no number, or outside the run.
         """
         accepted = f"a time from 0 to the end of the run, {self.end_time:g} s, or a list of them"
         try:
@@ -115,12 +115,12 @@ class RunSolution:
         return states_in(block, step, part, begin.units, seconds)
 
     def problem_at(self, time: float) -> Problem:
-        """Return the problem whose launch is the state at a time, s.
+        """Return the problem that is launched in the state at a time, s.
 
-        A run of it goes on as this one does from there. Its times begin at 0, its position at the
-        origin, and its marker lies in the plane of axis and vertical, as those of every launch do.
+        Its run continues the motion of this run. As for every launch, time begins at 0, the
+        position at the origin, and the marker lies in the plane of axis and vertical.
 
-        Raises `InvalidInput` if the time is no number, or not between the launch and the end.
+        Raises `InvalidInput` if the time is no number, or outside the run.
 
         Examples
         --------
@@ -149,7 +149,7 @@ class RunSolution:
 
     @np.errstate(all="ignore")
     def sample(self, times: ArrayLike) -> xr.Dataset:
-        """Return the run with samples at other times: every variable, as `simulate` returns them.
+        """Return the run with all variables sampled at other times.
 
         Parameters
         ----------
@@ -159,7 +159,7 @@ class RunSolution:
         Raises
         ------
         InvalidInput
-            If the times are not such.
+            If the times are not increasing, or outside the run.
         """
         seconds = sample_times(self.end_time, 2, np.atleast_1d(times))
         begin, block = self._begin, self._block

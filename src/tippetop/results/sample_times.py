@@ -1,4 +1,4 @@
-"""Sample times of runs, checked."""
+"""Validation of sample times."""
 
 import numpy as np
 import psutil
@@ -8,14 +8,14 @@ from tippetop.integrators.base import Array
 from tippetop.support.errors import InvalidInput, is_whole
 
 BYTES_PER_SAMPLE = 1600
-"""Memory that a sample takes at most while a result is being made."""
+"""Largest memory of a sample while a result is made, bytes."""
 
-SURELY_FIT = 10_000
-"""Samples for which nobody needs to ask how much memory there is."""
+UNCHECKED_SAMPLES = 10_000
+"""Number of samples up to which the free memory is not checked: 16 MB are always free."""
 
 
 def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Array:
-    """Sample times, s, checked; see `simulate`."""
+    """Return the sample times of `simulate`, s; raise `InvalidInput` for arguments not accepted."""
     if times is None:
         if not is_whole(samples) or samples < 2:
             raise InvalidInput("samples", samples, "a whole number, at least 2")
@@ -23,7 +23,7 @@ def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Arra
         return np.linspace(0.0, duration, int(samples))
     try:
         grid = np.array(times, dtype=float)
-    except Exception:  # noqa: BLE001 - objects may raise anything on their way to numbers
+    except Exception:  # noqa: BLE001 - conversion of an object may raise anything
         raise InvalidInput("times", times, "a list of increasing finite numbers") from None
     if (
         grid.ndim != 1
@@ -39,11 +39,11 @@ def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Arra
 
 
 def _check_memory(samples: int) -> None:
-    if samples <= SURELY_FIT:
+    if samples <= UNCHECKED_SAMPLES:
         return
     free = psutil.virtual_memory().available
     if samples * BYTES_PER_SAMPLE > free:
         limit = free // BYTES_PER_SAMPLE
         raise InvalidInput(
-            "samples", samples, f"at most {limit}", "is more than there is memory for"
+            "samples", samples, f"at most {limit}", "is more than fits into the free memory"
         )

@@ -1,4 +1,4 @@
-"""Samples of a run, and every variable over time: the report's variables, forces and invariants."""
+"""Samples of a run, and the variables over time that are computed from them."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -17,12 +17,12 @@ from tippetop.mechanics.view import axis_sine
 
 
 class Samples(NamedTuple):
-    """A launch at its samples, in natural units; every number of shape (k,)."""
+    """Samples of a launch in natural units; every number has shape (k,)."""
 
     times: Array
-    """When."""
+    """Sample times."""
     instants: Instants
-    """What is told of each."""
+    """Readings of the state and the contact."""
     x: Array
     y: Array
     """Horizontal position of the centre of mass."""
@@ -37,7 +37,7 @@ class Samples(NamedTuple):
     """Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`).
     """
     mode: NDArray[np.int8]
-    """Number of the contact mode, among the names that the recorder has met."""
+    """Number of the contact mode in the recorder's list `modes`."""
 
 
 def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
@@ -47,8 +47,8 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     sine, (slip_x, slip_y), tilting = axis_sine(axis), instants.slip, instants.tilting
     upright = sine == 0.0
     if np.any(upright):
-        # Where the axis is vertical it leans nowhere; X is then the space axis x, and theta' the
-        # rate at which the axis leaves the pole.
+        # A vertical axis has no direction of leaning: the slip is then along x and y of the table,
+        # and theta' is the rate at which the axis leaves the pole.
         slip_x, slip_y = (
             np.where(upright, *both) for both in zip(instants.point, instants.slip, strict=True)
         )
@@ -95,7 +95,7 @@ def event_in_si(event: Event, units: Units) -> Event:
 
 # translate: skip
 def continuous(quaternions: Array) -> Array:
-    """Quaternions, shape (k, 4), with the signs that let none jump."""
+    """Return quaternions of shape (k, 4) with signs chosen so that they are continuous."""
     jumps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0
     signs = np.concatenate(([1.0], np.cumprod(np.where(jumps, -1.0, 1.0))))
     return np.asarray(quaternions * signs[:, None])

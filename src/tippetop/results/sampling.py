@@ -1,4 +1,4 @@
-"""How finely a run is sampled so that it can be played at any speed."""
+"""Number of samples with which a run can be played at any speed."""
 
 import math
 
@@ -6,20 +6,19 @@ from tippetop.mechanics.vectors import length
 from tippetop.problem.problem import Problem
 
 TURN_PER_SAMPLE = 0.6
-"""Angle by which the body may turn between samples, rad: from half a turn on a player could not
-tell in which sense it turned, and from 1 rad on interpolation shows.
+"""Largest turn of the body between samples, rad: above half a turn the sense of rotation is lost,
+and above 1 rad the interpolation is visible.
 """
 LEAST_RATE = 100.0
-"""Samples per second of even the slowest run: as a screen shows it."""
+"""Least number of samples per second, more than a screen shows."""
 MOST_SAMPLES = 40_000
-"""Samples of a run at most: some 4 MB."""
+"""Largest number of samples of a run, about 4 MB."""
 
 
 def sample_count(problem: Problem, duration: float) -> int:
-    """Return how many samples a run of a duration, s, needs so that it can be played at any speed.
+    """Return how many samples a run of a duration, s, needs to be played at any speed.
 
-    The body turns no faster than its angular momentum at launch over its least moment of inertia;
-    spin, precession and tilt rate are all in that.
+    The body turns no faster than its angular momentum at launch over its least moment of inertia.
     """
     top, start = problem.top, problem.start()
     least = min(float(top.transverse_inertia), float(top.axial_inertia))

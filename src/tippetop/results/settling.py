@@ -1,4 +1,4 @@
-"""Where a motion has settled: the tilt near which it stays for good."""
+"""Settling of a motion: the tilt near which it stays for ever."""
 
 import math
 
@@ -25,21 +25,21 @@ from tippetop.theory.prediction import is_held
 from tippetop.theory.steady import balance_of_moments, has_level_spin, least_energy
 
 NEAR_STEADY = 1e-3
-"""Deviation from a vertical or level spin, in natural units, up to which a body without Jellett's
-integral counts as in it. What is left decays exponentially; a larger bound takes slow passages for
-ends, a smaller one needs longer runs.
+"""Largest deviation from a vertical or level spin, natural units, of a body without Jellett's
+integral that counts as settled. Deviations decay exponentially; with a larger bound slow passages
+would count as ends, a smaller one needs longer runs.
 """
 
 APPROACHED = 0.1
-"""Part of the deviation at launch that may be left: a launch beside an unstable spin begins with a
-small deviation, which grows.
+"""Largest ratio of the deviation to that at launch of a settled body: a launch near an unstable
+spin begins with a small deviation, which grows.
 """
 
 BESIDE_POLE = 1e-6
-"""Tilt from a pole, rad, at which the slope of the height is computed: at the pole it is zero."""
+"""Least angle from a pole, rad, at which the slope of the height is used: at the pole it is 0."""
 
 HALVINGS = 44
-"""Bisections of 0.02 rad to the rounding of an angle."""
+"""Bisections that reduce 0.02 rad to the rounding of an angle."""
 
 
 def tilt(state: State) -> Array:
@@ -49,10 +49,11 @@ def tilt(state: State) -> Array:
 
 
 def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) -> float:
-    """Return the tilt near which one launch that ended with an outcome stays for good, rad, or nan.
+    """Return the tilt near which one launch that has ended stays for ever, rad, or nan.
 
-    It is told as by `settled_tilts`. What came to rest or lies flat stays where it is; what rolls
-    on two surfaces stays at the tilt at which both touch. All numbers are floats in natural units.
+    The criteria are those of `settled_tilts`. A body at rest or lying flat stays where it is; a
+    body that rolls on two surfaces stays at the tilt at which both touch. All numbers are floats in
+    natural units.
     """
     theta = math.atan2(axis_sine(state.axis), state.axis[2])
     if outcome in (Outcome.AT_REST, Outcome.LYING_FLAT):
@@ -64,9 +65,7 @@ def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) 
 
 
 def _settled_spin_tilt(theta: float, state: State, start: State, top: Top) -> float:
-    """Return the tilt at which a motion under friction without torque goes on spinning, rad, or
-    nan.
-    """
+    """Return the tilt at which a motion without friction torque keeps spinning, rad, or nan."""
     if isinstance(top.surface, Hull):
         lowest = lowest_surface(top.surface, state.axis[2])
         if not _only_touches(lowest, theta):
@@ -82,10 +81,10 @@ def _settled_spin_tilt(theta: float, state: State, start: State, top: Top) -> fl
 
 
 def _tilt_of_rest(theta: float, state: State, top: Top) -> float:
-    """Return the tilt within `NEAR_FINAL` at which the body lies at rest, rad; nan where the energy
-    that is left suffices to leave its neighbourhood.
+    """Return the tilt within `NEAR_FINAL` at which the body can rest, rad, or nan.
 
-    There the centre of mass is lowest: on one surface or, where two meet, on both.
+    There the centre of mass is lowest, on one surface or on two. The result is nan if the energy is
+    enough to leave this neighbourhood.
     """
     low, high = theta - NEAR_FINAL, theta + NEAR_FINAL
     total, weight = float(energy(state, top)), float(top.mass * top.gravity)
@@ -104,9 +103,9 @@ def _tilt_of_rest(theta: float, state: State, top: Top) -> float:
 
 
 def _steady_tilt_near(theta: float, state: State, top: Top) -> float:
-    """Return the tilt of the least energy within `NEAR_FINAL` of a sphere's tilt, rad.
+    """Return the tilt of least energy within `NEAR_FINAL` of a sphere's tilt, rad.
 
-    There the moments balance; without such a tilt it is the pole within reach.
+    At this tilt the moments balance; if there is none, it is the pole within `NEAR_FINAL`.
     """
     integral = jellett(state, top)
 
@@ -120,13 +119,13 @@ def _steady_tilt_near(theta: float, state: State, top: Top) -> float:
 
 
 def _has_come_to_steady_spin(state: State, start: State, top: Top) -> Scalar:
-    """Return whether a body has come near a spin about a vertical or level axis since launch."""
+    """Return whether a body has approached a spin about a vertical or level axis since launch."""
     remaining = deviation(state, top)
     return (remaining <= NEAR_STEADY) & (remaining <= APPROACHED * deviation(start, top))
 
 
 def _only_touches(active: Surface, at: float) -> bool:
-    """Return whether no other surface of a hull reaches the table near a tilt, rad."""
+    """Return whether only the active surface of a hull reaches the table near a tilt, rad."""
     number = getattr(active, "active", 0)
     near = (math.cos(at - NEAR_FINAL), math.cos(at), math.cos(at + NEAR_FINAL))
     others = [one for one in each_surface(active) if getattr(one, "active", 0) != number]
@@ -135,16 +134,16 @@ def _only_touches(active: Surface, at: float) -> bool:
 
 # translate: skip
 def settled_tilts(state: State, start: State, top: Top) -> Array:
-    """Return the tilts near which motions stay for good, rad, shape (n,); nan where they may move.
+    """Return the tilts near which motions stay for ever, rad, shape (n,); nan where they may not.
 
-    A sphere under friction without torque keeps Jellett's integral and loses energy. Its tilt has
-    settled once the energy that is left bars every tilt farther than `NEAR_FINAL`; it settles at
-    the steady state between the bars. A body of another shape has settled once it spins about a
-    vertical or a level axis that it has come to, to within `NEAR_STEADY`. Any other body, and any
-    under friction with a torque, has settled once the energy that is left does not lift it out of
-    the tilts within `NEAR_FINAL`; it settles where it then lies at rest.
+    A sphere under friction without torque conserves Jellett's integral and loses energy. Its tilt
+    has settled once its energy excludes every tilt farther away than `NEAR_FINAL`; it settles at
+    the steady state in between. A body of another shape has settled once it is within `NEAR_STEADY`
+    of a spin about a vertical or level axis. Any other body, and every body under friction with a
+    torque, has settled once its energy is too small to leave the tilts within `NEAR_FINAL`; it
+    settles where it can rest.
 
-    `start` has the states at launch; every number is of shape (n,), in natural units, and so are
+    `start` has the states at launch. All numbers have shape (n,), in natural units, and so have
     those of the top, which has one surface.
     """
     theta = tilt(state)
@@ -163,7 +162,7 @@ def settled_tilts(state: State, start: State, top: Top) -> Array:
 
 # translate: skip
 def _tilts_of_rest(theta: Array, state: State, top: Top) -> Array:
-    """Return for many bodies of one surface what `_tilt_of_rest` returns for one."""
+    """Return the result of `_tilt_of_rest` for many bodies of one surface, shape (n,)."""
     surface = top.surface
 
     def slope(at: Array) -> Array:
@@ -187,7 +186,7 @@ def _tilts_of_rest(theta: Array, state: State, top: Top) -> Array:
 
 # translate: skip
 def _steady_tilts_near(theta: Array, state: State, top: Top) -> Array:
-    """Return for many spheres what `_steady_tilt_near` returns for one."""
+    """Return the result of `_steady_tilt_near` for many spheres, shape (n,)."""
     integral = jellett(state, top)
     low, high = np.maximum(theta - NEAR_FINAL, 0.0), np.minimum(theta + NEAR_FINAL, math.pi)
     pole = np.where(low == 0.0, 0.0, np.where(high == math.pi, math.pi, theta))
@@ -201,7 +200,7 @@ def _steady_tilts_near(theta: Array, state: State, top: Top) -> Array:
 
 
 def deviation(state: State, top: Top) -> Scalar:
-    """Return how far motions are from a spin about a vertical or level axis, in natural units.
+    """Return the deviation of motions from a spin about a vertical or level axis, natural units.
 
     It is the largest of the horizontal angular momentum, the velocity, and the sine of the angle
     between the axis and the nearest direction in which the body can spin steadily.
@@ -215,8 +214,8 @@ def deviation(state: State, top: Top) -> Scalar:
 
 
 def is_barred(state: State, top: Top, height: Scalar, at: Scalar) -> Scalar:
-    """Return whether the energy that is left bars some tilts, rad, where the centre of mass is at
-    least so high.
+    """Return whether the energy is too small for tilts `at`, rad, with the centre of mass at a
+    height.
     """
     least = height
     if acting(top.surface).spherical and top.torque_free and not isinstance(top.surface, Hull):
@@ -225,4 +224,4 @@ def is_barred(state: State, top: Top, height: Scalar, at: Scalar) -> Scalar:
 
 
 ROUNDING = 1e-12
-"""Part of the energy that is rounding."""
+"""Relative rounding of the energy."""

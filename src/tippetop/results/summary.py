@@ -1,4 +1,4 @@
-"""The few numbers a person wants to know of a run."""
+"""Summary of a run: its main numbers."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from tippetop.results.description import describe
 
 
 def summarize(run: xr.Dataset) -> dict[str, Any]:
-    """Return the main figures of a run, as plain numbers and strings.
+    """Return the main numbers of a run, as plain numbers and strings.
 
     Returns
     -------
@@ -19,7 +19,7 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
         Keys: account (clauses with name and numbers, as `tippetop.describe` gives them),
         description (the account in English), outcome, advice, duration (s), final (theta,
         theta_dot, omega3, phi_dot: rad and rad/s), is_settled (whether the tilt stays near
-        a steady state for good), turns_over (s: the tilt first passes pi/2; None if not
+        a steady state for ever), turns_over (s: the tilt first passes pi/2; None if not
         within the run), arrives (s: first within 0.01 rad of the tilt at which it settles;
         None until then), settled_since (s: from then on it stays within 0.01 rad of it;
         None until then), highest_tilt (rad; None while a larger one may follow),
@@ -27,7 +27,7 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
         energy_lost_sliding, energy_lost_drilling, energy_lost_rolling (J), jellett_drift
         and energy_error (relative), flights (how many), airborne_time (s), highest_gap (m),
         impact_energy_lost (J), events (kind and time, s), integrator, steps, evaluations.
-        What is not a number is None.
+        Numbers that do not exist are None.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
     }
 
 
-_OTHERWISE = {
+_NOT_LISTED = {
     "final_theta",
     "final_omega3",
     "final_phi_dot",
@@ -71,8 +71,8 @@ _OTHERWISE = {
     "peak_tilt",
     "peak_time",
 }
-NUMBERS = [name for name in (*METRICS, *MONITORS) if name not in _OTHERWISE]
-"""The single numbers of a run that are told under their names."""
+NUMBERS = [name for name in (*METRICS, *MONITORS) if name not in _NOT_LISTED]
+"""Single numbers of a run that the summary has under their own names."""
 
 
 def _number(value: xr.DataArray) -> int | float | None:

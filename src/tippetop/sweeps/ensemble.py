@@ -19,7 +19,7 @@ from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.results.catalogue import SWEPT, Ending, Fault
 from tippetop.results.metrics import OUTCOMES, Ends, ending, metrics, settled_band
-from tippetop.results.monitor import WAYS_TO_END, Monitor, kept
+from tippetop.results.monitor import OUTCOMES_OF_MOTION, Monitor, monitored_quantities
 from tippetop.results.settling import settled_tilts
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.cells import cells_of, spread
@@ -106,8 +106,8 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     """
     top, end = launches.top, ends.state
     monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
-    monitor.see(*(number[None] for number in (*kept(end, top), gone)))
-    told = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in WAYS_TO_END])
+    monitor.check(*(number[None] for number in (*monitored_quantities(end, top), gone)))
+    told = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in OUTCOMES_OF_MOTION])
     ends.outcome[told & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
 
 

@@ -17,7 +17,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.results.metrics import Ends
 from tippetop.results.observables import Recorder
-from tippetop.results.run_metrics import Tally
+from tippetop.results.run_metrics import RunMetrics
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.launch_arrays import Launches, single
 from tippetop.theory.prediction import is_held
@@ -66,7 +66,7 @@ def follow(
     tolerance: float,
     settled: float | None = None,
     launched: State | None = None,
-) -> tuple[Ends, Tally]:
+) -> tuple[Ends, RunMetrics]:
     """Return what a launch comes to, followed from a state, a time and what follows, or until it
     settles.
 
@@ -76,7 +76,7 @@ def follow(
     top = automaton.top
     method = make_integrator(None, max(tolerance, TOLERANCES[DEFAULT]))
     trajectory = Trajectory(automaton, start, end, method, time=time)
-    tally = Tally(top, launched or state)
+    run_metrics = RunMetrics(top, launched or state)
     segments, recorder = (
         trajectory.segments(),
         Recorder(top, state, 0.0, np.empty(0), start.energy_lost),
@@ -84,9 +84,11 @@ def follow(
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
     for block in in_blocks(segments):
         recorder.take(block)
-        tally.take(block)
+        run_metrics.take(block)
     outcome = recorder.outcome_of(trajectory)
-    return tally.ends(trajectory.state, trajectory.time, outcome, trajectory.events), tally
+    return run_metrics.ends(
+        trajectory.state, trajectory.time, outcome, trajectory.events
+    ), run_metrics
 
 
 def until_settled(
