@@ -27,6 +27,7 @@ BANNED = {
 PUBLIC = {
     ("problem/bodies.py", "whole"): "keyword of `Body.turned`",
     ("cli/body.py", "whole"): "option --whole",
+    ("lathe/design.py", "piece"): "argument of `design_insert`",
 }
 """Public names that stay, by their file."""
 

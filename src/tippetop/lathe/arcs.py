@@ -18,7 +18,7 @@ LARGEST_TURN = 0.9 * math.pi
 """Largest turn of one arc, rad: the centre of half a circle is on its chord, and inexact."""
 
 STRAIGHT = 1e-14
-"""Square of the relative width below which points count as collinear."""
+"""Square of the relative width below which points count as collinear: that of rounding."""
 
 
 def circle_through(points: Array) -> tuple[complex, float] | None:
@@ -78,14 +78,14 @@ def least_squares(
     columns: Sequence[NDArray[np.float64]], values: NDArray[np.float64]
 ) -> tuple[float, ...]:
     """Return the factors of columns whose sum is closest to some values."""
-    found, *_ = np.linalg.lstsq(np.stack(columns, axis=1), values, rcond=None)
-    return tuple(found.tolist())
+    factors, *_ = np.linalg.lstsq(np.stack(columns, axis=1), values, rcond=None)
+    return tuple(factors.tolist())
 
 
 def biarc(start: complex, along: complex, end: complex, towards: complex) -> list[Edge] | None:
     """Return two arcs, tangent to each other, from a point with a unit tangent to another one.
 
-    Of all such pairs it is the one whose control polygon has equal legs. None is returned if the
+    Of all such pairs it is the one whose control polygon has equal legs. The result is None if the
     arcs would turn back.
     """
     chord = end - start
@@ -126,8 +126,8 @@ def tangents_along(points: Array, within: float) -> Array:
         while width <= last:
             low, high = max(0, k - width), min(last, k + width)
             some = points[low : high + 1]
-            found = circle_through(some)
-            if found is None or np.abs(np.abs(some - found[0]) - found[1]).max() > 0.1 * within:
+            circle = circle_through(some)
+            if circle is None or np.abs(np.abs(some - circle[0]) - circle[1]).max() > 0.1 * within:
                 break
             best = _tangent(points, low, high, k)
             width *= 2
@@ -138,8 +138,8 @@ def tangents_along(points: Array, within: float) -> Array:
 def _tangent(points: Array, low: int, high: int, k: int) -> complex:
     some = points[low : high + 1]
     chord = complex(some[-1] - some[0])
-    found = circle_through(some)
-    along = chord if found is None else 1j * (complex(points[k]) - found[0])
+    circle = circle_through(some)
+    along = chord if circle is None else 1j * (complex(points[k]) - circle[0])
     along /= abs(along)
     return along if (along * chord.conjugate()).real > 0.0 else -along
 
@@ -153,14 +153,14 @@ def arcs_around(
     parts = math.ceil(abs(turn) / LARGEST_TURN)
     inner = [center + cmath.rect(radius, first + turn * k / parts) for k in range(1, parts)]
     points = [start, *inner, end]
-    return [Edge(one, other, turn / parts) for one, other in pairwise(points)]
+    return [Edge(*ends, turn / parts) for ends in pairwise(points)]
 
 
 def circles_meet(
-    one: tuple[complex, float], other: tuple[complex, float], near: complex
+    first: tuple[complex, float], second: tuple[complex, float], near: complex
 ) -> complex | None:
     """Return the intersection of two circles that is closest to a point; None if there is none."""
-    (center, radius), (other_center, other_radius) = one, other
+    (center, radius), (other_center, other_radius) = first, second
     between = other_center - center
     apart = abs(between)
     if not apart:

@@ -1,4 +1,4 @@
-"""Design of bodies: a cavity, weight, or bowl and stem for a wanted eccentricity and I1 / I3."""
+"""Design of bodies: a cavity, weight, or bowl and stem for a given eccentricity and I1 / I3."""
 
 import math
 from collections.abc import Callable
@@ -28,34 +28,34 @@ def design_insert(
     density: float = 0.0,
     wall: float | None = None,
 ) -> Workpiece:
-    """Return a turned body with one more spherical cavity or weight on its axis, of wanted
+    """Return a turned body with a further spherical cavity or weight that gives it these
     properties.
 
     Parameters
     ----------
     piece
-        The body: a ball, or one with a stem, or anything else that stands on a sphere.
+        The body: a ball, one with a stem, or any other that stands on a sphere.
     eccentricity
-        alpha: how far the centre of mass is to be below the centre of that sphere, in its radii.
+        alpha: distance of the centre of mass below the centre of that sphere, in its radii.
     inertia_ratio
         gamma = I1 / I3.
     density
-        Density of what is let in, kg/m^3: 0 for a cavity.
+        Density of the insert, kg/m^3: 0 for a cavity.
     wall
-        Least thickness of the body around it, m; a twentieth of the sphere's radius if left out.
+        Least thickness of the body around it, m; by default a twentieth of the sphere's radius.
 
     Raises
     ------
     InvalidInput
-        If there is none such; the sentence says what there is.
+        If there is no such body; the message says what is possible.
 
     Examples
     --------
     >>> import tippetop as tt
     >>> ball = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
     >>> hollow = tt.design_insert(ball, eccentricity=0.1, inertia_ratio=0.95)
-    >>> found = hollow.mass_properties
-    >>> round(-found.center / 0.02, 9), round(found.I1 / found.I3, 9)
+    >>> mass = hollow.mass_properties
+    >>> round(-mass.center / 0.02, 9), round(mass.I1 / mass.I3, 9)
     (0.1, 0.95)
     """
     require("piece", piece, Workpiece, "a Workpiece")
@@ -77,7 +77,7 @@ def design_insert(
     least = _wall(radius, wall)
     points = piece.outline.points(2)
     heights = np.linspace(points.imag.min(), points.imag.max(), 16 * SIZES_TRIED + 1)
-    room = np.array([_room(piece, height) for height in heights]) - least
+    clearance = np.array([_clearance(piece, height) for height in heights]) - least
 
     def made(size: float, height: float) -> Workpiece:
         ball = ((0.0, height - size), (0.0, height + size, size))
@@ -92,30 +92,28 @@ def design_insert(
     def height(size: float) -> float | None:
         center = sphere.height - eccentricity * radius
         place = center + (center - base.center) * base.mass / mass(size)
-        return place if _room(piece, place) - least >= size else None
+        return place if _clearance(piece, place) - least >= size else None
 
     def extremes(size: float) -> list[float]:
-        within = heights[room >= size]
+        within = heights[clearance >= size]
         centers = (base.mass * base.center + mass(size) * within) / (base.mass + mass(size))
         return [float(sphere.height - center) / radius for center in centers]
 
-    sizes = np.linspace(0.0, room.max(), SIZES_TRIED + 2)[1:-1].tolist()
+    sizes = np.linspace(0.0, clearance.max(), SIZES_TRIED + 2)[1:-1].tolist()
     return _solve(sizes, height, extremes, made, eccentricity, inertia_ratio)
 
 
-def _room(piece: Workpiece, height: float) -> float:
-    """Return the distance of a point of the axis from all surfaces, m; 0 outside the body and in
-    inserts.
-    """
-    point, profiles = 1j * height, (piece.outline, *piece.insides)
+def _clearance(workpiece: Workpiece, height: float) -> float:
+    """Return the distance of a point of the axis from all surfaces, m; 0 outside the material."""
+    point, profiles = 1j * height, (workpiece.outline, *workpiece.insides)
     away = min(profile.distance(point) for profile in profiles)
-    if away <= ROUNDING * piece.outline.size:
+    if away <= ROUNDING * workpiece.outline.size:
         return 0.0
-    # From the axis, half of a profile around a point is seen.
+    # From a point on the axis inside a profile, its half line subtends the angle pi.
     around = [
         abs(sum(edge.angle_seen(point) for edge in profile.edges)) > 1.0 for profile in profiles
     ]
-    return away if around == [True] + [False] * len(piece.insides) else 0.0
+    return away if around == [True] + [False] * len(workpiece.insides) else 0.0
 
 
 def design_bowl(
@@ -127,10 +125,10 @@ def design_bowl(
     stem: float | None = None,
     wall: float | None = None,
 ) -> Workpiece:
-    """Return a bowl with a stem inside, of one material, with wanted properties on its sphere.
+    """Return a bowl with a stem inside, of one material, with these properties on its sphere.
 
-    The sphere is cut off just where the stem takes over. The thickness of the bowl and the length
-    of the stem, which is round at its end, are found.
+    The sphere ends just where the stem touches instead. The thickness of the bowl and the length of
+    the stem, which is round at its end, are computed.
 
     Parameters
     ----------
@@ -139,18 +137,18 @@ def design_bowl(
     density
         Density, kg/m^3.
     eccentricity
-        alpha: how far the centre of mass is below the centre of the sphere, in radii.
+        alpha: distance of the centre of mass below the centre of the sphere, in radii.
     inertia_ratio
         gamma = I1 / I3.
     stem
-        Radius of the stem, m; a tenth of the sphere's if left out.
+        Radius of the stem, m; by default a tenth of the sphere's.
     wall
-        Least thickness of the bowl, m; a twentieth of the radius if left out.
+        Least thickness of the bowl, m; by default a twentieth of the radius.
 
     Raises
     ------
     InvalidInput
-        If there is none such; the sentence says what there is.
+        If there is no such body; the message says what is possible.
 
     Examples
     --------
@@ -174,7 +172,7 @@ def design_bowl(
     def ends(tip: float) -> tuple[float, float]:
         return math.hypot(rim(tip), thick + least), radius - least
 
-    def piece(tip: float, hollow: float) -> Workpiece:
+    def bowl_with_stem(tip: float, hollow: float) -> Workpiece:
         face = rim(tip)
         outer, inner = math.sqrt(radius**2 - face**2), math.sqrt(hollow**2 - face**2)
         floor = -math.sqrt(hollow**2 - thick**2)
@@ -183,17 +181,19 @@ def design_bowl(
         return Workpiece(profile=(*bowl, *inside), density=density)
 
     def extremes(tip: float) -> list[float]:
-        return [_alpha(piece(tip, hollow), radius) for hollow in ends(tip)]
+        return [_alpha(bowl_with_stem(tip, hollow), radius) for hollow in ends(tip)]
 
     def hollow(tip: float) -> float | None:
         low, high = extremes(tip)
         if not min(low, high) <= eccentricity <= max(low, high):
             return None
-        return _root(lambda size: _alpha(piece(tip, size), radius) - eccentricity, *ends(tip))
+        return _root(
+            lambda size: _alpha(bowl_with_stem(tip, size), radius) - eccentricity, *ends(tip)
+        )
 
     tips = np.linspace(radius, LONGEST * radius, SIZES_TRIED // 2 + 1)[1:].tolist()
     possible = [tip for tip in tips if ends(tip)[0] < ends(tip)[1]]
-    return _solve(possible, hollow, extremes, piece, eccentricity, inertia_ratio)
+    return _solve(possible, hollow, extremes, bowl_with_stem, eccentricity, inertia_ratio)
 
 
 def _wall(radius: float, wall: float | None) -> float:
@@ -223,30 +223,30 @@ def _number(field: str, value: Any, units: str = "1") -> float:
     return float(number)
 
 
-def _alpha(piece: Workpiece, radius: float) -> float:
+def _alpha(workpiece: Workpiece, radius: float) -> float:
     """Return the depth of the centre of mass below the origin, in radii."""
-    return -piece.mass_properties.center / radius
+    return -workpiece.mass_properties.center / radius
 
 
 def _solve(
     sizes: list[float],
     partner: Callable[[float], float | None],
     extremes: Callable[[float], list[float]],
-    piece: Callable[[float, float], Workpiece],
+    body_of: Callable[[float, float], Workpiece],
     eccentricity: float,
     inertia_ratio: float,
 ) -> Workpiece:
-    """Return the body with the wanted ratio I1 / I3 and the wanted eccentricity.
+    """Return the body with this ratio I1 / I3 and this eccentricity.
 
-    `partner` gives, for a size, the second length with which the eccentricity is as wanted, or
-    None.
+    `body_of` makes a body of two lengths. `partner` returns, for the first length, the second one
+    that gives this eccentricity, or None.
     """
 
     def ratio(size: float) -> float:
         second = partner(size)
         if second is None:
             return math.nan
-        properties = piece(size, second).mass_properties
+        properties = body_of(size, second).mass_properties
         return properties.I1 / properties.I3
 
     ratios = [ratio(size) for size in sizes]
@@ -261,7 +261,7 @@ def _solve(
             size = _root(lambda size: ratio(size) - inertia_ratio, low, high)
             second = partner(size)
             if second is not None:
-                return piece(size, second)
+                return body_of(size, second)
     runs = [list(run) for finite, run in groupby(ratios, math.isfinite) if finite]
     longer = [run for run in runs if len(run) > 1] or runs
     between = " or ".join(f"{min(run):.5g} to {max(run):.5g}" for run in longer)

@@ -1,4 +1,4 @@
-"""Drawings in DXF, read with ezdxf: lines, polylines, arcs, circles, ellipses and splines."""
+"""Reading of drawings in DXF with ezdxf: lines, polylines, arcs, circles, ellipses, splines."""
 
 import math
 from itertools import pairwise
@@ -14,7 +14,7 @@ MM = {1: 25.4, 4: 1.0, 5: 10.0, 6: 1000.0, 13: 1e-3, 14: 100.0}
 """Units that a DXF file may state, by their codes, mm."""
 
 MM_CODE = 4
-"""Code of mm, which a file without a unit is in."""
+"""Code of mm, the unit of files that state none."""
 
 
 def read_dxf(path: FilePath, unit: str | None, name: str) -> Sheet:

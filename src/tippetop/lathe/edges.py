@@ -36,7 +36,7 @@ class Edge(NamedTuple):
 
     start: complex
     end: complex
-    """Start and end."""
+    """End points."""
     turn: float = 0.0
     """Angle by which the edge turns to the left, rad, between -pi and pi; 0 for a straight edge."""
 
@@ -54,7 +54,7 @@ class Edge(NamedTuple):
 
     @property
     def center(self) -> complex:
-        """Centre of the arc's circle; there is none where it is straight."""
+        """Centre of the arc's circle; straight edges have none."""
         return (self.start + self.end) / 2.0 + 0.5j * self.chord / math.tan(self.turn / 2.0)
 
     @property
@@ -75,7 +75,7 @@ class Edge(NamedTuple):
         """Return points at shares of the edge, from 0 at its start to 1 at its end."""
         t = np.asarray(share)
         half = self.turn / 2.0
-        # The chord of a part of an arc: no digits are lost however straight the arc is.
+        # Chords of parts of the arc, which lose no digits in nearly straight arcs.
         along = t * np.sinc(t * half / math.pi) / np.sinc(half / math.pi)
         return np.asarray(self.start + self.chord * along * np.exp(1j * (t - 1.0) * half))
 
@@ -87,29 +87,26 @@ class Edge(NamedTuple):
         )
 
     def nodes(self) -> tuple[Points, NDArray[np.float64]]:
-        """Return points on it, and what to weigh a polynomial of r and z there with, for its
-        integral over dz.
+        """Return points on the edge, and their weights in integrals of polynomials of r, z over dz.
 
-        Of degree 4 at most it is a polynomial along the edge, or a trigonometric one of degree 5
-        over an angle of at most pi: Gauss's rule with 20 points is exact for both, but for
-        rounding.
+        A polynomial of degree 4 at most becomes a polynomial along a straight edge, or a
+        trigonometric one of degree 5 over an angle of at most pi: Gauss's rule with 20 points is
+        exact for both, up to rounding.
         """
         return self.points(SHARES), WEIGHTS * self.velocities(SHARES).imag
 
     def share(self, point: complex) -> float:
-        """Return the share of it after which it comes to a point that is on it, or on its line or
-        circle.
-        """
-        gone, left = point - self.start, self.end - point
+        """Return the share of the edge at a point on it, or on its line or circle."""
+        gone, ahead = point - self.start, self.end - point
         if not self.turn:
             return (gone / self.chord).real
         # The angle at the farther end is the more exact one.
-        if abs(gone) < abs(left):
-            return 2.0 * cmath.phase(left / self.chord) / self.turn
+        if abs(gone) < abs(ahead):
+            return 2.0 * cmath.phase(ahead / self.chord) / self.turn
         return 1.0 + 2.0 * cmath.phase(gone / self.chord) / self.turn
 
     def distance(self, point: complex) -> float:
-        """Return the distance of a point from it, m."""
+        """Return the distance of a point from the edge, m."""
         ends = min(abs(point - self.start), abs(point - self.end))
         if not self.turn:
             away = (point - self.start) / self.chord
@@ -122,59 +119,63 @@ class Edge(NamedTuple):
         return abs(on_circle - point) if 0.0 < share < 1.0 else ends
 
     def angle_seen(self, point: complex) -> float:
-        """Return the angle (rad) by which the direction from a point off the edge turns along the
-        edge.
-        """
+        """Return the angle that the edge subtends at a point off it, with its sign, rad."""
         seen = cmath.phase((self.end - point) / (self.start - point))
         if not self.turn:
             return seen
-        # From between the chord and the arc, the arc is seen on the other side of the chord.
+        # A point between the chord and the arc has the arc on the other side of the chord.
         within = abs(point - self.center) < abs(self.radius)
         beyond = ((point - self.start) / self.chord).imag * self.turn < 0.0
         return seen + math.copysign(math.tau, self.turn) if within and beyond else seen
 
 
-def meetings(one: Edge, other: Edge, within: float) -> list[complex]:
+def meetings(first: Edge, second: Edge, within: float) -> list[complex]:
     """Return the points where two edges meet to within a distance, m.
 
-    Of edges that overlap, these are the ends that they share.
+    For edges that overlap, these are the ends that they share.
     """
-    ends = [one.start, one.end, other.start, other.end]
-    if one.turn and other.turn:
-        found = [_polished(one, other, point) for point in _of_circles(one, other)]
-    elif one.turn or other.turn:
-        found = _of_line_and_circle(one, other) if other.turn else _of_line_and_circle(other, one)
-        found = [_polished(one, other, point) for point in found]
+    ends = [first.start, first.end, second.start, second.end]
+    if first.turn and second.turn:
+        points = [_polished(first, second, point) for point in _of_circles(first, second)]
+    elif first.turn or second.turn:
+        points = (
+            _of_line_and_circle(first, second)
+            if second.turn
+            else _of_line_and_circle(second, first)
+        )
+        points = [_polished(first, second, point) for point in points]
     else:
-        found = _of_lines(one, other)
+        points = _of_lines(first, second)
     return [
-        point for point in ends + found if max(one.distance(point), other.distance(point)) <= within
+        point
+        for point in ends + points
+        if max(first.distance(point), second.distance(point)) <= within
     ]
 
 
-def _polished(one: Edge, other: Edge, point: complex) -> complex:
+def _polished(first: Edge, second: Edge, point: complex) -> complex:
     """Return a meeting refined by Newton's method along both edges.
 
     The intersection of circles is inexact for arcs that are nearly straight.
     """
-    t, u = one.share(point), other.share(point)
+    t, u = first.share(point), second.share(point)
     for _ in range(NEWTON):
-        along, across = complex(one.velocities(t)), complex(other.velocities(u))
-        gap = complex(other.points(u)) - complex(one.points(t))
+        along, across = complex(first.velocities(t)), complex(second.velocities(u))
+        gap = complex(second.points(u)) - complex(first.points(t))
         area = (along.conjugate() * across).imag
         if abs(area) <= TANGENT * abs(along) * abs(across):
             return point
         t += (gap.conjugate() * across).imag / area
         u += (gap.conjugate() * along).imag / area
-    return complex(one.points(t))
+    return complex(first.points(t))
 
 
-def _of_lines(one: Edge, other: Edge) -> list[complex]:
-    across = (one.chord.conjugate() * other.chord).imag
+def _of_lines(first: Edge, second: Edge) -> list[complex]:
+    across = (first.chord.conjugate() * second.chord).imag
     if not across:
         return []
-    share = ((other.start - one.start).conjugate() * other.chord).imag / across
-    return [one.start + share * one.chord]
+    share = ((second.start - first.start).conjugate() * second.chord).imag / across
+    return [first.start + share * first.chord]
 
 
 def _of_line_and_circle(line: Edge, arc: Edge) -> list[complex]:
@@ -184,11 +185,11 @@ def _of_line_and_circle(line: Edge, arc: Edge) -> list[complex]:
     return [line.start + along * (center.real + side * half) for side in (-1.0, 1.0)]
 
 
-def _of_circles(one: Edge, other: Edge) -> list[complex]:
-    between = other.center - one.center
+def _of_circles(first: Edge, second: Edge) -> list[complex]:
+    between = second.center - first.center
     apart = abs(between)
     if not apart:
         return []
-    along = (apart + (one.radius**2 - other.radius**2) / apart) / 2.0
-    half = math.sqrt(max(0.0, one.radius**2 - along**2))
-    return [one.center + between / apart * complex(along, side * half) for side in (-1.0, 1.0)]
+    along = (apart + (first.radius**2 - second.radius**2) / apart) / 2.0
+    half = math.sqrt(max(0.0, first.radius**2 - along**2))
+    return [first.center + between / apart * complex(along, side * half) for side in (-1.0, 1.0)]

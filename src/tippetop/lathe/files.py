@@ -1,4 +1,4 @@
-"""Workpieces read from files: from TOML, or their profiles from points, drawings and meshes."""
+"""Reading of workpieces from TOML, or of their profiles from points, drawings and meshes."""
 
 from contextlib import ExitStack
 from itertools import pairwise
@@ -19,25 +19,25 @@ DRAWINGS = (".svg", ".dxf", ".stl")
 """Suffixes of drawings and meshes, which have a unit of their own."""
 
 STARTS = "0123456789+-."
-"""First characters of numbers, also of mistyped ones: no cell of a heading begins so."""
+"""First characters of numbers, also of mistyped ones; cells of a heading do not begin so."""
 
 
 def read_workpiece(path: Path | str, *, axis: str | None = None, **fields: Any) -> Workpiece:
-    """Read a workpiece from a .toml file, or its profile from a .csv, .svg, .dxf or .stl file.
+    """Return the workpiece of a .toml file, or with the profile of a .csv, .svg, .dxf or .stl file.
 
-    In TOML a profile may be the name of such a file, beside this one. A CSV file has two or three
+    In TOML a profile may be the name of such a file in the same folder. A CSV file has two or three
     columns, with or without a heading: distance from the axis, height and radius of the arc that
-    ends there. A drawing shows half an outline from the axis to the axis, or a whole one on both
+    ends there. A drawing shows half an outline from the axis to the axis, or a full one on both
     sides, and bores inside; its lengths are physical (a pixel is a 96th of an inch) unless `unit`
-    says what its numbers are in. A mesh is the surface of a body of revolution, in mm unless `unit`
-    says otherwise.
+    states the unit of its numbers. A mesh is the surface of a body of revolution, in mm unless
+    `unit` says otherwise.
 
-    The axis of a drawing is x = 10 or y = 10, a place in its numbers, or x or y alone for its
-    direction; that of a mesh x, y or z. Without one it is found.
+    The axis of a drawing is x = 10 or y = 10, a place in its numbers, or x or y for its direction;
+    that of a mesh x, y or z. By default it is sought.
 
-    Fields that are given are set, or are other than in the file. Raises `FileTrouble` if a file
-    cannot be read, `InvalidInput` if it does not hold what it should, `Unavailable` if what reads
-    it is not installed here.
+    Further fields replace those of the file. Raises `FileTrouble` if a file cannot be read,
+    `InvalidInput` if its content is not accepted, `Unavailable` if a library that reads it is not
+    installed.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def read_workpiece(path: Path | str, *, axis: str | None = None, **fields: Any) 
 def read_with_remarks(
     path: Path | str, *, axis: str | None = None, **fields: Any
 ) -> tuple[Workpiece, list[str]]:
-    """Read a workpiece as `read_workpiece` does, with sentences on how drawings were read."""
+    """Return the workpiece of `read_workpiece`, and sentences on how its drawings were read."""
     path = path_of(path)
     is_toml = path.suffix.lower() == ".toml"
     stated = (
@@ -92,7 +92,7 @@ def read_with_remarks(
 
 
 def _add_cavities(content: dict[str, Any], reading: Reading, field: str) -> None:
-    """Add the cavities of a drawing to the inserts of a workpiece."""
+    """Add the cavities of a drawing to the inserts in the fields of a workpiece."""
     if field != "profile":
         raise InvalidInput(
             field, Described("a drawing with bores"), "one outline: an insert has no bores"
@@ -104,10 +104,9 @@ def _add_cavities(content: dict[str, Any], reading: Reading, field: str) -> None
 def _read(
     path: Path, axis: str | None, content: dict[str, Any], field: str, is_in_toml: bool
 ) -> Reading:
-    """Return the profile in a file, and set the unit of the workpiece to its unit.
+    """Return the profile in a file, and set the unit in the fields of the workpiece.
 
-    Numbers of a drawing are physical lengths and those of a mesh mm, unless a unit is stated for
-    them.
+    Numbers of a drawing are physical lengths and those of a mesh mm, unless a unit is stated.
     """
     suffix = path.suffix.lower()
     if suffix not in (".csv", *DRAWINGS):
@@ -117,12 +116,12 @@ def _read(
     unit = content.get("unit")
     tolerance = content.get("tolerance", TOLERANCE)
     if not isinstance(tolerance, float | int) or not 0.0 <= tolerance <= 1.0:
-        tolerance = TOLERANCE  # The workpiece refuses the stated one.
+        tolerance = TOLERANCE  # the workpiece will refuse the stated one
     if suffix == ".csv":
         points = _from_csv(read_text(path, ACCEPTED), path)
         if axis is None and not _are_on_both_sides(points):
             return Reading(points, [], [])
-        # A half outline is so closed along the axis.
+        # This closes a half outline along the axis.
         corners = [complex(*point[:2]) for point in [*points, *points[:1]]]
         outline = [line(*ends) for ends in pairwise(corners) if ends[0] != ends[1]]
         sheet = Sheet([("the line of points", outline)], unit or "m")

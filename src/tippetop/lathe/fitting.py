@@ -1,7 +1,7 @@
-"""Fitting of profiles: arcs and lines through stated points, without the rounding of their numbers.
+"""Fitting of arcs and lines to the stated points of a profile, with their rounding removed.
 
-Runs of straight edges become lines and arcs of circles where the points are on them, tangent arcs
-along other smooth curves, and edges as drawn between corners.
+Runs of straight edges become lines and arcs of circles if the points are on them, tangent arcs
+along other smooth curves, and otherwise stay as drawn.
 """
 
 # translate module: numpy
@@ -44,27 +44,28 @@ UNEVEN = 4.0
 """Largest ratio of the lengths of neighbouring edges on one smooth curve."""
 
 FEWEST_ON_ARC = 4
-"""Smallest number of edges on an arc: four points of any symmetric chamfer are on a circle."""
+"""Smallest number of edges on an arc: four points of any symmetric chamfer lie on a circle."""
 
-FEWEST_ON_CURVE = 6
+FEWEST_CURVE_EDGES = 6
 """Smallest number of edges on a smooth curve."""
 
 WIDE = math.radians(60.0)
-"""Turn from which points within the tolerance of a circle are an arc, rad: no other smooth curve
-stays so close to its circle of curvature for so long.
+"""Turn, rad, from which points within the tolerance of a circle are an arc: other smooth curves
+leave their circle of curvature before.
 """
 
 NARROW = math.radians(20.0)
-"""Turn from which points within `CLOSE` of a circle are an arc in a smooth line, rad."""
+"""Turn, rad, from which points within `CLOSE` of a circle are an arc in a smooth line."""
 
 CLOSE = 0.1
-"""Share of the tolerance within which points of a short arc lie on its circle, unless they are
-rounded to fewer digits.
+"""Share of the tolerance within which points of a short arc lie on its circle, if their digits
+allow.
 """
 
 ABRUPT = 0.75
-"""Share of the edges within the tolerance of a circle that must be as close as `CLOSE`: a smooth
-curve leaves its circle of curvature with the third power of the length, and has less than half.
+"""Share of the edges within the tolerance of a circle that must be as close as `CLOSE` for an arc:
+a smooth curve leaves its circle of curvature with the third power of the length, and has less than
+half.
 """
 
 COARSEST_ROUNDING = 1e-3
@@ -78,10 +79,10 @@ Circle = tuple[complex, float]
 
 
 class Fit(NamedTuple):
-    """A profile fitted to points."""
+    """Profile fitted to points."""
 
     points: Points
-    """Points that state the fitted profile."""
+    """Points of the fitted profile."""
     stated: int
     """Number of edges that were stated."""
     edges: int
@@ -100,8 +101,8 @@ def fit(points: Sequence[Sequence[float]], tolerance: float = TOLERANCE) -> Fit:
     >>> from math import cos, pi, sin
     >>> ball = [(sin(k * pi / 60), -cos(k * pi / 60)) for k in range(61)]
     >>> ball[-1] = (0.0, 1.0)
-    >>> found = fit(ball)
-    >>> found.stated, found.edges, found.deviation < 1e-12
+    >>> result = fit(ball)
+    >>> result.stated, result.edges, result.deviation < 1e-12
     (60, 2, True)
     """
     stated = tuple(tuple(float(number) for number in point) for point in points)
@@ -110,23 +111,23 @@ def fit(points: Sequence[Sequence[float]], tolerance: float = TOLERANCE) -> Fit:
     if not (0.0 < size <= LARGEST and tolerance > 0.0):
         return Fit(stated, count, count, 0.0)
     written = unrounded(stated)
-    found, deviation, k = [written[0]], 0.0, 1
+    fitted, deviation, k = [written[0]], 0.0, 1
     while k < len(written):
         end = k
         while end < len(written) and not any(written[end][2:]):
             end += 1
         if end == k:
-            found.append(written[k])
+            fitted.append(written[k])
             k += 1
             continue
         run = np.array([complex(*point[:2]) for point in written[k - 1 : end]])
         rounding = min(usual_rounding(stated), COARSEST_ROUNDING * size)
         edges, apart = _fit_run(run, max(tolerance * size, 1.5 * rounding), rounding)
         start = edges[0].start
-        found[-1] = (start.real, start.imag, *found[-1][2:])
-        found += [_point(edge, FLAT * size) for edge in edges]
+        fitted[-1] = (start.real, start.imag, *fitted[-1][2:])
+        fitted += [_point(edge, FLAT * size) for edge in edges]
         deviation, k = max(deviation, apart), end
-    return Fit(tuple(found), count, len(found) - 1, deviation)
+    return Fit(tuple(fitted), count, len(fitted) - 1, deviation)
 
 
 def _size(points: Points) -> float:
@@ -135,41 +136,39 @@ def _size(points: Points) -> float:
 
 
 def _point(edge: Edge, flat: float) -> tuple[float, ...]:
-    """Return the point that states an edge."""
+    """Return the point of a profile that describes an edge."""
     end = (edge.end.real, edge.end.imag)
     return end if edge.sagitta <= flat else (*end, edge.radius)
 
 
 def _fit_run(points: Array, within: float, rounding: float) -> tuple[list[Edge], float]:
-    """Return the edges fitted to a run of straight edges, and the largest distance of a point from
-    them.
-    """
+    """Return the edges fitted to a run of straight edges, and the largest distance of a point."""
     polyline = Polyline(points, within, rounding)
-    pieces = polyline.pieces()
-    parts = polyline.edges(pieces)
+    sections = polyline.sections()
+    parts = polyline.edges(sections)
     deviation = 0.0
-    for piece, edges in zip(pieces, parts, strict=True):
-        # Points are compared with the edges of their own part: another may pass by.
-        for point in points[piece.begin + 1 : piece.end]:
+    for section, edges in zip(sections, parts, strict=True):
+        # Points are compared with the edges of their own section: another may be nearer by chance.
+        for point in points[section.begin + 1 : section.end]:
             apart = min(edge.distance(complex(point)) for edge in edges)
             deviation = max(deviation, apart)
     return [edge for part in parts for edge in part], deviation
 
 
-class CurvePiece(NamedTuple):
-    """A part of a polyline, with the curve that it stands for."""
+class Section(NamedTuple):
+    """Section of a polyline, with the curve that it approximates."""
 
     kind: str
     """"line", "arc", "curve" or "near arc": an arc unless the line continues smoothly beyond it."""
     begin: int
     end: int
-    """Indices of its first and its last point."""
+    """Indices of its first and last points."""
     circle: Circle = (0j, 0.0)
     """Centre and radius of an arc."""
 
 
 class Polyline:
-    """A run of straight edges that may stand for arcs and curves."""
+    """Run of straight edges that may approximate arcs and curves."""
 
     def __init__(self, points: Array, within: float, rounding: float) -> None:
         self.points = _with_poles(points)
@@ -185,57 +184,57 @@ class Polyline:
         self.is_soft[1:-1] = (np.abs(turns) <= SMOOTH) & is_even
         self.curvature = np.zeros(len(points))
         self.curvature[1:-1] = np.abs(turns) / np.minimum(lengths[1:], lengths[:-1])
-        # The directions of short edges scatter with their ends.
+        # The directions of short edges scatter with the errors of their ends.
         is_long = np.minimum(lengths[1:], lengths[:-1]) > 10.0 * within
         self.is_sharp = np.full(len(points), False)
         self.is_sharp[1:-1] = (np.abs(turns) > COARSEST) & is_long
 
-    def pieces(self) -> list[CurvePiece]:
-        """Return the parts in their order."""
+    def sections(self) -> list[Section]:
+        """Return the sections in their order."""
         if self._is_ellipse():
-            return [CurvePiece("curve", 0, self.count)]
+            return [Section("curve", 0, self.count)]
         first, last = self._arc_at_start(), self._arc_at_end()
         begin = first.end if first else 0
         if last and last.begin < begin:
             last = last._replace(begin=begin) if begin < self.count else None
         end = last.begin if last else self.count
-        pieces = [first] if first else []
+        sections = [first] if first else []
         k = begin
         while k < end:
-            piece = self._arc_from(k, end) or self._line_from(k, end)
-            if piece is None:
+            section = self._arc_from(k, end) or self._line_from(k, end)
+            if section is None:
                 is_soft = self.is_soft[k] or self.is_soft[k + 1]
-                piece = CurvePiece("curve" if is_soft else "line", k, k + 1)
-            pieces.append(piece)
-            k = piece.end
-        return self._with_curves([*pieces, *([last] if last else [])])
+                section = Section("curve" if is_soft else "line", k, k + 1)
+            sections.append(section)
+            k = section.end
+        return self._with_curves([*sections, *([last] if last else [])])
 
-    def _with_curves(self, pieces: list[CurvePiece]) -> list[CurvePiece]:
-        """Return the parts, with neighbouring edges of one smooth curve merged."""
-        found: list[CurvePiece] = []
-        for k, stated in enumerate(pieces):
-            piece = stated
-            if piece.kind == "near arc":
-                joints = ((k - 1, piece.begin), (k + 1, piece.end))
+    def _with_curves(self, sections: list[Section]) -> list[Section]:
+        """Return the sections, with neighbouring edges of one smooth curve merged."""
+        merged: list[Section] = []
+        for k, stated in enumerate(sections):
+            section = stated
+            if section.kind == "near arc":
+                joints = ((k - 1, section.begin), (k + 1, section.end))
                 goes_on = any(
-                    self.is_soft[place] and pieces[neighbour].kind != "line"
+                    self.is_soft[place] and sections[neighbour].kind != "line"
                     for neighbour, place in joints
-                    if 0 <= neighbour < len(pieces)
+                    if 0 <= neighbour < len(sections)
                 )
-                piece = piece._replace(kind="curve" if goes_on else "arc")
-            is_smooth = piece.kind == "curve" and self.is_soft[piece.begin]
-            if found and is_smooth and found[-1].kind == "curve":
-                found[-1] = found[-1]._replace(end=piece.end)
+                section = section._replace(kind="curve" if goes_on else "arc")
+            is_smooth = section.kind == "curve" and self.is_soft[section.begin]
+            if merged and is_smooth and merged[-1].kind == "curve":
+                merged[-1] = merged[-1]._replace(end=section.end)
             else:
-                found.append(piece)
-        return [single for piece in found for single in _as_drawn_if_short(piece)]
+                merged.append(section)
+        return [single for section in merged for single in _as_drawn_if_short(section)]
 
     def _is_ellipse(self) -> bool:
         """Return whether the run is half an ellipse from the axis to the axis, but no half
         circle.
         """
         ends = self.points[[0, -1]]
-        if ends.real.any() or self.count < 2 * FEWEST_ON_CURVE or not self.is_soft[1:-1].all():
+        if ends.real.any() or self.count < 2 * FEWEST_CURVE_EDGES or not self.is_soft[1:-1].all():
             return False
         ellipse = ellipse_on_axis(self.points)
         if ellipse is None or ellipse[3] > self.within:
@@ -243,37 +242,41 @@ class Polyline:
         circle = circle_on_axis(self.points)
         return circle is None or not self._are_on(self.points, circle, self.within)
 
-    def _arc_at_start(self) -> CurvePiece | None:
+    def _arc_at_start(self) -> Section | None:
         """Return the arc, centred on the axis, at the start of the run, or None."""
         return self._arc_at_axis(self.points, self.is_sharp)
 
-    def _arc_at_end(self) -> CurvePiece | None:
+    def _arc_at_end(self) -> Section | None:
         """Return the arc, centred on the axis, at the end of the run, or None."""
-        piece = self._arc_at_axis(self.points[::-1], self.is_sharp[::-1])
-        return piece and piece._replace(begin=self.count - piece.end, end=self.count)
+        section = self._arc_at_axis(self.points[::-1], self.is_sharp[::-1])
+        return section and section._replace(begin=self.count - section.end, end=self.count)
 
-    def _arc_at_axis(self, points: Array, is_sharp: np.ndarray) -> CurvePiece | None:
+    def _arc_at_axis(self, points: Array, is_sharp: np.ndarray) -> Section | None:
         # On the axis the line continues as its mirror image.
         if points[0].real or 2.0 * abs(_slope(points[1] - points[0])) > COARSEST:
             return None
 
         def circle(end: int, within: float) -> Circle | None:
-            found = circle_on_axis(points[: end + 1])
-            return found if found and self._are_on(points[: end + 1], found, within) else None
+            candidate = circle_on_axis(points[: end + 1])
+            return (
+                candidate
+                if candidate and self._are_on(points[: end + 1], candidate, within)
+                else None
+            )
 
         limit = _first(is_sharp, 1, len(points) - 1)
         is_soft = self.is_soft if points is self.points else self.is_soft[::-1]
         return self._longest_arc(circle, 0, FEWEST_ON_ARC // 2, limit, points, is_soft, 0.5)
 
-    def _arc_from(self, begin: int, end: int) -> CurvePiece | None:
+    def _arc_from(self, begin: int, end: int) -> Section | None:
         """Return the longest arc from a point, or None."""
 
         def circle(last: int, within: float) -> Circle | None:
             points = self.points[begin : last + 1]
-            found = circle_through(points)
-            if found is None or not self._are_on(points, found, within):
+            candidate = circle_through(points)
+            if candidate is None or not self._are_on(points, candidate, within):
                 return None
-            center, radius = found
+            center, radius = candidate
             if abs(center.real) <= 20.0 * within:
                 on_axis = complex(0.0, center.imag)
                 mean = float(np.abs(points - on_axis).mean())
@@ -294,7 +297,7 @@ class Polyline:
         points: Array,
         is_soft: np.ndarray,
         share: float,
-    ) -> CurvePiece | None:
+    ) -> Section | None:
         """Return the longest arc up to the point `limit`; None if it may be part of another curve.
 
         The points are a `share` of the arc: half of it, if it continues beyond the axis.
@@ -303,14 +306,14 @@ class Polyline:
             return None
         last = _last_true(lambda end: circle(end, self.within) is not None, fewest, limit)
         end = _last_true(lambda end: circle(end, self.close) is not None, fewest, last)
-        found = circle(end, self.close)
-        if found is not None and end - begin >= ABRUPT * (last - begin):
-            turn = abs(_turn(points[begin : end + 1], found[0])) / share
+        best = circle(end, self.close)
+        if best is not None and end - begin >= ABRUPT * (last - begin):
+            turn = abs(_turn(points[begin : end + 1], best[0])) / share
             if turn >= NARROW or not (is_soft[begin] or is_soft[end]):
-                return CurvePiece("arc", begin, end, found)
-        found = circle(last, self.within)
-        if found is not None and abs(_turn(points[begin : last + 1], found[0])) / share >= WIDE:
-            return CurvePiece("near arc", begin, last, found)
+                return Section("arc", begin, end, best)
+        best = circle(last, self.within)
+        if best is not None and abs(_turn(points[begin : last + 1], best[0])) / share >= WIDE:
+            return Section("near arc", begin, last, best)
         return None
 
     def _are_on(self, points: Array, circle: Circle, within: float) -> bool:
@@ -323,7 +326,7 @@ class Polyline:
         forward = steps if steps.sum() > 0.0 else -steps
         return bool(forward.min() > -2.0 * within / radius and forward.max() <= COARSEST)
 
-    def _line_from(self, begin: int, end: int) -> CurvePiece | None:
+    def _line_from(self, begin: int, end: int) -> Section | None:
         """Return the longest straight line of several edges from a point, or None."""
         last = self._straight_to(begin, end, self.close)
         if last - begin < 2:
@@ -335,7 +338,7 @@ class Polyline:
                 return None
         nearly = self._straight_to(begin, end, self.within)
         is_abrupt = last - begin >= ABRUPT * (nearly - begin)
-        return CurvePiece("line", begin, last) if is_abrupt else None
+        return Section("line", begin, last) if is_abrupt else None
 
     def _straight_to(self, begin: int, end: int, within: float) -> int:
         """Return the last point up to which the polyline is straight to within a distance."""
@@ -350,52 +353,52 @@ class Polyline:
 
         return _last_true(is_straight, begin + 1, end)
 
-    def edges(self, pieces: list[CurvePiece]) -> list[list[Edge]]:
-        """Return the edges of each part."""
-        joints = [complex(self.points[piece.begin]) for piece in pieces]
+    def edges(self, sections: list[Section]) -> list[list[Edge]]:
+        """Return the edges of each section."""
+        joints = [complex(self.points[section.begin]) for section in sections]
         joints.append(complex(self.points[-1]))
         for k, joint in enumerate(joints):
-            circles = [p.circle for p in pieces[max(0, k - 1) : k + 1] if p.kind == "arc"]
+            circles = [p.circle for p in sections[max(0, k - 1) : k + 1] if p.kind == "arc"]
             if circles:
                 joints[k] = _joint(joint, circles, 10.0 * self.within)
         lines = []
-        for piece, (start, end) in zip(pieces, pairwise(joints), strict=True):
-            points = self.points[piece.begin : piece.end + 1].copy()
+        for section, (start, end) in zip(sections, pairwise(joints), strict=True):
+            points = self.points[section.begin : section.end + 1].copy()
             points[0] = start
             points[-1] = end
             lines.append(points)
         tangents = [
-            _tangents(piece, points, self.within)
-            for piece, points in zip(pieces, lines, strict=True)
+            _tangents(section, points, self.within)
+            for section, points in zip(sections, lines, strict=True)
         ]
-        for k, piece in enumerate(pieces):
-            if piece.kind == "curve":
+        for k, section in enumerate(sections):
+            if section.kind == "curve":
                 before = tangents[k - 1][-1] if k else _across_axis(joints[0])
-                after = tangents[k + 1][0] if k + 1 < len(pieces) else _across_axis(joints[-1])
-                for place, other in ((0, before), (-1, after)):
-                    tangents[k][place] = _common(complex(tangents[k][place]), complex(other))
-        found = []
-        for piece, points, along in zip(pieces, lines, tangents, strict=True):
+                after = tangents[k + 1][0] if k + 1 < len(sections) else _across_axis(joints[-1])
+                for place, direction in ((0, before), (-1, after)):
+                    tangents[k][place] = _common(complex(tangents[k][place]), complex(direction))
+        parts = []
+        for section, points, along in zip(sections, lines, tangents, strict=True):
             start, end = complex(points[0]), complex(points[-1])
-            if piece.kind == "arc":
-                found.append(arcs_around(*piece.circle, start, end, _turn(points, piece.circle[0])))
-            elif piece.kind == "line":
-                found.append([Edge(start, end)])
+            if section.kind == "arc":
+                parts.append(
+                    arcs_around(*section.circle, start, end, _turn(points, section.circle[0]))
+                )
+            elif section.kind == "line":
+                parts.append([Edge(start, end)])
             else:
-                found.append(self._tangent_arcs(points, along))
-        return found
+                parts.append(self._tangent_arcs(points, along))
+        return parts
 
     def _tangent_arcs(self, points: Array, tangents: Array) -> list[Edge]:
-        """Return arcs along a curve, each tangent to the one before, as few as the tolerance
-        allows.
-        """
-        found: list[Edge] = []
+        """Return the fewest arcs along a curve within the tolerance, each tangent to the next."""
+        curve_edges: list[Edge] = []
         begin, last = 0, len(points) - 1
 
         def arcs(start: int, end: int) -> list[Edge] | None:
             ends = ((complex(points[k]), complex(tangents[k])) for k in (start, end))
-            (one, along), (other, towards) = ends
-            return biarc(one, along, other, towards)
+            (first, along), (last, towards) = ends
+            return biarc(first, along, last, towards)
 
         def are_close(start: int, end: int) -> bool:
             edges = arcs(start, end)
@@ -408,9 +411,9 @@ class Polyline:
             end = _last_true(partial(are_close, begin), begin + 1, last)
             straight = [Edge(complex(points[begin]), complex(points[end]))]
             edges = arcs(begin, end) or straight
-            found += [_beside_axis(edge) for edge in edges]
+            curve_edges += [_beside_axis(edge) for edge in edges]
             begin = end
-        return found
+        return curve_edges
 
 
 def _beside_axis(edge: Edge) -> Edge:
@@ -424,12 +427,12 @@ def _beside_axis(edge: Edge) -> Edge:
 
 
 def _with_poles(points: Array) -> Array:
-    """Return the points, with a pole on the axis if the run begins or ends with an edge across it.
+    """Return the points, with a point on the axis if the run begins or ends with an edge across it.
 
     A polygon around a ball may have the middle of an edge on the axis rather than a corner.
     """
-    found = points.copy()
-    for line in (found, found[::-1]):
+    result = points.copy()
+    for line in (result, result[::-1]):
         if len(line) < 5 or line[0].real or abs(_slope(line[1] - line[0])) > 1e-6:
             continue
         chords = np.diff(line[:4])
@@ -442,7 +445,7 @@ def _with_poles(points: Array) -> Array:
             if circle is not None:
                 center, radius = circle
                 line[0] = center + 1j * math.copysign(radius, line[0].imag - center.imag)
-    return found
+    return result
 
 
 def _slope(chord: complex) -> float:
@@ -450,11 +453,11 @@ def _slope(chord: complex) -> float:
     return math.atan2(chord.imag, abs(chord.real)) if chord else 0.0
 
 
-def _as_drawn_if_short(piece: CurvePiece) -> list[CurvePiece]:
-    """Return a curve of few edges as these edges; other parts unchanged."""
-    if piece.kind != "curve" or piece.end - piece.begin >= FEWEST_ON_CURVE:
-        return [piece]
-    return [CurvePiece("line", k, k + 1) for k in range(piece.begin, piece.end)]
+def _as_drawn_if_short(section: Section) -> list[Section]:
+    """Return a curve of few edges as lines along these edges; other sections unchanged."""
+    if section.kind != "curve" or section.end - section.begin >= FEWEST_CURVE_EDGES:
+        return [section]
+    return [Section("line", k, k + 1) for k in range(section.begin, section.end)]
 
 
 def _joint(point: complex, circles: list[Circle], within: float) -> complex:
@@ -463,7 +466,7 @@ def _joint(point: complex, circles: list[Circle], within: float) -> complex:
         meeting = circles_meet(circles[0], circles[1], point)
         if meeting is not None and abs(meeting - point) <= within:
             return meeting
-    # Of two arcs that are tangent, the one around the axis goes first.
+    # If two arcs are tangent, the one centred on the axis is preferred.
     center, radius = min(circles, key=lambda circle: abs(circle[0].real))
     arm = point - center
     if not point.real:
@@ -472,15 +475,15 @@ def _joint(point: complex, circles: list[Circle], within: float) -> complex:
     return center + arm / abs(arm) * radius
 
 
-def _tangents(piece: CurvePiece, points: Array, within: float) -> Array:
-    """Return the unit tangents of a part: at all its points for a curve, otherwise at its ends."""
-    if piece.kind == "curve":
+def _tangents(section: Section, points: Array, within: float) -> Array:
+    """Return the unit tangents of a section: at all points of a curve, otherwise at its ends."""
+    if section.kind == "curve":
         return tangents_along(points, within)
     chord = points[-1] - points[0]
-    if piece.kind == "line":
+    if section.kind == "line":
         return np.full(2, chord / abs(chord))
-    arms = (points - piece.circle[0])[[0, -1]]
-    turn = 1j if _turn(points, piece.circle[0]) > 0.0 else -1j
+    arms = (points - section.circle[0])[[0, -1]]
+    turn = 1j if _turn(points, section.circle[0]) > 0.0 else -1j
     return np.asarray(turn * arms / np.abs(arms))
 
 
@@ -496,9 +499,7 @@ def _across_axis(point: complex) -> complex:
 
 
 def _common(tangent: complex, neighbour: complex) -> complex:
-    """Return the unit tangent where two parts meet; the neighbour's, if the line is smooth
-    there.
-    """
+    """Return the unit tangent where two sections meet: the neighbour's if the line is smooth."""
     if not neighbour.real and not neighbour.imag:
         return tangent
     along = neighbour if (neighbour * tangent.conjugate()).real > 0.0 else -neighbour
@@ -506,15 +507,16 @@ def _common(tangent: complex, neighbour: complex) -> complex:
 
 
 def _first(holds: np.ndarray, begin: int, otherwise: int) -> int:
-    """Return the first index from `begin` on at which an array is true."""
+    """Return the first index from `begin` on at which an array is true, or `otherwise`."""
     numbers = np.flatnonzero(holds[begin:])
     return begin + int(numbers[0]) if len(numbers) else otherwise
 
 
 def _last_true(holds: Callable[[int], bool], low: int, high: int) -> int:
-    """Return the last number between two up to which a condition holds, or the first number.
+    """Return a last number between `low` and `high` at which a condition holds, or `low`.
 
-    The condition may fail at some numbers between, as with few and scattered points.
+    The search doubles its steps and then bisects: the condition may fail at some numbers in
+    between, as it does for few and scattered points.
     """
     tried, step = [low], 1
     while tried[-1] < high:

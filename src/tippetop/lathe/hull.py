@@ -27,17 +27,16 @@ sizes.
 NARROWEST = 1e-9
 """Smallest range of tilts of a surface, rad."""
 
-FEWEST_ON_CURVE = 2
-"""Smallest number of successive arcs that can stand for another smooth curve."""
+FEWEST_CURVE_ARCS = 2
+"""Smallest number of successive arcs that can approximate another smooth curve."""
 
 _CLOSE = 1e-7
-"""Error of the tilt at which one surface follows another that it almost touches, by rounding,
-rad.
+"""Error by rounding of the tilt at which one surface follows another that it almost touches, rad.
 """
 
 
 class Zone(NamedTuple):
-    """A surface of revolution on which a body stands, with its range of tilts."""
+    """Surface of revolution on which a body stands, with its range of tilts."""
 
     radius: float
     """Radius of the circle in the middle of the tube, m: 0 for a sphere or a tip."""
@@ -53,10 +52,10 @@ class Zone(NamedTuple):
         """Return the height above the table of the origin of the profile's coordinates, m."""
         return self.radius * math.sin(tilt) - self.height * math.cos(tilt) + self.tube
 
-    def apart(self, other: "Zone") -> float:
+    def apart(self, second: "Zone") -> float:
         """Return the largest difference of the three lengths from those of another zone, m."""
-        across, along = abs(self.radius - other.radius), abs(self.height - other.height)
-        return max(across, along, abs(self.tube - other.tube))
+        across, along = abs(self.radius - second.radius), abs(self.height - second.height)
+        return max(across, along, abs(self.tube - second.tube))
 
     @property
     def name(self) -> str:
@@ -67,7 +66,7 @@ class Zone(NamedTuple):
 
 
 class ConvexHull(NamedTuple):
-    """The convex hull of a body."""
+    """Convex hull of a body."""
 
     zones: tuple[Zone, ...]
     """The surfaces on which the body stands, by tilt."""
@@ -81,22 +80,21 @@ class ConvexHull(NamedTuple):
         return max(zone.support(tilt) for zone in self.zones if zone.low <= tilt <= zone.high)
 
     def protrusion(self, zone: Zone) -> tuple[float, float]:
-        """Return by how much (m), at most, a complete surface would protrude from the hull, and at
-        which tilt.
+        """Return how far (m) a surface, if complete, would protrude from the hull, and at which
+        tilt.
         """
-        found = [(0.0, zone.low)]
-        for other in self.zones:
-            tilts = [other.low, other.high]
-            steepest = math.atan2(zone.radius - other.radius, other.height - zone.height)
+        distances = [(0.0, zone.low)]
+        for second in self.zones:
+            tilts = [second.low, second.high]
+            steepest = math.atan2(zone.radius - second.radius, second.height - zone.height)
             tilts += [
-                tilt for tilt in (steepest, steepest + math.pi) if other.low < tilt < other.high
+                tilt for tilt in (steepest, steepest + math.pi) if second.low < tilt < second.high
             ]
-            found += [(zone.support(tilt) - other.support(tilt), tilt) for tilt in tilts]
-        return max(found)
+            distances += [(zone.support(tilt) - second.support(tilt), tilt) for tilt in tilts]
+        return max(distances)
 
     def smooth_parts(self, reach: float) -> list[tuple[float, float]]:
-        """Return ranges of tilts in which the body stands on a smooth curve that is no sphere or
-        ring.
+        """Return the ranges of tilts in which the body stands on a smooth curve that is no circle.
 
         Such a curve is a row of arcs that continue each other, at least one of which would protrude
         from the hull by more than `reach` (m) if it were complete.
@@ -112,15 +110,14 @@ class ConvexHull(NamedTuple):
         return [
             (row[0].low, row[-1].high)
             for row in rows
-            if len(row) >= FEWEST_ON_CURVE
+            if len(row) >= FEWEST_CURVE_ARCS
             and any(zone.radius < 0.0 or self.protrusion(zone)[0] > reach for zone in row)
         ]
 
     def spheroid(self, within: float) -> tuple[float, float, float] | None:
-        """Return the semi-axes across and along the axis, and the height of the centre, of a
-        spheroid.
+        """Return the semi-axes across and along the axis, and the centre's height, of a spheroid.
 
-        None is returned if the hull is not a spheroid to within a length, m.
+        The result is None if the hull is not a spheroid to within a length, m.
         """
         tilts = np.linspace(0.0, math.pi, 181)
         support = np.array([self.support(tilt) for tilt in tilts.tolist()])
@@ -136,18 +133,18 @@ class ConvexHull(NamedTuple):
             return None
         return math.sqrt(square), math.sqrt(along), height
 
-    def whole(self, reach: float) -> list[Zone]:
+    def complete_surfaces(self, reach: float) -> list[Zone]:
         """Return the distinct surfaces that make up the body if each is complete.
 
-        A surface is left out if, at all its tilts, it then protrudes from the others by less than
+        A surface is omitted if, at all its tilts, it then protrudes from the others by less than
         `reach`, m.
         """
         surfaces: list[Zone] = []
         for zone in self.zones:
-            if not any(zone.apart(other) == 0.0 for other in surfaces):
+            if not any(zone.apart(second) == 0.0 for second in surfaces):
                 surfaces.append(zone)
         for zone in list(surfaces):
-            others = [other for other in surfaces if other is not zone]
+            others = [second for second in surfaces if second is not zone]
             tilts = [
                 tilt
                 for part in self.zones
@@ -155,7 +152,9 @@ class ConvexHull(NamedTuple):
                 for tilt in np.linspace(part.low, part.high, 33).tolist()
             ]
             beyond = [
-                zone.support(t) - max(other.support(t) for other in others) for t in tilts if others
+                zone.support(t) - max(second.support(t) for second in others)
+                for t in tilts
+                if others
             ]
             if max(beyond, default=math.inf) <= reach:
                 surfaces = others
@@ -168,33 +167,32 @@ def hull_of(profile: Profile) -> ConvexHull:
     The hull is traced from tilt 0 to pi: each surface is followed until another protrudes, or its
     arc ends.
     """
-    pieces = _Pieces(profile)
+    outline = _ConvexParts(profile)
     within = ROUNDING * profile.size
-    zones, tilt, number = [], 0.0, pieces.lowest()
+    zones, tilt, number = [], 0.0, outline.lowest()
     while tilt < math.pi:
-        tilt_next, next_number = pieces.after(number, tilt)
-        zones.append(pieces.zone(number, tilt, tilt_next))
+        tilt_next, next_number = outline.after(number, tilt)
+        zones.append(outline.zone(number, tilt, tilt_next))
         tilt, number = tilt_next, next_number
     wide = [zone for zone in zones if zone.high - zone.low > NARROWEST]
-    kept = _merged([zone for zone in wide if not _is_end_of_sphere(zone, wide)], within)
-    between = [high.low for low, high in pairwise(kept) if _apart(low, high) > 10.0 * within]
-    flats = [0.0] * bool(kept[0].radius) + between + [math.pi] * bool(kept[-1].radius)
-    return ConvexHull(tuple(kept), tuple(flats))
+    merged = _merged([zone for zone in wide if not _is_end_of_sphere(zone, wide)], within)
+    between = [high.low for low, high in pairwise(merged) if _apart(low, high) > 10.0 * within]
+    flats = [0.0] * bool(merged[0].radius) + between + [math.pi] * bool(merged[-1].radius)
+    return ConvexHull(tuple(merged), tuple(flats))
 
 
 def _is_end_of_sphere(zone: Zone, zones: list[Zone]) -> bool:
     """Return whether a tip is an artefact of a sphere's arc that ends a little off the axis."""
     ends = (zone.low, zone.high)
     beside = any(
-        other.name == "sphere" and (other.low in ends or other.high in ends) for other in zones
+        neighbour.name == "sphere" and (neighbour.low in ends or neighbour.high in ends)
+        for neighbour in zones
     )
     return zone.name == "tip" and zone.high - zone.low < 2.0 * ON_AXIS and beside
 
 
 def _apart(low: Zone, high: Zone) -> float:
-    """Return the distance of the contact points of two surfaces at the tilt where one follows the
-    other, m.
-    """
+    """Return the distance, m, of the contact points of two surfaces where one follows the other."""
     sine, cosine = math.sin(high.low), math.cos(high.low)
     across = high.radius - low.radius + (high.tube - low.tube) * sine
     return math.hypot(across, high.height - low.height - (high.tube - low.tube) * cosine)
@@ -202,17 +200,17 @@ def _apart(low: Zone, high: Zone) -> float:
 
 def _merged(zones: list[Zone], within: float) -> list[Zone]:
     """Return the zones with neighbours of one surface merged."""
-    found: list[Zone] = []
+    merged: list[Zone] = []
     for zone in zones:
-        last = found[-1] if found else None
+        last = merged[-1] if merged else None
         if last and last.apart(zone) <= within:
-            found[-1] = last._replace(high=zone.high)
+            merged[-1] = last._replace(high=zone.high)
         else:
-            found.append(zone._replace(low=last.high if last else 0.0))
-    return [*found[:-1], found[-1]._replace(high=math.pi)]
+            merged.append(zone._replace(low=last.high if last else 0.0))
+    return [*merged[:-1], merged[-1]._replace(high=math.pi)]
 
 
-class _Pieces:
+class _ConvexParts:
     """Convex points and arcs of a profile, with the tilts at which each can touch the table."""
 
     def __init__(self, profile: Profile) -> None:
@@ -225,13 +223,13 @@ class _Pieces:
         middles = np.array(points + [edges[k].center for k in arcs])
         self.radius, self.height = middles.real, middles.imag
         self.tube = np.array([0.0] * self.count + [edges[k].radius for k in arcs])
-        # The table is along the edge where it touches it.
+        # The table is parallel to the edge at the contact point.
         starts = [cmath.phase(edges[k].direction(0.0)) for k in arcs]
         self.low = np.array([0.0] * self.count + starts)
         self.high = np.array(
             [math.pi] * self.count + [s + edges[k].turn for s, k in zip(starts, arcs, strict=True)]
         )
-        self.left = np.full(len(self.low), -math.inf)
+        self.left_at = np.full(len(self.low), -math.inf)
         self.starting = [
             [n for n, ends in self.ends.items() if ends[0] == k] for k in range(self.count)
         ]
@@ -251,10 +249,8 @@ class _Pieces:
         return int(max(lowest, key=lambda number: (self.radius[number], self.tube[number])))
 
     def after(self, number: int, tilt: float) -> tuple[float, int]:
-        """Return the tilt up to which the body stands on a point or arc, and the one that
-        follows.
-        """
-        self.left[number] = tilt
+        """Return the tilt up to which the body stands on a point or arc, and the next one."""
+        self.left_at[number] = tilt
         rises = self._rises(number, tilt)
         if number in self.ends:
             rises[self.ends[number][1]] = self.high[number]
@@ -272,8 +268,8 @@ class _Pieces:
     def _joined_to(self, number: int) -> list[int]:
         """Return the neighbours of a point or an arc.
 
-        Those of a point are the arcs that end at it; those of an arc its ends, and the arcs that
-        continue it smoothly.
+        The neighbours of a point are the arcs that end at it; those of an arc are its ends, and the
+        arcs that continue it smoothly.
         """
         if number not in self.ends:
             return [n for n, ends in self.ends.items() if number in ends]
@@ -285,18 +281,17 @@ class _Pieces:
         return [start, end, *smooth]
 
     def _rises(self, number: int, tilt: float) -> NDArray[np.float64]:
-        """Return the tilts, from a tilt on, at which the points and arcs begin to protrude beyond
-        one of them.
+        """Return the tilts from `tilt` on at which other points and arcs begin to protrude.
 
-        Neighbours are left out: an arc and its end have the same support function where they meet.
+        Neighbours are omitted: an arc and its end have the same support function where they meet.
         """
         across, along = self.radius - self.radius[number], self.height - self.height[number]
         apart = np.hypot(across, along)
         with np.errstate(divide="ignore", invalid="ignore"):
             sine = (self.tube[number] - self.tube) / apart
         touching = np.abs(sine) <= 1.0
-        found = np.arctan2(along, across) + np.arcsin(np.where(touching, sine, 0.0))
-        found = tilt - _CLOSE + np.mod(found - tilt + _CLOSE, math.tau)
-        found[~touching] = math.inf
-        found[self._joined_to(number)] = math.inf
-        return np.asarray(found)
+        tilts = np.arctan2(along, across) + np.arcsin(np.where(touching, sine, 0.0))
+        tilts = tilt - _CLOSE + np.mod(tilts - tilt + _CLOSE, math.tau)
+        tilts[~touching] = math.inf
+        tilts[self._joined_to(number)] = math.inf
+        return np.asarray(tilts)

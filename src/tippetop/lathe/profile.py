@@ -1,6 +1,4 @@
-"""Profiles of bodies of revolution: closed lines of edges beside the axis, which enclose a
-volume.
-"""
+"""Profiles of bodies of revolution: closed lines of edges beside the axis around a volume."""
 
 # translate module: numpy
 
@@ -16,18 +14,15 @@ from tippetop.lathe.edges import Edge, Points, meetings
 from tippetop.support.errors import Described, InvalidInput
 
 ROUNDING = 1e-9
-"""Distance within which two places are the same, in sizes of the profile."""
+"""Distance within which two places are equal, in sizes of the profile."""
 
 HALF_CIRCLE = 1e-12
-"""Relative difference of an arc's radius from half its chord within which it is half a circle.
-
-The centre of a half circle is exact.
+"""Relative difference of an arc's radius from half its chord within which it is half a circle,
+whose centre is then exact.
 """
 
 SHORT = 1e-6
-"""Relative amount by which the radius of half a circle may be too short: its ends have few
-digits.
-"""
+"""Relative amount by which the radius of half a circle may be too short because of rounded ends."""
 
 MOST = 2000
 """Largest number of points of a profile."""
@@ -40,12 +35,12 @@ LARGEST = 1e6
 
 
 class Profile:
-    """The closed line that a plane through the axis cuts out of a body, on one side of the axis.
+    """Closed line in which a half-plane from the axis cuts the surface of a body.
 
     Attributes
     ----------
     edges
-        Its edges, with the body on their left; without the axis, where the body reaches it.
+        Its edges, with the body on their left, without the part on the axis.
     """
 
     def __init__(self, edges: Sequence[Edge]) -> None:
@@ -78,15 +73,15 @@ class Profile:
         return len(self.loop) > len(self.edges) or self.edges[0].start.real == 0.0
 
     def points(self, steps: int) -> Points:
-        """Return points along the profile, `steps` on every arc; a closed line repeats its first
-        point.
+        """Return points along the profile, `steps` on every arc; a closed line repeats its
+        first.
         """
         shares = [np.arange(steps) / steps if edge.turn else np.zeros(1) for edge in self.edges]
-        found = [edge.points(share) for edge, share in zip(self.edges, shares, strict=True)]
-        return np.concatenate([*found, [self.edges[-1].end]])
+        points = [edge.points(share) for edge, share in zip(self.edges, shares, strict=True)]
+        return np.concatenate([*points, [self.edges[-1].end]])
 
     def points_above(self, height: float) -> list[tuple[float, ...]]:
-        """Return the points that state the profile, with heights (m) above another origin."""
+        """Return the points of the profile, with heights above another origin, m."""
         start = self.edges[0].start
         ends = [(edge.end, (edge.radius,) if edge.turn else ()) for edge in self.edges]
         return [
@@ -101,21 +96,21 @@ class Profile:
         """Return the distance of a point from its edges, m."""
         return min(edge.distance(point) for edge in self.edges)
 
-    def sides(self, other: "Profile") -> set[str]:
-        """Return where the edges lie in relation to another profile: "in" it, "on" its edges or
+    def sides(self, outer: "Profile") -> set[str]:
+        """Return where the edges lie relative to another profile: "in" it, "on" its edges or
         "out".
         """
-        within = ROUNDING * other.size
-        found = set()
+        within = ROUNDING * outer.size
+        sides = set()
         for edge in self.edges:
-            met = (point for border in other.edges for point in meetings(edge, border, within))
+            met = (point for border in outer.edges for point in meetings(edge, border, within))
             shares = sorted({0.0, 1.0, *(min(1.0, max(0.0, edge.share(point))) for point in met)})
             for low, high in pairwise(shares):
                 if (high - low) * abs(edge.chord) > 10.0 * within:
                     middle = complex(edge.points((low + high) / 2.0))
-                    on = other.distance(middle) <= 2.0 * within
-                    found.add("on" if on else "in" if other.surrounds(middle) else "out")
-        return found
+                    on = outer.distance(middle) <= 2.0 * within
+                    sides.add("on" if on else "in" if outer.surrounds(middle) else "out")
+        return sides
 
 
 def profile_of(
@@ -124,8 +119,8 @@ def profile_of(
     """Return the profile through points, in metres.
 
     The points are distance from the axis, height along it and, where an arc ends, its radius, which
-    is positive if the arc turns to the left. They go either way round, from the axis to the axis or
-    from a point to itself. Their numbers are in a `unit` (m), and messages call them `field`.
+    is positive if the arc turns to the left. They go in either direction, from the axis to the axis
+    or from a point to itself. Their numbers are in a `unit` (m), and messages call them `field`.
 
     Raises `InvalidInput` if they are not the edge of a body: an open line, one that meets itself or
     crosses the axis, an arc too tight for its ends, or no volume inside.
@@ -147,16 +142,12 @@ def profile_of(
 
 
 def area_of(edges: Sequence[Edge]) -> float:
-    """Return the area between edges and the axis, m^2, positive on their left, by Green's
-    theorem.
-    """
+    """Return the area between edges and the axis, m^2, positive on their left."""
     return sum(float(points.real @ weights) for points, weights in (edge.nodes() for edge in edges))
 
 
 def require_points(points: Sequence[Sequence[float]], field: str, most: int = MOST_STATED) -> None:
-    """Raise `InvalidInput` unless there are points beside the axis, and neither too few nor too
-    many.
-    """
+    """Raise `InvalidInput` unless there are 2 to `most` points, none beyond the axis."""
     if not 2 <= len(points) <= most:
         raise InvalidInput(field, Described(f"{len(points)} points"), f"2 to {most} points")
     for number, point in enumerate(points):
@@ -181,8 +172,10 @@ def require_points(points: Sequence[Sequence[float]], field: str, most: int = MO
 
 
 def _edge(points: Sequence[Sequence[float]], number: int, size: float, field: str) -> Edge:
-    """Return the edge that ends at a point; refuses none, an arc that is too tight, and one across
-    the axis.
+    """Return the edge that ends at a point.
+
+    Raises `InvalidInput` for an edge of no length, for an arc with too small a radius, and for an
+    arc across the axis.
     """
     start, end = (complex(*point[:2]) for point in points[number - 1 : number + 1])
     if abs(end - start) <= ROUNDING * size:
@@ -211,7 +204,9 @@ def _edge(points: Sequence[Sequence[float]], number: int, size: float, field: st
 
 
 def _closed(edges: list[Edge], within: float, field: str) -> list[Edge]:
-    """Return the edges from the axis to the axis, or round to where they began; refuses others."""
+    """Return edges that end exactly on the axis or where they began; raise `InvalidInput` if
+    not.
+    """
     first, last = edges[0].start, edges[-1].end
     closes = abs(last - first) <= within
     if closes:
@@ -260,40 +255,40 @@ def _innermost(edge: Edge) -> complex:
 
 
 def _refuse_meetings(edges: list[Edge], within: float, field: str) -> None:
-    """Raise `InvalidInput` if a line meets itself except where an edge follows another."""
+    """Raise `InvalidInput` if a line meets itself other than at common ends of its edges."""
     reach = np.array([edge.sagitta + within for edge in edges])
     starts = np.array([edge.start for edge in edges])
     ends = np.array([edge.end for edge in edges])
-    left = np.minimum(starts.real, ends.real) - reach
-    right = np.maximum(starts.real, ends.real) + reach
+    leftmost = np.minimum(starts.real, ends.real) - reach
+    rightmost = np.maximum(starts.real, ends.real) + reach
     low = np.minimum(starts.imag, ends.imag) - reach
     high = np.maximum(starts.imag, ends.imag) + reach
-    for one in range(len(edges) - 1):
+    for first in range(len(edges) - 1):
         near = (
-            (left[one + 1 :] <= right[one])
-            & (right[one + 1 :] >= left[one])
-            & (low[one + 1 :] <= high[one])
-            & (high[one + 1 :] >= low[one])
+            (leftmost[first + 1 :] <= rightmost[first])
+            & (rightmost[first + 1 :] >= leftmost[first])
+            & (low[first + 1 :] <= high[first])
+            & (high[first + 1 :] >= low[first])
         )
         for place in np.flatnonzero(near).tolist():
-            _refuse_meeting(edges, one, one + 1 + place, within, field)
+            _refuse_meeting(edges, first, first + 1 + place, within, field)
 
 
-def _refuse_meeting(edges: list[Edge], one: int, other: int, within: float, field: str) -> None:
-    """Raise `InvalidInput` if two edges meet except where one follows the other."""
-    shared = _shared_ends(edges, one, other)
-    for point in meetings(edges[one], edges[other], within):
+def _refuse_meeting(edges: list[Edge], first: int, second: int, within: float, field: str) -> None:
+    """Raise `InvalidInput` if two edges meet other than at common ends."""
+    shared = _shared_ends(edges, first, second)
+    for point in meetings(edges[first], edges[second], within):
         if all(abs(point - end) > 10.0 * within for end in shared):
             place = (
-                f"a line whose edges {one + 1} and {other + 1} meet at ({point.real:g},"
+                f"a line whose edges {first + 1} and {second + 1} meet at ({point.real:g},"
                 f" {point.imag:g})"
             )
             raise InvalidInput(field, Described(place), "a line that does not meet itself")
 
 
-def _shared_ends(edges: list[Edge], one: int, other: int) -> list[complex]:
-    """Where the second of two edges follows the first, or the first the second."""
-    ends = [edges[one].end] if other == one + 1 else []
-    if one == 0 and other == len(edges) - 1 and edges[0].start == edges[-1].end:
+def _shared_ends(edges: list[Edge], first: int, second: int) -> list[complex]:
+    """Return the common ends of two edges, of which the second comes later in the line."""
+    ends = [edges[first].end] if second == first + 1 else []
+    if first == 0 and second == len(edges) - 1 and edges[0].start == edges[-1].end:
         ends.append(edges[0].start)
     return ends

@@ -1,4 +1,4 @@
-"""Rounding of the numbers in profiles, found from their digits and undone where arcs allow it."""
+"""Removal of the rounding of a profile's numbers, which is estimated from their digits."""
 
 # translate module: numpy
 
@@ -10,10 +10,12 @@ from decimal import Decimal
 from tippetop.lathe.edges import Edge
 
 COARSEST = 1e-4
-"""Largest rounding that is undone, in sizes of the profile: two digits are taken as they are."""
+"""Largest rounding that is undone, in sizes of the profile: numbers of two digits stay as
+stated.
+"""
 
 FINEST = 1e-9
-"""Smallest rounding, in sizes of the profile: that of computed numbers."""
+"""Smallest rounding, in sizes of the profile, as of computed numbers."""
 
 EXACT = 1e-14
 """Relative distance of a place from its circle by floating-point rounding."""
@@ -44,10 +46,10 @@ def usual_rounding(points: Sequence[Point]) -> float:
 
 
 def unrounded(points: Sequence[Point], rounding: float | None = None) -> tuple[Point, ...]:
-    """Return the points of a profile with arcs centred on the axis where their digits allow it.
+    """Return the points of a profile, with arcs centred on the axis if their digits allow it.
 
-    Straight edges shorter than the rounding are left out. The rounding of every number follows from
-    its digits unless it is stated.
+    Straight edges shorter than the rounding are omitted. The rounding of every number follows from
+    its digits unless it is passed.
     """
     heights = [point[1] for point in points]
     size = max(*(abs(point[0]) for point in points), max(heights) - min(heights))
@@ -86,7 +88,7 @@ def _around_axis(points: list[Point], rounding_at: RoundingAt) -> tuple[Point, .
             within = 2.0 * max(roundings[k - 1], roundings[k])
             circles[k] = _circle(places[k - 1], places[k], radius, within, circles[k - 1])
     for k in reversed(range(1, len(points) - 1)):
-        # An arc that ends on the axis says where the centre of the one before is.
+        # An arc that ends on the axis has the most exact centre of the arcs on its circle.
         before, after = circles[k], circles[k + 1]
         within = 4.0 * max(roundings[k - 1 : k + 2])
         if before and after and _are_same(before, after, within) and places[k + 1].real == 0.0:
@@ -95,12 +97,12 @@ def _around_axis(points: list[Point], rounding_at: RoundingAt) -> tuple[Point, .
         beside = [circle for circle in circles[k : k + 2] if circle]
         if beside:
             places[k] = _on_circles(place, beside, k in (0, len(points) - 1))
-    found = []
+    moved = []
     for k, (point, place) in enumerate(zip(points, places, strict=True)):
         circle = circles[k]
         end = (math.copysign(circle[1], point[2]),) if circle else point[2:]
-        found.append((place.real, place.imag, *end))
-    return tuple(found)
+        moved.append((place.real, place.imag, *end))
+    return tuple(moved)
 
 
 def _circle(
@@ -131,18 +133,18 @@ def _circle(
             )
             for point in (start, end)
         ]
-        # The flatter end says where the centre is: there the root has all digits.
+        # The end nearer to the axis gives the centre: the root has all digits there.
         center = below[0] if start.real < end.real else below[1]
-    found = complex(0.0, center)
-    if before and _are_same(before, (found, size), 2.0 * within):
-        found, size = before
-    apart = max(abs(abs(point - found) - size) for point in (start, end))
-    is_same_side = abs(found - stated.center) <= 0.1 * size
-    return (found, size) if apart <= within and is_same_side else None
+    on_axis = complex(0.0, center)
+    if before and _are_same(before, (on_axis, size), 2.0 * within):
+        on_axis, size = before
+    apart = max(abs(abs(point - on_axis) - size) for point in (start, end))
+    is_same_side = abs(on_axis - stated.center) <= 0.1 * size
+    return (on_axis, size) if apart <= within and is_same_side else None
 
 
-def _are_same(one: tuple[complex, float], other: tuple[complex, float], within: float) -> bool:
-    return max(abs(one[0] - other[0]), abs(one[1] - other[1])) <= within
+def _are_same(first: tuple[complex, float], second: tuple[complex, float], within: float) -> bool:
+    return max(abs(first[0] - second[0]), abs(first[1] - second[1])) <= within
 
 
 def _on_circles(place: complex, circles: list[tuple[complex, float]], is_end: bool) -> complex:

@@ -1,8 +1,8 @@
-"""Meshes of bodies of revolution, read with trimesh: their axis, meridian, and deviation from it.
+"""Reading of meshes of bodies of revolution with trimesh: axis, meridian and deviation from it.
 
 The meridian is the section of the mesh by a half-plane from the axis, with edges straight in
-cylindrical coordinates, so that facets around the axis leave no trace. Vertices lie on the body:
-the meridian goes through them, and the section only gives their order.
+cylindrical coordinates, so that facets around the axis do not matter. Vertices lie on the body: the
+meridian goes through them, and the section only gives their order.
 """
 
 import math
@@ -28,15 +28,15 @@ SLIVER = 1e-7
 """Angle by which half-planes miss vertices, rad."""
 
 SAME = 1e-5
-"""Distance of vertices that are one point of the meridian, in sizes of the body: ten times that of
-single precision.
+"""Distance of vertices that are one point of the meridian, in sizes of the body: ten times the
+rounding of single precision.
 """
 
 HALF_PLANES = 5
 """Number of half-planes whose sections are compared with all vertices."""
 
 WIDEST = math.radians(30.0)
-"""Largest angle around the axis of an edge that stands for an arc around it, rad."""
+"""Largest angle around the axis of an edge that approximates an arc around it, rad."""
 
 BETWEEN = (math.radians(15.0), math.radians(30.0))
 """Angles from a vertex to half-planes that are compared with the one through it, rad: facets of a
@@ -54,7 +54,7 @@ Line = NDArray[np.complex128]
 def read_stl(path: Path, axis: str | None, tolerance: float, name: str) -> Reading:
     """Return the profile of a body of revolution from its surface, in the numbers of the file.
 
-    The axis is the one stated, x, y or z through the middle of the body, or else the one about
+    The axis is as stated, x, y or z through the middle of the body, or by default the one about
     which the surface is roundest.
 
     Raises `InvalidInput` if the surface is not closed, or differs from one of revolution by more
@@ -114,9 +114,7 @@ def _mesh(path: Path, name: str) -> Any:
 
 
 def _directions(mesh: Any, axis: str | None) -> list[Vectors]:
-    """Return the possible directions of the axis: as stated, or coordinate axes and principal
-    axes.
-    """
+    """Return possible directions of the axis: the stated one, or coordinate and principal axes."""
     unit = np.eye(3)
     if axis is not None:
         return [unit["xyz".index(axis)]]
@@ -134,32 +132,32 @@ def _origins(mesh: Any, direction: Vectors, size: float) -> list[Vectors]:
 
 
 class _Surface:
-    """A closed surface in cylindrical coordinates about an axis."""
+    """Closed surface in cylindrical coordinates about an axis."""
 
     def __init__(self, mesh: Any, origin: Vectors, direction: Vectors, size: float) -> None:
         self.direction, self.size = direction, size
         helper = np.eye(3)[np.abs(direction).argmin()]
-        across = np.cross(direction, helper)
-        across /= np.linalg.norm(across)
-        other = np.cross(direction, across)
+        first = np.cross(direction, helper)
+        first /= np.linalg.norm(first)
+        second = np.cross(direction, first)
         arms = np.asarray(mesh.vertices) - origin
-        self.x, self.y, self.z = arms @ across, arms @ other, arms @ direction
+        self.x, self.y, self.z = arms @ first, arms @ second, arms @ direction
         self.r, self.angle = np.hypot(self.x, self.y), np.arctan2(self.y, self.x)
         self.is_on_axis = self.r <= SAME * size
         self.faces = np.asarray(mesh.faces)
         self.vertices = self.r + 1j * self.z
         self.vertices[self.is_on_axis] = 1j * self.z[self.is_on_axis]
-        self.out_of_round, self.meridian = self._judged()
+        self.out_of_round, self.meridian = self._best_section()
 
-    def _judged(self) -> tuple[float, list[Line]]:
-        """Return the least distance of the vertices from a section, and the lines of that
+    def _best_section(self) -> tuple[float, list[Line]]:
+        """Return the least deviation of the vertices from a section, and the lines of that
         section.
         """
         angles = np.sort(self.angle[~self.is_on_axis])
         chosen = angles[np.linspace(0, len(angles) - 1, HALF_PLANES).astype(int)] + SLIVER
         sections = [lines for lines in map(self._section, chosen.tolist()) if lines]
         # One vertex of a ring is enough. All vertices of a prism are in rings, but it is not round
-        # between them: sections between them are compared too.
+        # between them: sections there are compared too.
         _, numbers = np.unique(np.round(self.vertices / (SAME * self.size)), return_index=True)
         between = [line for turn in BETWEEN for line in self._section(float(chosen[0]) + turn)]
         places = np.concatenate([self.vertices[numbers], *between])
@@ -167,9 +165,9 @@ class _Surface:
         def apart(lines: list[Line]) -> float:
             return float(np.min([_distances(places, line)[0] for line in lines], axis=0).max())
 
-        judged = [(apart(lines), k) for k, lines in enumerate(sections)]
-        apart_least, best = min(judged, default=(math.inf, 0))
-        return (apart_least, sections[best]) if judged else (math.inf, [])
+        deviations = [(apart(lines), k) for k, lines in enumerate(sections)]
+        least, best = min(deviations, default=(math.inf, 0))
+        return (least, sections[best]) if deviations else (math.inf, [])
 
     def _section(self, angle: float) -> list[Line]:
         """Return the lines in which the half-plane at an angle cuts the surface."""
@@ -182,11 +180,11 @@ class _Surface:
         places: dict[Any, complex] = {}
         for face in self.faces[is_crossed].tolist():
             nodes: list[Any] = []
-            for one, other in combinations(sorted(face), 2):
-                place = self._crossing(one, other, aside)
+            for first, second in combinations(sorted(face), 2):
+                place = self._crossing(first, second, aside)
                 if place is not None:
-                    nodes.append((one, other))
-                    places[one, other] = place
+                    nodes.append((first, second))
+                    places[first, second] = place
             tips = [vertex for vertex in face if self.is_on_axis[vertex]]
             if len(nodes) == 1 and len(tips) <= 1:
                 end = tips[0] if tips else tuple(face)
@@ -200,17 +198,17 @@ class _Surface:
             for chain in _chains(graph)
         ]
 
-    def _crossing(self, one: int, other: int, aside: Vectors) -> complex | None:
+    def _crossing(self, first: int, second: int, aside: Vectors) -> complex | None:
         """Return the intersection of an edge with the half-plane; None if there is none."""
-        if self.is_on_axis[one] or self.is_on_axis[other]:
+        if self.is_on_axis[first] or self.is_on_axis[second]:
             return None
-        before, after = float(aside[one]), float(aside[other])
+        before, after = float(aside[first]), float(aside[second])
         if (before > 0.0) == (after > 0.0) or abs(before - after) >= math.pi:
             return None
-        start, end = complex(self.vertices[one]), complex(self.vertices[other])
+        start, end = complex(self.vertices[first]), complex(self.vertices[second])
         if abs(before - after) <= WIDEST:
             return start + before / (before - after) * (end - start)
-        # A long edge, as across a flat end, is a chord.
+        # A long edge, such as one across a flat end, is a chord.
         y, y_end = start.real * math.sin(before), end.real * math.sin(after)
         x, x_end = start.real * math.cos(before), end.real * math.cos(after)
         share = y / (y - y_end)
@@ -226,32 +224,32 @@ class _Surface:
         """Return the points of a line of the meridian, moved onto the vertices along it."""
         distances, places = _distances(self.vertices, line)
         others = [
-            _distances(self.vertices, other)[0] for other in self.meridian if other is not line
+            _distances(self.vertices, second)[0] for second in self.meridian if second is not line
         ]
-        is_nearest = np.all([distances <= other for other in others], axis=0) if others else True
+        is_nearest = np.all([distances <= second for second in others], axis=0) if others else True
         is_nearest &= distances <= self.out_of_round + SAME * self.size
         order = np.argsort(places[is_nearest], kind="stable")
         along, points = places[is_nearest][order], self.vertices[is_nearest][order]
         is_new = np.append(True, np.diff(along) > SAME * self.size)
         groups = np.cumsum(is_new) - 1
         if groups[-1] > DENSE * len(line):
-            # Vertices all over the surface: means of those close to each other.
+            # Vertices are scattered over the surface: take means of neighbours.
             length = float(np.abs(np.diff(line)).sum())
             bins = np.floor(along / length * 2.0 * len(line)).astype(int)
             groups = np.unique(bins, return_inverse=True)[1]
         counts = np.bincount(groups)
-        found = (np.bincount(groups, points.real) + 1j * np.bincount(groups, points.imag)) / counts
+        means = (np.bincount(groups, points.real) + 1j * np.bincount(groups, points.imag)) / counts
         is_loop = line[0] == line[-1]
         ends = [] if is_loop else [complex(line[0]), complex(line[-1])]
         if ends:
-            inner = found[
-                (np.abs(found - ends[0]) > SAME * self.size)
-                & (np.abs(found - ends[1]) > SAME * self.size)
+            inner = means[
+                (np.abs(means - ends[0]) > SAME * self.size)
+                & (np.abs(means - ends[1]) > SAME * self.size)
             ]
-            found = np.array([ends[0], *inner, ends[1]])
+            means = np.array([ends[0], *inner, ends[1]])
         else:
-            found = np.append(found, found[:1])
-        return [(float(point.real), float(point.imag)) for point in found]
+            means = np.append(means, means[:1])
+        return [(float(point.real), float(point.imag)) for point in means]
 
 
 def _distances(points: Line, line: Line) -> tuple[Vectors, Vectors]:
@@ -272,8 +270,9 @@ def _distances(points: Line, line: Line) -> tuple[Vectors, Vectors]:
 
 
 def _chains(graph: dict[Any, list[Any]]) -> list[list[Any]]:
-    """Return the paths of a graph whose nodes have one or two neighbours; a loop repeats its first
-    node.
+    """Return the paths of a graph whose nodes have one or two neighbours.
+
+    A loop repeats its first node.
     """
     unvisited = dict(graph)
     chains = []
@@ -284,7 +283,7 @@ def _chains(graph: dict[Any, list[Any]]) -> list[list[Any]]:
         chain, node = [start], start
         while True:
             beside = unvisited.pop(node)
-            following = next((other for other in beside if other in unvisited), None)
+            following = next((neighbour for neighbour in beside if neighbour in unvisited), None)
             if following is None:
                 break
             chain.append(following)

@@ -1,4 +1,4 @@
-"""Profiles read from drawings: the axis, the half of the outline that is turned, the cavities."""
+"""Reading of profiles from drawings: the axis, the half of the outline to turn, the cavities."""
 
 # translate module: numpy
 
@@ -17,8 +17,8 @@ from tippetop.lathe.strokes import Path, is_closed, joined, points_of, right_par
 from tippetop.support.errors import Described, InvalidInput
 
 GAP = 1e-3
-"""Distance of two ends that count as meeting, in sizes of the drawing: hand-drawn lines miss by
-less.
+"""Distance of two ends that count as meeting, in sizes of the drawing: hand-drawn lines miss each
+other by less.
 """
 
 ALONG = 1e-4
@@ -35,7 +35,7 @@ Chords = tuple[NDArray[np.complex128], NDArray[np.complex128]]
 
 
 class Sheet(NamedTuple):
-    """A drawing, y up."""
+    """Drawing, y up."""
 
     paths: list[tuple[str, Path]]
     """Paths of strokes, with their names in messages."""
@@ -46,7 +46,7 @@ class Sheet(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """A profile and cavities read from a drawing or a mesh."""
+    """Profile and cavities read from a drawing or a mesh."""
 
     profile: list[Point]
     cavities: list[list[Point]]
@@ -55,18 +55,18 @@ class Reading(NamedTuple):
 
 
 class _NoAxis(ValueError):
-    """Raised if no axis is found; the text describes the drawing."""
+    """Error raised if there is no axis; the text describes the drawing."""
 
 
 class _Frame(NamedTuple):
-    """Names of places across an axis that was turned upright, in messages."""
+    """Names of places across an axis that was turned upright, for messages."""
 
     name: str
     sign: float
     unit: str
 
     def place_text(self, x: float) -> str:
-        """Return a place in the drawing's own numbers, as "x = 10 mm"."""
+        """Return a place in the drawing's own numbers, such as "x = 10 mm"."""
         return f"{self.name} = {self.sign * x + 0.0:.6g} {self.unit}"
 
 
@@ -76,7 +76,7 @@ class _Axis(NamedTuple):
     place: float
     """x of the axis."""
     remark: str
-    """Sentence on how it was found."""
+    """Sentence on how it was determined."""
 
 
 # translate: skip
@@ -87,7 +87,7 @@ def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> 
     other line; or the straight edge of a half outline; or the middle of a full one. Outlines inside
     the outermost are cavities.
 
-    Raises `InvalidInput` if no axis is found, if the two sides differ, or if the outlines are not
+    Raises `InvalidInput` if there is no axis, if the two sides differ, or if the outlines are not
     those of one body with cavities in it.
     """
     directions, place = _stated(axis)
@@ -97,7 +97,7 @@ def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> 
 def read_along(
     sheet: Sheet, directions: str, place: float | None, tolerance: float, field: str
 ) -> Reading:
-    """Return the profile of a drawing around an axis along one of some directions; see
+    """Return the profile of a drawing around an axis in one of some directions; see
     `read_sheet`.
     """
     if not sheet.paths:
@@ -106,7 +106,7 @@ def read_along(
         )
     reasons = []
     for name in directions:
-        # A level axis is turned upright: what is to the right on the sheet is up.
+        # A level axis is turned upright: right on the sheet becomes up.
         turn = 1.0 if name == "x" else 1j
         sign = 1.0 if name == "x" else (1.0 if sheet.is_y_down else -1.0)
         paths = [(called, _times(path, turn)) for called, path in sheet.paths]
@@ -118,7 +118,7 @@ def read_along(
     raise InvalidInput(
         field,
         Described(reasons[0]),
-        "half an outline that begins and ends on an upright axis, a whole one that agrees on both"
+        "half an outline that begins and ends on an upright axis, a full one that agrees on both"
         f" sides to {100.0 * ASYMMETRY:g} %, or the place of the axis: --axis x=NUMBER",
     )
 
@@ -208,9 +208,7 @@ def _ended(points: list[Point], gap: float) -> list[Point]:
 def _outlines(
     paths: list[tuple[str, Path]], gap: float
 ) -> tuple[list[tuple[str, Path]], list[Path]]:
-    """Return the paths joined to outlines, and the centre lines: straight lines that touch no
-    other.
-    """
+    """Return the paths joined to outlines, and the centre lines: straight lines without contact."""
     ends = [end for _, path in paths for end in (path[0].first, path[-1].last)]
 
     def is_apart(path: Path) -> bool:
@@ -218,7 +216,7 @@ def _outlines(
             len(path) == 1
             and path[0].radius == math.inf
             and all(
-                sum(abs(end - other) <= gap for other in ends) == 1
+                sum(abs(end - neighbour) <= gap for neighbour in ends) == 1
                 for end in (path[0].first, path[-1].last)
             )
         )
@@ -226,7 +224,7 @@ def _outlines(
     center_lines = [path for _, path in paths if is_apart(path)]
     others = [(name, path) for name, path in paths if not is_apart(path)]
     if not others and len(center_lines) == len(paths):
-        # A single line is an outline, if anything is.
+        # A drawing of single lines has no centre lines.
         others, center_lines = paths, []
     outlines = []
     for path in joined([path for _, path in others], gap):
@@ -279,7 +277,7 @@ def _axis(
 
 
 def _placed(paths: list[Path], place: float, size: float, frame: _Frame, how: str) -> _Axis:
-    """Return an axis at a place; refuse it if a drawing on both sides of it is not symmetric."""
+    """Return an axis at a place; raise `InvalidInput` if the two sides differ too much."""
     points, _ = _chords(paths)
     reach = points.real - place
     if reach.min() >= -GAP * size or reach.max() <= GAP * size:
@@ -300,9 +298,7 @@ def _placed(paths: list[Path], place: float, size: float, frame: _Frame, how: st
 
 
 def _is_half(paths: list[Path], edge: float, size: float) -> bool:
-    """Return whether a drawing begins and ends on a line, with open ends or straight edges on
-    it.
-    """
+    """Return whether a drawing has open ends or straight edges on the line x = `edge`."""
     ends = [
         abs(end.real - edge) <= GAP * size
         for path in paths
@@ -350,7 +346,7 @@ def _chords(paths: Sequence[Path]) -> Chords:
 def nested(
     outlines: Sequence[tuple[str, Sequence[Point]]], tolerance: float, field: str
 ) -> tuple[list[Point], list[list[Point]]]:
-    """Return the outer outline and the cavities in it; refuse other arrangements."""
+    """Return the outer outline and the cavities in it; raise `InvalidInput` for others."""
     profiles: list[tuple[str, Sequence[Point], Profile]] = [
         (name, points, profile_of(fit(points, tolerance).points, field=field))
         for name, points in outlines
@@ -365,9 +361,9 @@ def nested(
                 Described(f"{name}, which {how} {outer_name}"),
                 "one outline around the body, and bores inside it: unite the parts of the body",
             )
-    for number, (other_name, _, other) in enumerate(inner):
-        for name, _, one in inner[:number]:
-            if "out" not in other.sides(one) or "in" in one.sides(other):
-                inside = Described(f"{other_name}, which is inside {name}")
+    for number, (name, _, cavity) in enumerate(inner):
+        for earlier_name, _, earlier in inner[:number]:
+            if "out" not in cavity.sides(earlier) or "in" in earlier.sides(cavity):
+                inside = Described(f"{name}, which is inside {earlier_name}")
                 raise InvalidInput(field, inside, "bores beside each other")
     return list(outer), [list(points) for _, points, _ in inner]

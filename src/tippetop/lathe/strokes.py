@@ -1,7 +1,7 @@
-"""Strokes of drawings: straight lines, arcs of circles and other smooth curves in the plane, y up.
+"""Strokes of drawings: lines, arcs of circles and other smooth curves in the plane, y up.
 
-A point is a complex number. Strokes are joined to paths, cut at an axis, and written as points of a
-profile.
+A point is a complex number. Strokes are joined to paths, cut at an axis, and converted to points of
+a profile.
 """
 
 # translate module: numpy
@@ -29,7 +29,7 @@ ROUND = 1e-9
 
 
 class Stroke(NamedTuple):
-    """A smooth curve from one point to another."""
+    """Smooth curve from one point to another."""
 
     at: Callable[[float], complex]
     """Point at a parameter; of an arc of a circle, the parameter is the angle."""
@@ -51,7 +51,7 @@ class Stroke(NamedTuple):
 
     @property
     def reverse(self) -> "Stroke":
-        """The stroke from its end to its begin."""
+        """The stroke from its end to its start."""
         return self._replace(begin=self.end, end=self.begin)
 
     def part(self, low: float, high: float) -> "Stroke":
@@ -60,9 +60,7 @@ class Stroke(NamedTuple):
         return self._replace(begin=self.begin + low * span, end=self.begin + high * span)
 
     def sample(self, count: int) -> list[complex]:
-        """Return points at equal steps of the parameter, both ends included; only the ends of a
-        line.
-        """
+        """Return points at equal steps of the parameter with both ends; only the ends of a line."""
         steps = 1 if self.radius == math.inf else count
         span = self.end - self.begin
         return [self.at(self.begin + span * k / steps) for k in range(steps + 1)]
@@ -95,21 +93,21 @@ def bezier(points: Sequence[complex]) -> Stroke:
         return line(start, end)
 
     def at(t: float) -> complex:
-        left = list(points)
-        while len(left) > 1:
-            left = [one + t * (other - one) for one, other in pairwise(left)]
-        return left[0]
+        level = list(points)
+        while len(level) > 1:
+            level = [first + t * (second - first) for first, second in pairwise(level)]
+        return level[0]
 
     return Stroke(at, 0.0, 1.0)
 
 
-def ellipse(center: complex, one: complex, other: complex, begin: float, end: float) -> Stroke:
+def ellipse(center: complex, first: complex, second: complex, begin: float, end: float) -> Stroke:
     """Return an arc of the ellipse with these conjugate semi-axes, between two eccentric angles."""
-    size = max(abs(one), abs(other))
-    skew = abs((one * other.conjugate()).real)
-    is_circle = abs(abs(one) - abs(other)) <= ROUND * size and skew <= ROUND * size**2
+    size = max(abs(first), abs(second))
+    skew = abs((first * second.conjugate()).real)
+    is_circle = abs(abs(first) - abs(second)) <= ROUND * size and skew <= ROUND * size**2
     return Stroke(
-        lambda t: center + one * math.cos(t) + other * math.sin(t),
+        lambda t: center + first * math.cos(t) + second * math.sin(t),
         begin,
         end,
         size if is_circle else 0.0,
@@ -125,13 +123,13 @@ def joined(paths: Sequence[Path], gap: float) -> list[Path]:
         while not is_closed(path, gap):
             following = [
                 (abs(candidate[0].first - path[-1].last), number, candidate)
-                for number, other in enumerate(waiting)
-                for candidate in (other, reverse(other))
+                for number, separate in enumerate(waiting)
+                for candidate in (separate, reverse(separate))
             ]
             leading = [
                 (abs(candidate[-1].last - path[0].first), number, candidate)
-                for number, other in enumerate(waiting)
-                for candidate in (other, reverse(other))
+                for number, separate in enumerate(waiting)
+                for candidate in (separate, reverse(separate))
             ]
             after = min(following, default=(math.inf, 0, path), key=lambda one: one[0])
             before = min(leading, default=(math.inf, 0, path), key=lambda one: one[0])
@@ -145,8 +143,8 @@ def joined(paths: Sequence[Path], gap: float) -> list[Path]:
 
 def is_closed(path: Path, gap: float) -> bool:
     """Return whether a path ends where it begins, to within a gap."""
-    alone = len(path) == 1 and path[0].radius == math.inf
-    return not alone and abs(path[-1].last - path[0].first) <= gap
+    is_line = len(path) == 1 and path[0].radius == math.inf
+    return not is_line and abs(path[-1].last - path[0].first) <= gap
 
 
 def reverse(path: Path) -> Path:
@@ -212,7 +210,7 @@ def _extent(stroke: Stroke) -> float:
 
 
 def points_of(path: Path) -> list[tuple[float, ...]]:
-    """Return the points that state a path as a profile; curves other than circles are sampled."""
+    """Return the points of a path as those of a profile; curves that are no circles are sampled."""
     start = path[0].first
     points: list[tuple[float, ...]] = [(start.real, start.imag)]
     for stroke in path:

@@ -9,20 +9,18 @@ from tippetop.lathe.hull import ConvexHull
 STEPS = 360
 """Number of steps between tilts 0 and pi at which support functions are compared."""
 
-
 SHARPEST = 1e-3
 """Smallest radius of curvature, in sizes of the body: an oval has a smooth surface."""
 
 
 def polynomial_support(
-    hull: ConvexHull, low: float, high: float, center: float, degree: int, whole: bool
+    hull: ConvexHull, low: float, high: float, center: float, degree: int, may_protrude: bool
 ) -> tuple[list[float], float]:
     """Return the polynomial closest to a hull's support function between two tilts, and its error,
     m.
 
-    The polynomial is the support function of a convex surface, seen from the height `center`. At
-    other tilts it is below that of the hull unless `whole`: then the surface may protrude from the
-    body.
+    The polynomial is the support function of a convex surface about the height `center`. At other
+    tilts it is below that of the hull, unless the surface `may_protrude` from the body.
     """
     from scipy.optimize import linprog  # noqa: PLC0415 - slow to import
 
@@ -43,7 +41,7 @@ def polynomial_support(
     across = basis - c[:, None] * slopes
     along = across + (s**2)[:, None] * curvatures
     is_between = (tilts >= low - 1e-9) & (tilts <= high + 1e-9)
-    is_bounded = is_between if whole else np.ones(len(tilts), dtype=bool)
+    is_bounded = is_between if may_protrude else np.ones(len(tilts), dtype=bool)
     ones = np.ones((len(tilts), 1))
     rows = [
         np.hstack([basis[is_bounded], -ones[is_bounded]]),

@@ -1,4 +1,4 @@
-"""Drawings in SVG, read with svgelements: every shape as strokes, in its place on the sheet."""
+"""Reading of drawings in SVG with svgelements: every shape as strokes on the sheet."""
 
 import math
 import re
@@ -58,16 +58,13 @@ def read_svg(text: str, unit: str | None, name: str) -> Sheet:
 
 
 def _in_pixels(root: ElementTree.Element) -> tuple[float, complex]:
-    """Change the units of a drawing to pixels; return the size of a pixel (mm) and the drawing's
-    origin.
+    """Change a drawing's units to pixels; return the size of a pixel (mm) and the drawing's origin.
 
     svgelements has millimetres to seven digits only. A drawing without a physical size is in
     pixels.
     """
     try:
-        left, top, *sides = (
-            float(part) for part in root.get("viewBox", "").replace(",", " ").split()
-        )
+        x, y, *sides = (float(part) for part in root.get("viewBox", "").replace(",", " ").split())
     except ValueError:
         return MM_PER_PIXEL, 0j
     scales = [
@@ -79,7 +76,7 @@ def _in_pixels(root: ElementTree.Element) -> tuple[float, complex]:
         root.set("width", f"{sides[0]!r}px")
         root.set("height", f"{sides[1]!r}px")
     root.attrib.pop("preserveAspectRatio", None)
-    return min(scales, default=MM_PER_PIXEL), complex(left, top)
+    return min(scales, default=MM_PER_PIXEL), complex(x, y)
 
 
 def _length(text: str) -> float | None:
@@ -147,12 +144,12 @@ def _number(point: Any) -> complex:
 def _arc(segment: Any) -> Stroke:
     """Return an arc of an ellipse, in the drawing's own numbers."""
     center = _number(segment.center)
-    one = _number(segment.prx) - center
-    # The other semi-axis may be either way; angles count from x to y, which is down.
-    other = 1j * one / abs(one) * abs(_number(segment.pry) - center)
+    first = _number(segment.prx) - center
+    # The direction of the second semi-axis is free; angles count from x to y, which is down.
+    second = 1j * first / abs(first) * abs(_number(segment.pry) - center)
     arm = _number(segment.start) - center
     begin = math.atan2(
-        (arm * other.conjugate()).real / abs(other) ** 2,
-        (arm * one.conjugate()).real / abs(one) ** 2,
+        (arm * second.conjugate()).real / abs(second) ** 2,
+        (arm * first.conjugate()).real / abs(first) ** 2,
     )
-    return ellipse(center, one, other, begin, begin + float(segment.sweep))
+    return ellipse(center, first, second, begin, begin + float(segment.sweep))

@@ -21,20 +21,19 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 DENSEST = 1e6
 """Largest density, kg/m^3: far above that of any metal."""
 
-
 LIGHTEST = 1e-6
 """Smallest density, kg/m^3: far below that of any gas."""
 
 
 class Insert(Part):
-    """A part let into a body, which replaces the material in its place.
+    """Part inside a body, which replaces the material in its place.
 
     Attributes
     ----------
     profile
-        Its points, as those of the body.
+        Points of its profile, as those of the body.
     density
-        Its density, kg/m^3: 0 for a cavity.
+        Density, kg/m^3: 0 for a cavity.
 
     Examples
     --------
@@ -51,25 +50,25 @@ class Insert(Part):
 
 
 class Workpiece(Part):
-    """A body turned on a lathe: the volume that a profile sweeps about the axis.
+    """Body turned on a lathe: the volume that a profile sweeps about the axis.
 
     Attributes
     ----------
     profile
-        Points (distance from the axis, height along it) in a row: from the axis to the axis, or
-        from one to itself. The edge to a point is straight, or with a third number an arc of this
-        radius: positive where it turns to the left, as the outside of a ball does on the way up. No
-        arc is more than half a circle.
+        Points (distance from the axis, height along it), from the axis to the axis, or from one
+        point to itself. The edge to a point is straight or, with a third number, an arc of this
+        radius: positive if it turns to the left, as the outside of a ball does upwards. No arc is
+        more than half a circle.
     density
         Density, kg/m^3.
     inserts
-        Cavities and weights in it; one may be in another.
+        Cavities and weights in it; one may be inside another.
     unit
-        What the numbers of profiles are in: "m", "cm", "mm" or "in".
+        Unit of the numbers of profiles: "m", "cm", "mm" or "in".
     tolerance
-        How far the body may be from the points of its profile, in sizes of the profile. Points in a
-        row along an arc or another smooth curve stand for it, as `fit` says; with 0, every edge is
-        as it is stated.
+        Largest distance of the body from the points of its profile, in sizes of the profile. Rows
+        of points along an arc or another smooth curve are replaced by it (see
+        `tippetop.lathe.fitting.fit`); with 0, every edge is as stated.
 
     Examples
     --------
@@ -106,8 +105,10 @@ class Workpiece(Part):
                     "is part of the body's own profile",
                     "draw it there",
                 )
-            for other in self.insides[:number]:
-                if not (_apart(inner, other) or _within(inner, other) or _within(other, inner)):
+            for earlier in self.insides[:number]:
+                if not (
+                    _apart(inner, earlier) or _within(inner, earlier) or _within(earlier, inner)
+                ):
                     raise InvalidInput(
                         field,
                         Described("a line across another insert's"),
@@ -117,7 +118,7 @@ class Workpiece(Part):
 
     @cached_property
     def fit(self) -> Fit:
-        """The profile fitted to the stated points, in their unit."""
+        """Profile fitted to the stated points, in their unit."""
         return _fit(self.profile, self.tolerance, "profile")
 
     @property
@@ -127,12 +128,12 @@ class Workpiece(Part):
 
     @cached_property
     def outline(self) -> Profile:
-        """The profile of the body, m."""
+        """Profile of the body, m."""
         return profile_of(self.fit.points, UNITS[self.unit])
 
     @cached_property
     def insides(self) -> tuple[Profile, ...]:
-        """The profiles of the inserts, m."""
+        """Profiles of the inserts, m."""
         return tuple(
             profile_of(
                 _fit(insert.profile, self.tolerance, f"inserts.{number}.profile").points,
@@ -181,7 +182,7 @@ def _within(inner: Profile, outer: Profile) -> bool:
     return "in" in sides and "out" not in sides
 
 
-def _apart(one: Profile, other: Profile) -> bool:
+def _apart(first: Profile, second: Profile) -> bool:
     """Return whether neither of two profiles has a part inside the other; they may touch."""
-    sides = one.sides(other)
-    return "out" in sides and "in" not in sides and "in" not in other.sides(one)
+    sides = first.sides(second)
+    return "out" in sides and "in" not in sides and "in" not in second.sides(first)

@@ -82,7 +82,7 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
     if ovals:
         distinct = [shape for k, shape in enumerate(shapes) if shape not in shapes[:k]]
         return [*ovals, *distinct]
-    outer = [_shape(zone, zone.height - center) for zone in hull.whole(reach)]
+    outer = [_shape(zone, zone.height - center) for zone in hull.complete_surfaces(reach)]
     first = outer[0]
     if len(outer) == 1 and isinstance(first, Sphere) and 0.0 < first.center < first.radius:
         return [EccentricSphere(radius=first.radius, eccentricity=first.center / first.radius)]
