@@ -29,6 +29,8 @@ def tool() -> ModuleType:
         ('class A:\n    @property\n    def speed(self):\n        "The speed."', 0),
         ("def speed(self):\n    self._kept = 1", 1),
         ("for thing in range(3):\n    pass", 1),
+        ("def width(ends):\n    left, right = ends\n    return right - left", 0),
+        ("def width(ends):\n    left = ends\n    return left", 1),
     ],
 )
 def test_names_and_docstrings_that_say_nothing_are_found(

@@ -28,6 +28,7 @@ PUBLIC = {
     ("problem/bodies.py", "whole"): "keyword of `Body.turned`",
     ("cli/body.py", "whole"): "option --whole",
     ("lathe/design.py", "piece"): "argument of `design_insert`",
+    ("export/solid.py", "piece"): "argument of `write_solid`",
 }
 """Public names that stay, by their file."""
 
@@ -40,9 +41,11 @@ NO_STATEMENT = {
 
 def faults_of(path: Path, tree: ast.Module) -> Iterator[str]:
     """Yield the faults of a module, each with its line."""
+    sides = _lines_with_sides(tree)
     for node in ast.walk(tree):
         for name in _names(node):
-            if name.strip("_") in BANNED and (_place(path), name) not in PUBLIC:
+            is_side = name == "left" and node.lineno in sides
+            if name.strip("_") in BANNED and not is_side and (_place(path), name) not in PUBLIC:
                 yield f"{path}:{node.lineno}: the name '{name}' says nothing"
         if isinstance(node, ast.FunctionDef) and not _is_property(node):
             first = (ast.get_docstring(node) or "").partition(" ")[0]
@@ -50,7 +53,19 @@ def faults_of(path: Path, tree: ast.Module) -> Iterator[str]:
                 yield f"{path}:{node.lineno}: the docstring of {node.name} begins with '{first}'"
 
 
+def _lines_with_sides(tree: ast.Module) -> set[int]:
+    """Return the lines of functions that define `right`: `left` is the opposite side there."""
+    lines = set[int]()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef) and any(
+            "right" in _names(inner) for inner in ast.walk(node)
+        ):
+            lines |= set(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+    return lines
+
+
 def _place(path: Path) -> str:
+    """Return the path of a module within the package."""
     return "/".join(path.parts[2:])
 
 

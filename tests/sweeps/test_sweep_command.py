@@ -60,7 +60,7 @@ def test_the_first_launch_that_cannot_be_is_told(tmp_path):
         "--out",
         tmp_path / "a.zarr",
     ]
-    assert "The first that is bad: launch.tilt: 45 is not" in run(*options)
+    assert "The first launch that is not valid: launch.tilt: 45 is not" in run(*options)
     assert "bad" not in run("--axis", "launch.tilt=0.1,0.2", *options[2:], "--force")
 
 

@@ -40,26 +40,26 @@ def body(
     unit: Annotated[
         str | None,
         typer.Option(
-            help="Unit of the profile's numbers: m, cm, mm or in. Left out, m in .toml and .csv, mm"
-            " in .stl, and the physical size of a drawing."
+            help="Unit of the profile's numbers: m, cm, mm or in. By default m in .toml and .csv,"
+            " mm in .stl, and the physical size of a drawing."
         ),
     ] = None,
     axis: Annotated[
         str | None,
         typer.Option(
             help="Axis of a drawing, such as x=10 in its numbers, or x or y for its direction; of a"
-            " surface x, y or z. Found if left out."
+            " surface x, y or z. Sought by default."
         ),
     ] = None,
     tolerance: Annotated[
         float | None,
         typer.Option(
-            help="How far the body may be from points that arcs are fitted to, in sizes of it;"
-            " 0.0001 if left out, 0 to fit none."
+            help="Largest distance of the body from points that arcs are fitted to, in sizes of it;"
+            " 0.0001 by default, 0 to fit none."
         ),
     ] = None,
     whole: Annotated[
-        bool, typer.Option("--whole", help="Take surfaces that are cut off as if they were whole.")
+        bool, typer.Option("--whole", help="Accept incomplete surfaces as if they were complete.")
     ] = False,
     plot: Annotated[Path | None, typer.Option(help="Draw the section: .png, .svg or .pdf.")] = None,
     stl: Annotated[Path | None, typer.Option(help="Write the solid for printing, mm.")] = None,
@@ -78,11 +78,10 @@ def body(
     as_json: Json = False,
     force: Force = False,
 ) -> None:
-    """Say what a body turned on a lathe weighs, what it stands on, and whether it turns over.
+    """Show the mass, moments of inertia, surfaces and prospects of a body turned on a lathe.
 
-    A drawing shows half an outline from the axis to the axis, or a whole one on both sides, and
-    bores inside it. A body that cannot be simulated is weighed all the same, and ends with exit
-    code 2.
+    A drawing shows half an outline from the axis to the axis, or a full one on both sides, and
+    bores inside it. A body that cannot be simulated is shown too, with exit code 2.
     """
     from rich.markup import escape  # noqa: PLC0415 - slow to import
 
@@ -163,9 +162,7 @@ def _summary(workpiece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
 
 
 def _surfaces(workpiece: "tt.Workpiece") -> list[dict[str, Any]]:
-    """Return the surfaces on which a body stands, by tilt; arcs of one smooth curve are one
-    surface.
-    """
+    """Return the surfaces on which a body stands, by tilt; a smooth curve is one surface."""
     from tippetop.problem.turned import allowance  # noqa: PLC0415 - slow to import
 
     hull, center = workpiece.hull, workpiece.mass_properties.center
@@ -194,7 +191,7 @@ def _surfaces(workpiece: "tt.Workpiece") -> list[dict[str, Any]]:
 
 
 def _prospects(workpiece: "tt.Workpiece") -> dict[str, Any]:
-    """Return what theory predicts for the body; every value is None unless it stands on a
+    """Return what theory predicts for the body; all values are None unless it stands on a
     sphere.
     """
     from tippetop.problem.turned import touching_surfaces  # noqa: PLC0415 - slow to import
@@ -216,7 +213,7 @@ def _prospects(workpiece: "tt.Workpiece") -> dict[str, Any]:
         )
         return dict.fromkeys((*sphere, "touch", "stem"))
     spins, touch, stem = outlook.critical_spins, outlook.touch, outlook.stem
-    # If another surface touches before the stem, no launch is known to reach the stem.
+    # If another surface touches before the stem, the theory knows no launch that reaches the stem.
     reached = {} if stem is None or math.isnan(stem.launch) else {"least_launch_spin": stem.launch}
     return {
         "eccentricity": outlook.eccentricity,
@@ -234,7 +231,7 @@ def _prospects(workpiece: "tt.Workpiece") -> dict[str, Any]:
 def _write(
     workpiece: "tt.Workpiece", path: Path, force: bool, whole: bool
 ) -> tuple[Sequence[Path], Sequence[str]]:
-    """Write a file; return those that were written and what they cannot say."""
+    """Write a file; return the written files, and remarks on what their format cannot express."""
     ending = path.suffix.lower()
     if ending in (*ENDINGS["mjcf"], *ENDINGS["urdf"]):
         patch = tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal")

@@ -1,4 +1,4 @@
-"""The commands, and the report of errors in one sentence with an exit code."""
+"""All commands, and the report of errors as one sentence with an exit code."""
 
 import sys
 import warnings
@@ -27,8 +27,7 @@ MISUSE = 2
 """Exit code of a command line that is not accepted."""
 
 WORDS = {OVERWRITE: "--force", RESUME: "--resume", OTHER_OUT: "another --out"}
-"""Options of the command line, by the words for them in messages of the package."""
-
+"""Options of the command line, by the arguments of Python that messages of the package name."""
 
 UsageError: Any = typer.BadParameter.__base__
 """Error of typer for a command line that it does not accept."""
@@ -100,7 +99,7 @@ def tippetop(
         typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
-    """A laboratory for the tippe top, the toy that turns itself upside down."""
+    """Simulate the tippe top, the toy that turns itself upside down."""
 
 
 def _show_warning(

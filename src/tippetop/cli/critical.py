@@ -1,4 +1,4 @@
-"""`tippetop critical`: predictions of theory for a launch, without a simulation."""
+"""`tippetop critical`: results of theory for a launch, without a simulation."""
 
 import math
 from collections.abc import Iterator
@@ -25,7 +25,7 @@ def critical(
     choice: Choice,
     as_json: Json = False,
 ) -> None:
-    """Say what the theory knows of a launch: its critical spins, its end, and how long it takes."""
+    """Show what theory says of a launch: its critical spins, its end, and the time until then."""
     from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415 - slow to import
     from tippetop.theory.overview import outlook  # noqa: PLC0415
 
@@ -56,10 +56,10 @@ def _plain(outlook: "Outlook") -> dict[str, Any]:
         "final_possible": possible,
         "steady_states": [
             {
-                **vars(judged.state),
-                **_plain_spectrum(judged.spectrum),
+                **vars(entry.state),
+                **_plain_spectrum(entry.spectrum),
             }
-            for judged in outlook.steady
+            for entry in outlook.steady
         ],
         "jellett_conserved": outlook.conserved,
     }
@@ -118,12 +118,12 @@ def _sentences(outlook: "Outlook") -> Iterator[Any]:
         yield f"[dim]The flip time is known only for {outlook.flip_time_needs}.[/]"
     if outlook.steady:
         headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth time")
-        rows = (_state_row(judged) for judged in outlook.steady)
+        rows = (_state_row(entry) for entry in outlook.steady)
         yield listing("Steady states of this launch", headings, rows, words=("kind", ""))
-    judged_ones = [judged for judged in outlook.steady if judged.spectrum is not None]
-    for judged in judged_ones:
-        yield f"[dim]{judged.state.kind.value}:[/] {_eigenvalues(judged)}"
-    if judged_ones:
+    analysed = [entry for entry in outlook.steady if entry.spectrum is not None]
+    for entry in analysed:
+        yield f"[dim]{entry.state.kind.value}:[/] {_eigenvalues(entry)}"
+    if analysed:
         yield (
             "[dim]rad, rad/s, J; growth time: s in which a small tilt grows e times; eigenvalues in"
             " 1/s, in the frame that turns with the precession (for vertical spins, a frame at"
@@ -252,8 +252,8 @@ def _described(state: "SteadyState[float]") -> str:
     return f"{state.kind.value} at θ = {state.tilt:.7g}"
 
 
-def _state_row(judged: "AnalysedState") -> tuple[str, ...]:
-    state, spectrum = judged.state, judged.spectrum
+def _state_row(entry: "AnalysedState") -> tuple[str, ...]:
+    state, spectrum = entry.state, entry.spectrum
     verdict, growth = "", ""
     if spectrum is not None:
         verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "neutral"
@@ -262,8 +262,8 @@ def _state_row(judged: "AnalysedState") -> tuple[str, ...]:
     return (state.kind.value, *motion, f"{state.energy:.5g}", verdict, growth)
 
 
-def _eigenvalues(judged: "AnalysedState") -> str:
+def _eigenvalues(entry: "AnalysedState") -> str:
     """Return the eigenvalues as text; one of each conjugate pair stands for both."""
-    assert judged.spectrum is not None
-    shown = [value for value in judged.spectrum.eigenvalues.tolist() if value.imag >= 0]
+    assert entry.spectrum is not None
+    shown = [value for value in entry.spectrum.eigenvalues.tolist() if value.imag >= 0]
     return ", ".join(f"{v.real:.5g} ± {v.imag:.6g}i" if v.imag else f"{v.real:.5g}" for v in shown)

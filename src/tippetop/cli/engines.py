@@ -1,4 +1,4 @@
-"""`tippetop engines`: what other programs make of the reference problems."""
+"""`tippetop engines`: errors of other programs on the reference problems."""
 
 import math
 from pathlib import Path
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def engines(
     out: Annotated[
-        Path, typer.Option(help="Folder for results; what it has is not run again.")
+        Path, typer.Option(help="Folder for results; runs that it has are not repeated.")
     ] = Path("tippetop-engines"),
     engine: Annotated[
         list[str] | None,
@@ -33,9 +33,9 @@ def engines(
     as_json: Json = False,
     force: Force = False,
 ) -> None:
-    """Run the reference problems in other programs, and say how far they are from the truth.
+    """Run the reference problems in other programs, and show their errors.
 
-    Programs that are not installed are left out. Without any, the results of the package are shown.
+    Programs that are not installed are omitted. Without any, the stored results are shown.
     """
     from tippetop.engines import comparison  # noqa: PLC0415 - slow to import
 
@@ -43,8 +43,8 @@ def engines(
         require_ending("--plot", plot, DRAWINGS)
         place_for(plot, force)
     list(comparison.tasks(engine, case))
-    here = comparison.installed(engine)
-    others = [name for name in here if name != "moreau"]
+    installed = comparison.installed(engine)
+    others = [name for name in installed if name != "moreau"]
     remark = ""
     if stored or not (others or engine == ["moreau"]):
         results = comparison.stored()
@@ -56,26 +56,26 @@ def engines(
     else:
         steps = step or comparison.STEPS
         with progress_bar("starting") as progress:
-            results = comparison.compare(out, here, case, steps, progress=progress)
-    found = comparison.verdicts(results)
+            results = comparison.compare(out, installed, case, steps, progress=progress)
+    verdicts = comparison.verdicts(results)
     if plot is not None:
         from tippetop.figures.engines import errors_figure  # noqa: PLC0415 - slow to import
 
         write_figure(errors_figure(results), plot, force)
     if as_json:
-        shown = [verdict._asdict() for verdict in found]
+        shown = [verdict._asdict() for verdict in verdicts]
         show_json({"remark": remark, "results": results, "best": shown})
     else:
-        parts = ([remark] if remark else []) + [_table(found), _versions(results)]
+        parts = ([remark] if remark else []) + [_table(verdicts), _versions(results)]
         show(*parts, files=[plot] if plot else [])
 
 
 def _versions(results: "Mapping[str, Any]") -> str:
-    told = (f"{one['engine']} {one['version']} ({one['date']})" for one in results.values())
-    return f"[dim]{'; '.join(told)}[/]"
+    versions = (f"{one['engine']} {one['version']} ({one['date']})" for one in results.values())
+    return f"[dim]{'; '.join(versions)}[/]"
 
 
-def _table(found: "list[EngineVerdict]") -> Any:
+def _table(verdicts: "list[EngineVerdict]") -> Any:
     headings = (
         *("case", "program", "setting", "step (ms)", "early error", "order", "holds until (s)"),
         *("turns over (s)", "exactly", "energy error", "us a step"),
@@ -94,7 +94,7 @@ def _table(found: "list[EngineVerdict]") -> Any:
             _digits(one.energy_error),
             f"{one.microseconds_per_step:.0f}",
         )
-        for one in sorted(found, key=lambda one: one.case)
+        for one in sorted(verdicts, key=lambda one: one.case)
     ]
     title = "Each program at its best setting and shortest step"
     return listing(title, headings, rows, words=("case", "program", "setting"))

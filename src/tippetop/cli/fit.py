@@ -1,4 +1,4 @@
-"""`tippetop fit`: numbers of a problem from data of a real top."""
+"""`tippetop fit`: fit of numbers of a problem to data of a real top."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -55,7 +55,7 @@ def fit(
         bool, typer.Option("--y-down", help="y grows downwards in pictures.")
     ] = False,
     track: Annotated[str | None, typer.Option(help="Track, of several in a file.")] = None,
-    starts: Annotated[int, typer.Option(help="From how many points the search begins.")] = 1,
+    starts: Annotated[int, typer.Option(help="Number of points from which the search begins.")] = 1,
     plot: Annotated[
         Path | None, typer.Option(help="Draw data and fit as .png, .svg or .pdf.")
     ] = None,
@@ -63,7 +63,7 @@ def fit(
     as_json: Json = False,
     force: Force = False,
 ) -> None:
-    """Fit numbers of a problem to data of a real top, and say how well they are known."""
+    """Fit numbers of a problem to data of a real top, and show them with their errors."""
     if not vary:
         raise InvalidInput("--vary", vary, "fields with commas, such as friction.mu,launch.spin")
     for option, path, endings in (("--plot", plot, DRAWINGS), ("--out", out, (".toml",))):
@@ -96,7 +96,7 @@ def fit(
 
 
 def _lines(result: "FitResult") -> list[Any]:
-    """Return the fit for people."""
+    """Return the fit as tables and sentences."""
     rows = [
         (name, f"{value:.5g}", "±", f"{result.errors[name]:.2g}")
         for name, value in result.values.items()

@@ -1,4 +1,4 @@
-"""`tippetop lab`: the laboratory in the browser."""
+"""`tippetop lab`: the laboratory's page in the browser."""
 
 from pathlib import Path
 from typing import Annotated
@@ -19,11 +19,11 @@ def lab(
     out: Annotated[Path | None, typer.Option(help="Write the page into this file instead.")] = None,
     browser: Annotated[
         bool,
-        typer.Option(show_default=False, help="Open the page in a browser; opened if left out."),
+        typer.Option(show_default=False, help="Open the page in a browser; the default."),
     ] = True,
     force: Force = False,
 ) -> None:
-    """Open a page in the browser where anyone can launch the top and see why it turns over."""
+    """Open a page in the browser on which anyone can launch the top and see why it turns over."""
     from tippetop.lab.serve import page_path, serve  # noqa: PLC0415 - slow to import
 
     if out is not None:

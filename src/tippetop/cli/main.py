@@ -11,7 +11,7 @@ GARBAGE = 50_000
 """Number of new objects between two garbage collections: imports make many objects and free few."""
 
 UNUSED = ("dask",)
-"""Packages that xarray loads wherever they are installed, and that only `sweep` uses."""
+"""Packages that xarray loads if they are installed, and that only `sweep` uses."""
 
 
 def main() -> None:
@@ -23,14 +23,14 @@ def main() -> None:
     if sys.argv[1:2] != ["sweep"]:
         for name in UNUSED:
             sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # as if it were not installed
-    from tippetop.cli.commands import run  # noqa: PLC0415 - slow to import, and Ctrl-C is to be heard meanwhile
+    from tippetop.cli.commands import run  # noqa: PLC0415 - slow to import, with Ctrl-C handled meanwhile
 
     try:
         run()
     except SystemExit as ending:
         if ending.code == INTERRUPTED:
-            # All is undone that was begun: nobody needs to wait for the compiler, or for libraries
-            # to go.
+            # Everything has been cleaned up: there is no need to wait for the compiler, or for the
+            # libraries to be unloaded.
             with suppress(OSError, ValueError):
                 sys.stdout.flush()
                 sys.stderr.flush()

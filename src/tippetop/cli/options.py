@@ -1,4 +1,4 @@
-"""Options that several commands share: how a problem is stated on the command line."""
+"""Options that several commands share, such as those that state a problem."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 ProblemFile = Annotated[
     Path | None,
-    typer.Argument(help="Problem to start from, .toml or .json; the report's top if left out."),
+    typer.Argument(help="Problem to start from, .toml or .json; by default the report's top."),
 ]
 NUMBER = "NUMBER"
 """Placeholder in the help for a number that may have a unit."""
@@ -62,7 +62,7 @@ PROBLEM_OPTIONS = {
         ),
     ],
 }
-"""Options that state a problem, beside its file."""
+"""Options that change the problem of a file."""
 
 FIELDS = {
     "spin": "launch.spin",
@@ -98,7 +98,7 @@ class Choice(NamedTuple):
         )
 
     def changed(self, problem: "tt.Problem") -> "tt.Problem":
-        """Return another problem with the changes."""
+        """Return a problem with the changes."""
         if self.preset is not None:
             problem = problem.model_copy(update={"body": tt.presets.body(self.preset)})
         changes = dict(self.settings)
@@ -108,7 +108,7 @@ class Choice(NamedTuple):
                     field,
                     value,
                     "one of them",
-                    f"stands beside {short(changes[field])}, given for the same field",
+                    f"is given beside {short(changes[field])} for the same field",
                 )
             changes[field] = value
         return problem.replace(changes)
@@ -119,7 +119,8 @@ def of_a_problem(
 ) -> Callable[..., None]:
     """Return a command with the options that state a problem.
 
-    The command gets them as its first argument, a `Choice`; `file` is the annotation of the file.
+    The command receives them as its first argument, a `Choice`; `file` is the annotation of the
+    file's argument.
     """
 
     @wraps(command)
@@ -174,7 +175,7 @@ def _value(text: str) -> Any:
 
 
 def number_of(option: str, text: str | None, units: str) -> float | None:
-    """Return the number of an option, in SI unless the text has a unit; None without the option."""
+    """Return the number of an option in SI, converted from its unit if it has one, or None."""
     if text is None:
         return None
     number = _value(text)

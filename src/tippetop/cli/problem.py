@@ -1,4 +1,4 @@
-"""`tippetop problem`: write a problem file, or the schema of one."""
+"""`tippetop problem`: a problem as TOML, or the JSON Schema of problems."""
 
 import re
 from typing import Annotated, Literal, get_args, get_origin
@@ -23,7 +23,7 @@ def problem(
         bool, typer.Option("--schema", help="Print the JSON Schema of problems.")
     ] = False,
 ) -> None:
-    """Print a problem as TOML with its units, to be edited and given to the other commands."""
+    """Print a problem as TOML with its units, to be edited and passed to the other commands."""
     if schema:
         show_json(tt.Problem.model_json_schema())
         return

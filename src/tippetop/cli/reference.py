@@ -1,4 +1,4 @@
-"""`tippetop reference`: write the reference suite for other programs."""
+"""`tippetop reference`: the reference suite, written for other programs."""
 
 import math
 from pathlib import Path
@@ -18,16 +18,16 @@ def reference(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Write reference problems with numbers that other programs can be held against.
+    """Write reference problems with results to which other programs can be compared.
 
-    Each number has the agreement of two methods that share no code. Ends with exit code 1 where
-    they differ by more than 1e-10 s in an event or 1e-8 in a state.
+    Each result states the agreement of two methods that share no code. The exit code is 1 if they
+    differ by more than 1e-10 s in an event or 1e-8 in a state.
     """
     from tippetop.engines.reference import SUITE_VERSION, write_suite  # noqa: PLC0415 - slow to import
 
     with progress_bar("starting") as progress:
-        found = write_suite(out, case, force, progress)
-    apart = [one.case.name for one in found if not one.agrees]
+        results = write_suite(out, case, force, progress)
+    apart = [one.case.name for one in results if not one.agrees]
     if as_json:
         cases = {
             one.case.name: {
@@ -37,7 +37,7 @@ def reference(
                 "energy_error": one.energy_error,
                 "agrees": one.agrees,
             }
-            for one in found
+            for one in results
         }
         show_json({"suite": SUITE_VERSION, "folder": str(out), "cases": cases})
     else:
@@ -50,10 +50,10 @@ def reference(
                 f"{one.state_agreement:.0e}",
                 f"{one.energy_error:.0e}",
             )
-            for one in found
+            for one in results
         ]
         listed = listing(f"Reference suite {SUITE_VERSION}", headings, rows, words=("case",))
-        worse = f"The methods differ by more than the suite promises: {', '.join(apart)}."
+        worse = f"The two methods differ by more than they may: {', '.join(apart)}."
         show(listed, *([worse] if apart else []), files=[out / "README.md"])
     if apart:
         raise typer.Exit(1)

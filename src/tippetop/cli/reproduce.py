@@ -1,4 +1,4 @@
-"""`tippetop reproduce`: redo the report, and print the verdicts on its claims."""
+"""`tippetop reproduce`: the report redone, with a verdict on each of its claims."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -28,7 +28,7 @@ def reproduce(
 ) -> None:
     """Redo the report "The Dynamics of Tippe Top and Numerical Simulation", a student's project.
 
-    Writes its figures, the data behind them, and a verdict on every claim.
+    Writes its figures, their data, and a verdict on every claim.
     """
     from tippetop.report import reproduce as report  # noqa: PLC0415 - slow to import
 

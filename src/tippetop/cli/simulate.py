@@ -1,4 +1,4 @@
-"""`tippetop simulate`: one run, with a summary and files."""
+"""`tippetop simulate`: one run, with a summary and its files."""
 
 import math
 import time
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 DEFAULT_SAMPLES = 2001
 FILMS = {"mp4", "gif"}
 MOVING = {"glb", "html", *FILMS}
-"""Kinds of files that show the motion, and need enough samples for it."""
+"""Kinds of files that show the motion, which needs enough samples."""
 
 TABLES = {"events_table": "events", "flights_table": "flights"}
 """Tables of a run beside its samples, by the options that write them."""
@@ -58,7 +58,7 @@ ROWS = (
 )
 """Rows printed for a run: text, key of the summary, unit, format, and text for a missing value.
 
-A row without such a text is left out if its value is missing.
+A row without a text for a missing value is then omitted.
 """
 
 LOSS_ROWS = (
@@ -66,7 +66,7 @@ LOSS_ROWS = (
     ("of it to drilling", "energy_lost_drilling", "J", ".7g", ""),
     ("of it to rolling resistance", "energy_lost_rolling", "J", ".7g", ""),
 )
-"""Rows printed for a run that loses energy by drilling or rolling resistance too."""
+"""Further rows for a run that loses energy by drilling or rolling resistance."""
 
 FLIGHT_ROWS = (
     ("flights", "flights", "", ".7g", ""),
@@ -83,7 +83,8 @@ def simulate(
         str, typer.Option(metavar=NUMBER, help="Length of the run, s, or as in '2 min'.")
     ] = "20",
     samples: Annotated[
-        int | None, typer.Option(help="Number of samples; 2001, or what a moving picture needs.")
+        int | None,
+        typer.Option(help="Number of samples; by default 2001, or as many as a film needs."),
     ] = None,
     integrator: Annotated[
         str | None,
@@ -121,7 +122,7 @@ def simulate(
     as_json: Json = False,
     force: Force = False,
 ) -> None:
-    """Simulate one launch and say what becomes of the top."""
+    """Simulate one launch, and describe the motion in words and numbers."""
     chosen, seconds = choice.problem(), number_of("--duration", duration, "s") or 0.0
     files = {
         "out": out,
@@ -228,12 +229,12 @@ def _rows(summary: dict[str, Any], jellett_conserved: bool) -> list[tuple[str, s
     resisted = summary["energy_lost_drilling"] or summary["energy_lost_rolling"]
     shown = [*ROWS, *(LOSS_ROWS if resisted else ()), *(FLIGHT_ROWS if summary["flights"] else ())]
     rows = []
-    for text, key, unit, form, otherwise in shown:
+    for text, key, unit, form, missing in shown:
         if key == "jellett_drift" and not jellett_conserved:
             continue
         value = numbers[key]
         if value is not None:
             rows.append((text, format(value, form), unit))
-        elif otherwise:
-            rows.append((text, otherwise, ""))
+        elif missing:
+            rows.append((text, missing, ""))
     return rows

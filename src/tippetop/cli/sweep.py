@@ -1,4 +1,4 @@
-"""`tippetop sweep`: many launches in a store, with maps beside it."""
+"""`tippetop sweep`: many launches in a store, with maps."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 SweepFile = Annotated[
     Path | None,
     typer.Argument(
-        help="Sweep (.toml with axes or draws), or problem to start from; else the report's top."
+        help="Sweep (.toml with axes or draws), or problem; by default the report's top."
     ),
 ]
 Axes = Annotated[
@@ -48,30 +48,30 @@ Ranges = Annotated[
     ),
 ]
 Count = Annotated[int | None, typer.Option(help="Number of draws.")]
-Seed = Annotated[int | None, typer.Option(help="What the draws follow from; 0 if left out.")]
+Seed = Annotated[int | None, typer.Option(help="Seed of the random numbers; 0 by default.")]
 Duration = Annotated[
     str | None,
-    typer.Option(metavar=NUMBER, help="Length of every run, s, or as in '2 min'; 20 if left out."),
+    typer.Option(metavar=NUMBER, help="Length of every run, s, or as in '2 min'; 20 by default."),
 ]
-Tolerance = Annotated[float | None, typer.Option(help="Relative error per step; 1e-9 if left out.")]
+Tolerance = Annotated[float | None, typer.Option(help="Relative error per step; 1e-9 by default.")]
 Settled = Annotated[
     str | None,
     typer.Option(
         metavar=NUMBER,
-        help="End a run once its tilt is held within this for good, rad; else all run on.",
+        help="End a run once its tilt cannot leave this distance, rad; by default none ends.",
     ),
 ]
 Processes = Annotated[
-    int | None, typer.Option(help="Number of processes; all processors if left out.")
+    int | None, typer.Option(help="Number of processes; by default all processors.")
 ]
 Scheduler = Annotated[
     str | None,
     typer.Option(metavar="ADDRESS", help="Compute on a running dask.distributed cluster."),
 ]
 Out = Annotated[Path, typer.Option(help="Zarr store to write: .zarr.")]
-Resume = Annotated[bool, typer.Option("--resume", help="Finish a store that is there.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Finish an existing store.")]
 Maps = Annotated[
-    bool, typer.Option(show_default=False, help="Draw maps beside the store; drawn if left out.")
+    bool, typer.Option(show_default=False, help="Draw maps beside the store; the default.")
 ]
 
 
@@ -93,7 +93,7 @@ def sweep(
     as_json: Json = False,
     force: Force = False,
 ) -> None:
-    """See what becomes of many launches: over axes that cross, or draws at random."""
+    """Simulate many launches, over crossed axes or random draws, and count their outcomes."""
     from tippetop.problem.implausible import warn  # noqa: PLC0415 - slow to import
     from tippetop.sweeps import Store, fill  # noqa: PLC0415
     from tippetop.sweeps.implausible_cells import implausible_cells  # noqa: PLC0415
@@ -105,7 +105,7 @@ def sweep(
             "--force",
             Described("beside --resume"),
             "one of the two",
-            "overwrites what it goes on with",
+            "would overwrite the store that is to be resumed",
         )
     with in_words(out, "read"):
         stored = kept_sweep(out) if resume and choice.file is None else None
@@ -142,7 +142,8 @@ def sweep(
         except KeyboardInterrupt:
             done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
             typer.echo(
-                f"tippetop: interrupted; {done} cells are in {out}: go on with --resume", err=True
+                f"tippetop: interrupted; {done} cells are in {out}: continue with --resume",
+                err=True,
             )
             raise typer.Exit(INTERRUPTED) from None
     summary = {
@@ -188,10 +189,10 @@ def _chosen_grid(
     from tippetop.sweeps import Product  # noqa: PLC0415 - slow to import
 
     if axis and draw:
-        raise InvalidInput("--draw", draw[0], "axes or draws", "stands beside --axis")
+        raise InvalidInput("--draw", draw[0], "axes or draws", "is given beside --axis")
     for name, number in (("--count", count), ("--seed", seed)):
         if number is not None and not draw:
-            raise InvalidInput(name, number, "", "is for --draw alone", "leave it out")
+            raise InvalidInput(name, number, "", "is only for --draw", "omit it")
     if axis:
         return Product.of([_axis(text) for text in axis])
     if draw:
@@ -238,7 +239,7 @@ def _range(text: str) -> tuple[str, Any]:
 
 
 def _numbers(texts: list[str]) -> list[float | str]:
-    """Return numbers, or texts of numbers with units; a unit of the last holds for those without.
+    """Return numbers, or texts of numbers with units; the last unit holds for those without one.
 
     Raises `ValueError` for other texts.
     """
@@ -270,8 +271,9 @@ def _holds_sweep(file: Path) -> bool:
 
 
 def _map_files(out: Path, chosen: "Sweep") -> dict[str, Path]:
-    """Return the files of the maps beside a store, by variable; refuse axes that cannot be
-    drawn.
+    """Return the files of the maps beside a store, by variable.
+
+    Raises `InvalidInput` for axes that cannot be drawn.
     """
     from tippetop.figures.maps import MAPPED, require_drawable  # noqa: PLC0415 - slow to import
     from tippetop.sweeps.grid import field_paths  # noqa: PLC0415
@@ -303,9 +305,7 @@ def _summary(dataset: "xr.Dataset", progress: "Progress") -> dict[str, Any]:
 
 
 def _refusal(sweep: "Sweep", faults: "NDArray[np.int8]") -> str | None:
-    """Return why the first launch without a valid problem has none; None if all launches are
-    valid.
-    """
+    """Return the refusal of the first launch that is not valid; None if all are."""
     from tippetop.sweeps.cells import put, single_part  # noqa: PLC0415 - slow to import
 
     bad = faults.ravel().nonzero()[0][:1]
@@ -326,7 +326,7 @@ def _sentences(summary: dict[str, Any]) -> Iterator[Any]:
     yield f"[bold]{summary['cells']:,} launches[/]"
     yield facts(rows)
     if summary["refusal"]:
-        yield escape(f"The first that is bad: {summary['refusal']}")
+        yield escape(f"The first launch that is not valid: {summary['refusal']}")
     yield (
         f"[dim]{summary['computed']:,} computed in {summary['seconds']:.3g} s, "
         f"{summary['launches_per_second']:,.0f} a second[/]"

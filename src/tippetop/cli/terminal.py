@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def facts(rows: Iterable[Sequence[str]]) -> "Table":
     """Return a table of rows: a name, a number and perhaps a remark."""
-    from rich.table import Table  # noqa: PLC0415 - slow to import, like what follows
+    from rich.table import Table  # noqa: PLC0415 - slow to import, as are those below
 
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
     table.add_column(style="dim")
@@ -67,7 +67,7 @@ def show_json(value: Any) -> None:
 
 
 @contextmanager
-def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
+def progress_bar(label: str = "") -> Iterator[Callable[..., None]]:
     """Yield a callback that shows progress, remaining and elapsed time on a terminal.
 
     The callback takes the work done, the work in total and, if it changes, the text shown.
@@ -81,9 +81,9 @@ def progress_bar(what: str = "") -> Iterator[Callable[..., None]]:
 
     columns = (*Progress.get_default_columns(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(escape(f"{what:<28}"), total=None)
+        task = bar.add_task(escape(f"{label:<28}"), total=None)
 
-        def tell(done: float, total: float, now: str = what) -> None:
+        def tell(done: float, total: float, now: str = label) -> None:
             reraise_interrupt()
             bar.update(task, completed=done, total=total, description=escape(f"{now:<28}"))
 

@@ -45,8 +45,8 @@ def lathe(part: ToyPart, unit: float, segments: int = SEGMENTS) -> Mesh:
     points = turned(unit * part.profile)
     corner = np.arange(len(points)).reshape(len(turn), columns)
     begins = np.flatnonzero(np.arange(len(turn)) % (steps + 1) < steps)
-    left, right = corner[begins], corner[begins + 1]
-    a, b, c, d = (side.ravel() for side in (left[:, :-1], right[:, :-1], right[:, 1:], left[:, 1:]))
+    near, far = corner[begins], corner[begins + 1]
+    a, b, c, d = (side.ravel() for side in (near[:, :-1], far[:, :-1], far[:, 1:], near[:, 1:]))
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
     # Quadrilaterals that end on the axis have one triangle without area.

@@ -36,7 +36,7 @@ _TABLE_RADII = 8.0
 
 
 def write_glb(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Path:
-    """Write a run as an animated .glb: the toy with its pattern, on a table, in metres.
+    """Write a run as an animated .glb: the toy with its pattern on a table, in metres.
 
     Raises
     ------

@@ -68,18 +68,14 @@ def contact_path(run: xr.Dataset) -> Array:
 
 
 def _cubic(u: Array, h: Array, a: Array, b: Array, rate_a: Array, rate_b: Array) -> Array:
-    """Return the cubic with these values and rates at both ends, at the share u of the time h
-    between.
-    """
+    """Return the cubic with these values and rates at both ends, at the share u of the time h."""
     v = 1.0 - u
     by_value = v * v * (1 + 2 * u) * a + u * u * (3 - 2 * u) * b
     return np.asarray(by_value + u * v * h * (v * rate_a - u * rate_b))
 
 
 def _carrying_spin(start: Array, axis: Array, rate: Array) -> Array:
-    """Return the spin (rad/s) about a moving axis that its shortest rotation from `start` takes
-    away.
-    """
+    """Return the spin (rad/s) about a moving axis in its shortest rotation from `start`."""
     turning = np.einsum("ij,ij->i", np.cross(start, axis), rate)
     return np.asarray(turning / np.maximum(1.0 + np.einsum("ij,ij->i", start, axis), 1e-9))
 

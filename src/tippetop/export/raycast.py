@@ -11,7 +11,7 @@ from tippetop.figures.toy import FAR, Toy
 
 Array = NDArray[np.floating[Any]]
 Area = tuple[int, int, int, int]
-"""Area of a picture, pixels: left, right, top, bottom."""
+"""Area of a picture, pixels: first and end column, first and end row."""
 
 _LIGHT = np.array([-0.35, -0.60, 1.0]) / np.linalg.norm([-0.35, -0.60, 1.0])
 """Unit vector to the light."""
@@ -44,10 +44,14 @@ class View(NamedTuple):
         """Return unit directions of `fine` x `fine` rays through each pixel of an area, (rows,
         columns, 3).
         """
-        left, right, top, bottom = area
+        first_column, end_column, first_row, end_row = area
         width, height = self.pixels
-        x = (left + (np.arange((right - left) * fine) + 0.5) / fine) * 2 / width - 1
-        y = (height - 2 * (top + (np.arange((bottom - top) * fine) + 0.5) / fine)) / width
+        x = (
+            first_column + (np.arange((end_column - first_column) * fine) + 0.5) / fine
+        ) * 2 / width - 1
+        y = (
+            height - 2 * (first_row + (np.arange((end_row - first_row) * fine) + 0.5) / fine)
+        ) / width
         across = np.multiply.outer(x, _SPREAD * self.right)
         upward = np.multiply.outer(y, _SPREAD * self.up)
         direction = (self.ahead + across + upward[:, None]).astype(np.float32)
@@ -70,9 +74,9 @@ class View(NamedTuple):
         width, height = self.pixels
         corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
         columns, rows = self.project(about + corners * reach)
-        left, right = np.clip([columns.min(), columns.max() + 1], 0, width).astype(int)
-        top, bottom = np.clip([rows.min(), rows.max() + 1], 0, height).astype(int)
-        return int(left), int(right), int(top), int(bottom)
+        first_column, end_column = np.clip([columns.min(), columns.max() + 1], 0, width).astype(int)
+        first_row, end_row = np.clip([rows.min(), rows.max() + 1], 0, height).astype(int)
+        return int(first_column), int(end_column), int(first_row), int(end_row)
 
 
 def view_of(target: Array, offset: Array, pixels: tuple[int, int]) -> View:
@@ -102,10 +106,10 @@ def picture(
         (_cast_shadow, shadow, (1.7 * toy.reach, 2.1 * toy.reach, 0.02), 1),
         (_draw_toy, middle, 3 * (toy.reach,), 2),
     ):
-        left, right, top, bottom = area = view.area(about, np.array(reach))
-        if left < right and top < bottom:
+        first_column, end_column, first_row, end_row = area = view.area(about, np.array(reach))
+        if first_column < end_column and first_row < end_row:
             draw(
-                colours[top:bottom, left:right],
+                colours[first_row:end_row, first_column:end_column],
                 toy,
                 view.eye,
                 view.rays(area, fine),

@@ -66,9 +66,7 @@ def unpack_header(block: bytes) -> dict[str, Any]:
 
 
 def flights(run: xr.Dataset) -> Any:
-    """Return start and end (s) of every flight within a run; flights too close to be seen apart are
-    one.
-    """
+    """Return start and end (s) of the flights of a run, with flights merged that look like one."""
     (begin, end), starts, ends = _ends(run), run["flight_start"].values, run["flight_end"].values
     seen = (starts < end) & (ends > begin)
     starts, ends = starts[seen].clip(begin), ends[seen].clip(max=end)

@@ -1,4 +1,4 @@
-"""A run in a Jupyter notebook: the same player as on the page, as a widget."""
+"""Player of a run in a Jupyter notebook: the player of the page, as a widget."""
 
 from functools import cache
 from typing import Any
@@ -16,7 +16,7 @@ THEMES = ("auto", "light", "dark")
 
 
 def view(run: xr.Dataset, height: int = 480, theme: str = "auto") -> Any:
-    """A widget that plays a run; its `show(run)` plays another in its place.
+    """Return a widget that plays a run; its method `show(run)` plays another one instead.
 
     Parameters
     ----------
@@ -25,14 +25,14 @@ def view(run: xr.Dataset, height: int = 480, theme: str = "auto") -> Any:
     height
         Height of the widget, pixels.
     theme
-        "light", "dark", or "auto" for what the browser prefers.
+        "light", "dark", or "auto" for the preference of the browser.
 
     Raises
     ------
     InvalidInput
         If there is no such theme, or the height is not positive.
     Unavailable
-        If anywidget is not installed, or the player not built.
+        If anywidget is not installed, or the player is not built.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def _widget() -> Any:
         ) from None
 
     def show(self: Any, run: xr.Dataset) -> None:
-        """Play another run in the same widget."""
+        """Play another run in this widget."""
         self.track = pack_run(run)
 
     members = {

@@ -1,4 +1,4 @@
-"""The laboratory's page for other devices: one file over HTTP, read-only."""
+"""Server of the laboratory's page for other devices: one file over HTTP, read-only."""
 
 import socket
 import webbrowser
@@ -16,24 +16,24 @@ PAGE = "lab.html"
 EVERYWHERE = ("0.0.0.0", "::", "")
 
 PATIENCE = 10.0
-"""How long a device may take over its request, s."""
+"""Time within which a device must send its request, s."""
 
 
 def page_path() -> Path:
-    """Where the page is; `Unavailable` if it is not built."""
+    """Return the file of the page; raise `Unavailable` if it is not built."""
     built(PAGE)
     return BUILT / PAGE
 
 
 class PageHandler(SimpleHTTPRequestHandler):
-    """Gives the page to whoever asks for it, and nothing else."""
+    """Handler of requests, which serves only the page."""
 
     timeout = PATIENCE
     server_version = "tippetop"
     sys_version = ""
 
     def send_head(self) -> BytesIO | None:
-        """Say what the page is, and give it to be sent."""
+        """Send the headers of the page; return its content, or None for another path."""
         if self.path.partition("?")[0] not in ("/", f"/{PAGE}"):
             self.send_error(404)
             return None
@@ -47,15 +47,15 @@ class PageHandler(SimpleHTTPRequestHandler):
         return BytesIO(content)
 
     def log_message(self, format: str, *arguments: object) -> None:  # noqa: A002 - the library's name
-        """Say nothing."""
+        """Write no log."""
 
 
 def serve(host: str, port: int, browser: bool, announce: Callable[[str], None]) -> None:
     """Serve the page until interrupted, at an address and a port; 0.0.0.0 lets other devices in.
 
-    `browser` says whether to open it here, and `announce` is told the address, and a code to scan
-    for it. Raises `InvalidInput` if nothing can listen there, and `Unavailable` if the page is not
-    built.
+    `browser` says whether to open the page on this machine. `announce` is called with the address,
+    and with a code to scan. Raises `InvalidInput` if the address is not free, and `Unavailable` if
+    the page is not built.
     """
     page_path()
     try:
@@ -64,7 +64,7 @@ def serve(host: str, port: int, browser: bool, announce: Callable[[str], None]) 
         raise InvalidInput(
             "host",
             f"{host}:{port}",
-            "the address of a free port here",
+            "the address of a free port of this machine",
             f"cannot be served at ({error})",
             "choose another --port",
         ) from None
@@ -83,7 +83,7 @@ def serve(host: str, port: int, browser: bool, announce: Callable[[str], None]) 
 
 
 def qr_code(text: str) -> str:
-    """A text as a code to scan, drawn in letters; empty where segno is not installed."""
+    """Return a text as a QR code drawn in letters; "" if segno is not installed."""
     if find_spec("segno") is None:
         return ""
     import segno  # noqa: PLC0415 - optional
@@ -94,7 +94,7 @@ def qr_code(text: str) -> str:
 
 
 def _own_address() -> str:
-    """The address by which other devices reach this one; nothing is sent to find it."""
+    """Return the address of this machine in its network; nothing is sent to determine it."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as trial:
         try:
             trial.connect(("192.0.2.1", 9))

@@ -1,7 +1,7 @@
-"""Write the engine's generated modules beside those written by hand; see `generate`.
+"""Write the generated modules of the engine; see `generate`.
 
-``python -m tippetop.page_engine`` writes a module only where its text differs, so that what is
-built from it is built again only then.
+``python -m tippetop.page_engine`` writes a module only if its text has changed, so that the page is
+built again only then.
 """
 
 import sys

@@ -1,8 +1,7 @@
-"""The engine's generated modules: mechanics and contact modes as JavaScript, tables and the
-method.
+"""Generation of the engine's modules: translated Python modules, and tables.
 
-`ROOTS` and what they import are translated. How a module or a definition is treated stands in that
-module, in comments that begin with ``# translate`` (see `tippetop.translate.declarations`).
+`ROOTS` and the modules that they import are translated. Exceptions are declared in a module itself,
+by comments that begin with ``# translate`` (see `tippetop.translate.declarations`).
 """
 
 import ast
@@ -43,10 +42,10 @@ ROOTS = (
     "tippetop.graph.javascript",
     "tippetop.graph.unrolling",
 )
-"""What the engine asks for: these, and what they import, are translated."""
+"""Modules that are translated, with the modules that they import."""
 
 METHOD = "tippetop.integrators.dormand_prince"
-"""Its coefficients are written out beside it."""
+"""Module of the integrator, whose loops are written out for states of a sliding top."""
 
 IS_LEAF = re.compile(r"^# translate module: (?:skip|by hand in .*)$", re.M)
 """Declaration of a module that is not translated."""
@@ -61,7 +60,7 @@ def generated() -> dict[str, str]:
     Raises
     ------
     Untranslatable
-        If the modules use what has no translation, or a declaration in them does not hold.
+        If a module uses Python that has no translation, or a declaration in it is wrong.
     """
     constants = tables(COMMAND)
     return {"mechanics.js": translated({"tables.js": constants}), "tables.js": constants}
@@ -95,7 +94,7 @@ def translated(generated_files: Mapping[str, str]) -> str:
 
 
 def require_exports(path: str, names: set[str], generated_files: Mapping[str, str]) -> None:
-    """Refuse to import names that a JavaScript file written by hand does not export."""
+    """Raise `Untranslatable` for names that a JavaScript file does not export."""
     file = path.removeprefix("./")
     text = generated_files.get(file) or (HERE / file).read_text(encoding="utf-8")
     exported = set(re.findall(r"^export (?:const|class|function\*?) (\w+)", text, re.M))
@@ -104,10 +103,10 @@ def require_exports(path: str, names: set[str], generated_files: Mapping[str, st
 
 
 def sources() -> tuple[dict[str, str], dict[str, str]]:
-    """Return the texts and the files of the modules by their names, each after those it imports.
+    """Return the texts and the files of the modules by name, each after those it imports.
 
-    Modules that declare a counterpart by hand, or that they are skipped, are among them without
-    what they import.
+    Modules that are skipped, or have a counterpart written by hand, are included without the
+    modules that they import.
     """
     texts: dict[str, str] = {}
     files: dict[str, str] = {}
