@@ -16,6 +16,7 @@ from pydantic import Field, model_validator
 
 import tippetop as tt
 from campaigns import among
+from extension_example import Counting, drying_problem
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Transition
 from tippetop.extend import (
@@ -431,6 +432,34 @@ def test_the_mode_is_the_one_defined() -> None:
     assert np.ptp(energy[pinned]) < 1e-12 * energy[0], "a force on a point at rest does no work"
     assert slip[pinned].max() < 1e-12 < 1e-3 < slip[~pinned].max()
     assert energy[-1] < 0.99 * energy[0]
+
+
+def test_an_example_with_public_names_alone_runs() -> None:
+    """On the smooth table energy, L_z, L3 and the horizontal velocity are constant."""
+    problem = drying_problem(until=DRAWN)
+    counter = Counting.of("dop853")
+    runs = [
+        tt.simulate(problem, DURATION, samples=501),
+        tt.simulate(problem, DURATION, samples=501, integrator=counter),
+    ]
+    assert counter.calls >= 2
+    for run in runs:
+        smooth = run["time"].values < DRAWN
+        names = np.array(run["mode"].attrs["flag_meanings"].split())[run["mode"].values]
+        assert set(names[smooth]) == {"smooth_table"} != set(names[~smooth])
+        momentum, axis = run["angular_momentum"].values, run["axis"].values
+        axial = np.sum(momentum * axis, axis=1)
+        for constant in (run["energy"].values, momentum[:, 2], axial):
+            assert np.ptp(constant[smooth]) < 1e-11 * abs(constant[0])
+        assert np.ptp(run["velocity"].values[smooth, :2], axis=0).max() < 1e-14
+        assert np.all(run["contact_force"].values[smooth, :2] == 0.0)
+        assert float(run["energy_error"]) < 1e-10
+        assert run["energy"].values[-1] < 0.999 * run["energy"].values[0]
+    for name in ("theta", "omega3", "normal_force"):
+        one, two = (run[name].values for run in runs)
+        np.testing.assert_allclose(one, two, rtol=0, atol=1e-8 * np.abs(one).max(), err_msg=name)
+    swept = tt.sweep(problem, {"contact.until": [0.1, DRAWN]}, duration=DURATION, workers=1)
+    assert swept["final_theta"].values[1] == pytest.approx(float(runs[0]["final_theta"]), rel=1e-7)
 
 
 @pytest.mark.parametrize("what", among(list(PROBLEMS), check=3))

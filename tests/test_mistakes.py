@@ -137,7 +137,7 @@ OPTIONS = [
     ("simulate --preset reprot", "preset: 'reprot' is not one of"),
     ("simulate --liftoff jump", "contact.liftoff: 'jump' is not one of fly, stop, ignore"),
     ("simulate --set spin", "--set: 'spin' is not FIELD=VALUE, such as launch.spin=155"),
-    ("simulate --spin 1 --set launch.spin=2", "launch.spin: 2 stands beside 1"),
+    ("simulate --spin 1 --set launch.spin=2", "launch.spin: 2 is given beside 1"),
     ("simulate --out run.csv", "--out: 'run.csv' is not a file name that ends in .nc"),
     ("simulate --nope", "no such option"),
     ("simulat", "no such command"),
@@ -150,7 +150,7 @@ OPTIONS = [
     ("sweep --axis launch.tilt=0:90kg:3", "launch.tilt.from: 0 kg is a mass, not an angle"),
     ("sweep --axis launch.spin=5rpm,5rpm", "launch.spin: [0.5235987755982988, 0.52359877559829"),
     ("sweep --draw launch.spin=1:2 --count 3 --axis friction.mu=1,2", "--draw: 'launch.spin=1:2'"),
-    ("sweep --count 3", "--count: 3 is only for --draw (leave it out)"),
+    ("sweep --count 3", "--count: 3 is only for --draw (omit it)"),
     ("sweep --axis launch.spin=1:2:3 --duration 3m", "--duration: 3m is a length, not a time"),
     ("sweep --axis launch.spin=1:2:3 --settled 1s", "--settled: 1s is a time, not an angle"),
 ]

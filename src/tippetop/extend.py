@@ -1,11 +1,17 @@
-"""What friction laws, surfaces and events of one's own are made of.
+"""Building blocks of friction laws, surfaces, contact modes, integrators and events of your own.
 
-Every name is imported from here: ``from tippetop.extend import FrictionLaw, Traction``, or used as
-``tt.extend.Traction``. The page `Extend the program` shows one of each.
+Every name is imported from this module, ``from tippetop.extend import FrictionLaw, Traction``, or
+used as ``tt.extend.Traction``. The page `Extend the program` shows one of each.
 
-Laws and surfaces are functions in plain operators, which are run on floats and arrays and recorded
-as expressions that are compiled. `where`, `abs`, `min`, `max` and `sqrt` of this module take all of
-these; ``if``, Python's own ``min`` and ``max``, and functions of `math` and `numpy` do not.
+Laws, surfaces and equations of motion are functions in plain operators, which run on floats and
+arrays and are recorded as expressions to be compiled. `where`, `abs`, `min`, `max` and `sqrt` of
+this module accept all of these; ``if``, Python's own ``min`` and ``max``, and functions of `math`
+and `numpy` do not.
+
+The names in `__all__`, their parameters and the attributes that the documentation lists are
+stable: code that uses only them keeps working within a major version. A name that must go is
+deprecated first: for at least one minor version it still works, with a `DeprecationWarning` that
+names its successor, and the changelog says so. Other modules of the package may change at any time.
 
 Examples
 --------
@@ -18,27 +24,78 @@ from typing import Any
 
 import numpy as np
 
+from tippetop.contact.automaton import Automaton
+from tippetop.contact.mode import Event, IntegratedMode, Mode, ModeEnd, Reaction, Transition
 from tippetop.graph.graph import Node
-from tippetop.mechanics.laws.friction import NO_TORQUE as NO_TORQUE
-from tippetop.mechanics.laws.friction import FrictionLaw as FrictionLaw
-from tippetop.mechanics.laws.friction import Traction as Traction
-from tippetop.mechanics.surfaces.surface import Surface as Surface
-from tippetop.mechanics.units import Units as Units
-from tippetop.mechanics.vectors import Horizontal as Horizontal
-from tippetop.mechanics.vectors import Scalar as Scalar
-from tippetop.mechanics.vectors import Vector as Vector
-from tippetop.mechanics.vectors import power
-from tippetop.problem.contact_rules import Contact as Contact
-from tippetop.problem.frictions import Friction as Friction
-from tippetop.problem.function_law import friction_law as friction_law
-from tippetop.problem.shapes import Shape as Shape
-from tippetop.results.event_functions import EventFunction as EventFunction
-from tippetop.results.motion_state import MotionState as MotionState
-from tippetop.support.errors import InvalidInput as InvalidInput
-from tippetop.support.validation import NotNegative as NotNegative
-from tippetop.support.validation import Number as Number
-from tippetop.support.validation import Positive as Positive
-from tippetop.support.validation import Quantity as Quantity
+from tippetop.integrators import make_integrator
+from tippetop.integrators.base import Arc, Guard, Integrator, Motion
+from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.laws.friction import NO_TORQUE, FrictionLaw, Traction
+from tippetop.mechanics.motion import SlidingContact, axis_rate, on_table, sliding_rates
+from tippetop.mechanics.motion import contact as sliding_contact
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.surfaces.surface import Surface
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.units import Units
+from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector, power
+from tippetop.problem.contact_rules import Contact
+from tippetop.problem.frictions import Friction
+from tippetop.problem.function_law import friction_law
+from tippetop.problem.shapes import Shape
+from tippetop.results.event_functions import EventFunction
+from tippetop.results.motion_state import MotionState
+from tippetop.support.errors import InvalidInput
+from tippetop.support.validation import NotNegative, Number, Positive, Quantity
+
+__all__ = [
+    "NO_TORQUE",
+    "Arc",
+    "Automaton",
+    "Contact",
+    "DenseSolution",
+    "Event",
+    "EventFunction",
+    "Friction",
+    "FrictionLaw",
+    "Guard",
+    "Horizontal",
+    "IntegratedMode",
+    "Integrator",
+    "InvalidInput",
+    "Kind",
+    "Mode",
+    "ModeEnd",
+    "Motion",
+    "MotionState",
+    "NotNegative",
+    "Number",
+    "Positive",
+    "Quantity",
+    "Reaction",
+    "Row",
+    "Scalar",
+    "Shape",
+    "SlidingContact",
+    "SlidingState",
+    "State",
+    "Surface",
+    "Top",
+    "Traction",
+    "Transition",
+    "Units",
+    "Vector",
+    "abs",
+    "axis_rate",
+    "friction_law",
+    "make_integrator",
+    "max",
+    "min",
+    "on_table",
+    "sliding_contact",
+    "sliding_rates",
+    "sqrt",
+    "where",
+]
 
 
 def where(condition: Any, a: Scalar, b: Scalar) -> Scalar:

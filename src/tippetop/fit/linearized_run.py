@@ -42,8 +42,8 @@ from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.problem.problem import Problem
-from tippetop.results.run_metrics import Tally
-from tippetop.results.run_solution import Begin
+from tippetop.results.run_metrics import RunMetrics
+from tippetop.results.run_solution import NaturalLaunch
 from tippetop.run import read_off
 from tippetop.support.errors import InvalidInput
 
@@ -592,7 +592,7 @@ class LinearizedRun:
         trajectory = Trajectory(self._automaton(numbers), launch, end, self.integrator)
         trajectory.end_at(time, state, self.outcome, self.trajectory.detail)
         trajectory.events = events
-        start = Begin(
+        start = NaturalLaunch(
             numbers.top_of(self.kind), units, numbers.start, numbers.azimuth, launch.energy_lost
         )
         problem = self._problem_beside(direction, change) or self.problem
@@ -602,7 +602,7 @@ class LinearizedRun:
     def read(self) -> xr.Dataset:
         """Return the dataset of the run itself."""
         numbers = self.numbers
-        start = Begin(
+        start = NaturalLaunch(
             numbers.top_of(self.kind),
             numbers.natural_units,
             numbers.start,
@@ -615,17 +615,19 @@ class LinearizedRun:
     def _dataset(
         self,
         problem: Problem,
-        start: Begin,
+        start: NaturalLaunch,
         segments: Sequence[Segment],
         trajectory: Trajectory,
     ) -> xr.Dataset:
         """Return the dataset of segments, of the run or beside it."""
         recorder = start.recorder(self.grid / start.units.time)
-        tally = Tally(start.top, start.state)
+        run_metrics = RunMetrics(start.top, start.state)
         block = Block(segments)
         recorder.take(block)
-        tally.take(block)
-        run = read_off(start, (recorder, tally), trajectory, self.outcome, self.grid, self.duration)
+        run_metrics.take(block)
+        run = read_off(
+            start, (recorder, run_metrics), trajectory, self.outcome, self.grid, self.duration
+        )
         return run.assign_attrs(problem=problem.to_json(), outcome=self.outcome.name.lower())
 
     def _start_of(self, junction: Junction) -> float:

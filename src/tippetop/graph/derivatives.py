@@ -33,8 +33,7 @@ def derivatives(outputs: Sequence[Scalar], seeds: Mapping[int, Tangent]) -> list
             if any(part is not zero for part in parts):
                 tangents[node.place] = _derived(node, parts)
     return [
-        tangents.get(output.place, zero) if isinstance(output, Node) else zero
-        for output in outputs
+        tangents.get(output.place, zero) if isinstance(output, Node) else zero for output in outputs
     ]
 
 

@@ -256,7 +256,7 @@ class _ConvexParts:
             rises[self.ends[number][1]] = self.high[number]
         else:
             rises[self.starting[number]] = self.low[self.starting[number]]
-        rises[self.left > tilt - _CLOSE] = math.inf
+        rises[self.left_at > tilt - _CLOSE] = math.inf
         rises[(rises < self.low - NARROWEST) | (rises >= self.high) | (rises < tilt - _CLOSE)] = (
             math.inf
         )
