@@ -116,12 +116,11 @@ def test_small_patches_stick_when_coulombs_friction_has_both_stick() -> None:
 
 
 @pytest.mark.parametrize("pressure", PRESSURES)
-@pytest.mark.parametrize("seed", [SLIPS_AGAIN])
-def test_it_rolls_on_as_long_as_friction_can_turn_its_way_round(seed: int, pressure: str) -> None:
+def test_it_rolls_on_as_long_as_friction_can_turn_its_way_round(pressure: str) -> None:
     """It rolls as a cone, Omega along the line of both contacts: its centre, h high, with Omega^2 h
     cot(tilt).
     """
-    body = with_patch(lying(seed), pressure)
+    body = with_patch(lying(SLIPS_AGAIN), pressure)
     tilt = body.launch.tilt
     sphere = body.body.shape[0]
     height = sphere.radius - sphere.center * np.cos(tilt)
@@ -133,7 +132,7 @@ def test_it_rolls_on_as_long_as_friction_can_turn_its_way_round(seed: int, press
             "launch.precession": -turning / np.tan(tilt),
             "launch.velocity": None,
         }
-        run = followed_by_steps(body.replace(rolls), 0.02)
+        run = followed_by_steps(body.replace(rolls), 0.01)
         assert set(words(run)[1:]) == {mode}
         assert float(run["energy_error"]) < 1e-12
 
@@ -302,6 +301,6 @@ def test_a_ball_comes_down_in_the_last_moments_of_slip_on_the_other(
     """
     law = tt.ContensouFriction(mu=mu, patch_radius=5e-4, pressure="ellipsoidal")
     balls = tt.presets.BODIES["hurricane-balls"]
-    run = tt.simulate(tt.Problem(body=balls, friction=law, launch=launch), 0.3, samples=3001)
+    run = tt.simulate(tt.Problem(body=balls, friction=law, launch=launch), 0.3, samples=1001)
     assert run.attrs["outcome"] == "completed"
     assert float(run["gap"].min()) > -1e-12

@@ -64,7 +64,7 @@ def test_a_surface_that_never_touches_changes_nothing(friction: tt.Friction) -> 
                 launch=tt.Launch(tilt=0.5, spin=40.0, gap=0.003),
                 rolling_resistance=ARM,
             ),
-            1.0,
+            0.3,
         )
         for shape in ([SPHERE], [SPHERE, tip])
     )
@@ -309,7 +309,7 @@ def test_time_stepping_converges_to_our_runs_at_first_order(seed: int, duration:
     spheres = [(shape.surface.radius, shape.surface.center) for shape in body.shapes]
     numbers = (body.mass, body.I1, body.I3, problem.gravity), spheres, problem.friction.mu  # type: ignore[attr-defined]
     errors = []
-    for step in (2e-4, 1e-4):
+    for step in (4e-4, 2e-4):
         other = moreau.OnSpheres(
             *numbers, problem.rolling_resistance, rotation, turning, np.array(start.velocity)
         )
@@ -318,14 +318,14 @@ def test_time_stepping_converges_to_our_runs_at_first_order(seed: int, duration:
         momentum = other.rotation.apply(other.inertia @ other.turning)
         errors.append(momentum - run["angular_momentum"].values[-1])
     sizes = [np.linalg.norm(error) / np.linalg.norm(start.momentum) for error in errors]
-    assert sizes[0] < 3e-3
+    assert sizes[0] < 6e-3
     assert sizes[0] / sizes[1] == pytest.approx(2.0, rel=0.1)
 
 
 @pytest.mark.parametrize("tolerance", [None, 1e-14, 1e-12])
 def test_straight_slip_on_two_ends_when_friction_has_taken_it(tolerance: float | None) -> None:
     """At v / (mu g): a step may lead beyond, as nothing of straight motion tells it to be short."""
-    for speed in np.linspace(0.05, 0.4, 15):
+    for speed in np.linspace(0.05, 0.4, 6):
         problem = dumbbell(velocity=(0.0, float(speed), 0.0)).replace({"rolling_resistance": 2e-3})
         run = tt.simulate(problem, 1.0, samples=2, tolerance=tolerance)
         assert run.attrs["outcome"] == "at_rest"

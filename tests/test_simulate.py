@@ -133,8 +133,9 @@ AFTER_20_S = {50.0: (35.254677, -8.207585), 155.0: (0.999451, -82.8658819364)}
 """Precession and axial spin, rad/s."""
 
 
-@pytest.mark.parametrize("integrator", EXACT_INTEGRATORS)
-@pytest.mark.parametrize("spin", THETA_AT)
+@pytest.mark.parametrize(
+    ("spin", "integrator"), [(50.0, "taylor"), (155.0, "taylor"), (50.0, "dop853")]
+)
 def test_tilt_follows_the_converged_run(spin, integrator):
     tolerance = 3e-12 if integrator == "dop853" else None
     run = tt.simulate(
@@ -331,7 +332,7 @@ OWN_TOLERANCE = {
     "bdf": 1e-9,
     "lsoda": 1e-11,
 }
-STEP = 1e-4
+STEP = 2e-4
 
 
 @pytest.mark.parametrize("spin", FIRST_LIFT_OFF)

@@ -198,7 +198,7 @@ def rolling():
     return run
 
 
-@pytest.mark.parametrize("mu", [1e5, 1e6])
+@pytest.mark.parametrize("mu", [1e6])
 def test_strong_friction_ends_within_the_budget_and_is_nearly_rolling(mu, rolling):
     run = tt.simulate(stiff(mu), 1.0, samples=101)
     assert run.attrs["outcome"] == "completed"

@@ -144,9 +144,9 @@ def test_every_launch_gets_an_answer_or_a_sentence(body):
     """
     combinations = [some for some in ALL if some[0] == body]
     plain = [some for some in combinations if some[-1] == RATES[0] and some[1]["mu"] != 1e-12]
-    for some in random.Random(body).sample(combinations, 30) + random.Random(body).sample(
-        plain, 30
-    ):
+    count = examples(check=12, claim=30)
+    chosen = [random.Random(body).sample(launches, count) for launches in (combinations, plain)]
+    for some in itertools.chain(*chosen):
         problem = launch_of(*some)
         if problem is not None:
             check_what_is_said(problem)
@@ -184,7 +184,7 @@ def test_the_time_to_leave_a_pole_grows_as_the_logarithm_of_the_distance(body, p
     rate = spectrum(vertical_spin(kind, top, spin), top).growth_rate / mu
     if rate < 0.0:
         pytest.skip("there it does not leave")
-    distances = [1e-5, 1e-7, 1e-9, 1e-12] + ([1e-100, 1e-300] if pole == 0.0 else [])
+    distances = [1e-5, 1e-8, 1e-12] + ([1e-300] if pole == 0.0 else [])
     times = [
         flip_time_limit(launch_of(body, FRICTION[0], abs(pole - d), spin, (0.0, 0.0)))
         for d in distances
@@ -193,8 +193,7 @@ def test_the_time_to_leave_a_pole_grows_as_the_logarithm_of_the_distance(body, p
     assert np.diff(times) / np.diff(logs) == pytest.approx(1.0 / rate, rel=1e-3)
 
 
-@pytest.mark.parametrize("body", ["report", "Ia", "III"])
-@pytest.mark.parametrize("spin", [20.0, -60.0, 300.0])
+@pytest.mark.parametrize(("body", "spin"), [("report", 300.0), ("Ia", -60.0), ("III", 20.0)])
 def test_at_a_pole_the_theory_says_what_it_says_beside_it(body, spin):
     for pole, beside in ((0.0, 1e-7), (math.pi, math.pi - 1e-7)):
         there, near = (
