@@ -14,6 +14,8 @@ from .figures.fits import plot_fit as plot_fit
 from .figures.overview import plot as plot
 from .fit.fitted import FitResult as FitResult
 from .fit.fitted import compare_fits as compare_fits
+from .fit.improve import ImprovedTop as ImprovedTop
+from .fit.improve import improve as improve
 from .fit.least_squares import fit as fit
 from .fit.measurement import Measurement as Measurement
 from .fit.measurement import read_measurement as read_measurement

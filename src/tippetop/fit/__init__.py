@@ -5,5 +5,5 @@ clock), `measurement` (data and what they observe), `model` (numbers of a proble
 their derivatives), then `least_squares`, `fitted` and `planning`. Derivatives of runs are
 `sensitivities`: read `linearized_run` for how they go through events, and before that
 `variational` (equations of motion with their derivatives) and `problem_numbers` (fields of a
-problem to what a run starts from).
+problem to what a run starts from). `improve` finds better tops by them and by theory.
 """

@@ -166,34 +166,56 @@ def design_bowl(
     if not 0.0 < thick < radius / 2.0:
         raise InvalidInput("stem", thick, "a radius greater than 0 and less than half the sphere's")
 
-    def rim(tip: float) -> float:
-        return radius * (radius - thick) / (tip - thick)
-
     def ends(tip: float) -> tuple[float, float]:
-        return math.hypot(rim(tip), thick + least), radius - least
+        return math.hypot(rim_height(radius, thick, tip), thick + least), radius - least
 
-    def bowl_with_stem(tip: float, hollow: float) -> Workpiece:
-        face = rim(tip)
-        outer, inner = math.sqrt(radius**2 - face**2), math.sqrt(hollow**2 - face**2)
-        floor = -math.sqrt(hollow**2 - thick**2)
-        bowl = ((0.0, -radius), (radius, 0.0, radius), (outer, face, radius), (inner, face))
-        inside = ((thick, floor, -hollow), (thick, tip - thick), (0.0, tip, thick))
-        return Workpiece(profile=(*bowl, *inside), density=density)
+    def bowl(tip: float, hollow: float) -> Workpiece:
+        return bowl_with_stem(radius, density, stem=thick, tip=tip, hollow=hollow)
 
     def extremes(tip: float) -> list[float]:
-        return [_alpha(bowl_with_stem(tip, hollow), radius) for hollow in ends(tip)]
+        return [_alpha(bowl(tip, hollow), radius) for hollow in ends(tip)]
 
     def hollow(tip: float) -> float | None:
         low, high = extremes(tip)
         if not min(low, high) <= eccentricity <= max(low, high):
             return None
-        return _root(
-            lambda size: _alpha(bowl_with_stem(tip, size), radius) - eccentricity, *ends(tip)
-        )
+        return _root(lambda size: _alpha(bowl(tip, size), radius) - eccentricity, *ends(tip))
 
     tips = np.linspace(radius, LONGEST * radius, SIZES_TRIED // 2 + 1)[1:].tolist()
     possible = [tip for tip in tips if ends(tip)[0] < ends(tip)[1]]
-    return _solve(possible, hollow, extremes, bowl_with_stem, eccentricity, inertia_ratio)
+    return _solve(possible, hollow, extremes, bowl, eccentricity, inertia_ratio)
+
+
+def rim_height(radius: float, stem: float, tip: float) -> float:
+    """Return the height over the sphere's centre at which the sphere is cut off, m.
+
+    The end of the stem takes over there.
+    """
+    return radius * (radius - stem) / (tip - stem)
+
+
+def bowl_with_stem(
+    radius: float, density: float, *, stem: float, tip: float, hollow: float
+) -> Workpiece:
+    """Return a bowl with a stem inside, of one material.
+
+    Parameters
+    ----------
+    radius, density
+        Radius of the sphere, m, and density, kg/m^3.
+    stem
+        Radius of the stem and of its round end, m.
+    tip
+        Height of the stem's end over the sphere's centre, m.
+    hollow
+        Radius of the inside of the bowl, m.
+    """
+    face = rim_height(radius, stem, tip)
+    outer, inner = math.sqrt(radius**2 - face**2), math.sqrt(hollow**2 - face**2)
+    floor = -math.sqrt(hollow**2 - stem**2)
+    outside = ((0.0, -radius), (radius, 0.0, radius), (outer, face, radius), (inner, face))
+    inside = ((stem, floor, -hollow), (stem, tip - stem), (0.0, tip, stem))
+    return Workpiece(profile=(*outside, *inside), density=density)
 
 
 def _wall(radius: float, wall: float | None) -> float:
