@@ -76,6 +76,8 @@ def test_ball_that_slides_and_then_rolls():
     moves = slope(slopes, "velocity", "launch.slip.0")[-1, 0]
     np.testing.assert_allclose(moves, 5.0 / 7.0, rtol=CLOSED)
     np.testing.assert_allclose(slope(slopes, "velocity", "friction.mu")[-1], 0.0, atol=CLOSED)
+    there = slope(slopes, "event_velocity", "launch.slip.0")[0]
+    np.testing.assert_allclose(there, [5.0 / 7.0, 0.0, 0.0], atol=CLOSED)
 
 
 def test_impact_of_a_leaning_rod():

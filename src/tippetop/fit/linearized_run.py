@@ -41,7 +41,9 @@ from tippetop.integrators.base import Array, Guard
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.units import Units
 from tippetop.problem.problem import Problem
+from tippetop.results.catalogue import SAMPLED
 from tippetop.results.run_metrics import RunMetrics
 from tippetop.results.run_solution import NaturalLaunch
 from tippetop.run import read_off
@@ -77,6 +79,13 @@ OTHER_EVENTS = (
 GRAZES = "the motion grazes: the guard that ends it hardly falls"
 UNSOLVED = "the variational equations cannot be followed"
 UNKNOWN = "what follows cannot be found beside the run"
+
+
+EVENT_STATES = {
+    f"event_{name}": SAMPLED[name]._replace(long_name=f"{SAMPLED[name].long_name}, after an event")
+    for name in ("axis", "angular_momentum", "velocity", "height")
+}
+"""Variables over the events, by name, of the state just after each."""
 
 
 class Differs(Exception):
@@ -565,6 +574,7 @@ class LinearizedRun:
         units, end = numbers.natural_units, self._end_of(numbers)
         failing = self.failures.get(direction, (np.inf, ""))[0]
         segments, events, launch = list[Segment](), list[Any](), None
+        states = list[State]()
         time, state = 0.0, numbers.start
         for leg in self.legs:
             if isinstance(leg, Junction):
@@ -575,7 +585,9 @@ class LinearizedRun:
                     launch = passed.transitions[0]
                 elif segments:
                     segments[-1] = replace(segments[-1], transition=passed.transitions[0])
-                events += [event for one in passed.transitions for event in one.events]
+                for one in passed.transitions:
+                    events += one.events
+                    states += [one.state] * len(one.events)
                 segments += [segment for some in passed.segments for segment in some]
                 time, state = passed.time, passed.state
                 continue
@@ -596,7 +608,8 @@ class LinearizedRun:
             numbers.top_of(self.kind), units, numbers.start, numbers.azimuth, launch.energy_lost
         )
         problem = self._problem_beside(direction, change) or self.problem
-        return self._dataset(problem, start, segments, trajectory)
+        run = self._dataset(problem, start, segments, trajectory)
+        return with_event_states(run, states, units)
 
     @np.errstate(all="ignore")
     def read(self) -> xr.Dataset:
@@ -610,7 +623,10 @@ class LinearizedRun:
             self.launch.energy_lost,
         )
         segments = [segment for visit in self.visits for segment in visit.segments]
-        return self._dataset(self.problem, start, segments, self.trajectory)
+        run = self._dataset(self.problem, start, segments, self.trajectory)
+        transitions = [self.launch, *(v.transition for v in self.visits if v.transition)]
+        states = [one.state for one in transitions for _ in one.events]
+        return with_event_states(run, states, start.units)
 
     def _dataset(
         self,
@@ -647,6 +663,20 @@ class LinearizedRun:
                 sizes += [float(np.max(np.abs(tangent), initial=0.0))]
                 sizes += [abs(float(times[direction])) for times in leg.times]
         return READ_BESIDE / max(sizes)
+
+
+def with_event_states(run: xr.Dataset, states: Sequence[State], units: Units) -> xr.Dataset:
+    """Return a run with the states just after its events, SI: see `EVENT_STATES`."""
+    rows = np.array([state.pack() for state in states], dtype=float).reshape(-1, 10)
+    scales = 1.0, units.angular_momentum, units.speed
+    variables: dict[str, Any] = {
+        name: (("event", "space"), rows[:, 3 * place : 3 * place + 3] * scale)
+        for place, (name, scale) in enumerate(zip(EVENT_STATES, scales, strict=False))
+    }
+    variables["event_height"] = (("event",), rows[:, 9] * units.length)
+    return run.assign(
+        {name: (*parts, EVENT_STATES[name].attributes) for name, parts in variables.items()}
+    )
 
 
 def is_integrated(mode: object) -> bool:

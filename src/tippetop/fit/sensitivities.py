@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tippetop.contact.trajectory import require_limits
-from tippetop.fit.linearized_run import Differs, LinearizedRun
+from tippetop.fit.linearized_run import EVENT_STATES, Differs, LinearizedRun
 from tippetop.fit.problem_numbers import Direction, require_fields
 from tippetop.integrators.base import Array
 from tippetop.mechanics.top import natural_units
@@ -58,9 +58,11 @@ def sensitivities(
     xarray.Dataset
         The variables of a run (see `tippetop.simulate`) that are real numbers, each with the
         dimension `parameter` before its own: derivatives of the values at a time, of the metrics,
-        and of the time, impulse and energy of every event. The unit of each is that of the
-        variable over that of the field, which the coordinate `parameter_units` has. Where a
-        derivative does not exist it is NaN from there on, and `reason`, by parameter, says why.
+        of the time, impulse and energy of every event, and of the state just after it
+        (`event_axis`, `event_angular_momentum`, `event_velocity`, `event_height`). The unit of each
+        is that of the variable over that of the field, which the coordinate `parameter_units` has.
+        Where a derivative does not exist it is NaN from there on, and `reason`, by parameter, says
+        why.
 
     Raises
     ------
@@ -139,7 +141,7 @@ def _differences(ends: Sequence[xr.Dataset], apart: float, until: float) -> dict
 
 def described() -> dict[str, Variable]:
     """Return all variables of a run that may have derivatives, by name."""
-    return {**SAMPLED, **DERIVED, **METRICS, **LISTED}
+    return {**SAMPLED, **DERIVED, **METRICS, **LISTED, **EVENT_STATES}
 
 
 def _labelled(
