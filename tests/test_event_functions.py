@@ -224,7 +224,7 @@ backwards.direction = 2  # type: ignore[attr-defined]
         ({"until": lambda s: s.axis}, "until: array"),
         ({"events": {"e": 3.0}}, "a function of the state"),
         ({"events": {"e": backwards}}, r"events\['e'\].direction: 2"),
-        ({"events": {"stick": backwards}}, "none that runs have themselves"),
+        ({"events": {"stick": backwards}}, "a name other than those of the run's events"),
         ({"events": [backwards]}, "a table of functions"),
         ({"until": "lifts"}, "did you mean lift-off"),
         ({"dense": "yes"}, "dense: 'yes'"),

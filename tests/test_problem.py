@@ -201,7 +201,7 @@ class TestRefusals:
         with pytest.raises(InvalidInput) as caught:
             presets.report_problem().replace({"contact.liftoff": liftoff, name: value})
         assert the_one_line_of(caught.value).startswith(
-            f"{name}: {typed(value)} starts off the table"
+            f"{name}: {typed(value)} lets the body leave the table"
         )
 
     @pytest.mark.parametrize("radius", [1e-12, 0.03])

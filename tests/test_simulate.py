@@ -902,7 +902,7 @@ class Idle:
     "incomplete", [Nameless(), Careless(), Silent(), Idle(), Quitter, object(), 3]
 )
 def test_integrators_that_lack_something_are_refused_before_the_run(incomplete):
-    needed = "a method integrate, and as texts a name and a caution"
+    needed = "a method integrate and the texts name and caution"
     with pytest.raises(tt.InvalidInput, match=needed) as refusal:
         tt.simulate(report(), 0.5, integrator=incomplete)
     assert refusal.value.field == "integrator"

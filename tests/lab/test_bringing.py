@@ -79,7 +79,7 @@ def test_drawings_are_the_same_bodies_as_in_python(lab: Lab, tmp_path: Path) -> 
             piece.mass_properties.center, abs=1e-6 * size
         )
         sentence, body = turned(piece)
-        is_oval = "a curve cut off" in sentence or (
+        is_oval = "a curve of which only tilts" in sentence or (
             body and "oval" in json.dumps(body.model_dump())
         )
         if is_oval:

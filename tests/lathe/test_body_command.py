@@ -69,7 +69,7 @@ def test_people_are_told_too(files):
     ):
         assert text in lines
     cut_off = said("bowl.csv", "--density", "700", "--unit", "mm", code=2)
-    assert "Cannot be simulated: profile: a sphere cut off" in cut_off
+    assert "Cannot be simulated: profile: a sphere of which only tilts" in cut_off
     assert "--whole" in cut_off
     assert "lies flat" in cut_off
     assert "up to a tilt of 1.5708" in cut_off
@@ -106,7 +106,7 @@ def test_files_are_written_once(files):
         ("bowl.csv", "density is missing"),
         ("bowl.csv --density 700 --unit ft", "unit: 'ft' is not"),
         ("bowl.csv --density -1", "density: -1 is not"),
-        ("bowl.csv --density 700 --toml", "profile: a sphere cut off"),
+        ("bowl.csv --density 700 --toml", "profile: a sphere of which only tilts"),
         ("none.toml", "none.toml cannot be read"),
         ("top.toml --plot taken.png", "taken.png exists"),
     ],

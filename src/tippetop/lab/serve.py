@@ -13,7 +13,8 @@ from tippetop.support.errors import InvalidInput
 
 PAGE = "lab.html"
 
-EVERYWHERE = ("0.0.0.0", "::", "")
+ALL_INTERFACES = ("0.0.0.0", "")
+"""Addresses at which a server listens in all networks of this machine, by IPv4."""
 
 PATIENCE = 10.0
 """Time within which a device must send its request, s."""
@@ -68,7 +69,7 @@ def serve(host: str, port: int, browser: bool, announce: Callable[[str], None]) 
             f"cannot be served at ({error})",
             "choose another --port",
         ) from None
-    name = _own_address() if host in EVERYWHERE else host
+    name = _own_address() if host in ALL_INTERFACES else host
     address = f"http://{name}:{server.server_port}/"
     announce(f"The laboratory is at {address} until Ctrl+C.")
     if host != "127.0.0.1" and (code := qr_code(address)):
