@@ -86,7 +86,10 @@ LAUNCHES: dict[str, tuple[tt.Problem, float]] = {
     "egg, slow": (of(EGG, VISCOUS, tilt=1.4, spin=0.0, precession=20.0), 20.0),
     "egg off its centre": (of(OFF_CENTRE, tt.ViscousFriction(mu=3.0), tilt=1.2, spin=0.0), 5.0),
     "egg, dry": (of(EGG, COULOMB, tilt=1.4, spin=0.0, precession=150.0), 2.0),
-    "puck": (of(PUCK, COULOMB, tilt=0.02, spin=100.0, velocity=(0.5, 0.0, 0.0)), 20.0),
+    "puck": (
+        of(PUCK, COULOMB, tilt=0.001, spin=-100.0, precession=1400.0, velocity=(0.0, 0.0, 0.0)),
+        20.0,
+    ),
     "coin": (of(tt.presets.COIN, COULOMB, tilt=1.2, spin=0.0, gap=0.01), 5.0),
     "ring top": (of(RING_TOP, tt.CoulombFriction(mu=0.2), tilt=0.001, spin=50.0), 5.0),
     "ring top, falls": (of(RING_TOP, tt.ViscousFriction(mu=0.3), tilt=0.1, spin=3.0), 20.0),

@@ -35,6 +35,7 @@ from tippetop.contact.mode import (
     Transition,
     failed,
 )
+from tippetop.contact.settling_flat import FLAT, SettlingFlat, settling_flat
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.contact.slip_end_motion import JAMMED, LANDED, OVERTAKEN, REOPENING
 from tippetop.contact.slip_onset import BEGUN, ENDED, UNSEEN, SlipAndRollingOnset, SlipOnset
@@ -42,7 +43,7 @@ from tippetop.contact.slip_onset_on_two import (
     SlipOnsetOnTwo,
 )
 from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
-from tippetop.contact.surfaces import FACE, TOUCH, lies_flat, number_of
+from tippetop.contact.surfaces import FACE, TOUCH, WOBBLE, lands_flat, lies_flat, number_of
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
     gap_acceleration,
@@ -50,7 +51,7 @@ from tippetop.contact.touching import (
     outermost,
     stays_closed,
 )
-from tippetop.contact.transient import Resting
+from tippetop.contact.transient import Resting, TransientMode
 from tippetop.contact.two_closed import BOTH, SECOND, Before, TwoClosed, rolling_of, time_to_end
 from tippetop.contact.two_contact_mode import BRANCHING, OPENING, TwoContactMode, on_two
 from tippetop.integrators.base import Integrator
@@ -76,7 +77,7 @@ from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, contact, on_table, presses
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull, lowest_surface
+from tippetop.mechanics.surfaces.hull import Hull, is_edge, lowest_surface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Scalar
@@ -146,8 +147,13 @@ class Automaton:
         here = self if top == self.top else self._of(top)
         if end.cause == FAILURE and not _may_jam(mode):
             return Transition((), Outcome.FAILED, end.state, end.detail)
-        if end.cause == FACE:
+        if end.cause == FLAT:
             return Transition((), Outcome.LYING_FLAT, end.state)
+        if end.cause in (FACE, WOBBLE):
+            contact_mode = mode.reported_mode if isinstance(mode, TransientMode) else mode
+            assert isinstance(contact_mode, ContactMode)
+            then = SettlingFlat(mode.top, contact_mode, slaps=end.cause == FACE)
+            return Transition((), then, end.state)
         if isinstance(mode, Flight):
             return here._after_flight(end, time, integrator)
         if end.cause == TOUCH:
@@ -258,14 +264,16 @@ class Automaton:
         Where the end of slip, or of rolling, is near already, that is followed in its clock.
         """
         top = on_present_branch(self.top, state, slips)
+        rolls = rolls_freely(self.top, state)
+        near = slips and is_set_valued(top.friction) and bool(is_near(along_table(state), top))
+        mode = ContactMode(top, not slips, not rolls, near, self.pulls and slips)
+        settling = settling_flat(mode, state) if is_edge(top.surface) else None
+        if settling is not None:
+            return settling
         ending, left = soonest_end(self.top, state, slips)
         if ending is not None and left <= HORIZON:
             return SlipEnd(top, ending, self.pulls)
-        rolls = rolls_freely(self.top, state)
-        if slips:
-            near = is_set_valued(top.friction) and bool(is_near(along_table(state), top))
-            return ContactMode(top, False, not rolls, near, self.pulls)
-        return ContactMode(top, True, not rolls)
+        return mode
 
     def _follow_to_end(self, state: State, *, slips: bool) -> Transition:
         """Return the clock of what ends first; where a guard was touched by rounding, nothing
@@ -359,7 +367,7 @@ class Automaton:
         """
         beside = other_touching(self.top, state)
         closed, told = False, events
-        if any(lies_flat(other, state.axis) for other in beside):
+        if any(lands_flat(other, state.axis) for other in beside):
             return Transition(events, Outcome.LYING_FLAT, state)
         for other in beside:
             if gap_rate(state, other) < -SLOWEST_ROCKING:
@@ -436,7 +444,7 @@ class Automaton:
     ) -> Transition:
         """Collide, unless with a face, and go on as the impact leaves the top."""
         told = (self.event(EventKind.TOUCHDOWN, time),)
-        if lies_flat(self.top, state.axis):
+        if lands_flat(self.top, state.axis):
             return Transition(told, Outcome.LYING_FLAT, state)
         return self._collide(time, state, told, self.restitution, integrator)
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any, ClassVar, Self, TypeAlias
 
 from tippetop.contact.mode import IntegratedMode, Reaction
-from tippetop.contact.surfaces import surface_guards
+from tippetop.contact.surfaces import WOBBLE, SurfaceGuard, surface_guards
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.contacts.branches import has_limit_branches, limit_guard
 from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint, flat
@@ -31,8 +31,10 @@ from tippetop.mechanics.contacts.slip_variables import (
     slip_part,
 )
 from tippetop.mechanics.contacts.wrench import Slip, Wrench
+from tippetop.mechanics.lying_down import LEFT_OUT, Wobble
 from tippetop.mechanics.motion import along_table, axis_rate, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
@@ -203,6 +205,8 @@ class ContactMode(StatedMode):
             guards.append((ROLLING, lambda mode, y: mode.rolling_reserve(y)))
         elif self.top.resists_rolling:
             guards.append((ROLLING_STOPPING, lambda mode, y: mode.rolling_left(y)))
+        if is_edge(self.top.surface):
+            guards.append((WOBBLE, lambda mode, y: mode.wobble(y).reserve(LEFT_OUT)))
         return guards + [(name, _of_top(value)) for name, value in surface_guards(self.top)]
 
     def _sticking_guards(self) -> list[GuardValue]:
@@ -239,6 +243,11 @@ class ContactMode(StatedMode):
         change = slip_part(flat(self.found(y)[3]), slip_length(self.top.friction))
         return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
 
+    def wobble(self, y: Row) -> Wobble:
+        """Return the wobble of a body on an edge."""
+        _, slip, wrench, acceleration = self.found(y)
+        return Wobble.of(along_table(self.state(y)), self.top, wrench, acceleration, slip)
+
     def rolling_reserve(self, y: Row) -> Scalar:
         """Positive while the table can exert the couple that holds rolling."""
         point, slip, wrench, _ = self.found(y)
@@ -263,8 +272,8 @@ def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
     return motion_of(ContactMode(nothing, holds_rolling=held, pulls=not guarded), (kind,))
 
 
-def _of_top(value: Callable[[Top, Vector], Scalar]) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: value(mode.top, (y[0], y[1], y[2]))
+def _of_top(value: SurfaceGuard) -> Callable[[Any, Row], Scalar]:
+    return lambda mode, y: value(mode.top, *split(y))
 
 
 def split(y: Row) -> tuple[Vector, Vector]:

@@ -82,7 +82,7 @@ def onset_motion(kind: Kind, begins: tuple[SlipComponent, ...], guarded: bool) -
             margins.append(branch_guard(slip, body))
         if limits:
             margins.append(limit_guard(body, wrench))
-        margins += [value(body, axis) for _, value in surfaces]
+        margins += [value(body, axis, momentum) for _, value in surfaces]
         return changes, margins
 
     count = sum([guarded, holds_rolling, holds_slip, branches, limits]) + len(surfaces)

@@ -102,7 +102,8 @@ class SlipEnd(TransientMode):
     ) -> tuple[list[Arc], SlipEndState, CollocatedEnd | None]:
         """It in its clock; and where it ends after that, in one step, if not by power series."""
         here, start, arcs = slip_end_state(begin, self.ending), (0.0, as_array(begin)), list[Arc]()
-        arrival, rest = self._arrival(here, longest, integrator), here
+        patch = slip_length(self.top.friction) is not None
+        arrival, rest = self._arrival(here, longest, integrator) if patch else None, here
         for horizon in LANDING:
             if arrival is not None or landing_guard(here, self.ending, self.top, horizon) <= 0.0:
                 continue
@@ -133,7 +134,7 @@ class SlipEnd(TransientMode):
         """The end of slip by collocation, if its direction has come to rest and nothing else
         happens.
         """
-        if not self.ending.slip or slip_length(self.top.friction) is None:
+        if not self.ending.slip:
             return None
         found = collocated_end(here, self.ending, self.top, getattr(integrator, "tolerance", 0.0))
         if found is None or here.time + found.left > longest:

@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import Any
 
 from tippetop.contact.contact_mode import BRANCH, LIFT_OFF, LIMIT_BRANCH, ROLLING, SLIP, split
-from tippetop.contact.surfaces import surface_guards
+from tippetop.contact.surfaces import WOBBLE, SurfaceGuard, surface_guards
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.mechanics.contacts.branches import has_limit_branches, limit_guard
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -22,17 +22,20 @@ from tippetop.mechanics.contacts.slip_end import (
     slip_beside,
     slip_end_rates,
 )
-from tippetop.mechanics.contacts.slip_variables import branch_guard
+from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled, velocity_of
 from tippetop.mechanics.contacts.wrench import Wrench
+from tippetop.mechanics.lying_down import LEFT_OUT, Wobble
+from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Row, Scalar, Vector
+from tippetop.mechanics.vectors import Row, Scalar
 
 REOPENING, LANDED, TIME, OVERTAKEN, JAMMED = "reopening", "landed", "time", "overtaken", "jammed"
 
 OWN = (REOPENING, LANDED, TIME)
 """Guards of the clock itself; the others are of what else may happen."""
 
-LONGEST = 100.0
+LONGEST = 1e4
 """More of the clock than any velocity takes to end, but one that turns for ever."""
 
 SOON = (0.3, 2.0)
@@ -121,13 +124,26 @@ def slip_end_motion(kind: Kind, ending: SlipComponent, guarded: bool) -> Motion:
         guards.append(
             guard(LIMIT_BRANCH, lambda state, top, _: limit_guard(top, held_by(state, top)))
         )
+    if is_edge(top.surface):
+        guards.append(guard(WOBBLE, lambda state, top, _: wobble_reserve(state, ending, top)))
     guards += [guard(name, _of_axis(value)) for name, value in surface_guards(top)]
     size = (10 if ending.moves else 8) + len(ending.wrenches(top))
     return Motion(rates, size, kind.numbers + 2, tuple(guards), lasting=False)
 
 
-def _of_axis(value: Callable[[Top, Vector], Scalar]) -> Callable[[SlipEndState, Top, Any], Scalar]:
-    return lambda state, top, _: value(top, state.axis)
+def _of_axis(value: SurfaceGuard) -> Callable[[SlipEndState, Top, Any], Scalar]:
+    return lambda state, top, _: value(top, state.axis, state.momentum)
+
+
+def wobble_reserve(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar:
+    """Positive until the body on an edge wobbles so little that the rest is known."""
+    axis, momentum, slip = state.axis, state.momentum, slip_beside(state, ending, top)
+    if ending.slip:
+        slip = scaled(state.speed, state.direction)
+    velocity = velocity_of(axis, momentum, slip or (0.0, 0.0), top)
+    rates = rates_in_time(state, ending, top)
+    sliding = SlidingState(axis, momentum, velocity)
+    return Wobble.of(sliding, top, rates.wrench, rates.acceleration, slip).reserve(LEFT_OUT)
 
 
 def held_reserve(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar:

@@ -16,7 +16,7 @@ from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
 from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.slip_onset import find_onset
-from tippetop.mechanics.contacts.slip_variables import size, slip_of
+from tippetop.mechanics.contacts.slip_variables import inner, size, slip_of
 from tippetop.mechanics.contacts.wrench import Slip, Wrench
 from tippetop.mechanics.state import State
 from tippetop.mechanics.vectors import Row, Vector, dot
@@ -60,7 +60,7 @@ class SlipOnset(TransientMode):
     ) -> Iterator[Segment]:
         """Follow what begins: to its end where it may end and begin many times a second."""
         try:
-            mode, directions, longest = self._with_directions(state)
+            mode, directions = self._with_directions(state)
         except ArithmeticError as error:
             why = explanation(f"The direction in which {self.what}", error)
             yield failed_segment(self.reported_mode, time, state, why)
@@ -73,8 +73,9 @@ class SlipOnset(TransientMode):
             onset_motion(top.kind, self.begins, not self.pulls),
             top,
             (begin, directions),
-            min(longest, end - time),
+            end - time,
             to_end=len(self.begins) == 1 and self.ending.recurs(top),
+            longest_step=mode.longest_step,
         )
         if not phase.rows:
             yield failed_segment(self.reported_mode, time, state, UNSEEN)
@@ -86,11 +87,27 @@ class SlipOnset(TransientMode):
         how = ModeEnd(ENDED if phase.ended else cause, last)
         yield Segment(mode, solution, last, how, len(phase.knots) - 1, phase.sweeps)
 
-    def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip], float]":
-        """Return the mode on its law's branch, the directions of what begins, and the longest time
-        for which it may be followed.
+    def longest_step(self, numbers: Row, direction: Slip) -> float:
+        """Return how long a step may be: a part of the time in which the velocity beside this one
+        could end, at its present rate; infinity where nothing can.
         """
-        ending, other = self.ending, SlipComponent(not self.ending.slip)
+        axis, momentum, velocity, _ = self._parts(numbers)
+        point = ContactPoint.of(axis, momentum, self.top)
+        slip, can_end = None, self.top.resists_rolling
+        beside: Slip = () if self.ending.held else point.turning[:2]
+        if self.ending.moves:
+            slip = slip_of(axis, momentum, (velocity[0], velocity[1]), self.top)
+            beside, can_end = slip, is_set_valued(self.top.friction)
+        if not can_end or not beside or size(beside) == 0.0:
+            return math.inf
+        acceleration = self.ending.contact(point, direction, slip)[1]
+        change = SlipComponent(not self.ending.slip).rate(acceleration, self.top)
+        closing = inner(beside, change)
+        return PART * inner(beside, beside) / -closing if closing < 0.0 else math.inf
+
+    def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip]]":
+        """Return the mode on its law's branch, and the directions of what begins."""
+        ending = self.ending
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         slip, rolling = None, None
         if ending.moves:
@@ -104,13 +121,7 @@ class SlipOnset(TransientMode):
             top = on_branch(self.top, begun.slip)
         way = begun.slip if ending.slip else begun.rolling
         assert way is not None
-        beside, ends = rolling, top.resists_rolling
-        if ending.moves:
-            beside, ends = slip, is_set_valued(top.friction)
-        longest = math.inf
-        if beside is not None and ends and size(beside) > 0.0:
-            longest = PART * size(beside) / size(other.rate(begun.acceleration, top))
-        return replace(self, top=top), [way], longest
+        return replace(self, top=top), [way]
 
     @property
     def stuck(self) -> bool:
@@ -153,14 +164,18 @@ class SlipAndRollingOnset(SlipOnset):
         power = dot(torque, turning) + (force[0] * slip[0] + force[1] * slip[1])
         return Reaction(force, torque, power)
 
-    def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip], float]":
-        """Return the mode on its law's branch, both directions, and no bound of time."""
+    def longest_step(self, numbers: Row, direction: Slip) -> float:
+        """Return infinity: there is no other velocity."""
+        return math.inf
+
+    def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip]]":
+        """Return the mode on its law's branch, and both directions."""
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         begun = find_onset(point, None, None, (True, True))
         assert begun.slip is not None
         assert begun.rolling is not None
         directions: list[Slip] = [begun.slip, begun.rolling]
-        return replace(self, top=on_branch(self.top, begun.slip)), directions, math.inf
+        return replace(self, top=on_branch(self.top, begun.slip)), directions
 
 
 def solution_of(

@@ -3,8 +3,8 @@
 """
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypeAlias
 
 from tippetop.contact.slip_step import SlipStep
 from tippetop.contact.surfaces import passes_flat
@@ -15,10 +15,11 @@ from tippetop.mechanics.contacts.slip_variables import APART, inner, scaled, siz
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.top import Top
 
-FIRST, LEAST, LEAST_FIRST = 0.5, 0.005, 1e-13
+FIRST, LEAST, LEAST_PART, LEAST_FIRST = 0.5, 0.005, 0.05, 1e-13
 """Length of the first step that is tried, in natural units of time; the shortest one, below which
-slip does not follow what drives it and other methods are quicker; and the shortest first one, below
-which rounding of the numbers hides what begins.
+slip does not follow what drives it and other methods are quicker, and the same over the length of
+the first one, where all of the motion is fast; and the shortest first one, below which rounding of
+the numbers hides what begins.
 """
 
 ACCURACY = 1e-22
@@ -51,6 +52,12 @@ TINY = 1e-300
 """Added to an error that may be zero."""
 
 
+LongestStep: TypeAlias = Callable[[Sequence[float], Slip], float]
+"""From the numbers and the direction of the first velocity to the length of a step, in natural
+units of time, at most.
+"""
+
+
 class SlipPhase(NamedTuple):
     """Motion since velocities began, as far as it was followed."""
 
@@ -75,6 +82,7 @@ def follow_slip(
     longest: float,
     *,
     to_end: bool = False,
+    longest_step: LongestStep | None = None,
     numbers: tuple[float, ...] | None = None,
 ) -> SlipPhase:
     """Follow velocities that begin: for one step, or as far as the method goes.
@@ -93,6 +101,8 @@ def follow_slip(
         For how long they are followed at most, in natural units of time.
     to_end
         Whether the one velocity, in a plane, is followed to its end if it stays slow.
+    longest_step
+        How long a step may be at most.
     numbers
         The parameters of the motion, if they are not the numbers of the top.
     """
@@ -104,13 +114,16 @@ def follow_slip(
     def velocity(numbers: Sequence[float]) -> Slip:
         return tuple(numbers[first : first + count])
 
+    least = LEAST_FIRST
     while (
         knots[-1] < longest
         and not ended
-        and (not rows or (to_end and length >= LEAST and size(velocity(now)) < APART))
+        and (not rows or (to_end and length >= least and size(velocity(now)) < APART))
     ):
         begin, finished, before = knots[-1], len(knots), now
         length = min(length, longest - begin)
+        if longest_step is not None:
+            length = min(length, longest_step(now, directions[0]))
         solved = step.solve(now, directions, length)
         changes = step.changes
         accuracy = ACCURACY + ROUNDING * inner(tuple(changes), tuple(changes))
@@ -127,9 +140,11 @@ def follow_slip(
             bad, ratio = True, HALF
         if bad:
             length *= ratio
-            if length < (LEAST if rows else LEAST_FIRST):
+            if length < least:
                 break
             continue
+        if not rows:
+            least = min(LEAST, LEAST_PART * length)
         ended = not lasts
         pieces = step.pieces(part)
         ends = [min(part, number + 1.0) / PARTS for number in range(PARTS) if part > number]

@@ -4,7 +4,7 @@ from tippetop.mechanics.contacts.branches import is_branched, on_branch, on_limi
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
 from tippetop.mechanics.contacts.slip_end import SlipComponent
-from tippetop.mechanics.contacts.slip_variables import inner, is_rolling, slip_of
+from tippetop.mechanics.contacts.slip_variables import is_rolling, slip_of, time_to_end
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
@@ -43,8 +43,7 @@ def soonest_end(top: Top, state: State, slips: bool) -> tuple[SlipComponent | No
     soonest, least = None, float("inf")
     for ending in possible:
         xi = ending.of(*sliding, branched)
-        change = inner(xi, ending.rate(acceleration, branched))
-        left = inner(xi, xi) / -change if change < 0.0 else float("inf")
+        left = time_to_end(xi, ending.rate(acceleration, branched))
         if left < least:
             soonest, least = ending, left
     return soonest, least

@@ -3,15 +3,16 @@ on it.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 from tippetop.contact.mode import numbered
+from tippetop.mechanics.lying_down import slap_guard
 from tippetop.mechanics.surfaces.hull import Hull, acting, each_surface, is_edge
-from tippetop.mechanics.surfaces.surface import gap_guard, support_at
+from tippetop.mechanics.surfaces.surface import FLAT, gap_guard, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 
-FACE, TOUCH = "face", "touch"
+FACE, WOBBLE, TOUCH = "face", "wobble", "touch"
 
 MARGIN = 1e-15
 """Gap, in sizes, below zero at which a surface touches: one that just let go is there by rounding.
@@ -23,14 +24,17 @@ def number_of(top: Top) -> int:
     return top.surface.active if isinstance(top.surface, Hull) else 0
 
 
-def surface_guards(top: Top) -> list[tuple[str, Callable[[Top, Vector], Scalar]]]:
-    """Guards of the open surfaces of a body, and of the face that the active one is the edge of.
+SurfaceGuard: TypeAlias = Callable[[Top, Vector, Vector], Scalar]
+"""A guard as a function of the top, its axis and its angular momentum."""
 
-    By name, as functions of the top and the axis.
+
+def surface_guards(top: Top) -> list[tuple[str, SurfaceGuard]]:
+    """Return the guards of the open surfaces of a body, by name, and of the face that the active
+    one is the edge of.
     """
-    found: list[tuple[str, Callable[[Top, Vector], Scalar]]] = []
+    found: list[tuple[str, SurfaceGuard]] = []
     if is_edge(top.surface):
-        found.append((FACE, _face))
+        found.append((FACE, lambda top, axis, momentum: slap_guard(axis, momentum, top)))
     open_ones = [
         number for number in range(len(each_surface(top.surface))) if number != number_of(top)
     ]
@@ -38,14 +42,23 @@ def surface_guards(top: Top) -> list[tuple[str, Callable[[Top, Vector], Scalar]]
 
 
 def lies_flat(top: Top, axis: Vector) -> Scalar:
-    """Whether a body whose active surface touches the table lies on the face that this is the edge
+    """Return whether a body whose active surface touches the table lies on the face that this is the edge
     of.
     """
-    return is_edge(top.surface) and _face(top, axis) <= 0.0
+    edge: Any = acting(top.surface)
+    return is_edge(top.surface) and edge.lies_flat(axis)
+
+
+def lands_flat(top: Top, axis: Vector) -> Scalar:
+    """Return whether a body whose active surface comes to the table lands on the face that this is the
+    edge of.
+    """
+    edge: Any = acting(top.surface)
+    return is_edge(top.surface) and edge.lies_flat(axis, FLAT)
 
 
 def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
-    """Whether a body may come to lie flat between looks at its axis, the first of the numbers,
+    """Return whether a body may come to lie flat between looks at its axis, the first of the numbers,
     floats.
 
     In one plane its tip passes the pole within so little that no look tells: the straight line
@@ -59,22 +72,17 @@ def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
         x, y = b[0] - a[0], b[1] - a[1]
         square = x * x + y * y
         part = min(max(-(a[0] * x + a[1] * y) / square, 0.0), 1.0) if square > 0.0 else 0.0
-        if _face(top, (a[0] + part * x, a[1] + part * y, 0.0)) <= square / 16.0:
+        if (a[0] + part * x) ** 2 + (a[1] + part * y) ** 2 <= square / 16.0:
             return True
     return False
 
 
-def _face(top: Top, axis: Vector) -> Scalar:
-    edge: Any = acting(top.surface)
-    return edge.face_guard(axis)
-
-
-def _gap_of(number: int) -> Callable[[Top, Vector], Scalar]:
+def _gap_of(number: int) -> SurfaceGuard:
     """What falls through zero as the gap of a surface and `MARGIN` do while the active one
     touches.
     """
 
-    def gap(top: Top, axis: Vector) -> Scalar:
+    def gap(top: Top, axis: Vector, _: Vector) -> Scalar:
         height = support_at(axis, top.surface)[0]
         return gap_guard(axis, height, MARGIN, each_surface(top.surface)[number])
 

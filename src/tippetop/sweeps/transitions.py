@@ -11,7 +11,7 @@ import numpy as np
 from tippetop.contact.contact_mode import BRANCH, LIFT_OFF, ContactMode, sliding_motion
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import EventKind, Mode, ModeEnd, Outcome, Transition
-from tippetop.contact.surfaces import lies_flat
+from tippetop.contact.surfaces import lands_flat, lies_flat
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.flight.touchdown import Start
@@ -135,7 +135,7 @@ class Crossings:
         after, struck = collide(state, top)
         sliding = (
             struck
-            & ~np.asarray(lies_flat(top, state.axis))
+            & ~np.asarray(lands_flat(top, state.axis))
             & (launches.restitution[cells] == 0.0)
             & slides(after, top)
         )

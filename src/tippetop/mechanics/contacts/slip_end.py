@@ -66,10 +66,10 @@ class SlipComponent(NamedTuple):
         return not self.slip and not self.held
 
     def recurs(self, top: Top) -> bool:
-        """Whether it may end and begin many times a second: slip under a law that resists nothing
-        else.
+        """Whether it may end and begin many times a second: slip under a law that does not resist
+        drilling.
         """
-        return self.slip and slip_length(top.friction) is None and not top.resists_rolling
+        return self.slip and slip_length(top.friction) is None
 
     def of(self, axis: Vector, momentum: Vector, velocity: Slip, top: Top) -> Slip:
         """The velocity xi, from axis, angular momentum and horizontal velocity of the centre of

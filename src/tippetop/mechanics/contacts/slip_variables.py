@@ -40,6 +40,9 @@ ROUNDING = 1e-14
 """Slip, relative to the velocities it is made of, that is rounding."""
 
 
+TINY = 1e-200
+"""Added to what divides, where a velocity is zero."""
+
 STILL = 0.1
 """Angular velocity, in natural units, below which rounding does not fall with it."""
 
@@ -123,27 +126,44 @@ def is_near(state: SlidingState, top: Top) -> Scalar:
 
 
 def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top) -> Scalar:
-    """Falls through zero where rolling ends soon, (rad/s)^2; for a sliding state and its time
-    derivative.
+    """Falls through zero where rolling ends soon; for a sliding state and its time derivative.
 
-    omega . n' = 0, so that the horizontal parts of omega and n' have the product -omega_z n_z'.
+    omega = L / I1 + k omega3 n changes by L' / I1 + k (omega3' n + omega3 n'), omega3' = L'.n / I3.
     """
-    x, y, turning = angular_velocity(state.axis, state.momentum, top)
+    turning = angular_velocity(state.axis, state.momentum, top)
     spin, spinning = (
         axial_spin(state.axis, momentum, top) for momentum in (state.momentum, rate.momentum)
     )
-    along = (spin - turning * state.axis[2]) * spinning - spin * turning * rate.axis[2]
-    power = x * rate.momentum[0] + y * rate.momentum[1]
-    excess = top.transverse_inertia - top.axial_inertia
-    change = (power + excess * along) / top.transverse_inertia
-    return x * x + y * y + HORIZON * change
+    excess = (top.transverse_inertia - top.axial_inertia) / top.transverse_inertia
+    change = [
+        rate.momentum[i] / top.transverse_inertia
+        + excess * (spinning * state.axis[i] + spin * rate.axis[i])
+        for i in (0, 1)
+    ]
+    return remaining(turning[:2], (change[0], change[1]))
 
 
 def remaining(velocity: Slip, change: Slip) -> Scalar:
-    """Positive while a velocity, at its present rate of change, outlasts `HORIZON`: s (s + HORIZON
-    R).
+    """Positive while a velocity outlasts `HORIZON`: s (s + HORIZON R R^2 / (A^2 + s^2)).
+
+    At its present rate of change A = R e + V it ends after the time s / -R. Where its direction
+    turns faster than it ends, as that of a disk that wobbles down, it counts as farther from its
+    end: there the clock of `slip_end`, whose unit is the time s / |A|, is no better than time.
     """
-    return inner(velocity, velocity) + HORIZON * inner(change, velocity)
+    square, closing = inner(velocity, velocity), inner(change, velocity)
+    return square + HORIZON * closing * _straightness(velocity, change)
+
+
+def time_to_end(velocity: Slip, change: Slip) -> float:
+    """Return the time that `remaining` compares with `HORIZON`; infinity where it grows."""
+    closing = inner(change, velocity) * _straightness(velocity, change)
+    return inner(velocity, velocity) / -closing if closing < 0.0 else math.inf
+
+
+def _straightness(velocity: Slip, change: Slip) -> Scalar:
+    """Return R^2 / (A^2 + s^2): the part of a velocity's change that is along it."""
+    square, closing = inner(velocity, velocity), inner(change, velocity)
+    return closing * closing / (square * (inner(change, change) + square) + TINY)
 
 
 def branch_guard(slip: Slip, top: Top) -> Scalar:

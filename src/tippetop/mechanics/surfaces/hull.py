@@ -123,7 +123,7 @@ def is_edge(surface: Surface) -> bool:
     """Whether a surface, or the one that is active, is an edge, on whose face the body may lie
     flat.
     """
-    return hasattr(acting(surface), "face_guard")
+    return hasattr(acting(surface), "lies_flat")
 
 
 def outer_height(surface: Surface, c: Scalar) -> Scalar:

@@ -8,9 +8,10 @@ from typing import NamedTuple, Protocol, Self, TypeAlias
 
 from tippetop.mechanics.vectors import Scalar, Vector, power
 
-FLAT = 1e-3
-"""Sine of the tilt below which a body on its edge lies flat, all around: the contact point runs
-round the edge the faster the flatter it is, and any unevenness of a real table or edge is as large.
+FLAT = 1e-4
+"""Sine of the tilt up to which a body that comes down from a flight lands on its face. In flights
+that would follow a landing on its edge, rounding of the height of the edge grows as 1 / s: below,
+they do not keep the energy to 1e-12; far above, rebounds that can be followed are left out.
 """
 
 POLE = 1e-200
@@ -250,9 +251,11 @@ class RingSurface(NamedTuple):
         product = middle * middle - self.radius * self.radius * _sine_squared(axis)
         return product + 2.0 * middle * margin
 
-    def face_guard(self, axis: Vector) -> Scalar:
-        """Falls through zero where the body comes to lie flat: s^2 less that of `FLAT`."""
-        return _sine_squared(axis) - FLAT * FLAT
+    def lies_flat(self, axis: Vector, sine: Scalar = POLE**0.5) -> Scalar:
+        """Return whether the ring is parallel to the table, up to a sine of the tilt: by default
+        one that is rounding of a vertical axis.
+        """
+        return _sine_squared(axis) <= sine * sine
 
     @property
     def spherical(self) -> bool:
