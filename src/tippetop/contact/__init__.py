@@ -4,6 +4,7 @@ Read `mode` first: what a mode states. `contact_mode` and `two_contact_mode` are
 and of two closed contacts, by the status of each; `flight` is free flight; `slip_onset`,
 `slip_onset_on_two` and `slip_end` are the first and the last moments of slip, or of rolling, by
 `slip_phase` and `slip_end_motion`. `automaton` decides which mode follows: it asks `touching`,
-`collision`, `soonest_end`, `settling_flat` (how a disk comes to lie flat) and `two_closed` (the resolver of two contacts), and it alone names next
-modes. `trajectory` follows one launch; `readings` and `block` read results off modes.
+`collision`, `soonest_end`, `settling_flat` (how a disk comes to lie flat) and `two_closed` (the
+resolver of two contacts), and it alone names next modes. `trajectory` follows one launch;
+`readings` and `block` read results off modes.
 """

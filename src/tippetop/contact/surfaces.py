@@ -42,24 +42,24 @@ def surface_guards(top: Top) -> list[tuple[str, SurfaceGuard]]:
 
 
 def lies_flat(top: Top, axis: Vector) -> Scalar:
-    """Return whether a body whose active surface touches the table lies on the face that this is the edge
-    of.
+    """Return whether a body whose active surface touches the table lies on the face that this is
+    the edge of.
     """
     edge: Any = acting(top.surface)
     return is_edge(top.surface) and edge.lies_flat(axis)
 
 
 def lands_flat(top: Top, axis: Vector) -> Scalar:
-    """Return whether a body whose active surface comes to the table lands on the face that this is the
-    edge of.
+    """Return whether a body whose active surface comes to the table lands on the face that this is
+    the edge of.
     """
     edge: Any = acting(top.surface)
     return is_edge(top.surface) and edge.lies_flat(axis, FLAT)
 
 
 def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
-    """Return whether a body may come to lie flat between looks at its axis, the first of the numbers,
-    floats.
+    """Return whether a body may come to lie flat between looks at its axis, the first of the
+    numbers, floats.
 
     In one plane its tip passes the pole within so little that no look tells: the straight line
     between two does, by its place nearest the pole, from which the tip strays by less than a

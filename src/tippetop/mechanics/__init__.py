@@ -6,5 +6,6 @@ input.
 
 Read `top`, `surfaces` and `laws` first, then `motion`: a body that slides on one contact.
 `contacts` has the multiplier system of any number of contacts, the forces by the status of each,
-and how slip begins and ends; `lying_down` is the end of a disk. `impacts` is the process of an impact, `flight` is free motion.
+and how slip begins and ends; `lying_down` is the end of a disk. `impacts` is the process of an
+impact, `flight` is free motion.
 """
