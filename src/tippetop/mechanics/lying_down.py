@@ -59,9 +59,8 @@ the tilt's rate changes by as little until then, and the time by its square, 1e-
 of a step do not show much shorter times beside a double zero.
 """
 
-TURNING = 1e6
-"""Ratio of the tilt's rate to omega_e from which it slaps: then the least s it could come to is
-1e-12, the gap that counts as touching.
+LEAST_SINE = 1e-12
+"""Least s to which omega_e lets a face come that slaps: less than the gap that counts as touching.
 """
 
 
@@ -163,11 +162,12 @@ class Wobble(NamedTuple):
 def slap_guard(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     """Falls through zero where a face slaps onto the table within `SLAP`.
 
-    That is s (s + `SLAP` s') where omega_e is zero, with s' = c omega_t.
+    That is s (s + `SLAP` s') where omega_e is zero, with s' = c omega_t. Else s comes down to
+    s omega_e / s' and rises again.
     """
     sine, along, across, _ = Tilting.of(axis, momentum, top)
-    barrier = SLAP * TURNING * along
-    return sine * (sine + SLAP * axis[2] * across) + barrier * barrier
+    turning = (SLAP / LEAST_SINE) * (sine * along)
+    return sine * (sine + SLAP * axis[2] * across) + turning * turning
 
 
 def time_to_slap(axis: Vector, momentum: Vector, top: Top) -> Scalar:
