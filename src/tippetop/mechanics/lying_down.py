@@ -59,8 +59,9 @@ the tilt's rate changes by as little until then, and the time by its square, 1e-
 of a step do not show much shorter times beside a double zero.
 """
 
-LEAST_SINE = 1e-12
-"""Least s to which omega_e lets a face come that slaps: less than the gap that counts as touching.
+TURNING, FLOOR = 1e6, 1e-12
+"""Ratio of the tilt's rate to omega_e from which a face slaps, so that the least s it could come to
+is a millionth of the present one; and an omega_e, in natural units, that is rounding.
 """
 
 
@@ -162,12 +163,11 @@ class Wobble(NamedTuple):
 def slap_guard(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     """Falls through zero where a face slaps onto the table within `SLAP`.
 
-    That is s (s + `SLAP` s') where omega_e is zero, with s' = c omega_t. Else s comes down to
-    s omega_e / s' and rises again.
+    That is s (s + `SLAP` (s' + `TURNING` |omega_e|)) with s' = c omega_t.
     """
     sine, along, across, _ = Tilting.of(axis, momentum, top)
-    turning = (SLAP / LEAST_SINE) * (sine * along)
-    return sine * (sine + SLAP * axis[2] * across) + turning * turning
+    turning = TURNING * power(along * along + FLOOR * FLOOR, 0.5)
+    return sine * (sine + SLAP * (axis[2] * across + turning))
 
 
 def time_to_slap(axis: Vector, momentum: Vector, top: Top) -> Scalar:
