@@ -242,4 +242,4 @@ def pieces_of(rows: Any, size: int, parts: float) -> Array:
         term * share
         for term, share in zip(rows[before : before + count], shares * size, strict=True)
     ]
-    return np.array([*first_of(rows, before), *last])
+    return np.array([*rows[:before], *last])

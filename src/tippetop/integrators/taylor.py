@@ -330,10 +330,11 @@ class Run:
             # A margin may be zero at first, and then falls at once.
             margins = Polynomials(terms[:, guards:], spans[guards:])
             falls[guards:] = margins.first_fall()
-        if np.isnan(falls).all():
+        fallen = [(time, number) for number, time in enumerate(falls.tolist()) if time == time]
+        if not fallen:
             return None
-        first = int(np.nanargmin(falls))
-        return first, float(falls[first])
+        time, first = min(fallen)
+        return first, time
 
     def _polished(self, row: Array, span: float, guard: int, fall: float) -> float:
         """Return when a guard falls along the polynomials of the state, by Newton's method.
