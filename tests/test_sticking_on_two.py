@@ -132,7 +132,10 @@ def test_what_sticks_does_not_slip_and_takes_no_more_than_it_can(seed: int) -> N
             if all(mode.sticks):
                 found = pair_motion(pair, (None, None), 0.0)
                 assert min(found.normal) > 0.0
-                assert min(found.left(0), found.left(1), found.both_reserve) >= 0.0
+                assert (
+                    min(found.sticking_reserve(0), found.sticking_reserve(1), found.both_reserve)
+                    >= 0.0
+                )
             else:
                 across = mode.sense * np.array([-state.axis[1], state.axis[0]])
                 found = pair_motion(pair, (None, tuple(across)), 0.0)
@@ -221,7 +224,7 @@ def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
     (arc,) = make_integrator("collocation").integrate(slides.motion, slides.parameters, start, late)
     assert arc.end_state == pytest.approx(slides.numbers(mode.state(last)), abs=1e-11)
     part = (late - knots[-2]) / (knots[-1] - knots[-2])
-    assert mode.found(last)[0].rate == pytest.approx(
+    assert mode.contact_forces(last)[0].rate == pytest.approx(
         [
             np.polynomial.polynomial.polyval(part, np.polynomial.polynomial.polyder(row))
             / (knots[-1] - knots[-2])

@@ -70,12 +70,12 @@ def test_its_end_by_collocation_is_where_an_implicit_method_comes_to(law):
     found = collocated_end(slip_end_state(settled, SLIP), SLIP, top, EXACT)
     assert found is not None
     end = in_its_clock(top, settled, 25.0)
-    assert settled[-1] + found.left == pytest.approx(end[-1], rel=1e-8)
+    assert settled[-1] + found.time_left == pytest.approx(end[-1], rel=1e-8)
     assert found.at(0.0)[:6] == pytest.approx(end[:6], abs=1e-9)
     assert found.at(0.0)[6:] == [0.0, 0.0, 0.0]
     solution = found.solution(2.0)
     for part in (1.0, 0.7, 0.5, 1e-6):
-        time = np.array([2.0 + (1.0 - part) * found.left])
+        time = np.array([2.0 + (1.0 - part) * found.time_left])
         assert solution(time)[0].tolist() == pytest.approx(found.at(part), abs=1e-15)
     assert size(found.at(0.5)[6:]) < 0.6 * settled[-2]
 
@@ -124,5 +124,5 @@ def test_a_direction_is_at_rest_as_well_as_an_integrator_of_some_tolerance_tells
     found, known = collocated_end(rough, SLIP, top, 1e-10), collocated_end(exact, SLIP, top, EXACT)
     assert found is not None
     assert known is not None
-    assert found.left == pytest.approx(known.left, abs=1e-12)
+    assert found.time_left == pytest.approx(known.time_left, abs=1e-12)
     assert found.at(0.0)[:6] == pytest.approx(known.at(0.0)[:6], abs=1e-12)

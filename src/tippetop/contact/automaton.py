@@ -185,7 +185,7 @@ class Automaton:
         if end.cause in (BRANCH, LIMIT_BRANCH):
             return Transition((), replace(mode, top=on_other_branch(mode.top)), state)
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
-        wrench = mode.found(mode.numbers(state))[2]
+        wrench = mode.contact_forces(mode.numbers(state))[2]
         if wrench.force[2] <= 0.0 and not self.pulls:
             return self.lift_off(time, state)
         begins = SlipComponent(

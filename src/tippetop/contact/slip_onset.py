@@ -68,7 +68,7 @@ class SlipOnset(TransientMode):
         top = mode.top
         velocity = state.velocity[:2] if self.ending.moves else ()
         numbers = [*state.axis, *state.momentum, *velocity]
-        begin = [*numbers, *[0.0 for way in directions for _ in way]]
+        begin = [*numbers, *[0.0 for direction in directions for _ in direction]]
         phase = follow_slip(
             onset_motion(top.kind, self.begins, not self.pulls),
             top,
@@ -80,7 +80,7 @@ class SlipOnset(TransientMode):
             yield failed_segment(self.reported_mode, time, state, UNSEEN)
             return
         last = mode.state([*phase.last[: len(numbers)], 0.0, 0.0] if phase.ended else phase.last)
-        first = [TINY * number for way in directions for number in way]
+        first = [TINY * number for direction in directions for number in direction]
         solution = solution_of(phase, [*numbers, *first], (time, end))
         cause = COMPLETED if solution.end >= end else BEGUN
         how = ModeEnd(ENDED if phase.ended else cause, last)
@@ -90,27 +90,27 @@ class SlipOnset(TransientMode):
         """Return the mode on its law's branch, the directions of what begins, and the longest time
         for which it may be followed.
         """
-        ending, other = self.ending, SlipComponent(not self.ending.slip)
+        ending, second = self.ending, SlipComponent(not self.ending.slip)
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         slip, rolling = None, None
         if ending.moves:
             slip = slip_of(state.axis, state.momentum, state.velocity[:2], self.top)
         if ending.slip and not ending.held:
             rolling = point.turning[:2]
-        begun = find_onset(point, slip, rolling, (ending.slip, not ending.slip), self.wrench)
-        if begun.slip is None:
-            top = on_limit_branch(self.top, begun.wrench)
+        onset = find_onset(point, slip, rolling, (ending.slip, not ending.slip), self.wrench)
+        if onset.slip is None:
+            top = on_limit_branch(self.top, onset.wrench)
         else:
-            top = on_branch(self.top, begun.slip)
-        way = begun.slip if ending.slip else begun.rolling
-        assert way is not None
+            top = on_branch(self.top, onset.slip)
+        direction = onset.slip if ending.slip else onset.rolling
+        assert direction is not None
         beside, ends = rolling, top.resists_rolling
         if ending.moves:
             beside, ends = slip, is_set_valued(top.friction)
         longest = math.inf
         if beside is not None and ends and size(beside) > 0.0:
-            longest = PART * size(beside) / size(other.rate(begun.acceleration, top))
-        return replace(self, top=top), [way], longest
+            longest = PART * size(beside) / size(second.rate(onset.acceleration, top))
+        return replace(self, top=top), [direction], longest
 
     @property
     def stuck(self) -> bool:
@@ -156,11 +156,11 @@ class SlipAndRollingOnset(SlipOnset):
     def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip], float]":
         """Return the mode on its law's branch, both directions, and no bound of time."""
         point = ContactPoint.of(state.axis, state.momentum, self.top)
-        begun = find_onset(point, None, None, (True, True))
-        assert begun.slip is not None
-        assert begun.rolling is not None
-        directions: list[Slip] = [begun.slip, begun.rolling]
-        return replace(self, top=on_branch(self.top, begun.slip)), directions, math.inf
+        onset = find_onset(point, None, None, (True, True))
+        assert onset.slip is not None
+        assert onset.rolling is not None
+        directions: list[Slip] = [onset.slip, onset.rolling]
+        return replace(self, top=on_branch(self.top, onset.slip)), directions, math.inf
 
 
 def solution_of(

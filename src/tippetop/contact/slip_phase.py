@@ -152,15 +152,16 @@ def follow_slip(
             if to_end:
                 speed = step.speed(PARTS - 1, 0.0, last)
                 speed[0] = inner(velocity(after), last) - sum(speed)
-                longer, left = min(factor, LONGER), parts_left(speed)
-                length = min(length * longer, BEYOND * length / PARTS * left)
+                longer, remaining_parts = min(factor, LONGER), parts_left(speed)
+                length = min(length * longer, BEYOND * length / PARTS * remaining_parts)
         rows.append(pieces)
     return SlipPhase(knots, rows, now, ended, step.sweeps)
 
 
 def first_length(momentum: Slip, top: Top) -> float:
     """Return the length of the first step that is tried, for an angular momentum."""
-    return FIRST * TURN / max(TURN, FIRST * size(momentum) / top.transverse_inertia)
+    turning = float(size(momentum) / top.transverse_inertia)
+    return FIRST * TURN / max(TURN, FIRST * turning)
 
 
 def change_over(pieces: Array, size: int) -> list[float]:

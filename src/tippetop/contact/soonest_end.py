@@ -44,7 +44,7 @@ def soonest_end(top: Top, state: State, slips: bool) -> tuple[SlipComponent | No
     for ending in possible:
         xi = ending.of(*sliding, branched)
         change = inner(xi, ending.rate(acceleration, branched))
-        left = inner(xi, xi) / -change if change < 0.0 else float("inf")
-        if left < least:
-            soonest, least = ending, left
+        time_left = inner(xi, xi) / -change if change < 0.0 else float("inf")
+        if time_left < least:
+            soonest, least = ending, time_left
     return soonest, least

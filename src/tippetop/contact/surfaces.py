@@ -28,25 +28,25 @@ def surface_guards(top: Top) -> list[tuple[str, Callable[[Top, Vector], Scalar]]
 
     By name, as functions of the top and the axis.
     """
-    found: list[tuple[str, Callable[[Top, Vector], Scalar]]] = []
+    guards: list[tuple[str, Callable[[Top, Vector], Scalar]]] = []
     if is_edge(top.surface):
-        found.append((FACE, _face))
+        guards.append((FACE, _face))
     open_ones = [
         number for number in range(len(each_surface(top.surface))) if number != number_of(top)
     ]
-    return found + [(numbered(TOUCH, number), _gap_of(number)) for number in open_ones]
+    return guards + [(numbered(TOUCH, number), _gap_of(number)) for number in open_ones]
 
 
 def lies_flat(top: Top, axis: Vector) -> Scalar:
-    """Whether a body whose active surface touches the table lies on the face that this is the edge
-    of.
+    """Return whether a body whose active surface touches the table lies on the face that this is
+    the edge of.
     """
     return is_edge(top.surface) and _face(top, axis) <= 0.0
 
 
-def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
-    """Whether a body may come to lie flat between looks at its axis, the first of the numbers,
-    floats.
+def passes_flat(top: Top, rows: Sequence[Row]) -> bool:
+    """Return whether a body may come to lie flat between rows of numbers, the first of the
+    numbers, floats.
 
     In one plane its tip passes the pole within so little that no look tells: the straight line
     between two does, by its place nearest the pole, from which the tip strays by less than a
@@ -54,8 +54,8 @@ def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
     """
     if not is_edge(top.surface):
         return False
-    for look in range(1, len(looks)):
-        a, b = looks[look - 1], looks[look]
+    for number in range(1, len(rows)):
+        a, b = rows[number - 1], rows[number]
         x, y = b[0] - a[0], b[1] - a[1]
         square = x * x + y * y
         part = min(max(-(a[0] * x + a[1] * y) / square, 0.0), 1.0) if square > 0.0 else 0.0
@@ -70,9 +70,7 @@ def _face(top: Top, axis: Vector) -> Scalar:
 
 
 def _gap_of(number: int) -> Callable[[Top, Vector], Scalar]:
-    """What falls through zero as the gap of a surface and `MARGIN` do while the active one
-    touches.
-    """
+    """Return the guard that falls through zero as the gap of a surface plus `MARGIN` does."""
 
     def gap(top: Top, axis: Vector) -> Scalar:
         height = support_at(axis, top.surface)[0]
@@ -82,19 +80,19 @@ def _gap_of(number: int) -> Callable[[Top, Vector], Scalar]:
 
 
 def stays_open(top: Top, y: Row) -> bool:
-    """Whether no other surface touches at these numbers of a mode on the active one, floats."""
+    """Return whether no surface but the active one touches at the numbers of a mode, floats."""
     return clearance(top, y[2]) > -MARGIN
 
 
 def clearance(top: Top, c: float) -> float:
-    """The least gap of the other surfaces while the active one touches, at a cosine of the tilt,
-    floats.
+    """Return the least gap of the other surfaces while the active one touches, at a cosine of the
+    tilt, floats.
     """
     c = min(max(c, -1.0), 1.0)
     height = top.surface.height(c)
     gaps = [
-        height - other.height(c)
-        for number, other in enumerate(each_surface(top.surface))
+        height - surface.height(c)
+        for number, surface in enumerate(each_surface(top.surface))
         if number != number_of(top)
     ]
     return float(min(gaps))

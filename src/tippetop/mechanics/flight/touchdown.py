@@ -151,8 +151,8 @@ def touchdown(
 def first_interval(
     tip: Tip, surface: Surface, ballistic: Triple, start: Start
 ) -> tuple[Opening, Triple, float]:
-    """The gap on a first interval, the flight with what vanishes at its start, and how long that
-    is, s.
+    """Return the gap on the first interval, the flight without its vanishing terms, and the
+    interval's length, s.
     """
     disc = analytic_disc(tip, surface, 0.0, 0.0, WIDEST)
     if disc is None:
@@ -165,7 +165,7 @@ def first_interval(
 
 
 def highest_gap(state: State, top: Top, duration: float) -> float:
-    """The highest gap of a free flight that lasts some time, s; floats.
+    """Return the highest gap of a free flight that lasts some time, s; floats.
 
     It is no further from the summit than the axis takes for a turn: a turn nearer the gap is
     larger.

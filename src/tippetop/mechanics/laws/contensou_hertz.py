@@ -92,9 +92,7 @@ class HertzDrillingLaw(HertzPiece):
         return law_branch_guard(slip, EDGE)
 
     def other_branch(self) -> "HertzSlidingLaw":
-        """The law where this one does not hold, and whose piece of the limit surface adjoins this
-        one's.
-        """
+        """Return the other branch, whose part of the limit surface adjoins this one's."""
         return HertzSlidingLaw(*self)
 
 
@@ -151,9 +149,7 @@ class HertzSlidingLaw(HertzPiece):
         return -law_branch_guard(slip, 0.5 * EDGE)
 
     def other_branch(self) -> "HertzDrillingLaw":
-        """The law where this one does not hold, and whose piece of the limit surface adjoins this
-        one's.
-        """
+        """Return the other branch, whose part of the limit surface adjoins this one's."""
         return HertzDrillingLaw(*self)
 
 
@@ -202,11 +198,11 @@ class HertzBranch(NamedTuple):
         return scaled_shares(self, larger, drilling, law)
 
     def _either(self, drills: Scalar, slides: Scalar) -> Scalar:
-        """The number that belongs to the branch."""
+        """Return the value of the branch that holds."""
         return self.drills * drills + (1.0 - self.drills) * slides
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
-        """That of the whole law."""
+        """Return the reserve of the whole law."""
         return self.whole.reserve(normal, force, drilling)
 
     def branch_guard(self, slip: Vector) -> Scalar:
@@ -216,7 +212,7 @@ class HertzBranch(NamedTuple):
         return (2.0 * self.drills - 1.0) * law_branch_guard(slip, 0.5 * EDGE * (1.0 + self.drills))
 
     def other_branch(self) -> "HertzBranch":
-        """The law where this one does not hold."""
+        """Return the other branch."""
         return self._replace(drills=1.0 - self.drills)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
@@ -230,19 +226,21 @@ class HertzLaw(PatchLaw):
     """
 
     def drills(self, slip: Vector) -> Scalar:
-        """Whether drilling prevails here, a truth value of floats, or an array of them."""
+        """Return whether drilling prevails at a slip, of floats or arrays."""
         return law_branch_guard(slip, 0.75 * EDGE) > 0.0
 
     def branch(self, slip: Vector) -> HertzDrillingLaw | HertzSlidingLaw:
-        """The law that holds here; of floats."""
+        """Return the branch of the law that holds at a slip; of floats."""
         return HertzDrillingLaw(*self) if self.drills(slip) else HertzSlidingLaw(*self)
 
     def numbered_branch(self, slip: Vector) -> HertzBranch:
-        """The branch that holds here, in plain operators."""
+        """Return the branch that holds at a slip, in plain operators."""
         return HertzBranch(*self, 1.0 * self.drills(slip))
 
     def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
-        """The law whose piece of the limit surface has this drilling torque, N m; of floats."""
+        """Return the branch whose part of the limit surface has this drilling torque, N m; of
+        floats.
+        """
         # Without drilling no normal force decides: it may be a symbol.
         drills = drilling != 0.0 and limit_branch_guard(self, normal, drilling, EDGE) > 0.0
         return HertzDrillingLaw(*self) if drills else HertzSlidingLaw(*self)

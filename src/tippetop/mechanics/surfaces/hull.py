@@ -17,7 +17,7 @@ class Hull(NamedTuple):
 
     @classmethod
     def of(cls, surfaces: tuple[Surface, ...]) -> "Hull":
-        """The hull of some surfaces; the first is active."""
+        """Return the hull of some surfaces; the first is active."""
         units = tuple(type(surface).from_proportions(surface.proportions) for surface in surfaces)
         return cls(units, tuple(surface.size for surface in surfaces))
 
@@ -105,23 +105,23 @@ class HullKind(NamedTuple):
 
 
 def each_surface(surface: Surface) -> tuple[Surface, ...]:
-    """A surface alone, or a hull with every surface active in turn."""
+    """Return a surface alone, or a hull with every surface active in turn."""
     return surface.each if isinstance(surface, Hull) else (surface,)
 
 
 def sizes(surface: Surface) -> tuple[Scalar, ...]:
-    """The sizes of all surfaces, m."""
+    """Return the sizes of all surfaces, m."""
     return surface.sizes if isinstance(surface, Hull) else (surface.size,)
 
 
 def acting(surface: Surface) -> Surface:
-    """A surface, or, of a hull, the one that is active, in its own size."""
+    """Return a surface, or the active surface of a hull, at its size."""
     return surface.units[surface.active] if isinstance(surface, Hull) else surface
 
 
 def is_edge(surface: Surface) -> bool:
-    """Whether a surface, or the one that is active, is an edge, on whose face the body may lie
-    flat.
+    """Return whether a surface, or the one that is active, is an edge, on whose face the body may
+    lie flat.
     """
     return hasattr(acting(surface), "face_guard")
 
@@ -139,7 +139,5 @@ def outer_height(surface: Surface, c: Scalar) -> Scalar:
 
 
 def lowest_surface(surface: Surface, c: float) -> Surface:
-    """The surface that reaches lowest at this c, active; the first of several that do. Of
-    floats.
-    """
+    """Return the surface that reaches lowest at this c, active; the first of several; of floats."""
     return max(each_surface(surface), key=lambda one: float(one.height(c)))

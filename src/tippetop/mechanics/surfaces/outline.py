@@ -30,15 +30,15 @@ POLE = 1e-4
 
 
 def extent(lines: Sequence[Line]) -> float:
-    """The size of an outline: its largest distance from the axis, or half its height, m."""
+    """Return the size of an outline: its largest distance from the axis, or half its height, m."""
     points = [point for line in lines for point in line]
     across, heights = max([r for r, _ in points]), [z for _, z in points]
     return max(across, (max(heights) - min(heights)) / 2.0)
 
 
 def is_outline(lines: Sequence[Line], surface: Surface) -> bool:
-    """Whether a body with these surfaces has this outline: it reaches as far down, whatever the
-    tilt.
+    """Return whether a body with these surfaces has this outline: it reaches as far down, whatever
+    the tilt.
     """
     points, within = [point for line in lines for point in line], FITS * extent(lines)
     for look in range(TILTS):
@@ -61,7 +61,7 @@ def smoothly_joined(edges: Sequence[Line]) -> list[Line]:
 
 
 def _turn(before: Line, after: Line) -> float:
-    """The angle between the end of a line and the beginning of the next."""
+    """Return the angle between the end of a line and the beginning of the next."""
     (a, b), (c, d) = before[-2], before[-1]
     (e, f), (g, h) = after[0], after[1]
     x, y, u, v = c - a, d - b, g - e, h - f
@@ -69,7 +69,8 @@ def _turn(before: Line, after: Line) -> float:
 
 
 def outline(surface: Surface) -> list[Line]:
-    """The hull of a body's surfaces from below, in smooth arcs and the straight lines between them.
+    """Return the hull of a body's surfaces from below, in smooth arcs and the straight lines
+    between them.
 
     Where the body touches the table at evenly spaced tilts, and, on its faces, between.
     """
