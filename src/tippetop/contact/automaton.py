@@ -37,7 +37,7 @@ from tippetop.contact.mode import (
 )
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.contact.slip_end_motion import JAMMED, LANDED, OVERTAKEN, REOPENING
-from tippetop.contact.slip_onset import BEGUN, ENDED, UNSEEN, SlipAndRollingOnset, SlipOnset
+from tippetop.contact.slip_onset import BEGUN, ENDED, UNSEEN, SlipOnset
 from tippetop.contact.slip_onset_on_two import (
     SlipOnsetOnTwo,
 )
@@ -322,11 +322,13 @@ class Automaton:
         """Return the mode of a contact of which is resolved what is held and what begins."""
         if resolved.wrench.force[2] <= 0.0 and not self.pulls:
             return self._release(time, state, events)
-        if all(begins):
-            return Transition(events, SlipAndRollingOnset(self.top, pulls=self.pulls), state)
         if any(begins):
-            ending = SlipComponent(begins[0], held=ended[1] if begins[0] else ended[0])
-            return Transition(events, SlipOnset(self.top, ending, self.pulls), state)
+            both = all(begins)
+            held = not both and (ended[1] if begins[0] else ended[0])
+            onset = SlipOnset(
+                self.top, SlipComponent(begins[0], held), self.pulls, with_rolling=both
+            )
+            return Transition(events, onset, state)
         mode = self.mode_for(state, slips=not ended[0])
         at, turning = resolved.acceleration
         if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):

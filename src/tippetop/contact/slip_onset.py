@@ -4,9 +4,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from tippetop.contact.contact_mode import split
 from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Reaction, Segment, explanation
-from tippetop.contact.onset_motion import BOTH, onset_motion
+from tippetop.contact.onset_motion import SLIP_AND_ROLLING, onset_motion
 from tippetop.contact.slip_phase import SlipPhase, follow_slip
 from tippetop.contact.transient import TransientMode
 from tippetop.integrators.base import Integrator
@@ -44,16 +43,42 @@ class SlipOnset(TransientMode):
 
     wrench: Wrench | None = None
     """The wrench that held what begins, if that is known."""
+    with_rolling: bool = False
+    """Whether rolling begins at once with slip."""
 
     @property
     def begins(self) -> tuple[SlipComponent, ...]:
         """The velocities that begin."""
-        return (self.ending,)
+        return SLIP_AND_ROLLING if self.with_rolling else (self.ending,)
 
     @property
-    def what(self) -> str:
-        """A clause of a sentence: they begin."""
+    def clause(self) -> str:
+        """Clause of a sentence that states what begins."""
+        if self.with_rolling:
+            return "slip and rolling begin"
         return "slip begins" if self.ending.slip else "rolling begins"
+
+    @property
+    def form(self) -> str:
+        """What begins decides how its numbers are read."""
+        slip, held = self.ending
+        return f"{self.name}: {len(self.begins)} begin, slip {slip}, held {held}"
+
+    def reaction(self, y: Row) -> Reaction:
+        """Return the contact force and torque, from the velocities that begin."""
+        if not self.with_rolling:
+            return super().reaction(y)
+        axis, momentum, _, slip = self._parts(y)
+        rolling = y[len(y) - 2 :]
+        point = ContactPoint.of(axis, momentum, self.top)
+        (force, torque), _ = forces_and_accelerations(point, slip, (rolling[0], rolling[1]))
+        turning: Vector = (rolling[0], rolling[1], point.turning[2])
+        power = dot(torque, turning) + (force[0] * slip[0] + force[1] * slip[1])
+        return Reaction(force, torque, power)
+
+    def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
+        """Return axis, angular momentum, velocity where it is free, and slip or else rolling."""
+        return super()._parts(y[: len(y) - 2] if self.with_rolling else y)
 
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
@@ -62,7 +87,7 @@ class SlipOnset(TransientMode):
         try:
             mode, directions, longest = self._with_directions(state)
         except ArithmeticError as error:
-            why = explanation(f"The direction in which {self.what}", error)
+            why = explanation(f"The direction in which {self.clause}", error)
             yield failed_segment(self.reported_mode, time, state, why)
             return
         top = mode.top
@@ -91,76 +116,35 @@ class SlipOnset(TransientMode):
         for which it may be followed.
         """
         ending, second = self.ending, SlipComponent(not self.ending.slip)
+        begins = ending.slip, not ending.slip or self.with_rolling
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         slip, rolling = None, None
         if ending.moves:
             slip = slip_of(state.axis, state.momentum, state.velocity[:2], self.top)
-        if ending.slip and not ending.held:
+        if not ending.held and not begins[1]:
             rolling = point.turning[:2]
-        onset = find_onset(point, slip, rolling, (ending.slip, not ending.slip), self.wrench)
+        onset = find_onset(point, slip, rolling, begins, self.wrench)
         if onset.slip is None:
             top = on_limit_branch(self.top, onset.wrench)
         else:
             top = on_branch(self.top, onset.slip)
-        direction = onset.slip if ending.slip else onset.rolling
-        assert direction is not None
+        directions = list[Slip]()
+        for direction, new in zip((onset.slip, onset.rolling), begins, strict=True):
+            if new:
+                assert direction is not None
+                directions.append(direction)
         beside, ends = rolling, top.resists_rolling
         if ending.moves:
             beside, ends = slip, is_set_valued(top.friction)
         longest = math.inf
         if beside is not None and ends and size(beside) > 0.0:
             longest = PART * size(beside) / size(second.rate(onset.acceleration, top))
-        return replace(self, top=top), [direction], longest
+        return replace(self, top=top), directions, longest
 
     @property
     def stuck(self) -> bool:
         """Whether the contact sticks meanwhile."""
         return not self.ending.slip and self.ending.held
-
-
-@dataclass(frozen=True)
-class SlipAndRollingOnset(SlipOnset):
-    """The same where slip and rolling begin at once."""
-
-    ending: SlipComponent = SlipComponent(slip=True)  # noqa: RUF009
-
-    @property
-    def begins(self) -> tuple[SlipComponent, ...]:
-        """Slip and rolling."""
-        return BOTH
-
-    @property
-    def what(self) -> str:
-        """A clause of a sentence: they begin."""
-        return "slip and rolling begin"
-
-    @property
-    def form(self) -> str:
-        """Its numbers have both velocities."""
-        return f"{self.name}: slip and rolling"
-
-    def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
-        """Read axis, angular momentum and slip."""
-        return *split(y), (), tuple(y[6 : len(y) - 2])
-
-    def reaction(self, y: Row) -> Reaction:
-        """Return the contact force and torque, from both velocities."""
-        axis, momentum, _, slip = self._parts(y)
-        rolling = y[len(y) - 2 :]
-        point = ContactPoint.of(axis, momentum, self.top)
-        (force, torque), _ = forces_and_accelerations(point, slip, (rolling[0], rolling[1]))
-        turning: Vector = (rolling[0], rolling[1], point.turning[2])
-        power = dot(torque, turning) + (force[0] * slip[0] + force[1] * slip[1])
-        return Reaction(force, torque, power)
-
-    def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip], float]":
-        """Return the mode on its law's branch, both directions, and no bound of time."""
-        point = ContactPoint.of(state.axis, state.momentum, self.top)
-        onset = find_onset(point, None, None, (True, True))
-        assert onset.slip is not None
-        assert onset.rolling is not None
-        directions: list[Slip] = [onset.slip, onset.rolling]
-        return replace(self, top=on_branch(self.top, onset.slip)), directions, math.inf
 
 
 def solution_of(
