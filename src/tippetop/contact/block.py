@@ -54,7 +54,7 @@ class ModeSteps:
         return read(Rates.of, self.mode, y, nearer_pole(y[2]), total=len(NODES) * len(self.which))
 
     @property
-    def begun(self) -> Array:
+    def start_numbers(self) -> Array:
         """The numbers with which the steps begin, shape (size, k)."""
         return np.ascontiguousarray(self.terms[:, :, 0].T)
 

@@ -55,11 +55,11 @@ def _impact(state: State, restitution: float, top: Top, integrator: Integrator |
     single = None if restitution else impact_of_patch(state, top, integrator)
     if single is None:
         single = impact(state, restitution, top)
-    for other in other_touching(top, single.state):
-        pressed = gap_rate(single.state, other) < -SLOWEST_ROCKING
-        if pressed and abs(gap_rate(state, other)) <= SLOWEST_ROCKING:
+    for neighbour in other_touching(top, single.state):
+        pressed = gap_rate(single.state, neighbour) < -SLOWEST_ROCKING
+        if pressed and abs(gap_rate(state, neighbour)) <= SLOWEST_ROCKING:
             try:
-                both = impact(state, restitution, top, other)
+                both = impact(state, restitution, top, neighbour)
             except SlipEndsInImpact:
                 return single
             return both._replace(steps=single.steps + both.steps)

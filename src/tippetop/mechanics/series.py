@@ -168,9 +168,9 @@ class Series:
             if k == 0:
                 inverse.append(1.0 / self[0])
                 return self[0] ** exponent
-            base, found = self.up_to(k), power.coefficients
+            base, made = self.up_to(k), power.coefficients
             factors = [((exponent + 1.0) * j - k) / k for j in range(1, k + 1)]
-            terms = list(map(mul, factors, map(mul, base[1:], found[k - 1 :: -1])))
+            terms = list(map(mul, factors, map(mul, base[1:], made[k - 1 :: -1])))
             return self.arithmetic.total(terms) * inverse[0]
 
         power = self._made(rule)

@@ -17,7 +17,7 @@ def is_branched(law: FrictionLaw) -> bool:
 
 def whole_law(law: FrictionLaw) -> Any:
     """Return the whole law of which a law is a branch, or the law itself if it has no branches."""
-    return getattr(law, "whole", law)
+    return getattr(law, "whole_law", law)
 
 
 def on_branch(top: Top, slip: Slip) -> Top:

@@ -101,12 +101,12 @@ def without_tilting(state: State, top: Top) -> State:
 def slips_of(pair: ContactPair, xi: Slip) -> tuple[Slip, Slip]:
     """Return the slips of both contacts, with drilling if the law resists it."""
     across = directions_of(pair.first.axis)[1]
-    one, other = (xi[0], xi[1]), (xi[0] + xi[2] * across[0], xi[1] + xi[2] * across[1])
+    first, second = (xi[0], xi[1]), (xi[0] + xi[2] * across[0], xi[1] + xi[2] * across[1])
     reach = slip_length(pair.first.top.friction)
     if reach is None:
-        return one, other
+        return first, second
     drilling = reach * xi[2] / apart(pair)
-    return (*one, drilling), (*other, drilling)
+    return (*first, drilling), (*second, drilling)
 
 
 def at_rest(

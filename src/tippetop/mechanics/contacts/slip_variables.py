@@ -77,10 +77,10 @@ def is_slipping(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) 
 
     A truth value of floats, or an array of them.
     """
-    found, least = False, least_slip(axis, momentum, velocity, top)
+    slips, least = False, least_slip(axis, momentum, velocity, top)
     for number in slip_of(axis, momentum, velocity, top):
-        found = found | (abs(number) > least)
-    return found
+        slips = slips | (abs(number) > least)
+    return slips
 
 
 def least_slip(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:

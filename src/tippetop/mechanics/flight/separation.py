@@ -163,11 +163,11 @@ class Separation(NamedTuple):
 
 def support_terms(shape: Surface, tip: Sequence[Scalar], plain: Sums) -> list[Scalar]:
     """Coefficients of the support function in powers of time, by those of the tip's height."""
-    found = shape.height(Series(lambda k: tip[k], plain))
-    if isinstance(found, Series):
-        return found.up_to(len(tip) - 1)
+    height = shape.height(Series(lambda k: tip[k], plain))
+    if isinstance(height, Series):
+        return height.up_to(len(tip) - 1)
     # It is the same number at any tilt.
-    return [0.0 * tip[0] + found, *[0.0 * term for term in tip[1:]]]
+    return [0.0 * tip[0] + height, *[0.0 * term for term in tip[1:]]]
 
 
 class Opening(NamedTuple):

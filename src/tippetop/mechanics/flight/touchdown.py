@@ -183,9 +183,11 @@ def highest_gap(state: State, top: Top, duration: float) -> float:
     step = (last - first) / count
     # At the start of a flight the rate may vanish.
     times = [first + step * max(j, 1e-3) for j in range(count + 1)]
-    looks = [gap(time) for time in times]
-    found = max([gap(first)[0], *(here for here, _, _ in looks)])
+    rows = [gap(time) for time in times]
+    highest = max([gap(first)[0], *(height for height, _, _ in rows)])
     for j in range(count):
-        if looks[j][1] > 0.0 > looks[j + 1][1]:
-            found = max(found, gap(crossing(lambda time: gap(time)[1], times[j], times[j + 1]))[0])
-    return found
+        if rows[j][1] > 0.0 > rows[j + 1][1]:
+            highest = max(
+                highest, gap(crossing(lambda time: gap(time)[1], times[j], times[j + 1]))[0]
+            )
+    return highest

@@ -53,7 +53,7 @@ class HertzPiece(PatchLaw):
         return resisting(self, slip, angular_velocity)
 
     @property
-    def whole(self) -> "HertzLaw":
+    def whole_law(self) -> "HertzLaw":
         """The law of which it is a branch."""
         return HertzLaw(*self)
 
@@ -124,9 +124,9 @@ class HertzSlidingLaw(HertzPiece):
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R
         w.
         """
-        other = drilling * drilling
-        larger = square + BEYOND * other
-        return scaled_shares(self, larger, drilling, sliding_shares(1.0 - other / larger))
+        drilled = drilling * drilling
+        larger = square + BEYOND * drilled
+        return scaled_shares(self, larger, drilling, sliding_shares(1.0 - drilled / larger))
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -168,7 +168,7 @@ class HertzBranch(NamedTuple):
     """1 where drilling prevails, 0 where slip does."""
 
     @property
-    def whole(self) -> "HertzLaw":
+    def whole_law(self) -> "HertzLaw":
         """The law of which it is a branch."""
         return HertzLaw(self.mu, self.patch_radius)
 
@@ -190,9 +190,9 @@ class HertzBranch(NamedTuple):
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R
         w.
         """
-        other = drilling * drilling
-        larger = self._either(other + BEYOND * square, square + BEYOND * other)
-        share = self._either(square, other) / larger
+        drilled = drilling * drilling
+        larger = self._either(drilled + BEYOND * square, square + BEYOND * drilled)
+        share = self._either(square, drilled) / larger
         drills, slides = drilling_shares(share), sliding_shares(self._either(1.0, 1.0 - share))
         law = self._either(drills[0], slides[0]), self._either(drills[1], slides[1])
         return scaled_shares(self, larger, drilling, law)
@@ -203,7 +203,7 @@ class HertzBranch(NamedTuple):
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """Return the reserve of the whole law."""
-        return self.whole.reserve(normal, force, drilling)
+        return self.whole_law.reserve(normal, force, drilling)
 
     def branch_guard(self, slip: Vector) -> Scalar:
         """Positive as long as this branch is followed, up to `EDGE` or down to half of it,

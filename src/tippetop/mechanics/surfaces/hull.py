@@ -64,10 +64,10 @@ class Hull(NamedTuple):
         """Those of every surface, and before them, for all but the first, its size in sizes of the
         first.
         """
-        found: tuple[Scalar, ...] = self.units[0].proportions
+        numbers: tuple[Scalar, ...] = self.units[0].proportions
         for unit, size in zip(self.units[1:], self.sizes[1:], strict=True):
-            found = (*found, size / self.sizes[0], *unit.proportions)
-        return found
+            numbers = (*numbers, size / self.sizes[0], *unit.proportions)
+        return numbers
 
     @classmethod
     def from_proportions(cls, proportions: tuple[Scalar, ...]) -> "Hull":
@@ -132,9 +132,9 @@ def outer_height(surface: Surface, c: Scalar) -> Scalar:
     """
     first, *others = each_surface(surface)
     height = first.height(c)
-    for other in others:
-        here = other.height(c)
-        height = 0.5 * (height + here + abs(height - here))
+    for surface_beside in others:
+        height_beside = surface_beside.height(c)
+        height = 0.5 * (height + height_beside + abs(height - height_beside))
     return height
 
 

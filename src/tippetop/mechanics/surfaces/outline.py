@@ -23,7 +23,7 @@ TILTS = 61
 """Tilts at which this is looked at."""
 
 OUTLINE = 97
-"""Tilts at which the hull of surfaces is found."""
+"""Tilts at which the hull of surfaces is lines."""
 
 POLE = 1e-4
 """The least of them, where the body does not lie flat yet."""
@@ -41,8 +41,8 @@ def is_outline(lines: Sequence[Line], surface: Surface) -> bool:
     the tilt.
     """
     points, within = [point for line in lines for point in line], FITS * extent(lines)
-    for look in range(TILTS):
-        tilt = math.pi * look / (TILTS - 1)
+    for number in range(TILTS):
+        tilt = math.pi * number / (TILTS - 1)
         sine, c = math.sin(tilt), math.cos(tilt)
         if abs(max([r * sine - z * c for r, z in points]) - outer_height(surface, c)) > within:
             return False
@@ -75,8 +75,8 @@ def outline(surface: Surface) -> list[Line]:
     Where the body touches the table at evenly spaced tilts, and, on its faces, between.
     """
     arcs, last, corner = list[Line](), surface, 10.0 * POLE * surface.size
-    for look in range(OUTLINE):
-        tilt = min(max(math.pi * look / (OUTLINE - 1), POLE), math.pi - POLE)
+    for number in range(OUTLINE):
+        tilt = min(max(math.pi * number / (OUTLINE - 1), POLE), math.pi - POLE)
         c = math.cos(tilt)
         lowest = lowest_surface(surface, c)
         if not arcs or lowest != last:
@@ -92,7 +92,7 @@ def outline(surface: Surface) -> list[Line]:
         arcs = [[(0.0, begin[1])], *arcs]
     if end[0] != 0.0:
         arcs.append([(0.0, end[1])])
-    found = arcs[:1]
+    lines = arcs[:1]
     for before, arc in pairwise(arcs):
-        found += [[before[-1], arc[0]], arc]
-    return [line for line in found if len(line) > 1]
+        lines += [[before[-1], arc[0]], arc]
+    return [line for line in lines if len(line) > 1]
