@@ -137,7 +137,7 @@ def test_a_direction_that_slip_keeps_is_followed_in_one_step(law, monkeypatch):
 
     quick = [struck(patch) for patch in (3e-3, 1e-5, 1e-8)]
     assert all(one.steps < 500 for one in quick)
-    monkeypatch.setattr(DryProcess, "straight", lambda *_: None)
+    monkeypatch.setattr(DryProcess, "along_line", lambda *_: None)
     slow = struck(3e-3)
     assert slow.steps > 2 * quick[0].steps
     assert quick[0].state.momentum == pytest.approx(slow.state.momentum, abs=1e-9)
