@@ -64,7 +64,7 @@ class Edge(NamedTuple):
 
     @property
     def backwards(self) -> "Edge":
-        """The same edge from its end to its start."""
+        """Reverse of this edge, from its end to its start."""
         return Edge(self.end, self.start, -self.turn)
 
     def direction(self, share: float) -> complex:
