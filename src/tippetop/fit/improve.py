@@ -172,7 +172,7 @@ def _require_top(body: Body, gravity: float, tilt: float) -> None:
         kind = body.shapes[0].kind.replace("_", " ")
         shown = f"a body that lies on a {kind}"
         if kind == "sphere":
-            shown += " whose centre is not above its centre of mass"
+            shown = "a body that its sphere does not right"
         raise InvalidInput(
             "body",
             Described(shown),
