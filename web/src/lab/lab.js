@@ -19,6 +19,10 @@ const SHARE = 300;
 const PREVIEW = 1;
 export const MOST_PINS = 3;
 
+function sameMembers(one, other) {
+  return one.length === other.length && one.every((member, k) => member === other[k]);
+}
+
 // Bring the stage into view where it is not.
 function showStage() {
   const stage = document.querySelector(".stage");
@@ -52,7 +56,7 @@ export class Lab extends EventTarget {
   }
 
   set(changes) {
-    const before = JSON.stringify(this.companions);
+    const before = this.companions;
     this.state = { ...this.state, ...changes };
     if (changes.lang) {
       speak(changes.lang);
@@ -60,7 +64,7 @@ export class Lab extends EventTarget {
     }
     this.dispatchEvent(new Event("state"));
     this.share();
-    if (JSON.stringify(this.companions) !== before) this.raise();
+    if (!sameMembers(this.companions, before)) this.raise();
     if ("tab" in changes) this.say();
   }
 
@@ -225,7 +229,7 @@ export class Lab extends EventTarget {
         pin.duration === this.track.header.asked;
       this.ghosts.set(key, known ? this.track : await this.engine.aside(pin).catch(() => null));
     }
-    if (JSON.stringify(companions) !== JSON.stringify(this.companions)) return;
+    if (!sameMembers(companions, this.companions)) return;
     this.player.compare(this.pinned());
     this.dispatchEvent(new Event("run"));
     this.set({});

@@ -13,6 +13,7 @@ export function resultCode({ problem, metrics }) {
 
 /** The address under which a run is seen again, with its result code. */
 export function resultLink(place, query, header) {
+  query.set("tab", "launch");
   query.set(RESULT, resultCode(header));
   return `${place}#${query}`;
 }
