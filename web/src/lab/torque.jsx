@@ -101,7 +101,7 @@ function Drawing({ tilt, momentum, later, torque, onLean }) {
         cx={stem[0]}
         cy={stem[1]}
         r="11"
-        tabIndex={0}
+        tabindex="0"
         role="slider"
         aria-label={t("torque.grip")}
         aria-valuemin={Math.round(LEAST * DEGREES)}
