@@ -115,7 +115,7 @@ class Graph:
         self._known = dict[str, Node]()
 
     def node(self, name: str, operands: tuple[Node, ...], value: float = 0.0) -> Node:
-        """The node of this description, which is made if there is none."""
+        """Return the node of this description, made if there is none."""
         key = " ".join([name, f"{value:.17g}", *[str(operand.place) for operand in operands]])
         found = self._known.get(key)
         if found is None:
@@ -125,7 +125,7 @@ class Graph:
         return found
 
     def taken(self, number: Any) -> Node:
-        """A number as a node."""
+        """Return a number as a node."""
         if isinstance(number, Node):
             return number
         return self.node(CONSTANT, (), float(number))
@@ -163,7 +163,7 @@ class Graph:
         return self.node(QUOTIENT, (self.taken(a), self.taken(b)))
 
     def power(self, base: Node, exponent: Any) -> Any:
-        """A power: by products and roots where the exponent is a whole number of quarters."""
+        """Return a power: products and roots if the exponent is a whole number of quarters."""
         if not isinstance(exponent, (int, float)):
             raise NotRecordable("exponents are numbers")
         if (4.0 * exponent) % 1.0 != 0.0 or abs(exponent) > LARGEST_POWER:
@@ -177,14 +177,14 @@ class Graph:
         return half * half * base if whole % 2.0 == 1.0 else half * half
 
     def select(self, condition: Any, a: Any, b: Any) -> Any:
-        """The first where a condition is not 0, else the second."""
+        """Return the first where a condition is not 0, else the second."""
         if not isinstance(condition, Node):
             return a if condition else b
         return self.node(SELECT, (condition, self.taken(a), self.taken(b)))
 
     # translate: skip
     def rarely(self, condition: Any, a: Any, b: Any) -> Any:
-        """The same; the first is computed only where launches abreast have need of it."""
+        """Return the same as `select`; the first is computed only if a launch abreast needs it."""
         return self.node(RARELY, (self.taken(condition), self.taken(a), self.taken(b)))
 
 

@@ -23,8 +23,8 @@ OPERATIONS: Mapping[str, Callable[..., Any]] = {
 
 
 def hoisted(recorded: Recorded) -> tuple[Recorded, Recorded]:
-    """A function of the parameters alone, and the rest, to which what that makes are further
-    parameters.
+    """Return a function of the parameters alone, and the rest, which has the results of the first
+    as further parameters.
     """
     fixed = set[int]()
     for node in recorded.nodes:
@@ -54,9 +54,7 @@ def hoisted(recorded: Recorded) -> tuple[Recorded, Recorded]:
 
 
 def played(recorded: Recorded, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
-    """What a recorded function makes of a state and parameters, in the arithmetic that they
-    have.
-    """
+    """Return the outputs of a recorded function at a state and parameters, in their arithmetic."""
     found = dict[int, Any]()
     for node in recorded.nodes:
         match node.name:

@@ -178,7 +178,7 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
 
 
 def spelt(recorded: Recorded, known: Mapping[int, str], words: Mapping[str, object]) -> list[str]:
-    """What computes the nodes, given what they are called."""
+    """Return the lines that compute nodes, whose names are known."""
 
     def line(node: graph.Node, spelling: str | None = None) -> str:
         operands = [known[operand.place] for operand in node.operands]
@@ -199,7 +199,7 @@ def spelt(recorded: Recorded, known: Mapping[int, str], words: Mapping[str, obje
 
 
 def spelling_of(node: graph.Node, several: bool) -> str:
-    """What makes a node, of one launch or of several."""
+    """Return the template of the line that computes a node, of one launch or of several."""
     if node.name == graph.SELECT and node.operands[0].name == graph.LESS:
         return CHOICE
     return SMALL_POWER if several and is_small_power(node) else SPELLINGS[node.name]
@@ -214,7 +214,9 @@ def in_blocks(lines: Sequence[str], name: str) -> list[str]:
 
 
 def parted(recorded: Recorded) -> tuple[Sequence[graph.Node], ...]:
-    """What is computed first, what only where there is need, what is one of both, and the rest."""
+    """Return the nodes that are computed always, those computed rarely, those that choose between
+    both, and those that depend on a choice.
+    """
     needed = {node.place for node in (*recorded.outputs, *recorded.more)}
     for node in reversed(recorded.nodes):
         if node.place in needed:

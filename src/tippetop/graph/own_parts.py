@@ -30,7 +30,8 @@ def require_recordable(top: Top) -> None:
 
 
 def has_choices(top: Top) -> bool:
-    """Whether a user's law or surface chooses by the numbers, as `tippetop.extend.where` does.
+    """Return whether a user's law or surface chooses by the numbers, as `tippetop.extend.where`
+    does.
 
     Raises `InvalidInput` if it asks of its arguments what only numbers have.
     """

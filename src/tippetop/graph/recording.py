@@ -53,7 +53,7 @@ def record(function: Function, size: int, parameters: int, more: int = 0) -> Rec
 
 # translate: skip
 def recordable(function: Function, size: int, parameters: int) -> Recorded | None:
-    """What a function does, see `record`; None where it asks nodes for what only numbers have."""
+    """Return what `record` does; None where the function asks of nodes what only numbers have."""
     try:
         return record(function, size, parameters)
     except (TypeError, ValueError, ArithmeticError, AttributeError):
@@ -61,7 +61,7 @@ def recordable(function: Function, size: int, parameters: int) -> Recorded | Non
 
 
 def needed(graph: Graph, outputs: Sequence[Node]) -> tuple[Node, ...]:
-    """The nodes of a graph of which some are made."""
+    """Return the nodes of a graph from which some nodes are computed."""
     places = {node.place for node in outputs}
     for node in reversed(graph.nodes):
         if node.place in places:

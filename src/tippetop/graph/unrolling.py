@@ -10,17 +10,17 @@ class NodeValues:
     """What is done with the values of nodes that have several."""
 
     def spread(self, a: Any, lane: int) -> Any:
-        """One of a node's values, for all."""
+        """Return one of a node's values, for all."""
         return a.graph.node(SPREAD, (a,), lane) if isinstance(a, Node) else a
 
     def total(self, a: Any) -> Any:
-        """The sum of a node's values, for all."""
+        """Return the sum of a node's values, for all."""
         return a.graph.node(TOTAL, (a,))
 
 
 def unrolled(recorded: Recorded, abreast: int) -> Recorded:
-    """What does the same with each of so many values, one after another in the state and the
-    parameters.
+    """Return a function of single numbers that does the same with each of so many values, which lie
+    one after another in state and parameters.
     """
     graph, values = Graph(), dict[int, list[Node]]()
     for node in recorded.nodes:

@@ -80,12 +80,12 @@ class DenseSolution:
         return float(self.knots[-1])
 
     def __call__(self, times: Array) -> Array:
-        """The solution at times between the first and the last knot, shape (m, size)."""
+        """Return the solution at times between the first and the last knot, shape (m, size)."""
         step = np.minimum(np.searchsorted(self.knots[1:], times, side="left"), len(self.terms) - 1)
         return evaluated(self.terms, step, parts_of(times, self.knots[step], self.knots[step + 1]))
 
     def rows(self, times: Array) -> Sequence[Array]:
-        """The numbers of the solution at times, each of shape (m,)."""
+        """Return the numbers of the solution at times, each of shape (m,)."""
         return tuple(self(times).T)
 
     def until(self, step: int, part: float) -> "DenseSolution":
@@ -100,7 +100,9 @@ class DenseSolution:
         return DenseSolution(knots, terms)
 
     def moved(self, start: float, end: float) -> "DenseSolution":
-        """The solution, whose time begins at zero, from `start` on; it ends exactly at `end`."""
+        """Return the solution, whose time begins at zero, from `start` on; it ends exactly at
+        `end`.
+        """
         knots = start + self.knots
         knots[-1] = end
         return DenseSolution(knots, self.terms)
@@ -139,8 +141,8 @@ class DenseSolution:
     def of_steps(
         cls, knots: Array, terms: Array, size: int, count: int, width: int
     ) -> "DenseSolution":
-        """The first of some steps, with all coefficients in a row, beside those of further
-        numbers.
+        """Return the solution of the first `count` steps, from rows that hold further numbers
+        beside it.
         """
         steps = terms.reshape(len(knots) - 1, width, -1)
         return cls(knots[: count + 1].copy(), steps[:count, :size].copy())
@@ -176,7 +178,7 @@ class DenseSolution:
 
     @classmethod
     def in_time(cls, knots: ArrayLike, terms: ArrayLike) -> "DenseSolution":
-        """The solution by coefficients in powers of the time since a step's start."""
+        """Return the solution by coefficients in powers of the time since a step's start."""
         ends, known = np.array(knots, dtype=float), np.asarray(terms, dtype=float)
         with np.errstate(over="ignore"):  # the step of a motion that stands still has no bound
             lengths = powers(ends[1:] - ends[:-1], known.shape[2])
@@ -271,7 +273,7 @@ def longer(numbers: Array, count: int) -> Array:
 
 
 def parts_of(times: Array, starts: Array, ends: Array) -> Array:
-    """Which part of their steps has passed at some times; 0 in steps of no length."""
+    """Return the part of their steps that has passed at some times; 0 in steps of no length."""
     spans = ends - starts
     found: Array = (times - starts) / np.where(spans > 0.0, spans, 1.0)
     return found
@@ -301,7 +303,7 @@ def at_fractions(terms: Array, fractions: Array) -> Array:
 
 
 def powers(numbers: Array, count: int) -> Array:
-    """The first powers of n numbers, shape (n, count)."""
+    """Return the first powers of n numbers, shape (n, count)."""
     if len(numbers) <= FEW:
         return np.vander(numbers, count, increasing=True)
     found = np.ones((count, len(numbers)))

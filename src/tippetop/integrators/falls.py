@@ -35,7 +35,7 @@ def first_fall(
     advance: Dense,
     step: tuple[float, float],
 ) -> tuple[int, float, Array] | None:
-    """The guard that first falls through zero within a step, when, and the state there.
+    """Return the guard that first falls through zero within a step, when, and the state then.
 
     A guard that dips below zero and returns within the step is found by minimising it between the
     probes where its probed values bend that way; one that starts at zero, rises, and is back before
@@ -76,7 +76,7 @@ def _fall_along(
     step: tuple[float, float],
     least: float,
 ) -> tuple[int, float] | None:
-    """The guard that first falls along a solution, and when; see `first_fall`.
+    """Return the guard that first falls along a solution, and when; see `first_fall`.
 
     One that falls before this least part of the step and is positive at its end is passed over.
     """
@@ -100,12 +100,12 @@ def _fall_along(
 
 
 def _along(guard: GuardValue, solution: Dense) -> Value:
-    """A guard along a solution."""
+    """Return a guard along a solution as a function of time."""
     return lambda time: _value_of(guard, solution(time))
 
 
 def _value_of(guard: GuardValue, state: Array) -> float:
-    """The value of a guard; infinite at a pole, before which another guard may fall."""
+    """Return the value of a guard; infinite at a pole, before which another guard may fall."""
     try:
         return guard(state)
     except ArithmeticError:
@@ -115,8 +115,8 @@ def _value_of(guard: GuardValue, state: Array) -> float:
 def brackets(
     probes: Sequence[float], values: Sequence[float], value: Value, exact: Value
 ) -> Iterator[tuple[float, float, Value]]:
-    """The intervals over which the guard falls from positive to not positive, in turn; in which
-    solution.
+    """Yield the intervals over which the guard falls from positive to not positive, and the
+    solution in which it does, in turn.
     """
     last, least = len(probes) - 1, min(values)
     if least > 0.0 and 2.0 * least >= max(values):
@@ -144,7 +144,7 @@ def brackets(
 
 
 def _early_bracket(start: float, end: float, value: Value) -> tuple[float, float, Value] | None:
-    """The interval before the first probe over which a guard falls that starts at zero and
+    """Return the interval before the first probe over which a guard falls that starts at zero and
     rises.
     """
     part = EARLIEST

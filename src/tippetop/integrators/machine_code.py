@@ -31,7 +31,7 @@ def machine_code(
 
 
 def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
-    """The same of what is made again and again; see `llvm_source`. It takes arrays of `ctypes`."""
+    """Compile a function that is iterated, of arrays of `ctypes`; see `llvm_source`."""
     engine = loaded(llvm_source({"made": function}, abreast, again=True))
     kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3, ctypes.c_double, ctypes.c_int64)
     found: Any = kind(engine.get_function_address("made"))
@@ -40,7 +40,7 @@ def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
 
 
 def loaded(source: str, effort: int = EFFORT) -> llvm.ExecutionEngine:
-    """The machine code of a source, compiled or taken from the cache."""
+    """Return the machine code of a source, compiled or taken from the cache."""
     made = (source, llvmlite.__version__, effort)
     content = run_interruptibly(lambda: kept_content(made, lambda: _compiled(source, effort)))
     if not content.startswith(FORMATS):
@@ -88,7 +88,7 @@ class Compiled:
 
 
 def _address(rows: Array) -> int:
-    """Where rows are that lie one after another; a quarter of the time that `rows.ctypes.data`
-    takes.
+    """Return the address of rows that lie one after another, in a quarter of the time that
+    `rows.ctypes.data` takes.
     """
     return ctypes.addressof(ctypes.c_char.from_buffer(rows.data)) if rows.size else 0

@@ -31,8 +31,8 @@ def looked_at(terms: Sequence[Scalar], taken: Scalar, looks: int) -> list[Scalar
 
 
 def slack(terms: Sequence[Scalar], taken: Scalar, looks: int, plain: Arithmetic) -> Scalar:
-    """How far a polynomial may go beyond its looks: between two by (interval)^2 / 8 max |f''| at
-    most.
+    """Return how far a polynomial may go beyond its looks: between two by (interval)^2 / 8 max
+    |f''| at most.
     """
     part = taken * (1.0 / looks)
     bends = [float(k * (k - 1)) * plain.size(terms[k]) for k in range(2, len(terms))]
@@ -40,13 +40,13 @@ def slack(terms: Sequence[Scalar], taken: Scalar, looks: int, plain: Arithmetic)
 
 
 def lower_bound(terms: Sequence[Scalar], whole: Scalar, plain: Arithmetic) -> Scalar:
-    """What a polynomial is at least in a step: its tangent's ends less all that bends."""
+    """Return a lower bound of a polynomial in a step: its tangent's ends less all that bends."""
     bends = horner([plain.size(term) for term in terms[2:]], whole)
     return plain.least(terms[0], terms[0] + whole * terms[1]) - whole * whole * bends
 
 
 def lowest(values: Sequence[Scalar], plain: Arithmetic) -> Scalar:
-    """The least of many."""
+    """Return the least of many numbers."""
     least = values[0]
     for value in values[1:]:
         least = plain.least(value, least)
@@ -56,14 +56,15 @@ def lowest(values: Sequence[Scalar], plain: Arithmetic) -> Scalar:
 def may_fall(
     terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic
 ) -> Scalar:
-    """Whether a guard may fall through zero in a step, given its looks."""
+    """Return whether a guard may fall through zero in a step, from its values at the looks."""
     return plain.below(lowest(values, plain) - slack(terms, taken, len(values) - 1, plain), TINY)
 
 
 def first_fall(
     terms: Sequence[Scalar], whole: Scalar, looks: int, plain: Arithmetic
 ) -> tuple[Scalar, Scalar]:
-    """Where in a step a polynomial first falls through zero, and whether that is not told.
+    """Return the time in a step at which a polynomial first falls through zero, and whether that is
+    undecided.
 
     It is inf where no look is below zero. It is not told where the polynomial begins there, or may
     dip between looks before it falls, or where its zero is not found in a few improvements.
@@ -104,8 +105,8 @@ def first_fall(
 def least_value(
     terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic
 ) -> Scalar:
-    """The least value of a polynomial in a step, given its looks, from the least of which it is
-    sought.
+    """Return the least value of a polynomial in a step, sought from the least of its values at the
+    looks.
     """
     part = taken * (1.0 / (len(values) - 1))
     least, place = values[0], 0.0 * taken

@@ -38,7 +38,7 @@ not.
 
 @lru_cache
 def _places(count: int) -> Array:
-    """The first powers of the places of the looks, shape (LOOKS + 1, count)."""
+    """Return the first powers of the places of the looks, shape (LOOKS + 1, count)."""
     return powers(np.linspace(0.0, 1.0, LOOKS + 1), count)
 
 
@@ -117,7 +117,7 @@ class Polynomials:
     def some(
         self, which: NDArray[np.intp], sign: Array | float = 1.0, shift: Array | float = 0.0
     ) -> "Polynomials":
-        """Some of the polynomials, times signs and plus numbers."""
+        """Return some of the polynomials, times signs and plus numbers."""
         unit = sign * self.unit.take(which, axis=1)
         unit[0] += shift
         return Polynomials.of_unit(unit, self.span.take(which))
@@ -191,14 +191,14 @@ class Polynomials:
         return place * self.span, value
 
     def negative(self) -> "Polynomials":
-        """The polynomials times -1."""
+        """Return the polynomials times -1."""
         found = Polynomials.of_unit(-self.unit, self.span)
         found.values, found.bending = -self.values, self.bending
         return found
 
 
 def times(matrix: Array, columns: Array) -> Array:
-    """A matrix, or a row, times columns: so few at once that NumPy's library has no use for
+    """Return a matrix, or a row, times columns: so few at once that NumPy's library has no use for
     threads.
     """
     count = columns.shape[1]
@@ -246,8 +246,7 @@ def least_of_each(*lots: Sequence["Polynomials"]) -> list[Least]:
 
 
 def of_each(find: Callable[..., Any], unit: Array, *given: Array) -> Array:
-    """What is found of each of many polynomials at once, or, where they are few, of one after the
-    other.
+    """Apply a function to many polynomials at once, or, where they are few, to one after the other.
 
     Either way it does not depend on the others: each stands still where it has arrived.
     """
@@ -260,8 +259,8 @@ def of_each(find: Callable[..., Any], unit: Array, *given: Array) -> Array:
 def _least_near(
     terms: Row, guess: Scalar, where: Choice, some: Callable[[Any], Any]
 ) -> tuple[Scalar, Scalar]:
-    """The place of a least value no further than a look from a guess, and that value, by Newton's
-    method.
+    """Return the place of a least value no further than a look from a guess, and that value, by
+    Newton's method.
     """
     slopes = [power * term for power, term in enumerate(terms)][1:]
     first, last, place, moving = guess - 1.0 / LOOKS, guess + 1.0 / LOOKS, guess, True
@@ -278,7 +277,7 @@ def _least_near(
 def _zero(
     terms: Row, low: Scalar, high: Scalar, where: Choice, some: Callable[[Any], Any]
 ) -> Scalar:
-    """A zero between places where a polynomial is positive and not positive."""
+    """Return a zero between places where a polynomial is positive and not positive."""
     place, moving = 0.5 * (low + high), True
     for _ in range(TURNS):
         value, slope = _horner(terms, place)
@@ -309,12 +308,12 @@ def _early_fall(terms: Row) -> float | None:
 
 
 def _chosen(flag: bool, yes: float, no: float) -> float:
-    """What `numpy.where` chooses, of plain numbers."""
+    """Return what `numpy.where` chooses, of plain numbers."""
     return yes if flag else no
 
 
 def _horner(terms: Row, place: Scalar) -> tuple[Scalar, Scalar]:
-    """The value and first derivative of a polynomial."""
+    """Return the value and first derivative of a polynomial."""
     value, slope = terms[-1], 0.0 * place
     for term in terms[-2::-1]:
         slope = slope * place + value

@@ -54,7 +54,7 @@ class Relieved:
         return float(getattr(self.explicit, "tolerance", 0.0))
 
     def _implicit(self, shortest: float) -> Integrator:
-        """The method where the motion is stiff."""
+        """Return the method for stiff motions."""
         # Slow to import, and seldom needed.
         from tippetop.integrators.collocation import Collocation  # noqa: PLC0415
 
@@ -90,7 +90,7 @@ class Relieved:
 def is_stiff(
     motion: Motion, parameters: Sequence[Scalar], states: Array, steps: Array
 ) -> NDArray[np.bool_]:
-    """Whether a motion is stiff in states, shape (n, size), about which it took steps, shape
+    """Return whether a motion is stiff in states, shape (n, size), about which it took steps, shape
     (n,).
     """
     slopes = RightHandSide(motion, parameters).linearized(states)[1]

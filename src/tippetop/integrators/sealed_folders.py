@@ -40,7 +40,7 @@ OLD = "cache.db*", "making-*"
 
 
 def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
-    """What comes of a folder of compiled code.
+    """Return what `use` makes of a folder of compiled code.
 
     What is damaged in it is thrown away, and where none can be kept every process compiles for
     itself.
@@ -70,7 +70,7 @@ def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
 
 
 def users_folder() -> Path:
-    """The user's own folder for the cache: all that is in it is of this package."""
+    """Return the user's own folder for the cache, which holds files of this package only."""
     return platformdirs.user_cache_path("tippetop", appauthor=False)
 
 
@@ -92,7 +92,7 @@ def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
 
 
 def _processor() -> tuple[str, ...]:
-    """What code is compiled for."""
+    """Return the system, the processor and its features, for which code is compiled."""
     import llvmlite.binding as llvm  # noqa: PLC0415 - slow to import
 
     return (
@@ -149,14 +149,14 @@ def _size(place: Path) -> int:
 
 
 def _is_own(folder: Path) -> bool:
-    """Whether this user made a folder: code of others is not run. Only its maker can write to
-    it.
+    """Return whether this user made a folder: code of others is not run. Only its maker can write
+    to it.
     """
     return not hasattr(os, "getuid") or folder.stat().st_uid == os.getuid()
 
 
 def _is_whole(folder: Path) -> bool:
-    """Whether a folder has what was put there, as it was."""
+    """Return whether a folder has the files that were put into it, as they were."""
     try:
         return _seal(folder) == _digests(folder)
     except OSError:
@@ -164,7 +164,7 @@ def _is_whole(folder: Path) -> bool:
 
 
 def _seal(folder: Path) -> dict[str, str] | None:
-    """The digests that a folder is sealed with; none if it is not."""
+    """Return the digests that a folder is sealed with; None if it is not."""
     try:
         seal = json.loads((folder / SEAL).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):

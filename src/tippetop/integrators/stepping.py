@@ -134,7 +134,7 @@ class Stepping:
         return ended
 
     def arc(self, guard: str | None = None, failure: str | None = None) -> Arc:
-        """The arc that has been made, whose solution may keep the room there was for it."""
+        """Return the arc that has been made, whose solution may keep the room there was for it."""
         width = len(self.row)
         solution = DenseSolution.of_steps(self.knots, self.terms, self.size, self.steps, width)
         arc = Arc(solution, self.state, guard, failure, self.steps, self.calls)
@@ -142,7 +142,9 @@ class Stepping:
         return arc
 
     def fall(self) -> tuple[int, float, Array] | None:
-        """Which guard first falls through zero in the last step, when, and the state there."""
+        """Return the guard that first falls through zero in the last step, when, and the state
+        then.
+        """
         begin, reach = float(self.knots[self.steps - 1]), self.time
         first, row = (self.steps - 1) * len(self.row) * POWERS, np.empty(len(self.row))
         functions, found = self.functions, np.empty(self.functions.number)
@@ -188,7 +190,9 @@ class Stepping:
         return self.other
 
     def landed(self, time: float, state: Array, end: float) -> Array:
-        """The state after a step from another, or some, that end at exactly this time."""
+        """Return the state after one step or several from another state, which end at exactly this
+        time.
+        """
         self.row, self.lost = longer(state, len(self.row)), np.zeros(len(self.row))
         self.span = np.array([time, end, time - end])
         ended = FULL

@@ -90,7 +90,7 @@ class Entry(Part):
 
     @classmethod
     def written(cls, field: str, table: Mapping[str, Any]) -> Self:
-        """The entry of a field, from the table of its others."""
+        """Return the entry of a field, from the table of its other keys."""
         if "field" in table:
             raise InvalidInput(
                 f"{field}.field",
@@ -109,7 +109,7 @@ class Axis(Entry):
 
     @classmethod
     def of(cls, field: str, entry: Any) -> "Axis":
-        """The axis that is written as a list, or an array, or a table."""
+        """Return the axis that is written as a list, an array or a table."""
         if is_quantity(entry) and np.ndim(entry.magnitude):
             entry = {"values": in_si_of(field, entry)}
         elif isinstance(entry, list | tuple | range) or (
@@ -126,7 +126,7 @@ class Axis(Entry):
         raise NotImplementedError
 
     def at(self, places: Flat) -> Array:
-        """Some of the values, by their places, without making the others."""
+        """Return the values at some places, without making the others."""
         raise NotImplementedError
 
     @property
@@ -174,7 +174,7 @@ class Spaced(Axis):
         return self.count
 
     def at(self, places: Flat) -> Array:
-        """Some of the values, by their places, without making the others."""
+        """Return the values at some places, without making the others."""
         inner = between(
             self.first, self.last, places / max(self.count - 1, 1), self.spacing == "geometric"
         )
@@ -205,5 +205,5 @@ class Listed(Axis):
         return len(self.numbers)
 
     def at(self, places: Flat) -> Array:
-        """Some of the values, by their places."""
+        """Return the values at some places."""
         return np.array(self.numbers)[places]

@@ -50,7 +50,7 @@ class Cells:
     """The problem whose fields are arrays of shape (n,) where they change."""
 
     def launches(self, which: NDArray[np.intp], duration: float) -> Launches:
-        """Some of the cells as launches."""
+        """Return some of the cells as launches."""
         count = len(self.fault)
         numbers = [spread(number, count)[which] for number in self.top.numbers]
         contact_rule = self.problem.contact
@@ -66,7 +66,9 @@ class Cells:
         )
 
     def _own_rules(self, which: NDArray[np.intp]) -> Own | None:
-        """What makes the rules of some of the cells, if their contact brings its own."""
+        """Return the function that makes the rules of some of the cells, if their contact has its
+        own.
+        """
         contact_rule = self.problem.contact
         if type(contact_rule).rules is Contact.rules:
             return None
@@ -79,7 +81,7 @@ class Cells:
 
 
 def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
-    """The cells that put these values, each of shape (n,), into a problem.
+    """Return the cells that put these values, each of shape (n,), into a problem.
 
     Raises `InvalidInput` if a field is none, or not a number.
     """
@@ -139,7 +141,9 @@ def numeric_fields(part: Part, prefix: str = "") -> Iterator[tuple[str, list[Any
 
 
 def put(part: PartType, values: Mapping[str, Array], prefix: str = "") -> PartType:
-    """A part with arrays for some of its numbers: not validated, but with all its properties."""
+    """Return a part with arrays for some of its numbers: not validated, but with all its
+    properties.
+    """
     fields: dict[str, Any] = {}
     for name in type(part).model_fields:
         value = getattr(part, name)
@@ -152,7 +156,9 @@ def put(part: PartType, values: Mapping[str, Array], prefix: str = "") -> PartTy
 
 
 def _each(value: Any, path: str) -> dict[str, Any]:
-    """A field by its name with dots, or what is in it by theirs if it is a tuple."""
+    """Return a field by its name with dots, or the fields inside it by their names if it is a
+    tuple.
+    """
     return (
         {f"{path}.{k}": one for k, one in enumerate(value)}
         if isinstance(value, tuple)
@@ -161,7 +167,7 @@ def _each(value: Any, path: str) -> dict[str, Any]:
 
 
 def single_part(part: PartType, cell: int) -> PartType:
-    """The part of one cell, from one with arrays for some of its numbers.
+    """Return the part of one cell, from one with arrays for some of its numbers.
 
     Raises `InvalidInput` if there is no such part.
     """
@@ -185,7 +191,7 @@ def single_part(part: PartType, cell: int) -> PartType:
 
 
 def refused(part: Part, count: int) -> NDArray[np.bool_]:
-    """The cells that a part refuses by rules of its own, beyond its numbers' limits, shape
+    """Return the cells that a part refuses by rules of its own, beyond its numbers' limits, shape
     (count,).
     """
     found = np.zeros(count, dtype=bool)
@@ -201,7 +207,7 @@ def refused(part: Part, count: int) -> NDArray[np.bool_]:
 
 
 def allowed(values: Array, limits: list[Any]) -> NDArray[np.bool_]:
-    """Which values a field may have."""
+    """Return which values a field may have."""
     fine = np.isfinite(values)
     for limit in limits:
         for name, holds in _LIMITS.items():
@@ -215,7 +221,7 @@ _LIMITS = {"gt": np.greater, "ge": np.greater_equal, "lt": np.less, "le": np.les
 
 
 def launch_state(problem: Problem, fault: NDArray[np.int8]) -> State:
-    """The states at launch in SI of a problem with arrays for fields, every number of shape
+    """Return the states at launch in SI of a problem with arrays for fields, every number of shape
     (count,).
 
     Of a body of several surfaces, another one may be lowest in every cell: those are launched one
@@ -234,5 +240,5 @@ def launch_state(problem: Problem, fault: NDArray[np.int8]) -> State:
 
 
 def spread(number: Any, count: int) -> Array:
-    """A number, or an array of them, as an array of shape (count,)."""
+    """Return a number, or an array of them, as an array of shape (count,)."""
     return np.broadcast_to(np.asarray(number, dtype=float), (count,))

@@ -125,17 +125,19 @@ class Sweep(Part):
         return [tuple(int(k) for k in place) for place in np.ndindex(*counts)]
 
     def region(self, task: Task) -> tuple[slice, ...]:
-        """The cells of a task along every dimension."""
+        """Return the cells of a task along every dimension."""
         parts = zip(task, self.chunk, self.grid.shape, strict=True)
         return tuple(slice(k * part, min((k + 1) * part, size)) for k, part, size in parts)
 
     def numbers(self, region: tuple[slice, ...]) -> Any:
-        """The cells of a region, counted row by row over the whole sweep, in its shape."""
+        """Return the numbers of the cells of a region, counted row by row over the sweep, in its
+        shape.
+        """
         ranges = [np.arange(part.start, part.stop) for part in region]
         return np.ravel_multi_index(np.ix_(*ranges), self.grid.shape)
 
     def to_fields(self) -> dict[str, Any]:
-        """The sweep as plain numbers and words, as in a file: ``Sweep(**fields)`` is the
+        """Return the sweep as plain numbers and words, as in a file: ``Sweep(**fields)`` is the
         sweep.
         """
         return self.model_dump(mode="json", by_alias=True, exclude_none=True)
@@ -167,5 +169,5 @@ def _only_refusals() -> Iterator[None]:
 
 
 def is_sweep(fields: Mapping[str, Any]) -> bool:
-    """Whether the tables of a TOML file are those of a sweep rather than of a problem."""
+    """Return whether the tables of a TOML file are those of a sweep rather than of a problem."""
     return bool({*GRIDS, "duration"} & set(fields)) or isinstance(fields.get("problem"), dict | str)

@@ -68,8 +68,8 @@ class NodeFunctions:
 
 
 def pieces(kind: Kind, given: Array, numbers: Array) -> Piece:
-    """The pieces that begin as given, of shape (GIVEN, n), of tops with these numbers,
-    (kind.numbers, n).
+    """Return the parts of flights that begin with these numbers, of shape (GIVEN, n), of tops with
+    these numbers, (kind.numbers, n).
     """
     count = given.shape[1]
     start, parameters = padded(given), padded(numbers)
@@ -87,7 +87,7 @@ def _code(kind: Kind) -> Callable[[Array, Array, Array], None]:
 
 
 def piece(top: Top, given: Sequence[Any], plain: Arithmetic) -> Piece:
-    """The piece of a flight that begins as given."""
+    """Return the part of a flight that begins with these numbers."""
     here = fly(State.unpack(given[STATE]), given[TIME], top, NodeFunctions())
     tip, gap, reach = flight_terms(here, given[LEFT], top, plain)
     zero, doubt = first_fall(divided(gap, given[VANISHING], plain), reach, CLOSER_LOOKS, plain)
@@ -125,7 +125,9 @@ def flight_terms(
 
 
 def divided(terms: Sequence[Scalar], vanishing: Scalar, plain: Arithmetic) -> list[Scalar]:
-    """A polynomial whose first coefficients vanish, divided by the power of time that it has."""
+    """Return a polynomial whose first coefficients vanish, divided by the power of time that it
+    has.
+    """
     found = list(terms)
     for most in range(int(max(Start))):
         more, following = plain.below(most + 0.5, vanishing), [*found[1:], 0.0 * found[0]]

@@ -149,7 +149,7 @@ class Turns(NamedTuple):
 
     @classmethod
     def of(cls, state: State, top: Top, horizon: Array) -> "Turns":
-        """Those of flights from some states on, for so long at most."""
+        """Return the flights from some states on, for so long at most."""
         period: Array = np.asarray(2.0 * np.pi / Tip.of(state, top).frequency)
         return cls(
             period, np.clip(state.velocity[2] / top.gravity, 0.0, horizon), np.zeros_like(period)
@@ -193,7 +193,7 @@ def look(kind: Kind, given: Array, numbers: Array, seen: tuple[TipMotion, Indice
 
 
 def slides(state: State, top: Top) -> Flags:
-    """Whether tops in contact, whose contact point is at rest vertically, go on sliding."""
+    """Return whether tops in contact, whose contact point is at rest vertically, go on sliding."""
     sliding = along_table(state)
     touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
     found: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
@@ -201,7 +201,7 @@ def slides(state: State, top: Top) -> Flags:
 
 
 def rolls(state: State, top: Top) -> Flags:
-    """Whether tops in contact roll on for a while, or nothing resists that."""
+    """Return whether tops in contact roll on for a while, or nothing resists that."""
     count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
     if not top.resists_rolling:
         return count
@@ -212,7 +212,7 @@ def rolls(state: State, top: Top) -> Flags:
 
 
 def slips(state: State, top: Top, *, far: bool = False) -> Flags:
-    """Whether tops in contact slip on for a while, for all that their law says of the end of slip.
+    """Return whether tops in contact slip on for a while, by their law's end of slip.
 
     If `far`, so fast that its end need not be guarded.
     """

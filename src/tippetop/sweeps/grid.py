@@ -53,7 +53,7 @@ class Product(Entry):
 
     @classmethod
     def of(cls, table: Any) -> "Product":
-        """The product of a table of axes by their fields, or of pairs."""
+        """Return the product of a table of axes by their fields, or of pairs."""
         return table if isinstance(table, cls) else cls(read_fields("axes", table, Axis.of))
 
     @model_serializer
@@ -76,12 +76,12 @@ class Product(Entry):
         return tuple(short_names(self.fields).values())
 
     def values(self, cells: Flat) -> dict[str, Array]:
-        """The values of the fields in these cells."""
+        """Return the values of the fields in these cells."""
         places = np.unravel_index(cells, self.shape)
         return {axis.field: axis.at(place) for axis, place in zip(self.axes, places, strict=True)}
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
-        """The coordinates."""
+        """Return the coordinates: the dimension and the values of each, by name."""
         return {
             name: (name, axis.values) for name, axis in zip(self.dimensions, self.axes, strict=True)
         }
@@ -127,7 +127,7 @@ class Range(Entry):
 
     @classmethod
     def of(cls, field: str, entry: Any) -> "Range":
-        """The range of a field that is written as a table."""
+        """Return the range of a field that is written as a table."""
         if not isinstance(entry, Mapping):
             raise InvalidInput(field, entry, "a table { from, to, law }")
         return cls.written(field, entry)
@@ -184,17 +184,17 @@ class Draws(Entry):
         return (SAMPLE,)
 
     def values(self, cells: Flat) -> dict[str, Array]:
-        """The values of the fields in these draws."""
+        """Return the values of the fields in these draws."""
         first = int(cells.min())
         drawn = self._drawn(first, int(cells.max()) + 1)
         return {field: values[cells - first] for field, values in drawn.items()}
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
-        """The number of every draw, and the values drawn."""
+        """Return the number of every draw, and the values drawn, as coordinates."""
         return sampled_coordinates(self._drawn(0, self.count), self.count)
 
     def _drawn(self, first: int, last: int) -> dict[str, Array]:
-        """The draws from first to before last, without making those before."""
+        """Return the draws from first to before last, without making those before."""
         found = {}
         for place, entry in enumerate(self.ranges):
             shares = shares_of(self.seed, place, first, last)

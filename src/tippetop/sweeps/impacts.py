@@ -62,5 +62,5 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
 
 
 def others(kind: Kind, numbers: Array) -> Array:
-    """The numbers of tops with the branch of their law that takes over."""
+    """Return the numbers of tops with the branch of their law that takes over."""
     return np.array(np.broadcast_arrays(*on_other_branch(kind.top(tuple(numbers))).numbers))

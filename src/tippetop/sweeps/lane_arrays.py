@@ -75,7 +75,7 @@ class Slots:
         return found
 
     def time(self, lanes: Indices | Flags) -> Array:
-        """Where some lanes are."""
+        """Return the time of some lanes."""
         found: Array = self.end[lanes] - self.left[lanes]
         return found
 
@@ -93,7 +93,7 @@ class Slots:
         self.tip = self.tip.some(kept)
 
     def tops(self, lanes: Indices | Flags) -> Top:
-        """Some of the tops, with arrays for numbers."""
+        """Return some of the tops, with arrays for numbers."""
         return self.launches.kind.top(tuple(self.numbers[: self.layout.parameters, lanes]))
 
     def whole(self, lanes: Indices | Flags) -> State:

@@ -44,7 +44,7 @@ class Launches:
         return len(self.end)
 
     def some(self, which: Indices) -> "Launches":
-        """Some of the launches."""
+        """Return some of the launches."""
         state = picked(self.state, which)
         numbers, end, restitution = self.numbers[:, which], self.end[which], self.restitution[which]
         own = None if self.own is None else self.own[which]
@@ -58,7 +58,7 @@ class Launches:
         return self.tops(slice(None))
 
     def tops(self, which: Indices | Flags | slice) -> Top:
-        """Some of the tops, with arrays for numbers."""
+        """Return some of the tops, with arrays for numbers."""
         return self.kind.top(tuple(self.numbers[:, which]))
 
     @property
@@ -69,7 +69,7 @@ class Launches:
         return found
 
     def automaton(self, launch: int) -> Automaton:
-        """What follows where the contact of one launch begins or ends."""
+        """Return the automaton of one launch, for when its contact begins or ends."""
         top = off_branch(self._top(launch))
         if top.rolling_resistance is not None and top.rolling_resistance.length == 0.0:
             top = top._replace(rolling_resistance=None)
@@ -79,7 +79,7 @@ class Launches:
         return Automaton(top, self.liftoff, float(self.restitution[launch]), self.indeterminate)
 
     def sliding(self, launch: int) -> ContactMode:
-        """The mode of one launch that slides."""
+        """Return the mode of one launch that slides."""
         return ContactMode(self._top(launch), pulls=self.liftoff == "ignore")
 
     def _top(self, launch: int) -> Top:
@@ -109,10 +109,10 @@ class Checkpoint:
 
 
 def picked(state: State, launches: Indices | Flags) -> State:
-    """Some of many states."""
+    """Return some of many states."""
     return State.unpack([np.asarray(number)[launches] for number in state.pack()])
 
 
 def single(state: State, launch: int) -> State:
-    """One of many states, in floats."""
+    """Return one of many states, in floats."""
     return State.unpack([float(number[launch]) for number in state.pack()])

@@ -211,7 +211,7 @@ def _frozen(field: str, distribution: Any) -> DrawnColumn:
 
 
 def _named(field: str, entry: Mapping[str, Any]) -> dict[str, Any]:
-    """A table with the law's own numbers as those of a distribution of `scipy.stats`."""
+    """Return a table with the law's own numbers as those of a distribution of `scipy.stats`."""
     table = dict(entry)
     law = table.pop("law", None)
     if law is None:

@@ -85,7 +85,7 @@ def _code(size: int, order: int, guards: int) -> Callable[..., None]:
 def arc(
     jet: Jet, steps: Sequence[Scalar], pauses: Sequence[Scalar], plain: Arithmetic
 ) -> list[Scalar]:
-    """What `arcs` finds of one launch."""
+    """Return the result of `arcs` for one launch."""
     (state, falls), (step, longest) = jet, steps
     whole = plain.choose(plain.below(0.0, step), step, step_size(state, longest, plain))
     span, fallen, doubt = whole, 0.0 * whole - 1.0, 0.0 * whole

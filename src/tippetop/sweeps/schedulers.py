@@ -210,8 +210,8 @@ def _share_with_cluster(
 
 
 def _is_of_cluster(error: Exception) -> bool:
-    """Whether the cluster failed, not a task: the library stumbles over results of workers that are
-    lost.
+    """Return whether the cluster failed, not a task: the library raises errors over results of lost
+    workers.
     """
     *_, (innermost, _) = walk_tb(error.__traceback__)
     where = (type(error).__module__, innermost.f_globals.get("__name__", ""))
@@ -252,7 +252,7 @@ def _workers(client: Any) -> int:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Cluster]:
-    """A running cluster that has workers."""
+    """Return a running cluster that has workers."""
     if find_spec("distributed") is None:
         raise Unavailable(f"a scheduler needs dask.distributed: {install_command('sweep')}")
     from distributed import Client  # noqa: PLC0415 - optional, and slow to import

@@ -94,7 +94,7 @@ def follow(
 def until_settled(
     trajectory: Trajectory, segments: Iterator[Segment], closeness: float
 ) -> Iterator[Segment]:
-    """The segments of a trajectory up to the first step at whose start the tilt is held."""
+    """Yield the segments of a trajectory up to the first step at whose start the tilt is held."""
     for segment in segments:
         knots, terms = segment.solution.knots, segment.solution.terms
         held = is_held(segment.mode.state(terms[:, :, 0].T), segment.mode.top, closeness)

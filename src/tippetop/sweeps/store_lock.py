@@ -16,7 +16,7 @@ SYNCS = 32
 
 
 def identity(path: Path) -> tuple[int, int]:
-    """What tells a folder from another that took its place."""
+    """Return device and inode of a folder, which another folder at its path does not have."""
     there = path.stat()
     return there.st_dev, there.st_ino
 

@@ -94,7 +94,7 @@ class Layout(NamedTuple):
 
     @classmethod
     def of(cls, motion: Motion) -> "Layout":
-        """The layout for a motion."""
+        """Return the layout for a motion."""
         size, guards, parameters = motion.size, len(motion.guards), motion.parameters
         kept, turns = size + 2, parameters + guards
         pause, changed, numbers = kept + 1, kept + 5, turns + 3
@@ -127,7 +127,7 @@ def expansion(
     numbers: Sequence[Scalar],
     plain: Arithmetic,
 ) -> Jet:
-    """The polynomials of a step: coefficients of the solution and of the guards."""
+    """Return the polynomials of a step: coefficients of the solution and of the guards."""
     parameters = numbers[: motion.parameters]
     y = solved(
         [SharedSeries(unknown, plain) for _ in start], start, lambda y: motion.rates(y, parameters)
@@ -142,8 +142,8 @@ def expansion(
 def stride(
     layout: Layout, jet: Jet, before: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
 ) -> list[Scalar]:
-    """What `Stepper.step` makes of the rows that are kept, by the polynomials from there: all
-    rows.
+    """Return all rows after a step of `Stepper.step`, from the polynomials that start at the
+    carried rows.
     """
     left, steps = before[layout.size :]
     counts, wanted = numbers[layout.counts], numbers[layout.turns :]
@@ -168,14 +168,16 @@ def stride(
 
 
 def extremes(tip: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
-    """The least and the largest n_z in a step, given its polynomial."""
+    """Return the least and the largest n_z in a step, from its polynomial."""
     heights, upside = looked_at(tip, taken, LOOKS), [-term for term in tip]
     floor = least_value(tip, heights, taken, plain)
     return floor, -least_value(upside, [-height for height in heights], taken, plain)
 
 
 def met(floor: Scalar, ceiling: Scalar, wanted: Sequence[Scalar], plain: Arithmetic) -> Scalar:
-    """Whether n_z passes zero, if the top is yet to turn over, or reaches a band: see `Layout`."""
+    """Return whether n_z passes zero, if the top is yet to turn over, or reaches a band: see
+    `Layout`.
+    """
     turns, low, high = wanted
     over = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
     return over + (1.0 - plain.below(high, floor)) * (1.0 - plain.below(ceiling, low))
@@ -187,7 +189,8 @@ def later_guards(
     step: tuple[Scalar, int | None],
     plain: Arithmetic,
 ) -> tuple[Scalar, Scalar, Scalar]:
-    """What a step is because of all guards but the first, as far as they count.
+    """Return the length of a step as limited by all guards but the first, and whether one of them
+    is undecided.
 
     Of the step that may be taken, and of which guard is of the law's branch, it makes the step that
     is taken, whether that ends where another branch of the law takes over, and whether a guard may

@@ -26,7 +26,7 @@ class NumPyArithmetic:
         return sum(terms[1:], terms[0])
 
     def least(self, a: Array, b: Array) -> Array:
-        """The smaller of two."""
+        """Return the smaller of two."""
         return np.where(a < b, a, b)
 
     def size(self, a: Array) -> Array:
@@ -38,7 +38,7 @@ class NumPyArithmetic:
         return np.where(a < b, 1.0, 0.0)
 
     def choose(self, condition: Array, a: Any, b: Any) -> Any:
-        """The first where a condition is not 0, else the second."""
+        """Return the first where a condition is not 0, else the second."""
         return np.where(condition != 0.0, a, b)
 
     rarely = choose
@@ -59,7 +59,7 @@ class Stepper:
         self._step(before[: self.layout.kept], numbers, after)
 
     def jet(self, before: Array, numbers: Array) -> Jet:
-        """The polynomials in time of the steps that start from `before`."""
+        """Return the polynomials in time of the steps that start from `before`."""
 
         def made(start: Array, given: Array, terms: Array) -> None:
             self._step(start, given, np.empty((self.layout.rows, start.shape[1])), terms)
@@ -85,7 +85,9 @@ def stepper(motion: Motion, tolerance: float) -> Stepper:
 
 @lru_cache(maxsize=16)
 def polynomials(motion: Motion, tolerance: float) -> Callable[[Array, Array], Jet]:
-    """What makes the polynomials of a motion, from numbers of shape (size, n) and parameters."""
+    """Return the function that makes the polynomials of a motion, from numbers of shape (size, n)
+    and parameters.
+    """
     order = order_for(tolerance)
 
     def rows(start: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
@@ -98,7 +100,7 @@ def polynomials(motion: Motion, tolerance: float) -> Callable[[Array, Array], Je
 def compiled(
     function: Rows, size: int, parameters: int, more: int = 0, **options: int
 ) -> Callable[..., None]:
-    """A function of so many rows and parameters, compiled for launches abreast; see `record`."""
+    """Compile a function of so many rows and parameters for launches abreast; see `record`."""
     # An interrupted import leaves a module in pieces.
     with deferred():
         from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - optional, slow to import
@@ -109,14 +111,14 @@ def compiled(
 
 
 def _count(motion: Motion, order: int) -> int:
-    """How many coefficients the polynomials of a motion have."""
+    """Return how many coefficients the polynomials of a motion have."""
     return motion.size * (order + 1) + len(motion.guards) * order
 
 
 def _expanded(
     made: Callable[..., None], start: Array, numbers: Array, motion: Motion, order: int
 ) -> Jet:
-    """The polynomials of a motion that compiled code makes, coefficients one after another."""
+    """Return the polynomials of a motion from compiled code, coefficients one after another."""
     count, whole = start.shape[1], padded(start)
     terms = np.empty((_count(motion, order), whole.shape[1]))
     made(whole, padded(numbers), terms)

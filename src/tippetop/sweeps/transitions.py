@@ -60,7 +60,7 @@ class Crossings:
         self._enter(lanes[others], np.zeros(len(others)), picked(state, others), transitions)
 
     def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
-        """What follows where guards fall through zero."""
+        """Return what follows where guards fall through zero."""
         names = np.array([guard.name for guard in self.motion.guards])[guards]
         other, free = names == BRANCH, names == LIFT_OFF
         if free.any():
@@ -86,7 +86,7 @@ class Crossings:
         self._let_go(lanes[free], time[free])
 
     def _let_go(self, lanes: Indices, time: Array) -> None:
-        """What follows where the normal force falls to zero."""
+        """Return what follows where the normal force falls to zero."""
         slots = self.slots
         cells, state = slots.cell[lanes], slots.whole(lanes)
         slots.ends.lift_off[cells] = np.fmin(slots.ends.lift_off[cells], time)
@@ -239,5 +239,5 @@ class Crossings:
 
 
 def is_plain(mode: Mode) -> bool:
-    """Whether lanes slide as in this mode."""
+    """Return whether lanes slide as in this mode."""
     return isinstance(mode, ContactMode) and mode.slides_freely and not mode.near
