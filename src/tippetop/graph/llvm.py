@@ -155,45 +155,45 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     ):
         parts.append(power_function(abreast))
     for name, recorded in functions.items():
-        known = {node.place: name_of(node) for node in recorded.nodes}
-        lines = spelt(recorded, known, words)
+        names = {node.place: name_of(node) for node in recorded.nodes}
+        lines = spelt(recorded, names, words)
         replaced = recorded.size if again else 0
-        given = {
+        destinations = {
             "y": recorded.outputs[:replaced],
             "out": recorded.outputs[replaced:],
             "more": recorded.more,
         }
-        for place, nodes in given.items():
+        for place, nodes in destinations.items():
             lines += [MORE] if place == "more" and nodes else []
             lines += [
-                STORE.format(known[node.place], t=f"%{place}{row}", name=place, row=row, **words)
+                STORE.format(names[node.place], t=f"%{place}{row}", name=place, row=row, **words)
                 for row, node in enumerate(nodes)
             ]
-        last = known[recorded.outputs[-1].place] if again else ""
-        more = ", ptr noalias %more" if recorded.more else ""
+        last = names[recorded.outputs[-1].place] if again else ""
+        argument = ", ptr noalias %more" if recorded.more else ""
         parts.append(
-            frame.format(name=name, body="\n  ".join(lines), last=last, more=more, **words)
+            frame.format(name=name, body="\n  ".join(lines), last=last, more=argument, **words)
         )
     return "".join(parts)
 
 
-def spelt(recorded: Recorded, known: Mapping[int, str], words: Mapping[str, object]) -> list[str]:
+def spelt(recorded: Recorded, names: Mapping[int, str], words: Mapping[str, object]) -> list[str]:
     """Return the lines that compute nodes, whose names are known."""
 
     def line(node: graph.Node, spelling: str | None = None) -> str:
-        operands = [known[operand.place] for operand in node.operands]
-        own = {"t": known[node.place], "name": node.name, "row": node.value}
+        operands = [names[operand.place] for operand in node.operands]
+        gaps = {"t": names[node.place], "name": node.name, "row": node.value}
         text = spelling or spelling_of(node, words["n"] != 1)
-        return text.format(*operands, **own, **words)
+        return text.format(*operands, **gaps, **words)
 
-    always, seldom, either, rest = parted(recorded)
+    always, seldom, either, later = parted(recorded)
     lines = in_blocks(list(map(line, always)), "part")
     if either:
         lines += ["br label %ready", "ready:", line(either[0], NEED), *map(line, seldom)]
         lines += [*(line(node, RARE) for node in either), "br label %rest", "rest:"]
         lines += [
             *(line(node, EITHER) for node in either),
-            *in_blocks(list(map(line, rest)), "later"),
+            *in_blocks(list(map(line, later)), "later"),
         ]
     return lines
 
@@ -207,10 +207,10 @@ def spelling_of(node: graph.Node, several: bool) -> str:
 
 def in_blocks(lines: Sequence[str], name: str) -> list[str]:
     """Lines with ends of blocks between them."""
-    found = list(lines[:PART])
+    separated = list(lines[:PART])
     for first in range(PART, len(lines), PART):
-        found += [BLOCK.format(name=f"{name}{first}"), *lines[first : first + PART]]
-    return found
+        separated += [BLOCK.format(name=f"{name}{first}"), *lines[first : first + PART]]
+    return separated
 
 
 def parted(recorded: Recorded) -> tuple[Sequence[graph.Node], ...]:
@@ -220,8 +220,8 @@ def parted(recorded: Recorded) -> tuple[Sequence[graph.Node], ...]:
     needed = {node.place for node in (*recorded.outputs, *recorded.more)}
     for node in reversed(recorded.nodes):
         if node.place in needed:
-            kept = node.operands[::2] if node.name == graph.RARELY else node.operands
-            needed.update([operand.place for operand in kept])
+            operands = node.operands[::2] if node.name == graph.RARELY else node.operands
+            needed.update([operand.place for operand in operands])
     later = set[int]()
     for node in recorded.nodes:
         if node.name == graph.RARELY or not later.isdisjoint(

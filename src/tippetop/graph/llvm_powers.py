@@ -97,12 +97,12 @@ def power_function(abreast: int) -> str:
     wholes = {"half": 0x3FE6A09E667F3BCD, "places": 52}
 
     def polynomial(name: str, terms: Sequence[float], place: str) -> str:
-        known, lines = spread(terms[-1], abreast), []
+        total, lines = spread(terms[-1], abreast), []
         for k in range(len(terms) - 2, -1, -1):
-            found, term = f"%{name}{k}" if k else f"%{name}", spread(terms[k], abreast)
-            sum_of = f"({v} {known}, {v} {place}, {v} {term})"
-            lines.append(f"  {found} = call {v} @llvm.fma.v{abreast}f64{sum_of}")
-            known = found
+            result, term = f"%{name}{k}" if k else f"%{name}", spread(terms[k], abreast)
+            sum_of = f"({v} {total}, {v} {place}, {v} {term})"
+            lines.append(f"  {result} = call {v} @llvm.fma.v{abreast}f64{sum_of}")
+            total = result
         return "\n".join(lines)
 
     return FUNCTION.format(

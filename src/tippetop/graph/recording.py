@@ -43,8 +43,8 @@ def record(function: Function, size: int, parameters: int, more: int = 0) -> Rec
     """
     graph = Graph()
     state = [graph.node(STATE, (), i) for i in range(size)]
-    given = [graph.node(PARAMETER, (), i) for i in range(parameters)]
-    outputs = [graph.taken(output) for output in function(state, given)]
+    numbers = [graph.node(PARAMETER, (), i) for i in range(parameters)]
+    outputs = [graph.taken(output) for output in function(state, numbers)]
     always = len(outputs) - more
     return Recorded(
         needed(graph, outputs), tuple(outputs[:always]), size, parameters, tuple(outputs[always:])

@@ -53,12 +53,12 @@ class SharedSeries(Series):
 
 
 def _once(operation: Callable[..., Any]) -> Callable[..., Any]:
-    def shared(series: SharedSeries, *other: Any) -> Any:
-        if not all(isinstance(one, (Series, float, int)) for one in other):
-            return operation(series, *other)
-        if (operation, *other) not in series.shared:
-            series.shared[operation, *other] = operation(series, *other)
-        return series.shared[operation, *other]
+    def shared(series: SharedSeries, *operands: Any) -> Any:
+        if not all(isinstance(one, (Series, float, int)) for one in operands):
+            return operation(series, *operands)
+        if (operation, *operands) not in series.shared:
+            series.shared[operation, *operands] = operation(series, *operands)
+        return series.shared[operation, *operands]
 
     return shared
 

@@ -26,25 +26,25 @@ def unrolled(recorded: Recorded, abreast: int) -> Recorded:
     for node in recorded.nodes:
         operands = [values[operand.place] for operand in node.operands]
         if node.name == CONSTANT:
-            found = [graph.taken(node.value)] * abreast
+            lanes = [graph.taken(node.value)] * abreast
         elif node.name in (STATE, PARAMETER):
-            found = [
+            lanes = [
                 graph.node(node.name, (), int(node.value) * abreast + lane)
                 for lane in range(abreast)
             ]
         elif node.name == SPREAD:
-            found = [operands[0][int(node.value)]] * abreast
+            lanes = [operands[0][int(node.value)]] * abreast
         elif node.name == TOTAL:
             total = operands[0][0]
             for number in operands[0][1:]:
                 total = total + number
-            found = [total] * abreast
+            lanes = [total] * abreast
         else:
-            found = [
+            lanes = [
                 graph.node(node.name, tuple([operand[lane] for operand in operands]), node.value)
                 for lane in range(abreast)
             ]
-        values[node.place] = found
+        values[node.place] = lanes
     outputs = [number for output in recorded.outputs for number in values[output.place]]
     size, parameters = recorded.size * abreast, recorded.parameters * abreast
     return Recorded(needed(graph, outputs), tuple(outputs), size, parameters)

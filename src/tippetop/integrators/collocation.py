@@ -111,17 +111,17 @@ class Collocation(StepByStep):
                 yield TOO_SHORT if self.shortest else NO_STEP
                 return
             reach = end if step >= end - time else time + step
-            found, factor = self._step(rates, (time, state), reach, before)
-            step, before = factor * (reach - time), found
-            if found is None:
+            solution, factor = self._step(rates, (time, state), reach, before)
+            step, before = factor * (reach - time), solution
+            if solution is None:
                 continue
 
-            def advance(at: float, base: Array = state, step: Step = found) -> Array:
+            def advance(at: float, base: Array = state, step: Step = solution) -> Array:
                 return _landed(rates, base, step, at)
 
             for until in np.linspace(time, reach, PARTS + 1)[1:].tolist():
-                state = found.end_state if until == reach else found(until)
-                yield Accepted(until, state, found, advance)
+                state = solution.end_state if until == reach else solution(until)
+                yield Accepted(until, state, solution, advance)
             time = reach
 
     def _step(
@@ -131,11 +131,11 @@ class Collocation(StepByStep):
         places, _, transform = radau_points()
         times = start[0] + places[1:] * (end - start[0])
         guess = np.tile(start[1], (STAGES, 1)) if before is None else before.beyond(times)
-        found = solved(rates, start[1], end - start[0], guess)
-        if found is None:
+        states = solved(rates, start[1], end - start[0], guess)
+        if states is None:
             return None, SLOWER
-        step = Step(start[0], end, transform @ np.vstack((start[1], found)), found[-1])
-        sizes = np.max(np.abs(step.terms) / scale(np.vstack((start[1], found))), axis=1) + TINY
+        step = Step(start[0], end, transform @ np.vstack((start[1], states)), states[-1])
+        sizes = np.max(np.abs(step.terms) / scale(np.vstack((start[1], states))), axis=1) + TINY
         error = float(np.max(sizes[-LAST:]))
         if error > self.tolerance:
             return None, max(SAFETY * (self.tolerance / error) ** (1.0 / STAGES), SLOWER)
@@ -199,13 +199,13 @@ def solved(rates: RightHandSide, start: Array, span: float, guess: Array) -> Arr
 def _landed(rates: RightHandSide, start: Array, step: Step, end: float) -> Array:
     """Return the state after a step that begins as another does, and ends at exactly this time."""
     span = end - step.start
-    found = solved(rates, start, span, step(step.start + span * radau_points().places[1:]))
-    return step(end) if found is None else found[-1]
+    states = solved(rates, start, span, step(step.start + span * radau_points().places[1:]))
+    return step(end) if states is None else states[-1]
 
 
 def scale(states: Array) -> Array:
     """Return the scale of relative errors: the size of each number, at least 1, over one or more
     states.
     """
-    found: Array = np.maximum(1.0, np.max(np.abs(np.atleast_2d(states)), axis=0))
-    return found
+    sizes: Array = np.maximum(1.0, np.max(np.abs(np.atleast_2d(states)), axis=0))
+    return sizes

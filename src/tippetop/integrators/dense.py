@@ -129,8 +129,8 @@ class DenseSolution:
             moved, part = np.abs(better - part).max(initial=0.0), better
             if moved <= EXACT:
                 break
-        found: Array = self.knots[step] + part * (self.knots[step + 1] - self.knots[step])
-        return found
+        times: Array = self.knots[step] + part * (self.knots[step + 1] - self.knots[step])
+        return times
 
     @classmethod
     def nothing(cls, time: float, size: int) -> "DenseSolution":
@@ -179,14 +179,14 @@ class DenseSolution:
     @classmethod
     def in_time(cls, knots: ArrayLike, terms: ArrayLike) -> "DenseSolution":
         """Return the solution by coefficients in powers of the time since a step's start."""
-        ends, known = np.array(knots, dtype=float), np.asarray(terms, dtype=float)
+        ends, coefficients = np.array(knots, dtype=float), np.asarray(terms, dtype=float)
         with np.errstate(over="ignore"):  # the step of a motion that stands still has no bound
-            lengths = powers(ends[1:] - ends[:-1], known.shape[2])
+            lengths = powers(ends[1:] - ends[:-1], coefficients.shape[2])
         if not np.isfinite(lengths[:, -1]).all():
             lengths = np.nan_to_num(lengths)
         # Rows as long as those of the terms are multiplied in half the time.
-        scaled = np.repeat(lengths[:, None, :], known.shape[1], axis=1)
-        scaled *= known
+        scaled = np.repeat(lengths[:, None, :], coefficients.shape[1], axis=1)
+        scaled *= coefficients
         return cls(ends, scaled)
 
     @classmethod
@@ -256,10 +256,10 @@ class DenseSolution:
 
 def table(rows: Row, count: int) -> Array:
     """Numbers, of so many values each, or of one for all, beside one another: shape (count, n)."""
-    found = np.empty((len(rows), count))
+    columns = np.empty((len(rows), count))
     for place, row in enumerate(rows):
-        found[place] = row
-    return found.T
+        columns[place] = row
+    return columns.T
 
 
 def as_array(numbers: Sequence[float]) -> Array:
@@ -275,41 +275,41 @@ def longer(numbers: Array, count: int) -> Array:
 def parts_of(times: Array, starts: Array, ends: Array) -> Array:
     """Return the part of their steps that has passed at some times; 0 in steps of no length."""
     spans = ends - starts
-    found: Array = (times - starts) / np.where(spans > 0.0, spans, 1.0)
-    return found
+    parts: Array = (times - starts) / np.where(spans > 0.0, spans, 1.0)
+    return parts
 
 
 def evaluated(terms: Array, which: NDArray[np.intp], parts: Array) -> Array:
     """Values of polynomials, terms of shape (k, size, degree + 1), at one place each, shape (m,
     size).
     """
-    found = np.empty((len(parts), terms.shape[1]))
+    values = np.empty((len(parts), terms.shape[1]))
     for first in range(0, len(parts), MANY):
-        here = slice(first, first + MANY)
-        places = np.ascontiguousarray(powers(parts[here], terms.shape[2]))
-        np.matmul(terms.take(which[here], axis=0), places[:, :, None], out=found[here, :, None])
-    return found
+        batch = slice(first, first + MANY)
+        places = np.ascontiguousarray(powers(parts[batch], terms.shape[2]))
+        np.matmul(terms.take(which[batch], axis=0), places[:, :, None], out=values[batch, :, None])
+    return values
 
 
 def at_fractions(terms: Array, fractions: Array) -> Array:
     """Values of k polynomials at fractions of their steps, shape (m,); of shape (size, m, k)."""
-    found = np.empty((terms.shape[1], len(fractions), len(terms)))
+    values = np.empty((terms.shape[1], len(fractions), len(terms)))
     places = powers(fractions, terms.shape[2])
     most = max(ALONE // max(places.size, 1), 1)
     for first in range(0, len(terms), most):
-        here = slice(first, first + most)
-        np.matmul(places, terms[here].transpose(1, 2, 0), out=found[:, :, here])
-    return found
+        batch = slice(first, first + most)
+        np.matmul(places, terms[batch].transpose(1, 2, 0), out=values[:, :, batch])
+    return values
 
 
 def powers(numbers: Array, count: int) -> Array:
     """Return the first powers of n numbers, shape (n, count)."""
     if len(numbers) <= FEW:
         return np.vander(numbers, count, increasing=True)
-    found = np.ones((count, len(numbers)))
+    rows = np.ones((count, len(numbers)))
     for power in range(1, count):
-        np.multiply(found[power - 1], numbers, out=found[power])
-    return found.T
+        np.multiply(rows[power - 1], numbers, out=rows[power])
+    return rows.T
 
 
 @lru_cache

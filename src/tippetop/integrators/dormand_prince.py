@@ -168,8 +168,8 @@ def first_step(
         place[i] = y[i] + trial * k[0, i]
     evaluate(rates, place, p, k[1])
     steepest = max(slope, measure(k[1], k[0], y, tolerance, size) / trial)
-    found = max(1e-6, trial * 1e-3) if steepest <= 1e-15 else eighth_root(0.01 / steepest)
-    return min(100.0 * trial, found, span)
+    allowed = max(1e-6, trial * 1e-3) if steepest <= 1e-15 else eighth_root(0.01 / steepest)
+    return min(100.0 * trial, allowed, span)
 
 
 def within(terms: Array, first: int, part: float, y: Array) -> None:
@@ -195,13 +195,13 @@ def may_fall(values: Array, guard: int) -> bool:
     if least > 0.0 and 2.0 * least >= most:
         return False
     for i in range(LOOKS + 1):
-        before, here, after = max(i - 1, 0), values[i, guard], min(i + 1, LOOKS)
-        if here > 0.0:
+        before, value, after = max(i - 1, 0), values[i, guard], min(i + 1, LOOKS)
+        if value > 0.0:
             if values[after, guard] <= 0.0:
                 return True
-            if here <= values[before, guard] and here <= values[after, guard]:
+            if value <= values[before, guard] and value <= values[after, guard]:
                 for j in range(max(i - 2, 0), min(i + 2, LOOKS) + 1):
-                    if 2.0 * here < values[j, guard]:
+                    if 2.0 * value < values[j, guard]:
                         return True
     return False
 
@@ -319,10 +319,10 @@ def advance(
     values, room = np.empty((LOOKS + 2, count)), np.empty(LOOKS * (len(y) + count))
     calls = 0
     if span[2] <= 0.0:
-        found = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size)
-        if found < 0.0:
+        trial = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size)
+        if trial < 0.0:
             return steps, 1, SINGULAR
-        span[2] = max(found, -span[2])
+        span[2] = max(trial, -span[2])
         calls += 2
     if count > 0:
         evaluate(guards, y, p, values[0])

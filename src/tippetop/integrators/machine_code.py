@@ -34,9 +34,9 @@ def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
     """Compile a function that is iterated, of arrays of `ctypes`; see `llvm_source`."""
     engine = loaded(llvm_source({"made": function}, abreast, again=True))
     kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3, ctypes.c_double, ctypes.c_int64)
-    found: Any = kind(engine.get_function_address("made"))
-    found.engine = engine
-    return cast(Callable[..., int], found)
+    compiled: Any = kind(engine.get_function_address("made"))
+    compiled.engine = engine
+    return cast(Callable[..., int], compiled)
 
 
 def loaded(source: str, effort: int = EFFORT) -> llvm.ExecutionEngine:

@@ -71,9 +71,9 @@ class Polynomials:
         """Polynomials whose coefficients are in powers of the part of their intervals that has
         passed.
         """
-        found = cls.__new__(cls)
-        found.span, found.unit = span, unit
-        return found
+        polynomials = cls.__new__(cls)
+        polynomials.span, polynomials.unit = span, unit
+        return polynomials
 
     @property
     def sag(self) -> Array:
@@ -106,8 +106,8 @@ class Polynomials:
     @cached_property
     def lowest(self) -> Array:
         """Least values at the looks, shape (n,)."""
-        found: Array = self.values.min(axis=0)
-        return found
+        least: Array = self.values.min(axis=0)
+        return least
 
     @property
     def floor(self) -> Array:
@@ -137,8 +137,8 @@ class Polynomials:
         """
         values = self.values
         falls = (values[1:] <= 0.0) & (values[:-1] > 0.0)
-        found = np.asarray(falls.any(axis=0))
-        after = np.where(found, falls.argmax(axis=0) + 1, LOOKS + 1)
+        has_fall = np.asarray(falls.any(axis=0))
+        after = np.where(has_fall, falls.argmax(axis=0) + 1, LOOKS + 1)
         low, high = (after - 1) / LOOKS, after / LOOKS
 
         nearer = np.minimum(values[:-1], values[1:])
@@ -147,15 +147,15 @@ class Polynomials:
             slopes = self.slopes
             dips &= (slopes[:-1] < 0.0) & (slopes[1:] > 0.0)
         for lane in np.flatnonzero(dips.any(axis=0)):
-            for look in np.flatnonzero(dips[:, lane]):
+            for interval in np.flatnonzero(dips[:, lane]):
                 place, value = of_each(
-                    _least_near, self.unit[:, [lane]], np.array([(look + 0.5) / LOOKS])
+                    _least_near, self.unit[:, [lane]], np.array([(interval + 0.5) / LOOKS])
                 )
                 if value[0] <= 0.0:
-                    low[lane], high[lane], found[lane] = look / LOOKS, place[0], True
+                    low[lane], high[lane], has_fall[lane] = interval / LOOKS, place[0], True
                     break
-        zeros = np.full(found.shape, np.nan)
-        which = np.flatnonzero(found)
+        zeros = np.full(has_fall.shape, np.nan)
+        which = np.flatnonzero(has_fall)
         if len(which):
             zeros[which] = of_each(_zero, self.unit[:, which], low[which], high[which])
         starts = (values[0] == 0.0) if from_above else (values[0] <= 0.0)
@@ -181,20 +181,20 @@ class Polynomials:
         if len(dips):
             # The parabola through the least look and its neighbours is near it.
             inside = np.minimum(np.maximum(best[dips], 1), LOOKS - 1)
-            before, here, after = (self.values[inside + k, dips] for k in (-1, 0, 1))
-            bend = before - 2.0 * here + after
+            before, middle, after = (self.values[inside + k, dips] for k in (-1, 0, 1))
+            bend = before - 2.0 * middle + after
             vertex = inside + 0.5 * (before - after) / np.where(bend > 0.0, bend, np.inf)
             guess = np.where(np.abs(vertex - best[dips]) <= 1.0, vertex, best[dips]) / LOOKS
-            there, low = of_each(_least_near, self.unit[:, dips], guess)
-            better = (there >= 0.0) & (there <= 1.0) & (low < value[dips])
-            place[dips[better]], value[dips[better]] = there[better], low[better]
+            places, low = of_each(_least_near, self.unit[:, dips], guess)
+            better = (places >= 0.0) & (places <= 1.0) & (low < value[dips])
+            place[dips[better]], value[dips[better]] = places[better], low[better]
         return place * self.span, value
 
     def negative(self) -> "Polynomials":
         """Return the polynomials times -1."""
-        found = Polynomials.of_unit(-self.unit, self.span)
-        found.values, found.bending = -self.values, self.bending
-        return found
+        polynomials = Polynomials.of_unit(-self.unit, self.span)
+        polynomials.values, polynomials.bending = -self.values, self.bending
+        return polynomials
 
 
 def times(matrix: Array, columns: Array) -> Array:
@@ -234,25 +234,25 @@ def least_of_each(*lots: Sequence["Polynomials"]) -> list[Least]:
     np.fmin.at(least, owner, joined.lowest)
     lower = np.flatnonzero(joined.floor <= least[owner])
     times, values = joined.some(lower).refined_least()
-    found = list[Least]()
+    results = list[Least]()
     for lot, begin in enumerate(np.cumsum([0, *counts[:-1]])):
         which = np.flatnonzero(owner[lower] == lot)
         if not len(which):
-            found.append(Least(float(least[lot])))
+            results.append(Least(float(least[lot])))
             continue
         best = which[np.argmin(values[which])]
-        found.append(Least(float(values[best]), int(lower[best] - begin), float(times[best])))
-    return found
+        results.append(Least(float(values[best]), int(lower[best] - begin), float(times[best])))
+    return results
 
 
-def of_each(find: Callable[..., Any], unit: Array, *given: Array) -> Array:
+def of_each(find: Callable[..., Any], unit: Array, *numbers: Array) -> Array:
     """Apply a function to many polynomials at once, or, where they are few, to one after the other.
 
     Either way it does not depend on the others: each stands still where it has arrived.
     """
-    if len(given[0]) > FEW:
-        return np.asarray(find(unit, *given, np.where, np.any))
-    each = zip(unit.T.tolist(), *(numbers.tolist() for numbers in given), strict=True)
+    if len(numbers[0]) > FEW:
+        return np.asarray(find(unit, *numbers, np.where, np.any))
+    each = zip(unit.T.tolist(), *(column.tolist() for column in numbers), strict=True)
     return np.array([find(*one, _chosen, bool) for one in each]).T
 
 

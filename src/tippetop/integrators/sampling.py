@@ -63,10 +63,10 @@ class StepByStep(ABC):
             nonlocal counted
             rows = np.array(values).reshape(-1, motion.size).T
             solution = DenseSolution.fitted(lambda _: rows, np.array(knots), self.degree)
-            found = Arc(solution, end_state, guard, failure, len(values), rates.calls - counted)
+            ended = Arc(solution, end_state, guard, failure, len(values), rates.calls - counted)
             del knots[:-1], values[:]
             counted = rates.calls
-            return found
+            return ended
 
         for step in self.steps(rates, start, end):
             if isinstance(step, str):

@@ -108,13 +108,13 @@ def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
     _clear(folder.parent)
     beside = Path(tempfile.mkdtemp(prefix=f"{folder.name}-{os.getpid()}-", dir=folder.parent))
     try:
-        found = use(beside)
+        result = use(beside)
         (beside / SEAL).write_text(json.dumps(_digests(beside)), encoding="utf-8")
         with contextlib.suppress(OSError):  # Another process was sooner.
             beside.rename(folder)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
-    return found
+    return result
 
 
 def _clear(place: Path) -> None:
@@ -134,10 +134,10 @@ def _clear(place: Path) -> None:
             old.unlink(missing_ok=True)
         elif not SEALED.fullmatch(old.name) or _seal(old) is not None:
             shutil.rmtree(old, ignore_errors=True)
-    for left in folders:
-        process = MAKING.fullmatch(left.name)
+    for folder in folders:
+        process = MAKING.fullmatch(folder.name)
         if process and not psutil.pid_exists(int(process[1])):
-            shutil.rmtree(left, ignore_errors=True)
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _size(place: Path) -> int:

@@ -147,7 +147,7 @@ class Stepping:
         """
         begin, reach = float(self.knots[self.steps - 1]), self.time
         first, row = (self.steps - 1) * len(self.row) * POWERS, np.empty(len(self.row))
-        functions, found = self.functions, np.empty(self.functions.number)
+        functions, values = self.functions, np.empty(self.functions.number)
 
         def dense(at: float) -> Array:
             functions.within(self.terms, first, (at - begin) / (reach - begin), row)
@@ -158,8 +158,8 @@ class Stepping:
 
         def guard(number: int) -> Callable[[Array], float]:
             def value(state: Array) -> float:
-                functions.values(state, self.parameters, found)
-                return float(found[number])
+                functions.values(state, self.parameters, values)
+                return float(values[number])
 
             return value
 

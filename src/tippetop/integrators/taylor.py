@@ -358,8 +358,8 @@ class Run:
         guard = failure = None
         while steps < most and self.time < self._clock[2]:
             place, counts = rows[steps:].ctypes.data, (most - steps, layout.size, layout.guards)
-            taken = stepper.follow(stepper.jet.address, *address, place, *counts)
-            steps, self.expansions = steps + taken, self.expansions + taken
+            count = stepper.follow(stepper.jet.address, *address, place, *counts)
+            steps, self.expansions = steps + count, self.expansions + count
             if steps == most or self.time >= self._clock[2]:
                 break
             self.expansions += 1
@@ -557,13 +557,13 @@ def timing_of(measures: Measures, order: int) -> list[Scalar]:
     radius = plain.least(before_last, (1.0 / measures.last) ** (1.0 / order))
     length = math.exp(-2.0 - 0.7 / (order - 1)) * radius
     length = plain.choose(plain.below(measures.total, math.inf), length, 0.0)
-    left = (end - time) - lost
-    span = plain.least(length, left)
+    remaining = (end - time) - lost
+    span = plain.least(length, remaining)
     # What rounding takes from the time is given back (Knuth's sum of two numbers).
     reached = time + span
     moved = reached - time
     lost = lost + ((time - (reached - moved)) + (span - moved))
-    goes_on = plain.below(span, left)
+    goes_on = plain.below(span, remaining)
     later = reached + lost
     return [plain.choose(goes_on, later, end), lost - (later - reached), goes_on, span]
 

@@ -148,23 +148,23 @@ class Spaced(Axis):
 
     @model_validator(mode="after")
     def _has_values(self) -> Self:
-        given = f"{self.first:g} to {self.last:g}"
+        ends = f"{self.first:g} to {self.last:g}"
         if self.count > 1 and self.first == self.last:
             raise InvalidInput(
-                "", Described(given), "", "gives one value many times", "write ends that differ"
+                "", Described(ends), "", "gives one value many times", "write ends that differ"
             )
         if self.spacing == "geometric" and not (
             self.first > 0 < self.last or self.first < 0 > self.last
         ):
             raise InvalidInput(
-                "", Described(given), "ends of one sign, neither 0", "cannot be in equal ratios"
+                "", Described(ends), "ends of one sign, neither 0", "cannot be in equal ratios"
             )
         apart = self.last - self.first
         if self.spacing == "geometric":
             apart = max(self.last / self.first, self.first / self.last)
         if not math.isfinite(apart):
             raise InvalidInput(
-                "", Described(given), "ends that are closer", "reaches too far for numbers"
+                "", Described(ends), "ends that are closer", "reaches too far for numbers"
             )
         return self
 

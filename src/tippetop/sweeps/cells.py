@@ -194,7 +194,7 @@ def refused(part: Part, count: int) -> NDArray[np.bool_]:
     """Return the cells that a part refuses by rules of its own, beyond its numbers' limits, shape
     (count,).
     """
-    found = np.zeros(count, dtype=bool)
+    is_refused = np.zeros(count, dtype=bool)
     rules = type(part).__pydantic_decorators__
     changes = any(isinstance(getattr(part, name), np.ndarray) for name in type(part).model_fields)
     if changes and (rules.model_validators or rules.field_validators):
@@ -202,8 +202,8 @@ def refused(part: Part, count: int) -> NDArray[np.bool_]:
             try:
                 single_part(part, cell)
             except InvalidInput:
-                found[cell] = True
-    return found
+                is_refused[cell] = True
+    return is_refused
 
 
 def allowed(values: Array, limits: list[Any]) -> NDArray[np.bool_]:

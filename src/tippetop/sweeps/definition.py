@@ -84,9 +84,9 @@ class Sweep(Part):
     def _can_be_computed(self) -> Self:
         chosen = [name for name in GRIDS if getattr(self, name) is not None]
         if len(chosen) != 1:
-            given = Described(" and ".join(chosen)) if chosen else MISSING
+            stated = Described(" and ".join(chosen)) if chosen else MISSING
             fault = "are given together" if chosen else ""
-            raise InvalidInput(", ".join(GRIDS), given, "one of them", fault)
+            raise InvalidInput(", ".join(GRIDS), stated, "one of them", fault)
         require_recordable(self.problem.top)
         if self.settled is not None:
             require_jellett(self.problem.top)
@@ -97,9 +97,9 @@ class Sweep(Part):
     @cached_property
     def grid(self) -> Product | Draws | LaunchSamples:
         """The cells."""
-        found = self.axes or self.draws or self.samples
-        assert found is not None
-        return found
+        grid = self.axes or self.draws or self.samples
+        assert grid is not None
+        return grid
 
     @property
     def cells(self) -> int:

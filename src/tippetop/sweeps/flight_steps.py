@@ -128,10 +128,12 @@ def divided(terms: Sequence[Scalar], vanishing: Scalar, plain: Arithmetic) -> li
     """Return a polynomial whose first coefficients vanish, divided by the power of time that it
     has.
     """
-    found = list(terms)
+    terms_left = list(terms)
     for most in range(int(max(Start))):
-        more, following = plain.below(most + 0.5, vanishing), [*found[1:], 0.0 * found[0]]
-        found = [
-            plain.choose(more, after, here) for here, after in zip(found, following, strict=True)
+        is_zero = plain.below(most + 0.5, vanishing)
+        shifted = [*terms_left[1:], 0.0 * terms_left[0]]
+        terms_left = [
+            plain.choose(is_zero, after, term)
+            for term, after in zip(terms_left, shifted, strict=True)
         ]
-    return found
+    return terms_left

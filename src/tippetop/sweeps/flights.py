@@ -196,8 +196,8 @@ def slides(state: State, top: Top) -> Flags:
     """Return whether tops in contact, whose contact point is at rest vertically, go on sliding."""
     sliding = along_table(state)
     touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
-    found: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
-    return found
+    flags: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
+    return flags
 
 
 def rolls(state: State, top: Top) -> Flags:
@@ -207,8 +207,8 @@ def rolls(state: State, top: Top) -> Flags:
         return count
     y = along_table(state)
     lasting = rolling_stopping_guard(y, sliding_rates(y, top), top) > 0.0
-    found: Flags = count & is_rolling(y.axis, y.momentum, top) & lasting
-    return found
+    flags: Flags = count & is_rolling(y.axis, y.momentum, top) & lasting
+    return flags
 
 
 def slips(state: State, top: Top, *, far: bool = False) -> Flags:
@@ -221,5 +221,5 @@ def slips(state: State, top: Top, *, far: bool = False) -> Flags:
         return count
     y = along_table(state)
     lasting = ContactMode(top).slip_left(y.pack()) > 0.0
-    found: Flags = count & is_slipping(*y, top) & lasting
-    return found & ~is_near(y, top) if far else found
+    flags: Flags = count & is_slipping(*y, top) & lasting
+    return flags & ~is_near(y, top) if far else flags

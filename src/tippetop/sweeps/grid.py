@@ -115,11 +115,11 @@ class Range(Entry):
 
     @model_validator(mode="after")
     def _can_be_drawn_from(self) -> Self:
-        given, logarithmic = f"{self.low:g} to {self.high:g}", self.law == "log-uniform"
+        ends, logarithmic = f"{self.low:g} to {self.high:g}", self.law == "log-uniform"
         if self.low > self.high or (logarithmic and self.low <= 0):
             raise InvalidInput(
                 "",
-                Described(given),
+                Described(ends),
                 "a low and a higher end" + ", both above 0" * logarithmic,
                 "is no range",
             )
@@ -195,11 +195,11 @@ class Draws(Entry):
 
     def _drawn(self, first: int, last: int) -> dict[str, Array]:
         """Return the draws from first to before last, without making those before."""
-        found = {}
+        drawn = {}
         for place, entry in enumerate(self.ranges):
             shares = shares_of(self.seed, place, first, last)
-            found[entry.field] = between(entry.low, entry.high, shares, entry.law == "log-uniform")
-        return found
+            drawn[entry.field] = between(entry.low, entry.high, shares, entry.law == "log-uniform")
+        return drawn
 
 
 RESERVED_NAMES = {SAMPLE, "status", *SWEPT}
@@ -231,9 +231,9 @@ def sampled_coordinates(
     values: Mapping[str, Array], count: int
 ) -> dict[str, tuple[str, NDArray[Any]]]:
     """Return the number of every sample, and the values of its fields, as coordinates."""
-    found: dict[str, tuple[str, NDArray[Any]]] = {SAMPLE: (SAMPLE, np.arange(count))}
+    coordinates: dict[str, tuple[str, NDArray[Any]]] = {SAMPLE: (SAMPLE, np.arange(count))}
     names = short_names(list(values))
-    return found | {names[field]: (SAMPLE, sampled) for field, sampled in values.items()}
+    return coordinates | {names[field]: (SAMPLE, sampled) for field, sampled in values.items()}
 
 
 def shares_of(seed: int, place: int, first: int, last: int) -> Array:

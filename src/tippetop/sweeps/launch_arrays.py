@@ -65,8 +65,8 @@ class Launches:
     def unresisted(self) -> Flags:
         """Which roll without the resistance that the others have, shape (n,)."""
         resistance, none = self.top.rolling_resistance, np.zeros(len(self), dtype=bool)
-        found: Flags = none if resistance is None else none | (resistance.length == 0.0)
-        return found
+        is_free: Flags = none if resistance is None else none | (resistance.length == 0.0)
+        return is_free
 
     def automaton(self, launch: int) -> Automaton:
         """Return the automaton of one launch, for when its contact begins or ends."""

@@ -65,9 +65,9 @@ def arcs(jet: Jet, step: Array, longest: Array, pauses: Array) -> Arcs:
     given = np.concatenate(
         (jet.state.reshape(-1, count), jet.guards.reshape(-1, count), [step, longest])
     )
-    found = np.empty((size + 7, count + -count % LANES))
-    _code(size, terms - 1, guards)(padded(given), padded(pauses), found)
-    return Arcs(*np.split(found[:, :count], (size, size + 3))[:2], *found[size + 3 :, :count])
+    results = np.empty((size + 7, count + -count % LANES))
+    _code(size, terms - 1, guards)(padded(given), padded(pauses), results)
+    return Arcs(*np.split(results[:, :count], (size, size + 3))[:2], *results[size + 3 :, :count])
 
 
 @lru_cache(maxsize=16)

@@ -17,8 +17,8 @@ SYNCS = 32
 
 def identity(path: Path) -> tuple[int, int]:
     """Return device and inode of a folder, which another folder at its path does not have."""
-    there = path.stat()
-    return there.st_dev, there.st_ino
+    status = path.stat()
+    return status.st_dev, status.st_ino
 
 
 @contextmanager

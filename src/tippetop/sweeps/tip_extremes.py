@@ -42,8 +42,8 @@ class TipMotion:
     @property
     def least(self) -> Array:
         """The least values, shape (3, n)."""
-        found: Array = np.fmin(self.early, self.lately)
-        return found
+        least: Array = np.fmin(self.early, self.lately)
+        return least
 
     def put_aside(self) -> None:
         """Begin anew with what is found lately."""
