@@ -31,7 +31,7 @@ from tippetop.extend import (
     Units,
     Vector,
 )
-from tippetop.graph.hoisting import played
+from tippetop.graph.hoisting import evaluated
 from tippetop.graph.recording import record
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -397,7 +397,7 @@ def test_functions_take_numbers_arrays_and_recorded_numbers(number: float) -> No
     ]
     assert values([number], []) == expected
     assert np.array(values([np.array([number, number])], [])).T.tolist() == [expected, expected]
-    assert played(record(values, 1, 0), [number], []) == expected
+    assert evaluated(record(values, 1, 0), [number], []) == expected
 
 
 def test_rolling_resistance_is_a_torque_beside_the_law_defined() -> None:

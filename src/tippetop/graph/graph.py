@@ -84,10 +84,10 @@ class Node:
         return self.graph.node(SIZE, (self.operands[0] if self.name == NEGATIVE else self,))
 
     def __lt__(self, operand: Any) -> Any:
-        return self.graph.node(LESS, (self, self.graph.taken(operand)))
+        return self.graph.node(LESS, (self, self.graph.as_node(operand)))
 
     def __gt__(self, operand: Any) -> Any:
-        return self.graph.node(LESS, (self.graph.taken(operand), self))
+        return self.graph.node(LESS, (self.graph.as_node(operand), self))
 
     def __eq__(self, operand: object) -> bool:
         if isinstance(operand, Node):
@@ -114,19 +114,19 @@ class Graph:
     def __init__(self) -> None:
         self.nodes = list[Node]()
         # The same by what they are.
-        self._known = dict[str, Node]()
+        self._by_description = dict[str, Node]()
 
     def node(self, name: str, operands: tuple[Node, ...], value: float = 0.0) -> Node:
         """Return the node of this description, made if there is none."""
         key = " ".join([name, f"{value:.17g}", *[str(operand.place) for operand in operands]])
-        node = self._known.get(key)
+        node = self._by_description.get(key)
         if node is None:
             node = Node(self, name, operands, value, len(self.nodes))
             self.nodes.append(node)
-            self._known[key] = node
+            self._by_description[key] = node
         return node
 
-    def taken(self, number: Any) -> Node:
+    def as_node(self, number: Any) -> Node:
         """Return a number as a node."""
         if isinstance(number, Node):
             return number
@@ -140,13 +140,13 @@ class Graph:
                     return self.difference(first, second.operands[0])
             elif second == 0.0:
                 return first
-        return self.node(SUM, in_order(self.taken(a), self.taken(b)))
+        return self.node(SUM, in_order(self.as_node(a), self.as_node(b)))
 
     def difference(self, a: Any, b: Any) -> Any:
         """Difference of two."""
         if is_exactly(a, 0.0) or is_exactly(b, 0.0):
             return -b if is_exactly(a, 0.0) else a
-        return 0.0 if a is b else self.node(DIFFERENCE, (self.taken(a), self.taken(b)))
+        return 0.0 if a is b else self.node(DIFFERENCE, (self.as_node(a), self.as_node(b)))
 
     def product(self, a: Any, b: Any) -> Any:
         """Product of two."""
@@ -156,20 +156,20 @@ class Graph:
                     return 0.0
                 if abs(first) == 1.0:
                     return second if first > 0.0 else -second
-        return self.node(PRODUCT, in_order(self.taken(a), self.taken(b)))
+        return self.node(PRODUCT, in_order(self.as_node(a), self.as_node(b)))
 
     def quotient(self, a: Any, b: Any) -> Any:
         """Quotient of two."""
         if is_exactly(a, 0.0) or is_exactly(b, 1.0):
             return a
-        return self.node(QUOTIENT, (self.taken(a), self.taken(b)))
+        return self.node(QUOTIENT, (self.as_node(a), self.as_node(b)))
 
     def power(self, base: Node, exponent: Any) -> Any:
         """Return a power: products and roots if the exponent is a whole number of quarters."""
         if not isinstance(exponent, (int, float)):
             raise NotRecordable("exponents are numbers")
         if (4.0 * exponent) % 1.0 != 0.0 or abs(exponent) > LARGEST_POWER:
-            return self.node(POWER, (base, self.taken(exponent)))
+            return self.node(POWER, (base, self.as_node(exponent)))
         if exponent < 0.0:
             return self.quotient(1.0, self.power(base, -exponent))
         fraction, integer = exponent % 1.0, exponent // 1.0
@@ -182,12 +182,12 @@ class Graph:
         """Return the first where a condition is not 0, else the second."""
         if not isinstance(condition, Node):
             return a if condition else b
-        return self.node(SELECT, (condition, self.taken(a), self.taken(b)))
+        return self.node(SELECT, (condition, self.as_node(a), self.as_node(b)))
 
     # translate: skip
     def rarely(self, condition: Any, a: Any, b: Any) -> Any:
         """Return the same as `select`; the first is computed only if a launch abreast needs it."""
-        return self.node(RARELY, (self.taken(condition), self.taken(a), self.taken(b)))
+        return self.node(RARELY, (self.as_node(condition), self.as_node(a), self.as_node(b)))
 
 
 def in_order(a: Node, b: Node) -> tuple[Node, Node]:

@@ -53,7 +53,7 @@ def hoisted(recorded: Recorded) -> tuple[Recorded, Recorded]:
     )
 
 
-def played(recorded: Recorded, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
+def evaluated(recorded: Recorded, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
     """Return the outputs of a recorded function at a state and parameters, in their arithmetic."""
     values = dict[int, Any]()
     for node in recorded.nodes:

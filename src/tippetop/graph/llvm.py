@@ -60,7 +60,7 @@ NEED = """\
   br i1 %somewhere, label %rare, label %rest
 rare:"""
 RARE = "{t}_rare = select <{n} x i1> %need, {v} {1}, {v} {2}"
-EITHER = "{t} = phi {v} [ {2}, %ready ], [ {t}_rare, %rare ]"
+PHI = "{t} = phi {v} [ {2}, %ready ], [ {t}_rare, %rare ]"
 """What is computed only where one of the launches has need of it: how that begins, and what it
 makes.
 """
@@ -93,13 +93,13 @@ none:
 }}
 """
 
-MORE = """\
+OPTIONAL_OUTPUTS = """\
 %asked = icmp ne ptr %more, null
   br i1 %asked, label %give, label %last
 give:"""
 """What is before that which is only given where it is asked for."""
 
-AGAIN = """\
+ITERATION_FRAME = """\
 define i64 @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, double %enough, i64 %most)
 alignstack(64) {{
 entry:
@@ -136,7 +136,7 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     `out`, until the last of that is less than enough, or no number, or as many times as may be;
     they return how many.
     """
-    frame, vector = AGAIN if again else FRAME, f"<{abreast} x double>"
+    frame, vector = ITERATION_FRAME if again else FRAME, f"<{abreast} x double>"
     count = abreast if again else "%count" if abreast > 1 else 1
     words = {"v": vector, "n": abreast, "r": ROUNDING, "count": count}
 
@@ -161,16 +161,16 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
         destinations = {
             "y": recorded.outputs[:replaced],
             "out": recorded.outputs[replaced:],
-            "more": recorded.more,
+            "more": recorded.optional,
         }
         for place, nodes in destinations.items():
-            lines += [MORE] if place == "more" and nodes else []
+            lines += [OPTIONAL_OUTPUTS] if place == "more" and nodes else []
             lines += [
                 STORE.format(names[node.place], t=f"%{place}{row}", name=place, row=row, **words)
                 for row, node in enumerate(nodes)
             ]
         last = names[recorded.outputs[-1].place] if again else ""
-        argument = ", ptr noalias %more" if recorded.more else ""
+        argument = ", ptr noalias %more" if recorded.optional else ""
         parts.append(
             frame.format(name=name, body="\n  ".join(lines), last=last, more=argument, **words)
         )
@@ -192,7 +192,7 @@ def spelt(recorded: Recorded, names: Mapping[int, str], words: Mapping[str, obje
         lines += ["br label %ready", "ready:", line(either[0], NEED), *map(line, seldom)]
         lines += [*(line(node, RARE) for node in either), "br label %rest", "rest:"]
         lines += [
-            *(line(node, EITHER) for node in either),
+            *(line(node, PHI) for node in either),
             *in_blocks(list(map(line, later)), "later"),
         ]
     return lines
@@ -217,7 +217,7 @@ def parted(recorded: Recorded) -> tuple[Sequence[graph.Node], ...]:
     """Return the nodes that are computed always, those computed rarely, those that choose between
     both, and those that depend on a choice.
     """
-    needed = {node.place for node in (*recorded.outputs, *recorded.more)}
+    needed = {node.place for node in (*recorded.outputs, *recorded.optional)}
     for node in reversed(recorded.nodes):
         if node.place in needed:
             operands = node.operands[::2] if node.name == graph.RARELY else node.operands

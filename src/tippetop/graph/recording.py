@@ -20,11 +20,11 @@ class Recorded(NamedTuple):
     size: int
     parameters: int
     """How many numbers the state has, and how many parameters there are."""
-    more: tuple[Node, ...] = ()
+    optional: tuple[Node, ...] = ()
     """Some of what it computes on the way, to be had where it is asked for."""
 
 
-def record(function: Function, size: int, parameters: int, more: int = 0) -> Recorded:
+def record(function: Function, size: int, parameters: int, optional: int = 0) -> Recorded:
     """Record what a function of a state and parameters does.
 
     Parameters
@@ -33,7 +33,7 @@ def record(function: Function, size: int, parameters: int, more: int = 0) -> Rec
         It returns a sequence of numbers, and asks nothing of its arguments but operators.
     size, parameters
         How many numbers the state has, and how many parameters there are.
-    more
+    optional
         How many of the last numbers it returns are not always asked for.
 
     Raises
@@ -44,8 +44,8 @@ def record(function: Function, size: int, parameters: int, more: int = 0) -> Rec
     graph = Graph()
     state = [graph.node(STATE, (), i) for i in range(size)]
     numbers = [graph.node(PARAMETER, (), i) for i in range(parameters)]
-    outputs = [graph.taken(output) for output in function(state, numbers)]
-    always = len(outputs) - more
+    outputs = [graph.as_node(output) for output in function(state, numbers)]
+    always = len(outputs) - optional
     return Recorded(
         needed(graph, outputs), tuple(outputs[:always]), size, parameters, tuple(outputs[always:])
     )

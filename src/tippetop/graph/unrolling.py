@@ -26,7 +26,7 @@ def unrolled(recorded: Recorded, abreast: int) -> Recorded:
     for node in recorded.nodes:
         operands = [values[operand.place] for operand in node.operands]
         if node.name == CONSTANT:
-            lanes = [graph.taken(node.value)] * abreast
+            lanes = [graph.as_node(node.value)] * abreast
         elif node.name in (STATE, PARAMETER):
             lanes = [
                 graph.node(node.name, (), int(node.value) * abreast + lane)

@@ -35,10 +35,10 @@ ALONE = 2**17
 for other programs.
 """
 
-FEW = 64
+FEW_NUMBERS = 64
 """Numbers whose powers are made one after another, and not all at once."""
 
-MANY = 1024
+BATCH = 1024
 """Polynomials that are evaluated at a time, so that their coefficients stay in the processor's
 cache.
 """
@@ -284,8 +284,8 @@ def evaluated(terms: Array, which: NDArray[np.intp], parts: Array) -> Array:
     size).
     """
     values = np.empty((len(parts), terms.shape[1]))
-    for first in range(0, len(parts), MANY):
-        batch = slice(first, first + MANY)
+    for first in range(0, len(parts), BATCH):
+        batch = slice(first, first + BATCH)
         places = np.ascontiguousarray(powers(parts[batch], terms.shape[2]))
         np.matmul(terms.take(which[batch], axis=0), places[:, :, None], out=values[batch, :, None])
     return values
@@ -304,7 +304,7 @@ def at_fractions(terms: Array, fractions: Array) -> Array:
 
 def powers(numbers: Array, count: int) -> Array:
     """Return the first powers of n numbers, shape (n, count)."""
-    if len(numbers) <= FEW:
+    if len(numbers) <= FEW_NUMBERS:
         return np.vander(numbers, count, increasing=True)
     rows = np.ones((count, len(numbers)))
     for power in range(1, count):

@@ -66,7 +66,7 @@ def fixed(array: Array) -> Array:
     return array
 
 
-def look(
+def probe_guards(
     guards: Compiled,
     p: Array,
     terms: Array,
@@ -235,7 +235,7 @@ def suspect(
     """Return whether a guard may fall in a step; values has those at its start, and room for the
     other looks.
     """
-    if not look(guards, p, terms, first, y, values, room, tight):
+    if not probe_guards(guards, p, terms, first, y, values, room, tight):
         return False
     for guard in range(len(values[0])):
         if may_fall(values, guard):

@@ -27,7 +27,7 @@ def machine_code(
 ) -> "dict[str, Compiled]":
     """Compile what was recorded, for so many launches an instruction, or take it from the cache."""
     engine = loaded(llvm_source(functions, abreast), effort)
-    return {name: Compiled(engine, name, bool(one.more)) for name, one in functions.items()}
+    return {name: Compiled(engine, name, bool(one.optional)) for name, one in functions.items()}
 
 
 def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
@@ -79,11 +79,11 @@ class Compiled:
             self.address
         )
 
-    def __call__(self, y: Array, p: Array, out: Array, more: Array | None = None) -> None:
+    def __call__(self, y: Array, p: Array, out: Array, optional: Array | None = None) -> None:
         """Compute, for as many launches as the rows have numbers, and give more if that is asked
         for.
         """
-        asked = [None if more is None else _address(more)] * self._gives_more
+        asked = [None if optional is None else _address(optional)] * self._gives_more
         self._function(*map(_address, (y, p, out)), y.shape[1] if y.ndim > 1 else 1, *asked)
 
 

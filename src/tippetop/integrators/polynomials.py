@@ -17,11 +17,11 @@ from tippetop.mechanics.vectors import Row, Scalar
 Choice: TypeAlias = Callable[[Any, Any, Any], Any]
 """What chooses between two by a flag: of numbers, or of arrays."""
 
-LOOKS = 32
+INTERVALS = 32
 """Intervals at whose ends a polynomial is looked at; between them its second derivative bounds it.
 """
 
-FEW = 4
+ONE_BY_ONE = 4
 """So many polynomials at most are taken one by one in plain numbers, quicker than arrays so short.
 """
 
@@ -38,8 +38,8 @@ not.
 
 @lru_cache
 def _places(count: int) -> Array:
-    """Return the first powers of the places of the looks, shape (LOOKS + 1, count)."""
-    return powers(np.linspace(0.0, 1.0, LOOKS + 1), count)
+    """Return the first powers of the places of the looks, shape (INTERVALS + 1, count)."""
+    return powers(np.linspace(0.0, 1.0, INTERVALS + 1), count)
 
 
 @lru_cache
@@ -85,12 +85,12 @@ class Polynomials:
 
     @cached_property
     def values(self) -> Array:
-        """Values at the looks, shape (LOOKS + 1, n)."""
+        """Values at the looks, shape (INTERVALS + 1, n)."""
         return times(_places(len(self.unit)), self.unit)
 
     @property
     def slopes(self) -> Array:
-        """First derivatives at the looks, over the interval, shape (LOOKS + 1, n)."""
+        """First derivatives at the looks, over the interval, shape (INTERVALS + 1, n)."""
         return times(
             _places(len(self.unit) - 1), self.unit[1:] * np.arange(1, len(self.unit))[:, None]
         )
@@ -101,7 +101,7 @@ class Polynomials:
         shape (n,).
         """
         k = np.arange(len(self.unit))
-        return times(k * (k - 1) / (8.0 * LOOKS**2), np.abs(self.unit))
+        return times(k * (k - 1) / (8.0 * INTERVALS**2), np.abs(self.unit))
 
     @cached_property
     def lowest(self) -> Array:
@@ -138,21 +138,21 @@ class Polynomials:
         values = self.values
         falls = (values[1:] <= 0.0) & (values[:-1] > 0.0)
         has_fall = np.asarray(falls.any(axis=0))
-        after = np.where(has_fall, falls.argmax(axis=0) + 1, LOOKS + 1)
-        low, high = (after - 1) / LOOKS, after / LOOKS
+        after = np.where(has_fall, falls.argmax(axis=0) + 1, INTERVALS + 1)
+        low, high = (after - 1) / INTERVALS, after / INTERVALS
 
         nearer = np.minimum(values[:-1], values[1:])
-        dips = (nearer > 0.0) & (nearer <= self.bending) & (np.arange(LOOKS)[:, None] < after)
+        dips = (nearer > 0.0) & (nearer <= self.bending) & (np.arange(INTERVALS)[:, None] < after)
         if dips.any():
             slopes = self.slopes
             dips &= (slopes[:-1] < 0.0) & (slopes[1:] > 0.0)
         for lane in np.flatnonzero(dips.any(axis=0)):
             for interval in np.flatnonzero(dips[:, lane]):
                 place, value = of_each(
-                    _least_near, self.unit[:, [lane]], np.array([(interval + 0.5) / LOOKS])
+                    _least_near, self.unit[:, [lane]], np.array([(interval + 0.5) / INTERVALS])
                 )
                 if value[0] <= 0.0:
-                    low[lane], high[lane], has_fall[lane] = interval / LOOKS, place[0], True
+                    low[lane], high[lane], has_fall[lane] = interval / INTERVALS, place[0], True
                     break
         zeros = np.full(has_fall.shape, np.nan)
         which = np.flatnonzero(has_fall)
@@ -173,18 +173,18 @@ class Polynomials:
         (n,).
         """
         best = self.values.argmin(axis=0)
-        place, value = best / LOOKS, self.lowest.copy()
+        place, value = best / INTERVALS, self.lowest.copy()
         # At an end away from which it rises there is nothing to find.
         rises = (best == 0) & (self.unit[1] >= 0.0)
-        rises |= (best == LOOKS) & (times(np.arange(float(len(self.unit))), self.unit) <= 0.0)
+        rises |= (best == INTERVALS) & (times(np.arange(float(len(self.unit))), self.unit) <= 0.0)
         dips = np.flatnonzero(~rises)
         if len(dips):
             # The parabola through the least look and its neighbours is near it.
-            inside = np.minimum(np.maximum(best[dips], 1), LOOKS - 1)
+            inside = np.minimum(np.maximum(best[dips], 1), INTERVALS - 1)
             before, middle, after = (self.values[inside + k, dips] for k in (-1, 0, 1))
             bend = before - 2.0 * middle + after
             vertex = inside + 0.5 * (before - after) / np.where(bend > 0.0, bend, np.inf)
-            guess = np.where(np.abs(vertex - best[dips]) <= 1.0, vertex, best[dips]) / LOOKS
+            guess = np.where(np.abs(vertex - best[dips]) <= 1.0, vertex, best[dips]) / INTERVALS
             places, low = of_each(_least_near, self.unit[:, dips], guess)
             better = (places >= 0.0) & (places <= 1.0) & (low < value[dips])
             place[dips[better]], value[dips[better]] = places[better], low[better]
@@ -250,7 +250,7 @@ def of_each(find: Callable[..., Any], unit: Array, *numbers: Array) -> Array:
 
     Either way it does not depend on the others: each stands still where it has arrived.
     """
-    if len(numbers[0]) > FEW:
+    if len(numbers[0]) > ONE_BY_ONE:
         return np.asarray(find(unit, *numbers, np.where, np.any))
     each = zip(unit.T.tolist(), *(column.tolist() for column in numbers), strict=True)
     return np.array([find(*one, _chosen, bool) for one in each]).T
@@ -263,7 +263,7 @@ def _least_near(
     Newton's method.
     """
     slopes = [power * term for power, term in enumerate(terms)][1:]
-    first, last, place, moving = guess - 1.0 / LOOKS, guess + 1.0 / LOOKS, guess, True
+    first, last, place, moving = guess - 1.0 / INTERVALS, guess + 1.0 / INTERVALS, guess, True
     for _ in range(5):
         slope, bend = _horner(slopes, place)
         move = where(moving, slope / where(bend > 0.0, bend, np.inf), 0.0)
@@ -300,7 +300,7 @@ def _early_fall(terms: Row) -> float | None:
     look; None if it does not.
     """
     part = EARLIEST
-    while part < 1.0 / LOOKS:
+    while part < 1.0 / INTERVALS:
         if _horner(terms, part)[0] > RISEN and _horner(terms, 2.0 * part)[0] <= 0.0:
             return float(_zero(terms, part, 2.0 * part, _chosen, bool))
         part *= 2.0

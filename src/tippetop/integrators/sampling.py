@@ -13,7 +13,7 @@ from tippetop.integrators.dense import DenseSolution, chebyshev
 from tippetop.integrators.falls import Dense, first_fall
 from tippetop.integrators.rates import RightHandSide
 
-MANY = 512
+ARC_STEPS = 512
 """Steps in an arc."""
 
 
@@ -80,7 +80,7 @@ class StepByStep(ABC):
                 return
             keep(step.end, step.dense)
             state = step.end_state
-            if len(values) == MANY:
+            if len(values) == ARC_STEPS:
                 yield arc(state)
         if values:
             yield arc(state)

@@ -39,7 +39,7 @@ OLD = "cache.db*", "making-*"
 """What else earlier versions kept in the user's folder."""
 
 
-def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
+def cached_folder(made: object, use: Callable[[Path | None], Found]) -> Found:
     """Return what `use` makes of a folder of compiled code.
 
     What is damaged in it is thrown away, and where none can be kept every process compiles for
@@ -75,7 +75,7 @@ def users_folder() -> Path:
 
 
 def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
-    """Compiled code that is one file, made or taken from the cache; see `kept`."""
+    """Compiled code that is one file, made or taken from the cache; see `cached_folder`."""
 
     def use(folder: Path | None) -> bytes:
         path = folder and folder / CONTENT
@@ -88,7 +88,7 @@ def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
         return content
 
     # What was kept under another name, by an earlier version, is another thing.
-    return kept((CONTENT, made), use)
+    return cached_folder((CONTENT, made), use)
 
 
 def _processor() -> tuple[str, ...]:

@@ -88,7 +88,7 @@ class Stepping:
         self.row, self.lost = longer(start[1], width), np.zeros(width)
         self.stages, self.span = np.zeros((ROWS, width)), np.array([start[0], end, 0.0])
         self.steps, self.calls = 0, 0
-        self.other: Stepping | None = None
+        self.trial: Stepping | None = None
         self.make_room(room)
 
     @property
@@ -180,14 +180,14 @@ class Stepping:
 
     def beside(self) -> "Stepping":
         """Another motion of the same kind, for trial."""
-        if self.other is None:
+        if self.trial is None:
             start, end, tolerance = (
                 (self.time, self.state),
                 float(self.span[1]),
                 float(self.tolerance[0]),
             )
-            self.other = Stepping(self.functions, self.parameters, start, end, tolerance, 1)
-        return self.other
+            self.trial = Stepping(self.functions, self.parameters, start, end, tolerance, 1)
+        return self.trial
 
     def landed(self, time: float, state: Array, end: float) -> Array:
         """Return the state after one step or several from another state, which end at exactly this

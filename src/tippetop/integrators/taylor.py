@@ -226,7 +226,7 @@ class Taylor:
             solution = run.solution(begin, steps)
             if failure is not None:
                 solution = _before_blow_up(solution)
-                state = solution(solution.knots[-1:])[0] if len(solution.terms) else run.begun
+                state = solution(solution.knots[-1:])[0] if len(solution.terms) else run.start_state
                 yield Arc(solution, state, None, failure, steps, run.expansions)
                 return
             name = None if guard is None else motion.guards[guard].name
@@ -333,7 +333,7 @@ class Run:
         self._clock[:] = start[0], 0.0, end, 1.0
         self._rows = np.empty((0, self.layout.row))
         self._knots, self._terms = np.empty(0), np.empty(0)
-        self.begun, self.expansions = self.state, 0
+        self.start_state, self.expansions = self.state, 0
 
     @property
     def time(self) -> float:
@@ -351,7 +351,8 @@ class Run:
         """
         stepper, layout = self.stepper, self.layout
         room = stepper.room()
-        rows, steps, self.begun, self.expansions = room.reshape(-1, layout.row), 0, self.state, 0
+        rows, steps = room.reshape(-1, layout.row), 0
+        self.start_state, self.expansions = self.state, 0
         address = [
             part.ctypes.data for part in (self._state, self.parameters, self._room, self._raw)
         ]

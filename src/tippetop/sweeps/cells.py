@@ -85,10 +85,10 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
 
     Raises `InvalidInput` if a field is none, or not a number.
     """
-    known = dict(numeric_fields(problem))
+    numeric = dict(numeric_fields(problem))
     for field in values:
-        if field not in known:
-            raise unknown_field(field, Described("what is swept"), list(known), Part.places)
+        if field not in numeric:
+            raise unknown_field(field, Described("what is swept"), list(numeric), Part.places)
     if problem.launch.velocity is not None and any(
         field.startswith("launch.slip.") for field in values
     ):
@@ -114,7 +114,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
             Fault.NO_SUCH_BODY
         )
         for field, numbers in values.items():
-            fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
+            fault[~allowed(numbers, numeric[field])] = Fault.VALUE_OUT_OF_RANGE
         for part in (*filled.body.shapes, filled.friction, filled.contact):
             fault[refused(part, count)] = Fault.VALUE_OUT_OF_RANGE
         size = np.max([spread(size, count) for size in sizes(filled.body.surface)], axis=0)

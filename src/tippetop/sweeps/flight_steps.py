@@ -67,30 +67,30 @@ class NodeFunctions:
         return angle.graph.node(COSINE, (angle,))
 
 
-def pieces(kind: Kind, given: Array, numbers: Array) -> Piece:
+def pieces(kind: Kind, starts: Array, numbers: Array) -> Piece:
     """Return the parts of flights that begin with these numbers, of shape (GIVEN, n), of tops with
     these numbers, (kind.numbers, n).
     """
-    count = given.shape[1]
-    start, parameters = padded(given), padded(numbers)
-    found = np.empty((len(Piece._fields), start.shape[1]))
-    _code(kind)(start, parameters, found)
-    return Piece(*found[:, :count])
+    count = starts.shape[1]
+    start, parameters = padded(starts), padded(numbers)
+    parts = np.empty((len(Piece._fields), start.shape[1]))
+    _code(kind)(start, parameters, parts)
+    return Piece(*parts[:, :count])
 
 
 @lru_cache(maxsize=16)
 def _code(kind: Kind) -> Callable[[Array, Array, Array], None]:
     def rows(given: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
-        return piece(kind.top(tuple(numbers)), given, NODES)
+        return flight_part(kind.top(tuple(numbers)), given, NODES)
 
     return compiled(rows, GIVEN, kind.numbers, effort=0)
 
 
-def piece(top: Top, given: Sequence[Any], plain: Arithmetic) -> Piece:
+def flight_part(top: Top, start: Sequence[Any], plain: Arithmetic) -> Piece:
     """Return the part of a flight that begins with these numbers."""
-    here = fly(State.unpack(given[STATE]), given[TIME], top, NodeFunctions())
-    tip, gap, reach = flight_terms(here, given[LEFT], top, plain)
-    zero, doubt = first_fall(divided(gap, given[VANISHING], plain), reach, CLOSER_LOOKS, plain)
+    motion = fly(State.unpack(start[STATE]), start[TIME], top, NodeFunctions())
+    tip, gap, reach = flight_terms(motion, start[LEFT], top, plain)
+    zero, doubt = first_fall(divided(gap, start[VANISHING], plain), reach, CLOSER_LOOKS, plain)
     touches = plain.below(zero, reach)
     span = plain.least(zero, reach)
     floor, ceiling = extremes(tip, span, plain)
@@ -99,7 +99,7 @@ def piece(top: Top, given: Sequence[Any], plain: Arithmetic) -> Piece:
     if is_edge(top.surface):
         doubt += 1.0 - plain.below(0.0, reach)
     return Piece(
-        span, touches, doubt + met(floor, ceiling, given[WANTED], plain), highest, floor, ceiling
+        span, touches, doubt + met(floor, ceiling, start[WANTED], plain), highest, floor, ceiling
     )
 
 

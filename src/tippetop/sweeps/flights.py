@@ -105,7 +105,8 @@ def fly_all(
         if len(doubtful):
             which = active[doubtful]
             moments = begun[which] + time[which]
-            looked = look(kind, given[:, which], numbers[:, which], (tip, launches[which], moments))
+            seen_there = tip, launches[which], moments
+            looked = closer_extremes(kind, given[:, which], numbers[:, which], seen_there)
             for kept, better in zip(found, looked, strict=True):
                 kept[doubtful] = better
             given[WANTED] = tip.wanted(launches)
@@ -170,26 +171,28 @@ class Turns(NamedTuple):
         return np.where(leaps, np.maximum(goal, time), time)
 
 
-def look(kind: Kind, given: Array, numbers: Array, seen: tuple[TipMotion, Indices, Array]) -> Piece:
-    """Pieces of flights, by looking at their polynomials, and what happens in them taken in."""
-    tip, launches, begun = seen
+def closer_extremes(
+    kind: Kind, starts: Array, numbers: Array, seen: tuple[TipMotion, Indices, Array]
+) -> Piece:
+    """Return parts of flights by a search of their polynomials, and take in their extremes."""
+    tip, launches, times = seen
     top = kind.top(tuple(numbers))
-    here = fly(State.unpack(list(given[STATE])), given[TIME], top, np)
-    height, gap, reach = flight_terms(here, given[LEFT], top, PLAIN)
+    motion = fly(State.unpack(list(starts[STATE])), starts[TIME], top, np)
+    height, gap, reach = flight_terms(motion, starts[LEFT], top, PLAIN)
     rise, ahead = (np.array(np.broadcast_arrays(*terms)) for terms in (height, gap))
-    zero = Polynomials(np.array(divided(list(ahead), given[VANISHING], PLAIN)), reach).first_fall()
+    zero = Polynomials(np.array(divided(list(ahead), starts[VANISHING], PLAIN)), reach).first_fall()
     touches = ~np.isnan(zero)
     span = np.where(touches, zero, reach)
     highest = -Polynomials(-ahead, span).refined_least()[1]
-    flat = axis_sine(here.axis) <= NARROWEST if is_edge(top.surface) else np.zeros(span.shape)
+    flat = axis_sine(motion.axis) <= NARROWEST if is_edge(top.surface) else np.zeros(span.shape)
     for i in np.flatnonzero(flat).tolist():
-        one, its = single(here, i), kind.top(tuple(numbers[:, i].tolist()))
-        end, root = Separation.of(one, its).across_flat(0.0, float(given[LEFT, i]))
+        one, its = single(motion, i), kind.top(tuple(numbers[:, i].tolist()))
+        end, root = Separation.of(one, its).across_flat(0.0, float(starts[LEFT, i]))
         touches[i], span[i] = root is not None, end if root is None else root
         highest[i] = highest_gap(one, its, float(span[i]))
-    tip.see(launches, begun, Polynomials(rise, span))
-    nothing = np.full(span.shape, np.nan)
-    return Piece(span, touches, nothing, highest, nothing, nothing)
+    tip.see(launches, times, Polynomials(rise, span))
+    missing = np.full(span.shape, np.nan)
+    return Piece(span, touches, missing, highest, missing, missing)
 
 
 def slides(state: State, top: Top) -> Flags:

@@ -69,15 +69,15 @@ class Slots:
         self.held, self.before = np.zeros((2, lanes))
 
     @property
-    def left(self) -> Array:
+    def remaining(self) -> Array:
         """The time left."""
-        found: Array = self.rows[self.layout.left]
-        return found
+        times: Array = self.rows[self.layout.remaining]
+        return times
 
     def time(self, lanes: Indices | Flags) -> Array:
         """Return the time of some lanes."""
-        found: Array = self.end[lanes] - self.left[lanes]
-        return found
+        times: Array = self.end[lanes] - self.remaining[lanes]
+        return times
 
     def keep(self, working: Indices) -> None:
         """Keep the lanes at work, and as many others as fill them up."""
@@ -88,7 +88,7 @@ class Slots:
             setattr(self, name, getattr(self, name)[kept])
         for name in ("numbers", "rows"):
             setattr(self, name, np.ascontiguousarray(getattr(self, name)[:, kept]))
-        self.rows[self.layout.left] *= self.alive
+        self.rows[self.layout.remaining] *= self.alive
         self.spare = np.zeros_like(self.rows)
         self.tip = self.tip.some(kept)
 
@@ -96,7 +96,7 @@ class Slots:
         """Return some of the tops, with arrays for numbers."""
         return self.launches.kind.top(tuple(self.numbers[: self.layout.parameters, lanes]))
 
-    def whole(self, lanes: Indices | Flags) -> State:
+    def states(self, lanes: Indices | Flags) -> State:
         """Whole states of sliding tops."""
         numbers = self.rows[: self.layout.size, lanes]
         return on_table(SlidingState.unpack(numbers), self.tops(lanes))
@@ -105,8 +105,8 @@ class Slots:
         """Let tops slide from these states on."""
         for row, number in enumerate(along_table(state).pack()):
             self.rows[row, lanes] = number
-        self.rows[self.layout.left, lanes] = self.end[lanes] - time
-        self.rows[self.layout.taken, lanes] = np.inf
+        self.rows[self.layout.remaining, lanes] = self.end[lanes] - time
+        self.rows[self.layout.step_time, lanes] = np.inf
         if is_branched(self.launches.kind.example.friction):
             self._put(lanes, branched(self.tops(lanes), state))
 
@@ -116,7 +116,7 @@ class Slots:
         """
         if is_branched(self.launches.kind.example.friction):
             lanes = np.arange(len(self.cell))
-            self._put(lanes, branched(self.tops(lanes), self.whole(lanes)))
+            self._put(lanes, branched(self.tops(lanes), self.states(lanes)))
 
     @cached_property
     def branch(self) -> int:
@@ -154,7 +154,7 @@ class Slots:
             ends.drilled[cells] += drilled
             ends.rolled[cells] += rolled
         ends.turned[cells], ends.arrived[cells] = self.tip.turned[lanes], self.tip.reached[lanes]
-        self.rows[self.layout.left, lanes] = 0.0
+        self.rows[self.layout.remaining, lanes] = 0.0
         self.alive[lanes] = False
         stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
         force, down, up = self.tip.least[:, lanes]

@@ -68,12 +68,12 @@ class Lanes:
         if resumed is None:
             lanes = np.arange(len(slots.cell))
             slots.place(lanes, picked(launches.state, slots.cell), np.zeros(len(lanes)))
-            slots.left[~slots.alive] = 0.0
+            slots.remaining[~slots.alive] = 0.0
             self.crossings.launch(lanes[: len(launches)], launches.state)
         else:
-            slots.rows[: stepper.layout.left + 1] = resumed[:, slots.cell]
+            slots.rows[: stepper.layout.remaining + 1] = resumed[:, slots.cell]
             slots.choose_branch()
-            slots.left[~slots.alive] = 0.0
+            slots.remaining[~slots.alive] = 0.0
         slots.numbers[stepper.layout.turns] = np.isnan(slots.tip.turned)
 
     def run(self) -> Ends:
@@ -81,7 +81,7 @@ class Lanes:
         # Launches that ended in the flight they began with are recorded in the first window.
         recorded, slots = self._launched, self.slots
         while recorded.any():
-            begun, lost, waiting = slots.rows[: slots.layout.kept].copy(), 0, 0
+            begun, lost, waiting = slots.rows[: slots.layout.carried_rows].copy(), 0, 0
             bearable = LOST * np.count_nonzero(recorded)
             for _ in range(WINDOW):
                 waiting += self._stride()
@@ -101,8 +101,8 @@ class Lanes:
         self.slots.stepper.step(before, after, slots.numbers)
         waiting = after[layout.pause].nonzero()[0]
         if len(waiting):
-            slots.held[waiting] = after[layout.taken, waiting]
-            slots.before[waiting] = before[layout.left, waiting]
+            slots.held[waiting] = after[layout.step_time, waiting]
+            slots.before[waiting] = before[layout.remaining, waiting]
         slots.tip.put(after[layout.least])
         slots.rows, slots.spare = after, before
         changed = after[layout.changed].nonzero()[0]
@@ -132,7 +132,7 @@ class Lanes:
             found.least[:, closer] = np.nan
         slots.tip.put_of(lanes, found.least)
         slots.rows[: layout.size, lanes], span = found.after, found.span
-        slots.rows[layout.left, lanes], slots.rows[layout.taken, lanes] = left - span, held
+        slots.rows[layout.remaining, lanes], slots.rows[layout.step_time, lanes] = left - span, held
         slots.rows[layout.steps, lanes] += 1
         slots.held[lanes] = 0.0
         some = found.fallen >= 0.0
@@ -142,7 +142,7 @@ class Lanes:
             )
         slots.numbers[layout.turns, lanes] = np.isnan(slots.tip.turned[lanes])
         if self.banded:
-            slots.rows[layout.left, ~np.isnan(slots.tip.reached)] = 0.0
+            slots.rows[layout.remaining, ~np.isnan(slots.tip.reached)] = 0.0
 
     def _close(self, recorded: Flags, begun: Array) -> None:
         """End a window: record it, take out what has ended, and close ranks."""
@@ -150,20 +150,21 @@ class Lanes:
         cells, (_, down, up) = slots.cell[recorded], slots.tip.lately[:, recorded]
         if not self.banded:
             self.checkpoints.append(
-                Checkpoint(cells, begun[: layout.left + 1, recorded], down, -up)
+                Checkpoint(cells, begun[: layout.remaining + 1, recorded], down, -up)
             )
         slots.tip.put_aside()
-        ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
+        ended = np.flatnonzero(slots.alive & (slots.remaining <= 0.0))
         if len(ended):
-            slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)
-        shortest = np.minimum(SHORTEST, ROUNDED * slots.left)
-        singular, many = slots.rows[layout.taken] < shortest, slots.rows[layout.steps] >= STEP_LIMIT
+            slots.retire(ended, slots.states(ended), slots.end[ended], Outcome.COMPLETED)
+        shortest = np.minimum(SHORTEST, ROUNDED * slots.remaining)
+        singular = slots.rows[layout.step_time] < shortest
+        many = slots.rows[layout.steps] >= STEP_LIMIT
         for lost, outcome in (
             (singular, Outcome.FAILED),
             (~singular & many, Outcome.TOO_MANY_STEPS),
         ):
             which = np.flatnonzero(slots.alive & lost)
-            slots.retire(which, slots.whole(which), slots.time(which), outcome)
+            slots.retire(which, slots.states(which), slots.time(which), outcome)
         if self.settled is not None:
             self._end_the_settled(self.settled)
         self._relieve(np.flatnonzero(recorded & slots.alive), begun)
@@ -181,7 +182,7 @@ class Lanes:
         )
         if not len(lanes):
             return
-        step = (begun[layout.left, lanes] - slots.left[lanes]) / taken
+        step = (begun[layout.remaining, lanes] - slots.remaining[lanes]) / taken
         motion, numbers = self.crossings.motion, slots.numbers[: layout.parameters, lanes]
         stiff = is_stiff(motion, list(numbers), slots.rows[: motion.size, lanes].T, step)
         self.crossings.follow_alone(lanes[stiff])
@@ -192,7 +193,7 @@ class Lanes:
         lanes = np.flatnonzero(slots.alive)
         if not len(lanes):
             return
-        state = slots.whole(lanes)
+        state = slots.states(lanes)
         held = is_held(state, slots.launches.tops(slots.cell[lanes]), closeness)
         slots.retire(lanes[held], picked(state, held), slots.time(lanes[held]), Outcome.COMPLETED)
 

@@ -37,7 +37,7 @@ class Launches:
     """Ratio of the normal impulses of restitution and compression, shape (n,)."""
     indeterminate: str
     """What the table does where the contact force is indeterminate: "impact" or "lift_off"."""
-    own: Own | None = None
+    rules: Own | None = None
     """For contacts that bring their own rules, what makes them of a top, shape (n,)."""
 
     def __len__(self) -> int:
@@ -47,9 +47,9 @@ class Launches:
         """Return some of the launches."""
         state = picked(self.state, which)
         numbers, end, restitution = self.numbers[:, which], self.end[which], self.restitution[which]
-        own = None if self.own is None else self.own[which]
+        rules = None if self.rules is None else self.rules[which]
         return Launches(
-            self.kind, numbers, state, end, self.liftoff, restitution, self.indeterminate, own
+            self.kind, numbers, state, end, self.liftoff, restitution, self.indeterminate, rules
         )
 
     @property
@@ -73,9 +73,9 @@ class Launches:
         top = off_branch(self._top(launch))
         if top.rolling_resistance is not None and top.rolling_resistance.length == 0.0:
             top = top._replace(rolling_resistance=None)
-        if self.own is not None:
-            own: Automaton = self.own[launch](top)
-            return own
+        if self.rules is not None:
+            automaton: Automaton = self.rules[launch](top)
+            return automaton
         return Automaton(top, self.liftoff, float(self.restitution[launch]), self.indeterminate)
 
     def sliding(self, launch: int) -> ContactMode:

@@ -30,7 +30,7 @@ class Arcs(NamedTuple):
     """Least values of the first guard, of the third number of the state, and of minus that, shape
     (3, n).
     """
-    whole: Array
+    full_step: Array
     span: Array
     """How far the polynomials serve, and how far they are followed, shape (n,)."""
     fallen: Array
@@ -44,7 +44,7 @@ class Arcs(NamedTuple):
         """
         which = np.flatnonzero(self.doubt)
         if len(which):
-            whole = self.whole[which]
+            whole = self.full_step[which]
             span, fallen = whole, np.full(whole.shape, -1.0)
             for number, terms in enumerate(jet.guards):
                 fall = Polynomials(terms[:, which], whole).first_fall()

@@ -30,7 +30,7 @@ def is_alone(launches: Launches) -> bool:
     several surfaces and of users' rules, and do not see where a law chooses by the numbers.
     """
     example = launches.kind.example
-    known = launches.own is None and not isinstance(example.surface, Hull)
+    known = launches.rules is None and not isinstance(example.surface, Hull)
     return not known or has_choices(example)
 
 

@@ -67,12 +67,12 @@ class Layout(NamedTuple):
     size: int
     parameters: int
     """Numbers of the motion, and parameters."""
-    left: int
+    remaining: int
     steps: int
     """Rows of the time left, and of the number of steps."""
-    kept: int
+    carried_rows: int
     """How many rows a step brings up to date."""
-    taken: int
+    step_time: int
     pause: int
     """Rows of the time that a step may take, and of whether something may happen in it."""
     least: slice
@@ -159,7 +159,7 @@ def stride(
     after = [*(horner(terms, taken) for terms in state), left - taken, steps + moves]
     goes = plain.below(pause, moves)
     stays = [plain.choose(goes, new, old) for old, new in zip(before, after, strict=True)]
-    stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
+    stays[layout.remaining] = plain.choose(pause, 0.0 * left, after[layout.remaining])
     force = least_value(falls[0], pressing, taken, plain)
     least = [
         plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)
@@ -167,18 +167,18 @@ def stride(
     return [*stays, whole, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
 
 
-def extremes(tip: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
+def extremes(tip: Sequence[Scalar], length: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
     """Return the least and the largest n_z in a step, from its polynomial."""
-    heights, upside = looked_at(tip, taken, LOOKS), [-term for term in tip]
-    floor = least_value(tip, heights, taken, plain)
-    return floor, -least_value(upside, [-height for height in heights], taken, plain)
+    heights, upside = looked_at(tip, length, LOOKS), [-term for term in tip]
+    floor = least_value(tip, heights, length, plain)
+    return floor, -least_value(upside, [-height for height in heights], length, plain)
 
 
-def met(floor: Scalar, ceiling: Scalar, wanted: Sequence[Scalar], plain: Arithmetic) -> Scalar:
+def met(floor: Scalar, ceiling: Scalar, band: Sequence[Scalar], plain: Arithmetic) -> Scalar:
     """Return whether n_z passes zero, if the top is yet to turn over, or reaches a band: see
     `Layout`.
     """
-    turns, low, high = wanted
+    turns, low, high = band
     over = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
     return over + (1.0 - plain.below(high, floor)) * (1.0 - plain.below(ceiling, low))
 
@@ -220,7 +220,7 @@ def later_guards(
 
 
 def step_size(
-    state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic, axis: int = 0
+    state: Sequence[Sequence[Scalar]], remaining: Scalar, plain: Arithmetic, axis: int = 0
 ) -> Scalar:
     """Step for which the last terms of the polynomials are below the tolerance, or all that is
     left.
@@ -238,20 +238,22 @@ def step_size(
         scale = 1.0 / (plain.total([plain.size(series[k]) for series in state]) + TINY)
         terms = [scale * series[k] for series in state]
         others = square(terms[axis:])
-        left_out = whole / others
+        left_out = size / others
         if axis:
-            own = square(terms[:axis])
-            left_out = plain.least(bounded / own, whole / (own + others))
+            squares = square(terms[:axis])
+            left_out = plain.least(bounded / squares, size / (squares + others))
         return scale * left_out**0.5
 
-    whole = square([series[0] for series in state])
-    bounded = whole
+    size = square([series[0] for series in state])
+    bounded = size
     if axis:
-        most = FAST * FASTER * FASTER / whole
-        bounded = plain.least(plain.least(whole, FAST * FAST), most * most)
+        most = FAST * FASTER * FASTER / size
+        bounded = plain.least(plain.least(size, FAST * FAST), most * most)
     radius = plain.least(*(ratio(k) ** (1.0 / k) for k in (order - 1, order)))
     safety = math.exp(-2.0 - 0.7 / (order - 1))
-    return plain.choose(plain.below(0.0, radius), plain.least(safety * radius, left), 0.0 * left)
+    return plain.choose(
+        plain.below(0.0, radius), plain.least(safety * radius, remaining), 0.0 * remaining
+    )
 
 
 def order_for(tolerance: float) -> int:

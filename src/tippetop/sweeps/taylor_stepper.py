@@ -56,7 +56,7 @@ class Stepper:
 
         The numbers have shape (layout.numbers, n). A launch with no time left stays as it is.
         """
-        self._step(before[: self.layout.kept], numbers, after)
+        self._step(before[: self.layout.carried_rows], numbers, after)
 
     def jet(self, before: Array, numbers: Array) -> Jet:
         """Return the polynomials in time of the steps that start from `before`."""
@@ -64,7 +64,7 @@ class Stepper:
         def made(start: Array, given: Array, terms: Array) -> None:
             self._step(start, given, np.empty((self.layout.rows, start.shape[1])), terms)
 
-        return _expanded(made, before[: self.layout.kept], numbers, self.motion, self.order)
+        return _expanded(made, before[: self.layout.carried_rows], numbers, self.motion, self.order)
 
     @cached_property
     def _step(self) -> Callable[..., None]:
@@ -74,7 +74,7 @@ class Stepper:
             jet = expansion(motion, order, before[: layout.size], numbers, NODES)
             return [*stride(layout, jet, before, numbers, NODES), *chain(*chain(*jet))]
 
-        return compiled(rows, layout.kept, layout.numbers, _count(motion, order))
+        return compiled(rows, layout.carried_rows, layout.numbers, _count(motion, order))
 
 
 @lru_cache(maxsize=16)
@@ -98,14 +98,14 @@ def polynomials(motion: Motion, tolerance: float) -> Callable[[Array, Array], Je
 
 
 def compiled(
-    function: Rows, size: int, parameters: int, more: int = 0, **options: int
+    function: Rows, size: int, parameters: int, optional: int = 0, **options: int
 ) -> Callable[..., None]:
     """Compile a function of so many rows and parameters for launches abreast; see `record`."""
     # An interrupted import leaves a module in pieces.
     with deferred():
         from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - optional, slow to import
 
-    return machine_code({"made": record(function, size, parameters, more)}, ABREAST, **options)[
+    return machine_code({"made": record(function, size, parameters, optional)}, ABREAST, **options)[
         "made"
     ]
 

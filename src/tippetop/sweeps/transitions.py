@@ -64,11 +64,11 @@ class Crossings:
         names = np.array([guard.name for guard in self.motion.guards])[guards]
         other, free = names == BRANCH, names == LIFT_OFF
         if free.any():
-            here = self.slots.whole(lanes)
+            here = self.slots.states(lanes)
             free &= ~presses(here.axis, here.momentum, self.slots.tops(lanes))
         ending = ~(other | free)
         if ending.any():
-            cells, state = self.slots.cell[lanes[ending]], self.slots.whole(lanes[ending])
+            cells, state = self.slots.cell[lanes[ending]], self.slots.states(lanes[ending])
             launches = self.slots.launches
             ends = [
                 ModeEnd.by_guard(str(name), single(state, i))
@@ -88,7 +88,7 @@ class Crossings:
     def _let_go(self, lanes: Indices, time: Array) -> None:
         """Return what follows where the normal force falls to zero."""
         slots = self.slots
-        cells, state = slots.cell[lanes], slots.whole(lanes)
+        cells, state = slots.cell[lanes], slots.states(lanes)
         slots.ends.lift_off[cells] = np.fmin(slots.ends.lift_off[cells], time)
         if slots.launches.liftoff == "stop":
             slots.retire(lanes, state, time, Outcome.LIFTED_OFF)
@@ -202,7 +202,7 @@ class Crossings:
 
     def follow_alone(self, lanes: Indices) -> None:
         """Follow launches that slide as single launches are, from where they are."""
-        state, time = self.slots.whole(lanes), self.slots.time(lanes)
+        state, time = self.slots.states(lanes), self.slots.time(lanes)
         for i, lane in enumerate(lanes.tolist()):
             here = single(state, i)
             mode = self.slots.launches.automaton(int(self.slots.cell[lane])).mode_for(
