@@ -60,7 +60,7 @@ class Flight(Mode):
         try:
             landing, lowest = self._landing(state, end - time)
         except ArithmeticError as error:
-            empty = DenseSolution.nothing(time, len(state.pack()))
+            empty = DenseSolution.empty(time, len(state.pack()))
             why = explanation("The end of the flight", error)
             yield Segment(self, empty, state, ModeEnd(FAILURE, state, detail=why))
             return

@@ -161,4 +161,4 @@ def solution_of(
 
 def failed_segment(mode: Mode, time: float, state: State, why: str) -> Segment:
     """Return a segment without any motion, after which a run fails."""
-    return Segment(mode, DenseSolution.nothing(time, 8), state, ModeEnd(FAILURE, state, detail=why))
+    return Segment(mode, DenseSolution.empty(time, 8), state, ModeEnd(FAILURE, state, detail=why))

@@ -339,8 +339,8 @@ class _SeriesPrinter:
                 return self._power(node, a, b)
             case graph.SELECT:
                 flag = self._new(f"fcmp une double {self.first[node.operands[0].place]}, {ZERO}")
-                one, other = (self.term.get(operand.place, ZERO) for operand in node.operands[1:])
-                return self._new(f"select i1 {flag}, double {one}, double {other}")
+                yes, no = (self.term.get(operand.place, ZERO) for operand in node.operands[1:])
+                return self._new(f"select i1 {flag}, double {yes}, double {no}")
             case graph.SIZE:
                 flag = self._new(f"fcmp ult double {self.first[a.place]}, {ZERO}")
                 negative = self._new(f"fneg double {self.term[a.place]}")

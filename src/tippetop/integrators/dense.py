@@ -133,7 +133,7 @@ class DenseSolution:
         return times
 
     @classmethod
-    def nothing(cls, time: float, size: int) -> "DenseSolution":
+    def empty(cls, time: float, size: int) -> "DenseSolution":
         """No solution at all."""
         return cls(np.array([time]), np.empty((0, size, 1)))
 

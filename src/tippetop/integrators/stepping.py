@@ -38,7 +38,7 @@ class Machinery(NamedTuple):
     """How long a row of the motion's numbers is, with zeros at its end."""
     values: Callable[[Array, Array, Array], None]
     """The guards as functions (y, p, out) for Python."""
-    kept: Any = None
+    owner: Any = None
     """What has to last as long as these."""
 
 

@@ -22,18 +22,18 @@ def written_out(size: int | None = None) -> str:
     without loops.
     """
     lines = list[str]()
-    for name, first, rows, taken in (
+    for name, first, rows, arguments in (
         ("stages", 1, [*DOP853.A[1:], DOP853.B], f"{TAKEN}, moved"),
         ("more_stages", 13, DOP853.A_EXTRA, TAKEN),
     ):
         stages = list(enumerate(rows, start=first))
-        lines.append(f"def {name}({taken}):")
+        lines.append(f"def {name}({arguments}):")
         if size is not None:
-            lines += [f"    if len(y) == {size}:", f"        return {name}_of_{size}({taken})"]
+            lines += [f"    if len(y) == {size}:", f"        return {name}_of_{size}({arguments})"]
         for number, weights in stages:
             lines += [*_for_each(*_stage(number, weights)), _evaluated(number)]
         if size is not None:
-            lines += [f"def {name}_of_{size}({taken}):", *_straight(stages, size)]
+            lines += [f"def {name}_of_{size}({arguments}):", *_straight(stages, size)]
     lines.append("def combined(y: Array, k: Array):")
     errors = DOP853.E5, DOP853.E3
     lines += _for_each(
@@ -118,9 +118,9 @@ def _sum(weights: Array, name: str = "k[{}, i]") -> str:
 
 def _powers() -> Array:
     """Powers of x, shape (8, 7), in the polynomials of the dense output."""
-    found = np.zeros((8, 7))
+    matrix = np.zeros((8, 7))
     for row in range(7):
         polynomial = np.polynomial.Polynomial([0.0, 1.0]) ** (row // 2 + 1)
         polynomial *= np.polynomial.Polynomial([1.0, -1.0]) ** ((row + 1) // 2)
-        found[: len(polynomial.coef), row] = polynomial.coef
-    return found
+        matrix[: len(polynomial.coef), row] = polynomial.coef
+    return matrix

@@ -73,11 +73,11 @@ class Cells:
         if type(contact_rule).rules is Contact.rules:
             return None
         units = [spread(unit, len(self.fault)) for unit in self.units]
-        found = np.empty(len(which), dtype=object)
+        makers = np.empty(len(which), dtype=object)
         for place, cell in enumerate(which.tolist()):
-            here = Units(*(float(unit[cell]) for unit in units))
-            found[place] = partial(automaton_of, single_part(contact_rule, cell), units=here)
-        return found
+            cell_units = Units(*(float(unit[cell]) for unit in units))
+            makers[place] = partial(automaton_of, single_part(contact_rule, cell), units=cell_units)
+        return makers
 
 
 def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:

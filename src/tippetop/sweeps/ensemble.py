@@ -64,7 +64,7 @@ def _unknown(count: int, outcome: Ending) -> dict[str, NDArray[np.generic]]:
     return variables
 
 
-@np.errstate(all="ignore")  # what is no number is told by outcomes
+@np.errstate(all="ignore")  # numbers that are not finite show in outcomes
 def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
     count = len(numbers)
@@ -107,8 +107,8 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     top, end = launches.top, ends.state
     monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
     monitor.check(*(number[None] for number in (*monitored_quantities(end, top), gone)))
-    told = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in OUTCOMES_OF_MOTION])
-    ends.outcome[told & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
+    is_reported = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in OUTCOMES_OF_MOTION])
+    ends.outcome[is_reported & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
 
 
 @lru_cache

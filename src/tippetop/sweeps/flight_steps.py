@@ -80,8 +80,8 @@ def pieces(kind: Kind, starts: Array, numbers: Array) -> Piece:
 
 @lru_cache(maxsize=16)
 def _code(kind: Kind) -> Callable[[Array, Array, Array], None]:
-    def rows(given: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
-        return flight_part(kind.top(tuple(numbers)), given, NODES)
+    def rows(start: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
+        return flight_part(kind.top(tuple(numbers)), start, NODES)
 
     return compiled(rows, GIVEN, kind.numbers, effort=0)
 
@@ -104,7 +104,7 @@ def flight_part(top: Top, start: Sequence[Any], plain: Arithmetic) -> Piece:
 
 
 def flight_terms(
-    state: State, left: Scalar, top: Top, plain: Arithmetic
+    state: State, remaining: Scalar, top: Top, plain: Arithmetic
 ) -> tuple[list[Scalar], list[Scalar], Scalar]:
     """Polynomials of n_z and of the gap in flight, and how far they serve, all that is left at
     most.
@@ -116,11 +116,11 @@ def flight_terms(
     support = support_terms(top.surface, tip, plain)
     fall = (state.height, state.velocity[2], -0.5 * top.gravity)
     gap = [b - s for b, s in zip(fall, support[:3], strict=True)] + [-term for term in support[3:]]
-    reach = step_size([tip, support], left, plain)
+    reach = step_size([tip, support], remaining, plain)
     if is_edge(top.surface):
         sine = axis_sine(state.axis)
         beside = plain.least(reach, BESIDE * sine / moving.frequency)
-        reach = plain.choose(plain.below(NARROWEST, sine), beside, 0.0 * left)
+        reach = plain.choose(plain.below(NARROWEST, sine), beside, 0.0 * remaining)
     return tip, gap, reach
 
 

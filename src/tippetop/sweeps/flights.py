@@ -86,7 +86,7 @@ def fly_all(
     gap acceleration so many are `vanishing` at the start. Given is also what follows the tip of the
     axis, under which numbers, and the times at the start.
     """
-    tip, launches, begun = seen
+    tip, launches, begins = seen
     time, highest = np.zeros_like(horizon), np.zeros_like(horizon)
     landed, lost = np.zeros((2, *horizon.shape), dtype=bool)
     top = kind.top(tuple(numbers))
@@ -95,31 +95,31 @@ def fly_all(
     def separation(i: int) -> Separation:
         return Separation.of(single(state, i), kind.top(tuple(numbers[:, i].tolist())))
 
-    given = np.array([*state.pack(), time, horizon, vanishing, *tip.wanted(launches)])
+    starts = np.array([*state.pack(), time, horizon, vanishing, *tip.pauses(launches)])
     for _ in range(PIECES):
         active = np.flatnonzero(~landed & ~lost & (time < horizon))
         if not len(active):
             break
-        found = pieces(kind, given[:, active], numbers[:, active])
-        doubtful = np.flatnonzero(found.doubt)
+        parts = pieces(kind, starts[:, active], numbers[:, active])
+        doubtful = np.flatnonzero(parts.doubt)
         if len(doubtful):
             which = active[doubtful]
-            moments = begun[which] + time[which]
+            moments = begins[which] + time[which]
             seen_there = tip, launches[which], moments
-            looked = closer_extremes(kind, given[:, which], numbers[:, which], seen_there)
-            for kept, better in zip(found, looked, strict=True):
-                kept[doubtful] = better
-            given[WANTED] = tip.wanted(launches)
+            looked = closer_extremes(kind, starts[:, which], numbers[:, which], seen_there)
+            for numbers_of_part, better in zip(parts, looked, strict=True):
+                numbers_of_part[doubtful] = better
+            starts[WANTED] = tip.pauses(launches)
         none = np.full(len(active), np.nan)
-        tip.put_of(launches[active], np.array([none, found.floor, -found.ceiling]))
-        highest[active] = np.fmax(highest[active], found.highest_gap)
-        over, before = found.span == given[LEFT, active], time[active]
-        time[active] = np.where(over, horizon[active], before + found.span)
-        landed[active] = found.touches != 0.0
+        tip.put_of(launches[active], np.array([none, parts.floor, -parts.ceiling]))
+        highest[active] = np.fmax(highest[active], parts.highest_gap)
+        over, before = parts.span == starts[LEFT, active], time[active]
+        time[active] = np.where(over, horizon[active], before + parts.span)
+        landed[active] = parts.touches != 0.0
         lost[active] = ~landed[active] & ~(time[active] > before)
         flying = ~landed & ~lost & (time < horizon)
         time = np.minimum(turns.leap(time, flying, separation), horizon)
-        given[TIME], given[LEFT], given[VANISHING] = time, horizon - time, 0.0
+        starts[TIME], starts[LEFT], starts[VANISHING] = time, horizon - time, 0.0
     time[lost] = 0.0
     last = fly(state, time, top, np)
     ground = top.surface.height(np.clip(last.axis[2], -1.0, 1.0))

@@ -154,7 +154,7 @@ class Draws(Entry):
     """
 
     ranges: Annotated[
-        tuple[Range, ...], BeforeValidator(lambda given: read_fields("fields", given, Range.of))
+        tuple[Range, ...], BeforeValidator(lambda table: read_fields("fields", table, Range.of))
     ] = Field(alias="fields")
     count: Count
     seed: Annotated[Whole, Field(ge=0)] = 0

@@ -82,15 +82,15 @@ class Slots:
     def keep(self, working: Indices) -> None:
         """Keep the lanes at work, and as many others as fill them up."""
         missing = -len(working) % LANES
-        kept = np.concatenate((working, np.full(missing, working[-1], dtype=np.intp)))
-        self.alive = np.arange(len(kept)) < len(working)
+        retained = np.concatenate((working, np.full(missing, working[-1], dtype=np.intp)))
+        self.alive = np.arange(len(retained)) < len(working)
         for name in ("cell", "end", "held", "before"):
-            setattr(self, name, getattr(self, name)[kept])
+            setattr(self, name, getattr(self, name)[retained])
         for name in ("numbers", "rows"):
-            setattr(self, name, np.ascontiguousarray(getattr(self, name)[:, kept]))
+            setattr(self, name, np.ascontiguousarray(getattr(self, name)[:, retained]))
         self.rows[self.layout.remaining] *= self.alive
         self.spare = np.zeros_like(self.rows)
-        self.tip = self.tip.some(kept)
+        self.tip = self.tip.some(retained)
 
     def tops(self, lanes: Indices | Flags) -> Top:
         """Return some of the tops, with arrays for numbers."""
@@ -123,7 +123,7 @@ class Slots:
         """Row of the number, 0 or 1, that tells the branch of the law."""
         example = self.launches.kind.example
         pairs = zip(example.numbers, on_other_branch(example).numbers, strict=True)
-        return next(row for row, (one, other) in enumerate(pairs) if one != other)
+        return next(row for row, (first, second) in enumerate(pairs) if first != second)
 
     def change_branch(self, lanes: Indices) -> None:
         """Let tops slide on along the other branch of their law."""
@@ -141,8 +141,8 @@ class Slots:
         if not len(lanes):
             return
         ends, cells = self.ends, self.cell[lanes]
-        for kept, number in zip(ends.state.pack(), state.pack(), strict=True):
-            kept[cells] = number
+        for stored, number in zip(ends.state.pack(), state.pack(), strict=True):
+            stored[cells] = number
         fine = np.all(np.isfinite(np.array(np.broadcast_arrays(*state.pack()))), axis=0)
         ends.time[cells] = time
         ends.outcome[cells] = np.where(

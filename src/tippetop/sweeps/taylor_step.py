@@ -96,14 +96,14 @@ class Layout(NamedTuple):
     def of(cls, motion: Motion) -> "Layout":
         """Return the layout for a motion."""
         size, guards, parameters = motion.size, len(motion.guards), motion.parameters
-        kept, turns = size + 2, parameters + guards
-        pause, changed, numbers = kept + 1, kept + 5, turns + 3
+        carried, turns = size + 2, parameters + guards
+        pause, changed, numbers = carried + 1, carried + 5, turns + 3
         least, counts, band = (
-            slice(kept + 2, changed),
+            slice(carried + 2, changed),
             slice(parameters, turns),
             slice(turns + 1, numbers),
         )
-        row = (size, size + 1, kept, kept, pause, least, changed, changed + 1)
+        row = (size, size + 1, carried, carried, pause, least, changed, changed + 1)
         names = [guard.name for guard in motion.guards]
         branch = names.index(BRANCH) if BRANCH in names else None
         return cls(size, parameters, *row, counts, turns, band, numbers, branch)
@@ -145,26 +145,26 @@ def stride(
     """Return all rows after a step of `Stepper.step`, from the polynomials that start at the
     carried rows.
     """
-    left, steps = before[layout.size :]
-    counts, wanted = numbers[layout.counts], numbers[layout.turns :]
+    remaining, steps = before[layout.size :]
+    counts, band = numbers[layout.counts], numbers[layout.turns :]
     state, falls = jet
-    whole = step_size(state, left, plain, axis=3)
-    taken, changes, events = later_guards(falls, counts, (whole, layout.branch), plain)
-    floor, ceiling = extremes(state[2], taken, plain)
-    events += met(floor, ceiling, wanted, plain)
-    pressing = looked_at(falls[0], taken, LOOKS)
-    events += may_fall(falls[0], pressing, taken, plain) * counts[0]
-    moves = plain.below(0.0, taken)
+    full = step_size(state, remaining, plain, axis=3)
+    length, changes, events = later_guards(falls, counts, (full, layout.branch), plain)
+    floor, ceiling = extremes(state[2], length, plain)
+    events += met(floor, ceiling, band, plain)
+    pressing = looked_at(falls[0], length, LOOKS)
+    events += may_fall(falls[0], pressing, length, plain) * counts[0]
+    moves = plain.below(0.0, length)
     pause = events * moves
-    after = [*(horner(terms, taken) for terms in state), left - taken, steps + moves]
+    after = [*(horner(terms, length) for terms in state), remaining - length, steps + moves]
     goes = plain.below(pause, moves)
     stays = [plain.choose(goes, new, old) for old, new in zip(before, after, strict=True)]
-    stays[layout.remaining] = plain.choose(pause, 0.0 * left, after[layout.remaining])
-    force = least_value(falls[0], pressing, taken, plain)
+    stays[layout.remaining] = plain.choose(pause, 0.0 * remaining, after[layout.remaining])
+    force = least_value(falls[0], pressing, length, plain)
     least = [
         plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)
     ]
-    return [*stays, whole, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
+    return [*stays, full, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
 
 
 def extremes(tip: Sequence[Scalar], length: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
@@ -196,27 +196,27 @@ def later_guards(
     is taken, whether that ends where another branch of the law takes over, and whether a guard may
     fall in it. Only where that of the branch comes near zero is it looked at.
     """
-    whole, branch = step
-    none = 0.0 * whole
-    taken, changes, events = whole, none, none
+    full, branch = step
+    none = 0.0 * full
+    length, changes, events = full, none, none
     for number, (terms, count) in enumerate(zip(falls[1:], counts[1:], strict=True), start=1):
-        near = plain.below(lower_bound(terms, whole, plain), TINY)
+        near = plain.below(lower_bound(terms, full, plain), TINY)
         if number != branch:
             events += near * count
             continue
         need, (change, doubt) = (
-            near * plain.below(0.0, whole),
-            first_fall(terms, whole, LOOKS, plain),
+            near * plain.below(0.0, full),
+            first_fall(terms, full, LOOKS, plain),
         )
-        found, usual = (
-            (plain.least(change, whole), plain.below(change, whole), doubt),
-            (whole, none, none),
+        shorter, usual = (
+            (plain.least(change, full), plain.below(change, full), doubt),
+            (full, none, none),
         )
-        taken, changes, doubt = (
-            plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True)
+        length, changes, doubt = (
+            plain.rarely(need, a, b) for a, b in zip(shorter, usual, strict=True)
         )
         events += doubt
-    return taken, changes, events
+    return length, changes, events
 
 
 def step_size(

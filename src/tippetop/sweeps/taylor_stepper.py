@@ -61,8 +61,8 @@ class Stepper:
     def jet(self, before: Array, numbers: Array) -> Jet:
         """Return the polynomials in time of the steps that start from `before`."""
 
-        def made(start: Array, given: Array, terms: Array) -> None:
-            self._step(start, given, np.empty((self.layout.rows, start.shape[1])), terms)
+        def made(start: Array, numbers: Array, terms: Array) -> None:
+            self._step(start, numbers, np.empty((self.layout.rows, start.shape[1])), terms)
 
         return _expanded(made, before[: self.layout.carried_rows], numbers, self.motion, self.order)
 
@@ -119,9 +119,9 @@ def _expanded(
     made: Callable[..., None], start: Array, numbers: Array, motion: Motion, order: int
 ) -> Jet:
     """Return the polynomials of a motion from compiled code, coefficients one after another."""
-    count, whole = start.shape[1], padded(start)
-    terms = np.empty((_count(motion, order), whole.shape[1]))
-    made(whole, padded(numbers), terms)
+    count, padded_start = start.shape[1], padded(start)
+    terms = np.empty((_count(motion, order), padded_start.shape[1]))
+    made(padded_start, padded(numbers), terms)
     state, guards = np.split(terms[:, :count], [motion.size * (order + 1)])
     return Jet(state.reshape(motion.size, order + 1, count), guards.reshape(-1, order, count))
 

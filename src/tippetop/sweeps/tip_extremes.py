@@ -50,7 +50,7 @@ class TipMotion:
         self.early = self.least
         self.lately[:] = np.inf
 
-    def wanted(self, launches: Indices) -> Array:
+    def pauses(self, launches: Indices) -> Array:
         """Return whether some are yet to turn over, and the band that they are yet to reach, shape
         (3, n).
 
