@@ -126,7 +126,7 @@ def test_pieces_of_flights_are_what_a_closer_look_finds_and_rarely_need_it(surfa
     given[TIME], given[LEFT] = 0.0, 10.0 ** random.uniform(-3.0, 1.0, count)
     tip, lanes = TipMotion.of(count), np.arange(count)
     tip.turned[:] = 0.0
-    given[WANTED] = tip.wanted(lanes)
+    given[WANTED] = tip.pauses(lanes)
     found = pieces(kind, given, numbers)
     looked = look(kind, given, numbers, (tip, lanes, np.zeros(count)))
     sure = found.doubt == 0.0
