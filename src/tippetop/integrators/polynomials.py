@@ -126,14 +126,17 @@ class Polynomials:
         """Return the polynomials as functions of the time that is left of their intervals."""
         return Polynomials.of_unit(times(_of_the_rest(len(self.unit)), self.unit), self.span)
 
-    def first_fall(self, from_above: bool = False, after_rise: bool = False) -> Array:
+    def first_fall(
+        self, from_above: bool = False, after_rise: bool | NDArray[np.bool_] = False
+    ) -> Array:
         """First times at which the polynomials fall to zero from above, nan where they do not,
         shape (n,).
 
         Where no look finds a polynomial at or below zero, but its second derivative could take it
         there between two looks, its least value there is found first. A polynomial that starts at
         or below zero and does not rise falls at 0, unless it has to come `from_above`: then it may
-        start at zero, not below. `after_rise`, it falls no sooner than it has been positive.
+        start at zero, not below. `after_rise`, for all or for some, it falls no sooner than it has
+        been positive.
         """
         values = self.values
         falls = (values[1:] <= 0.0) & (values[:-1] > 0.0)
@@ -160,12 +163,11 @@ class Polynomials:
             zeros[which] = of_each(_zero, self.unit[:, which], low[which], high[which])
         starts = (values[0] == 0.0) if from_above else (values[0] <= 0.0)
         at_once = starts & (values[1] <= 0.0)
-        if after_rise:
-            for lane in np.flatnonzero(at_once):
+        if at_once.any():
+            zeros[at_once & np.logical_not(after_rise)] = 0.0
+            for lane in np.flatnonzero(at_once & after_rise):
                 early = _early_fall(self.unit[:, lane].tolist())
                 zeros[lane] = zeros[lane] if early is None else early
-        else:
-            zeros[at_once] = 0.0
         return zeros * self.span
 
     def refined_least(self) -> tuple[Array, Array]:

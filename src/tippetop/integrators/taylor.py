@@ -17,7 +17,7 @@ from tippetop.graph.taylor_coefficients import NodeArithmetic
 from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.machine_code import loaded
-from tippetop.integrators.polynomial_minima import looked_at, may_fall
+from tippetop.integrators.polynomial_minima import first_fall, looked_at, may_fall
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar
@@ -60,6 +60,8 @@ CACHE_LINE = 64
 """Bytes that are loaded together."""
 
 NODES = NodeArithmetic()
+
+_PLACE = ctypes.c_void_p
 
 DRIVER = """\
 declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
@@ -119,6 +121,26 @@ number:
   %next = add i64 %i, 1
   %more = icmp ult i64 %next, %size
   br i1 %more, label %number, label %end
+end:
+  ret void
+}}
+define void @falls(ptr %raw, i64 %size, i64 %guards, ptr %span, ptr %out) {{
+entry:
+  %terms = mul i64 %size, {count}
+  %guard_place = getelementptr double, ptr %raw, i64 %terms
+  br label %guard
+guard:
+  %g = phi i64 [ 0, %entry ], [ %next, %search ]
+  %guard_left = icmp ult i64 %g, %guards
+  br i1 %guard_left, label %search, label %end
+search:
+  %row = mul i64 %g, {order}
+  %begin = getelementptr double, ptr %guard_place, i64 %row
+  %pair = mul i64 %g, 2
+  %fall = getelementptr double, ptr %out, i64 %pair
+  call void @fall(ptr %begin, ptr %span, ptr %fall, i64 1)
+  %next = add i64 %g, 1
+  br label %guard
 end:
   ret void
 }}
@@ -246,7 +268,7 @@ class SeriesExpansion:
     def __init__(self, recorded: Recorded, order: int) -> None:
         self._engine = loaded(series_source(recorded, order), EFFORT)
         self.address = self._engine.get_function_address("jet")
-        self._function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(self.address)
+        self._function = ctypes.CFUNCTYPE(None, *[_PLACE] * 4)(self.address)
         self._room = room_size(recorded, order)
         guards = len(recorded.outputs) - recorded.size
         self.coefficients = recorded.size * (order + 1) + guards * order
@@ -305,8 +327,10 @@ class CompiledSteps:
         self.guards, self.order = len(motion.guards), order
         self.layout = StepLayout(recorded.size, len(recorded.outputs) - recorded.size, order)
         self._engine = _step_code(order, min(LEFT_OUT, 1.0 / tolerance))
-        kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 6, *[ctypes.c_int64] * 3)
+        kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[_PLACE] * 6, *[ctypes.c_int64] * 3)
         self.follow: Callable[..., int] = kind(self._engine.get_function_address("follow"))
+        falls = ctypes.CFUNCTYPE(None, _PLACE, *[ctypes.c_int64] * 2, *[_PLACE] * 2)
+        self.falls: Callable[..., None] = falls(self._engine.get_function_address("falls"))
         # Rooms that nobody uses at present: threads take one each.
         self.rooms = list[Array]()
 
@@ -368,7 +392,7 @@ class Run:
             if not span > 0.0:
                 failure = NOT_FINITE
                 break
-            fall = self._first_fall(span)
+            fall = self._first_fall(span, rows[steps, layout.row - 1 :].ctypes.data)
             if fall is None:
                 self._clock[3] = 0.0  # The step is taken again, whatever the guards.
                 continue
@@ -394,21 +418,28 @@ class Run:
         shape = steps, self.layout.size, self.layout.order + 1
         return DenseSolution(np.append(begin, self._knots), self._terms.reshape(shape))
 
-    def _first_fall(self, span: float) -> tuple[int, float] | None:
-        """Return which guard, or margin of a choice, falls first in a step, and when."""
-        layout, guards = self.layout, self.stepper.guards
-        terms = self._raw[layout.terms : layout.clock].reshape(layout.guards, layout.order).T
-        spans = np.full(layout.guards, span)
-        falls = Polynomials(terms, spans).first_fall(after_rise=True)
-        if layout.guards > guards:
+    def _first_fall(self, span: float, span_place: int) -> tuple[int, float] | None:
+        """Return which guard, or margin of a choice, falls first in a step, and when.
+
+        Compiled code searches. It leaves undecided guards that begin at zero or come near it.
+        """
+        layout = self.layout
+        results = np.empty((layout.guards, 2))
+        self.stepper.falls(
+            self._raw.ctypes.data, layout.size, layout.guards, span_place, results.ctypes.data
+        )
+        times, undecided = results.T.tolist()
+        if any(undecided):
+            terms = self._raw[layout.terms : layout.clock].reshape(layout.guards, layout.order).T
             # A margin may be zero at first, and then falls at once.
-            margins = Polynomials(terms[:, guards:], spans[guards:])
-            falls[guards:] = margins.first_fall()
-        fallen = [(time, number) for number, time in enumerate(falls.tolist()) if time == time]
+            is_guard = np.arange(layout.guards) < self.stepper.guards
+            spans = np.full(layout.guards, span)
+            times = Polynomials(terms, spans).first_fall(after_rise=is_guard).tolist()
+        fallen = [(time, number) for number, time in enumerate(times) if time <= span]
         if not fallen:
             return None
-        time, first = min(fallen)
-        return first, time
+        fall_time, first = min(fallen)
+        return first, fall_time
 
     def _polished(self, row: Array, span: float, guard: int, fall: float) -> float:
         """Return when a guard falls along the polynomials of the state, by Newton's method.
@@ -507,6 +538,7 @@ def _step_code(order: int, left_out: float) -> Any:
         "powers": record(lambda span, _: span_powers(span[0], order), 1, 0),
         "scale": record(scaled, count, order, 1),
         "look": record(doubt_about, order, 1),
+        "fall": record(fall_of, order, 1),
     }
     driver = DRIVER.format(
         order=order,
@@ -522,6 +554,11 @@ def doubt_about(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar
     """Return whether a guard may fall in a step of some length."""
     probes = looked_at(terms, spans[0], PROBES_PER_STEP)
     return [may_fall(terms, probes, spans[0], NODES)]
+
+
+def fall_of(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar]:
+    """Return when a guard first falls in a step, inf if never, and whether that is undecided."""
+    return [*first_fall(terms, spans[0], PROBES_PER_STEP, NODES)]
 
 
 def with_number(measures: Measures, terms: Sequence[Scalar], left_out: float) -> list[Scalar]:
