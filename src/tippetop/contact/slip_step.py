@@ -69,7 +69,7 @@ def compiled_step(motion: SlipMotion, from_end: bool) -> _Compiled:
     parameters = rows.parameters + motion.parameters + len(CONSTANTS) // STAGES
     return _Compiled(
         iterated(improve, rows.unknowns + int(from_end), parameters, STAGES),
-        iterated(terms, rows.size, 1 + len(TERMS) // STAGES, STAGES),
+        iterated(terms, rows.size, 1 + len(TERMS) // STAGES, STAGES, 0),  # once a step
     )
 
 

@@ -51,7 +51,9 @@ def first_of(numbers: Any, count: int) -> Array:
     return np.frombuffer(numbers, count=count).copy()
 
 
-def iterated(function: Improvement, size: int, parameters: int, abreast: int) -> Iteration:
+def iterated(
+    function: Improvement, size: int, parameters: int, abreast: int, effort: int = 1
+) -> Iteration:
     """Compile an improvement.
 
     Raises `NotRecordable` if the function makes a choice that depends on the numbers.
@@ -64,11 +66,15 @@ def iterated(function: Improvement, size: int, parameters: int, abreast: int) ->
         How many numbers and parameters there are.
     abreast
         How many values each has, one after another in the room for them.
+    effort
+        How hard the compiler tries, see `tippetop.integrators.machine_code`; 0 for a function that
+        is seldom called.
     """
     from tippetop.integrators.machine_code import iteration  # noqa: PLC0415 - slow to import
 
     values = NodeValues()
-    return iteration(record(lambda y, p: function(y, p, values), size, parameters), abreast)
+    recorded = record(lambda y, p: function(y, p, values), size, parameters)
+    return iteration(recorded, abreast, effort)
 
 
 def _rows(numbers: Any, abreast: int) -> Array:

@@ -30,9 +30,9 @@ def machine_code(
     return {name: Compiled(engine, name, bool(one.optional)) for name, one in functions.items()}
 
 
-def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
+def iteration(function: Recorded, abreast: int, effort: int = EFFORT) -> Callable[..., int]:
     """Compile a function that is iterated, of arrays of `ctypes`; see `llvm_source`."""
-    engine = loaded(llvm_source({"made": function}, abreast, again=True))
+    engine = loaded(llvm_source({"made": function}, abreast, again=True), effort)
     kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3, ctypes.c_double, ctypes.c_int64)
     compiled: Any = kind(engine.get_function_address("made"))
     compiled.engine = engine
