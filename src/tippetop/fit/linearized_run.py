@@ -371,7 +371,7 @@ class LinearizedRun:
             )
             if solved is None:
                 size = (1 + len(tangents[some])) * len(start)
-                solutions.append(DenseSolution.nothing(visit.time, size))
+                solutions.append(DenseSolution.empty(visit.time, size))
                 for direction in range(first, first + len(tangents[some])):
                     self.fail(direction, visit.time, UNSOLVED)
                 ended.append(np.zeros_like(tangents[some]))
