@@ -15,15 +15,10 @@ from tippetop.mechanics.contacts.slip_variables import APART, inner, scaled, siz
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.top import Top
 
-FIRST, TURN = 0.5, 1.0
-"""Length of the first step that is tried, in natural units of time, at most; and the angle of
-precession in it, rad. Longer steps mostly fail, and shorter ones need a second step.
-"""
-
-LEAST, LEAST_FIRST = 0.005, 1e-13
-"""Length of the shortest step, in natural units of time, below which slip does not follow what
-drives it and other methods are quicker; and of the shortest first one, below which rounding of the
-numbers hides what begins.
+FIRST, LEAST, LEAST_FIRST = 0.5, 0.005, 1e-13
+"""Length of the first step that is tried, in natural units of time; the shortest one, below which
+slip does not follow what drives it and other methods are quicker; and the shortest first one, below
+which rounding of the numbers hides what begins.
 """
 
 ACCURACY = 1e-22
@@ -102,8 +97,7 @@ def follow_slip(
         The parameters of the motion, if they are not the numbers of the top.
     """
     step = SlipStep(motion, top.numbers if numbers is None else numbers)
-    now, directions = [*start[0]], [*start[1]]
-    length = first_length(tuple(now[3:6]), top)
+    now, directions, length = [*start[0]], [*start[1]], FIRST
     first, count = motion.velocities[0]
     knots, rows, ended = [0.0], list[Array](), False
 
@@ -156,12 +150,6 @@ def follow_slip(
                 length = min(length * longer, BEYOND * length / PARTS * remaining_parts)
         rows.append(pieces)
     return SlipPhase(knots, rows, now, ended, step.sweeps)
-
-
-def first_length(momentum: Slip, top: Top) -> float:
-    """Return the length of the first step that is tried, for an angular momentum."""
-    turning = float(size(momentum) / top.transverse_inertia)
-    return FIRST * TURN / max(TURN, FIRST * turning)
 
 
 def change_over(pieces: Array, size: int) -> list[float]:
