@@ -111,7 +111,7 @@ def states(segment, count=5):
 
 
 @pytest.mark.parametrize("seed", [ONE_THEN_BOTH, SLIPS_AGAIN])
-def test_what_sticks_does_not_slip_and_takes_no_more_than_it_can(seed: int) -> None:
+def test_sticking_contacts_do_not_slip_and_stay_within_the_friction_cone(seed: int) -> None:
     seen = set()
     for segment in followed(seed):
         mode = segment.mode
@@ -146,7 +146,7 @@ def test_what_sticks_does_not_slip_and_takes_no_more_than_it_can(seed: int) -> N
     assert ((True, False), -1.0) in seen
 
 
-def test_force_across_leaves_less_along() -> None:
+def test_force_across_the_line_reduces_the_reserve_along_it() -> None:
     """Against many ways to share the force out between both contacts."""
     segment = next(s for s in followed(ONE_THEN_BOTH) if s.mode.label == "sticking_on_0_and_1")
     (_, state), *_ = states(segment)
@@ -174,7 +174,7 @@ def test_force_across_leaves_less_along() -> None:
 @pytest.mark.parametrize(
     ("seed", "near"), among([(ONE_THEN_BOTH, 1e-3), (SLIPS_AGAIN, 1e-2)], check=1)
 )
-def test_it_is_the_limit_of_friction_that_is_smoothed(seed, near) -> None:
+def test_sticking_on_two_is_the_limit_of_smoothed_friction(seed, near) -> None:
     """With f = -mu v / sqrt(v^2 + eps^2) both contacts creep, by the equations of sliding on
     two.
     """

@@ -189,7 +189,7 @@ def test_resuming_on_another_processor_says_that_cells_may_differ(tmp_path, monk
     assert read_sweep(path).attrs["processor"] == "abacus"
 
 
-def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, monkeypatch):
+def test_results_are_on_disk_before_their_status_says_so(tmp_path, small_tasks, monkeypatch):
     """What would be left if the power were cut after any step: files whose content was brought to
     store_lock.
     """
@@ -223,7 +223,7 @@ def test_results_are_on_disk_before_they_are_said_to_be(tmp_path, small_tasks, m
     assert chunks <= synced
 
 
-def test_a_disk_that_does_not_take_it_leaves_the_task_undone(tmp_path, small_tasks, monkeypatch):
+def test_a_task_stays_pending_when_the_disk_is_full(tmp_path, small_tasks, monkeypatch):
     Store.create(tmp_path / "a.zarr", quick())
     store = Store.resume(tmp_path / "a.zarr")
 
@@ -295,7 +295,7 @@ def test_a_writer_notices_that_its_store_was_replaced(tmp_path, small_tasks):
     assert not path.exists()
 
 
-def test_of_several_that_make_one_store_one_does(tmp_path, small_tasks):
+def test_one_of_several_threads_creates_a_store(tmp_path, small_tasks):
     said, ready = [], threading.Barrier(4)
 
     def make():
@@ -344,7 +344,7 @@ def test_what_a_killed_program_left_is_cleared_away_by_the_next(tmp_path):
 @pytest.mark.parametrize(
     "text", ["[]", "3", "null", "{", "", '{"attributes": []}', "[" * 9999, "\ud800"]
 )
-def test_metadata_that_are_none_are_no_sweep(tmp_path, text):
+def test_invalid_metadata_are_refused(tmp_path, text):
     path = tmp_path / "a.zarr"
     path.mkdir()
     (path / "zarr.json").write_bytes(text.encode(errors="surrogatepass"))

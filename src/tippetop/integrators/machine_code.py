@@ -23,14 +23,14 @@ FORMATS = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")
 
 
 def machine_code(
-    functions: Mapping[str, Recorded], abreast: int = 1, effort: int = EFFORT
+    functions: Mapping[str, Recorded], abreast: int = 1, effort: int | None = None
 ) -> "dict[str, Compiled]":
     """Compile what was recorded, for so many launches an instruction, or take it from the cache."""
     engine = loaded(llvm_source(functions, abreast), effort)
     return {name: Compiled(engine, name, bool(one.optional)) for name, one in functions.items()}
 
 
-def iteration(function: Recorded, abreast: int, effort: int = EFFORT) -> Callable[..., int]:
+def iteration(function: Recorded, abreast: int, effort: int | None = None) -> Callable[..., int]:
     """Compile a function that is iterated, of arrays of `ctypes`; see `llvm_source`."""
     engine = loaded(llvm_source({"made": function}, abreast, again=True), effort)
     kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3, ctypes.c_double, ctypes.c_int64)
@@ -39,8 +39,9 @@ def iteration(function: Recorded, abreast: int, effort: int = EFFORT) -> Callabl
     return cast(Callable[..., int], compiled)
 
 
-def loaded(source: str, effort: int = EFFORT) -> llvm.ExecutionEngine:
-    """Return the machine code of a source, compiled or taken from the cache."""
+def loaded(source: str, effort: int | None = None) -> llvm.ExecutionEngine:
+    """Return the machine code of a source, compiled with an effort or taken from the cache."""
+    effort = EFFORT if effort is None else effort
     made = (source, llvmlite.__version__, effort)
     content = run_interruptibly(lambda: kept_content(made, lambda: _compiled(source, effort)))
     if not content.startswith(FORMATS):
