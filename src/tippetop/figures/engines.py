@@ -15,7 +15,7 @@ from tippetop.engines.reference import case_of
 
 
 def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw the early error over the step, a panel a case, each program at its best setting."""
+    """Draw the error over the step, a panel a case, each program at its best setting."""
     best = {(one.engine, one.case): one.setting for one in verdicts(results)}
     cases = list(dict.fromkeys(case for _, case in best))
     columns = min(4, max(1, len(cases)))
@@ -28,9 +28,9 @@ def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
         for number, result in enumerate(results.values()):
             setting = best.get((result["engine"], case))
             drawn = [
-                (row["step"], row["early_error"])
+                (row["step"], row["error"])
                 for row in result["rows"]
-                if (row["case"], row["setting"]) == (case, setting) and row.get("early_error")
+                if (row["case"], row["setting"]) == (case, setting) and row.get("error")
             ]
             if drawn:
                 steps, errors = zip(*sorted(drawn), strict=True)

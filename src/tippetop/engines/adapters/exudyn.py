@@ -151,7 +151,7 @@ class ExudynStepper:
         ]
         system.Assemble()
         settings = exu.SimulationSettings()
-        count = round(self.case.duration / self.step)
+        count = round(float(self.case.times[self.case.compared - 1]) / self.step)
         settings.timeIntegration.numberOfSteps = count
         settings.timeIntegration.endTime = count * self.step
         settings.timeIntegration.verboseMode = 0
