@@ -127,7 +127,7 @@ class Solver:
             self.law = ellipsoidal(friction.mu, 3.0 * math.pi / 16.0 * friction.patch_radius)
         elif friction.kind == "contensou":
             self.law = hertz(friction.mu, friction.patch_radius)
-        self.events, self.samples = [], []
+        self.events, self.samples, self.methods = [], [], {"DOP853"}
         self.launch(problem.launch)
 
     @staticmethod
@@ -715,6 +715,7 @@ class Solver:
 
     def creep(self):
         """Slip with dry friction where its direction is stiff, to its end."""
+        self.methods.add("Radau")
         left = self.until()
 
         def rates(_, y):

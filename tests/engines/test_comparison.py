@@ -110,6 +110,16 @@ def test_interrupted_results_go_on_where_they_ended(tmp_path, monkeypatch):
     assert len(calls) == 4
 
 
+def test_results_of_other_options_are_run_again(tmp_path):
+    done = comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS[:1])["moreau"]
+    (setting,) = done["settings"]
+    setting["options"] = {"rounds": 3}
+    done["rows"][0]["error"] = 1.0
+    (tmp_path / "moreau.json").write_text(json.dumps(done))
+    again = comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS[:1])["moreau"]
+    assert [row["error"] < 1.0 for row in again["rows"]] == [True]
+
+
 def test_a_damaged_file_of_results_is_said(tmp_path):
     (tmp_path / "moreau.json").write_text("{")
     with pytest.raises(tt.InvalidInput, match="file of results"):

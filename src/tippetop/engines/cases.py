@@ -87,10 +87,10 @@ CASES = (
     ),
     Case(
         "stick-slip",
-        "A top on slippery dry friction sticks and slips 190 times",
+        "A top on slippery dry friction sticks and slips 48 times",
         "many beginnings and ends of slip",
         _on_friction(tt.CoulombFriction(mu=0.02985), 155.0),
-        6.0,
+        1.5,
         compared=5,
     ),
     Case(

@@ -290,14 +290,23 @@ def _predicted(before: Mapping[str, Any], task: EngineTask, step: float) -> floa
 
 
 def _opened(folder: Path, name: str, made: Adapter) -> dict[str, Any]:
-    """Return the results of a folder if they are of the same versions, or empty ones."""
+    """Return the results of a folder if they are of the same versions and options, or empty ones.
+
+    Results of settings whose options are no longer the same are left out.
+    """
     head = {"engine": made.name, "version": version_of(made), "suite": SUITE_VERSION}
-    stored = load(folder, name)
-    if stored is not None and all(stored.get(key) == value for key, value in head.items()):
-        return stored
-    settings = [setting._asdict() for setting in made.settings]
-    refused = {case.name: made.refusal(case) for case in CASES if made.refusal(case)}
-    return {**head, "settings": settings, "refused": refused, "limits": [], "rows": []}
+    about = {
+        "settings": [setting._asdict() for setting in made.settings],
+        "refused": {case.name: made.refusal(case) for case in CASES if made.refusal(case)},
+    }
+    results = load(folder, name)
+    if results is None or any(results.get(key) != value for key, value in head.items()):
+        return {**head, **about, "limits": [], "rows": []}
+    options = {setting["name"]: setting["options"] for setting in results["settings"]}
+    unchanged = [one.name for one in made.settings if options.get(one.name) == one.options]
+    for part in ("limits", "rows"):
+        results[part] = [one for one in results[part] if one["setting"] in unchanged]
+    return {**results, **about}
 
 
 def _has(result: Mapping[str, Any], task: EngineTask, step: float) -> bool:
