@@ -5,7 +5,7 @@ mesh stands for any other surface, with its error stated. The inertia is explici
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree as Xml
@@ -346,7 +346,7 @@ def _checked(problem: object, path: object, overwrite: object, ending: str) -> P
     return checked
 
 
-def _write_texts(texts: Mapping[Path, str], overwrite: bool, written: Written) -> Written:
+def _write_texts(texts: dict[Path, str], overwrite: bool, written: Written) -> Written:
     """Write files, of which the first refers to the others and comes last."""
     for path in texts:
         place_for(path, overwrite)

@@ -21,7 +21,7 @@ def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
     columns = min(4, max(1, len(cases)))
     rows = -(-len(cases) // columns) or 1
     figure, axes = plt.subplots(
-        rows, columns, figsize=(2.6 * columns, 2.3 * rows), sharex=True, squeeze=False
+        rows, columns, figsize=(2.6 * columns, 2.3 * rows), squeeze=False
     )
     engines = [result["engine"] for result in results.values()]
     for panel, case in zip(axes.flat, cases, strict=False):
@@ -41,7 +41,7 @@ def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
     for panel in axes[-1]:
         panel.set_xlabel("step (ms)")
     for panel in axes[:, 0]:
-        panel.set_ylabel("error of the axis")
+        panel.set_ylabel("error")
     handles = [Line2D([], [], marker="o", ms=3, color=f"C{k}") for k in range(len(engines))]
     figure.legend(handles, engines, loc="outside upper center", ncols=len(engines), frameon=False)
     figure.set_layout_engine("constrained")
