@@ -126,7 +126,7 @@ def test_a_damaged_file_of_results_is_said(tmp_path):
         comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS)
 
 
-@pytest.mark.parametrize("name", ADAPTERS)
+@pytest.mark.parametrize("name", comparison.stored())
 def test_stored_results_are_of_every_case_setting_and_step(name):
     stored, made = comparison.stored([name])[name], adapter(name)
     assert stored["suite"] == comparison.SUITE_VERSION
@@ -146,15 +146,16 @@ def test_stored_results_are_of_every_case_setting_and_step(name):
 
 
 def test_a_stored_result_comes_again(tmp_path):
-    again = comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS)["moreau"]
-    kept = {
-        row["asked_step"]: row
-        for row in comparison.stored()["moreau"]["rows"]
-        if row["case"] == "restitution"
-    }
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    stored = comparison.stored()["mujoco"]
+    again = comparison.compare(tmp_path, ["mujoco"], ["painleve"], STEPS)["mujoco"]
+    if again["version"] != stored["version"]:
+        pytest.skip("the stored results are of another version")
+    before = {(row["case"], row["setting"], row["asked_step"]): row for row in stored["rows"]}
     for row in again["rows"]:
+        earlier = before[row["case"], row["setting"], row["asked_step"]]
         for name in ("error", "energy_error", "tilt_error"):
-            assert row[name] == pytest.approx(kept[row["asked_step"]][name], rel=1e-6, abs=1e-12)
+            assert row[name] == pytest.approx(earlier[name], rel=1e-6, abs=1e-12)
 
 
 def test_without_any_program_the_stored_results_are_shown_in_80_columns(monkeypatch):

@@ -9,6 +9,7 @@ that is regularized over a range of slip speeds, of which the best is given.
 import functools
 import math
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,7 +46,8 @@ class Limit(NamedTuple):
     case: str
     setting: str
     law: str
-    """"reference", "regularized", "different", or "none" where results do not converge."""
+    """"reference", "regularized", "different", or "none" where results do not converge to what can
+    be told: to the reference only where their errors become less."""
     order: float
     """Order of convergence to the limit, which is not the reference in general."""
     step_error: float
@@ -71,7 +73,11 @@ def limit_of(case: Case, rows: Sequence[Mapping[str, Any]]) -> Limit:
     if step_error > FARTHEST:
         return Limit(case.name, setting, "none", *4 * (math.nan,))
     law, width = "reference", math.nan
-    if model_error > SAME * step_error:
+    if model_error <= SAME * step_error:
+        errors = [_distance(one, reference_state(case)) for one in states[-3:]]
+        if not all(b <= SLOWEST_CONVERGENCE * a for a, b in pairwise(errors)):
+            return Limit(case.name, setting, "none", *4 * (math.nan,))
+    else:
         law = "different"
         if isinstance(case.problem.friction, tt.CoulombFriction):
             best, apart = nearest_width(case, state)

@@ -20,9 +20,7 @@ def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
     cases = list(dict.fromkeys(case for _, case in best))
     columns = min(4, max(1, len(cases)))
     rows = -(-len(cases) // columns) or 1
-    figure, axes = plt.subplots(
-        rows, columns, figsize=(2.6 * columns, 2.3 * rows), squeeze=False
-    )
+    figure, axes = plt.subplots(rows, columns, figsize=(2.6 * columns, 2.3 * rows), squeeze=False)
     engines = [result["engine"] for result in results.values()]
     for panel, case in zip(axes.flat, cases, strict=False):
         for number, result in enumerate(results.values()):
