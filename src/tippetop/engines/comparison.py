@@ -367,7 +367,10 @@ def verdicts(results: Mapping[str, Mapping[str, Any]]) -> list[EngineVerdict]:
 
 def _limit(record: Mapping[str, Any]) -> Limit:
     """Return a limit from its record in a file."""
-    return Limit(**{name: math.nan if value is None else value for name, value in record.items()})
+    values: dict[str, Any] = {
+        name: math.nan if value is None else value for name, value in record.items()
+    }
+    return Limit(**values)
 
 
 def errors_at(
