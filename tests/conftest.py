@@ -5,6 +5,7 @@ Hypothesis searches with fixed seeds, so that a check fails for a change and for
 `--hypothesis-profile=search`, which `make campaigns` asks for, searches at random and for longer.
 """
 
+import gc
 import os
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from hypothesis import HealthCheck, settings
 from browsing import browser, visit
 from children import RUN, end_leftovers, signals_heard
 from tippetop.export import bundle
+from tippetop.integrators import machine_code
 from tippetop.page_engine import HERE
 
 __all__ = ["browser", "visit"]
@@ -25,7 +27,7 @@ SOURCE = HERE.parent
 GENERATED = (HERE / "mechanics.js", HERE / "tables.js")
 
 anywhere = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.register_profile("fixed", anywhere, max_examples=50, derandomize=True, database=None)
+settings.register_profile("fixed", anywhere, max_examples=25, derandomize=True, database=None)
 settings.register_profile("search", anywhere, max_examples=2000, print_blob=True)
 settings.load_profile("fixed")
 
@@ -42,6 +44,13 @@ def pytest_configure(config: pytest.Config) -> None:
             path.touch()
 
 
+def pytest_collection_finish() -> None:
+    """Keep the collection of garbage from walking over all modules again and again."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(10_000, 10, 10)
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_sessionfinish(session: pytest.Session) -> Iterator[None]:
     """Fail if a test left a process behind, once pytest's workers have ended."""
@@ -51,6 +60,21 @@ def pytest_sessionfinish(session: pytest.Session) -> Iterator[None]:
     if left := end_leftovers(os.environ[RUN]):
         print("\nThese tests left processes running, which were ended:", *left, sep="\n")
         session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+COMPILED_AS_FOR_USERS = ("graph", "integrators", "sweeps")
+"""Folders of the tests of compiled code and of its numbers."""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _quick_compiler(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Compile with the least effort elsewhere, in less than half the time: the operations and the
+    order in which they are rounded are the same.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        if request.path.parent.name not in COMPILED_AS_FOR_USERS:
+            patch.setattr(machine_code, "EFFORT", 0)
+        yield
 
 
 @pytest.fixture

@@ -26,7 +26,8 @@ def computed(case: Case) -> tuple[list, list, str]:
     if case.name == "rest":
         return *rocking(case.problem, case.times), "Lagrange's equation in the tilt, DOP853"
     solver = Solver(case.problem).follow(case.times)
-    return solver.samples, solver.events, "Newton and Euler with multipliers, DOP853"
+    methods = " and ".join(sorted(solver.methods))
+    return solver.samples, solver.events, f"Newton and Euler with multipliers, {methods}"
 
 
 def write(case: Case) -> Path:

@@ -5,13 +5,14 @@ full 6 x 6 mass matrix; contact forces are multipliers of the constraints on acc
 dense linear system an evaluation. SciPy's DOP853 takes the steps, and an event is located by
 integrating up to it again until it is hit. Slip near its end runs in a clock of its own,
 dt = s dtau with the slip speed s; slip begins by polynomials that satisfy the equations at a few
-instants. Impacts are integrated over the normal impulse.
+instants. Slip that hardly grows turns quickly into its direction, a stiff problem for which there
+is SciPy's Radau. Impacts are integrated over the normal impulse.
 """
 
 import math
 
 import numpy as np
-from scipy.integrate import DOP853, solve_ivp
+from scipy.integrate import DOP853, Radau, solve_ivp
 from scipy.optimize import brentq, fsolve
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -22,8 +23,17 @@ SLOW = 1e-4
 STOPPED = 1e-18
 """Slip speed that is none, m/s."""
 
+STIFF = 0.05
+"""Growth of slip over friction's acceleration below which the slip's direction is stiff."""
+
+STIFF_RTOL = 1e-11
+"""Relative tolerance of Radau, which has order 5 and estimates its error at order 3."""
+
+STRAIGHT = 1e-13
+"""Slip speed from which stiff slip ends along a straight line, m/s: its last 1e-10 s."""
+
 BEGINS, INSTANTS = 1.5e-4, 4
-"""How long slip's beginning is a polynomial, s, and at how many instants it is exact.
+"""How long at most slip begins as a polynomial, s, and at how many instants it is exact.
 """
 
 
@@ -117,7 +127,7 @@ class Solver:
             self.law = ellipsoidal(friction.mu, 3.0 * math.pi / 16.0 * friction.patch_radius)
         elif friction.kind == "contensou":
             self.law = hertz(friction.mu, friction.patch_radius)
-        self.events, self.samples = [], []
+        self.events, self.samples, self.methods = [], [], {"DOP853"}
         self.launch(problem.launch)
 
     @staticmethod
@@ -647,29 +657,30 @@ class Solver:
         i = self.closed[0]
         _, _, _, (tangent,), _ = self.solve(self.n, self.w, [(i, None)])
         first = math.atan2(-tangent[1], -tangent[0])
-        instants = BEGINS * np.arange(1, INSTANTS + 1) / INSTANTS
+        length = min(BEGINS, self.until())
+        instants = length * np.arange(1, INSTANTS + 1) / INSTANTS
 
         def direction(numbers, t):
             """Direction and its rate."""
-            x = t / BEGINS
+            x = t / length
             terms = [b * x**k for k, b in enumerate(numbers[INSTANTS:], 1)]
             rates = [k * b * x ** (k - 1) for k, b in enumerate(numbers[INSTANTS:], 1)]
-            return first + sum(terms), sum(rates) / BEGINS
+            return first + sum(terms), sum(rates) / length
 
         def speed(numbers, t):
             """Speed and its rate."""
-            x = t / BEGINS
+            x = t / length
             a = 10.0 * numbers[:INSTANTS]
             terms = [a[k] * x ** (k + 2) for k in range(INSTANTS)]
             rates = [(k + 2) * a[k] * x ** (k + 1) for k in range(INSTANTS)]
-            return sum(terms) * BEGINS**2, sum(rates) * BEGINS
+            return sum(terms) * length**2, sum(rates) * length
 
         def states(numbers):
             def rates(t, y):
                 w1, *_ = self.skid_rates(y[:3], y[3:6], direction(numbers, t)[0])
                 return np.concatenate((cross(y[3:6], y[:3]), w1))
 
-            h, y, t = BEGINS / INSTANTS, np.concatenate((self.n, self.w)), 0.0
+            h, y, t = length / INSTANTS, np.concatenate((self.n, self.w)), 0.0
             for end in instants:
                 k1 = rates(t, y)
                 k2 = rates(t + 0.5 * h, y + 0.5 * h * k1)
@@ -695,11 +706,52 @@ class Solver:
         self.n, self.w, self.time = y[:3], y[3:6], self.time + t
         self.s, self.phi = speed(numbers, t)[0], direction(numbers, t)[0]
         assert self.s > 0.0, message
+        if length < BEGINS:
+            slip = self.s * np.array([math.cos(self.phi), math.sin(self.phi), 0.0])
+            self.u = slip - cross(self.w, self.contact(i, self.n))
+            self.on_table()
+            self.time = self.times[self.next]
+            self.take(self.n, self.w, self.u, self.z)
+
+    def creep(self):
+        """Slip with dry friction where its direction is stiff, to its end."""
+        self.methods.add("Radau")
+        left = self.until()
+
+        def rates(_, y):
+            w1, _, along, across = self.skid_rates(y[:3], y[3:6], y[7])
+            return np.concatenate((cross(y[3:6], y[:3]), w1, [along, across / y[6]]))
+
+        y = np.concatenate((self.n, self.w, [self.s, self.phi]))
+        size = np.array([1.0] * 3 + [np.linalg.norm(self.w)] * 3 + [1e-7, 1.0])
+        solver = Radau(rates, 0.0, y, left, rtol=STIFF_RTOL, atol=1e-12 * size)
+        while solver.status == "running" and STRAIGHT < solver.y[6] < SLOW:
+            solver.step()
+        assert solver.status != "failed", "Radau found no step"
+        y, time = solver.y, solver.t
+        stops = y[6] <= STRAIGHT
+        if stops:
+            along = self.skid_rates(y[:3], y[3:6], y[7])[2]
+            y, time = y - rates(0.0, y) * y[6] / along, time - y[6] / along
+        self.n, self.w, self.s, self.phi = y[:3].copy(), y[3:6].copy(), float(y[6]), float(y[7])
+        self.time += time
+        slip = self.s * np.array([math.cos(self.phi), math.sin(self.phi), 0.0])
+        self.u = (0.0 if stops else slip) - cross(self.w, self.contact(self.closed[0], self.n))
+        self.on_table()
+        if stops:
+            return self.settle()
+        if time == left:
+            self.time = self.times[self.next]
+            self.take(self.n, self.w, self.u, self.z)
+        return "skid"
 
     def skid(self):
         """Slip with dry friction, in time or, where it is slow, in its own clock."""
         i = self.closed[0]
         slow = self.s < SLOW
+        _, normal, along, _ = self.skid_rates(self.n, self.w, self.phi)
+        if slow and abs(along) < STIFF * self.mu * normal / self.mass:
+            return "creep"
         circle = np.linspace(0.0, 2.0 * math.pi, 60)
         jams = min(self.mass * self.answer(self.n, phi) for phi in circle) < 0.0
 

@@ -103,6 +103,16 @@ def test_the_blocks_of_a_page_run(page):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_every_picture_of_a_page_has_a_text_alternative(page):
+    """Those that cells of notebooks draw state it as an option, others in their brackets."""
+    text = page.read_text(encoding="utf-8")
+    drawn = [block["code"] for block in BLOCK.finditer(text) if "plt.show()" in block["code"]]
+    if "{code-cell}" in text:
+        assert [code for code in drawn if not re.search(r'alt: "[A-Z][^"]+\."', code)] == []
+    assert "![](" not in text
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_the_commands_of_a_page_are_understood(page):
     """Those that would take too long to run here, with all their options."""
     group = get_command(app)

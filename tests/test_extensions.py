@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
@@ -31,7 +32,7 @@ from tippetop.extend import (
     Units,
     Vector,
 )
-from tippetop.graph.hoisting import played
+from tippetop.graph.hoisting import evaluated
 from tippetop.graph.recording import record
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -373,7 +374,7 @@ class NotPlainFriction(tt.Friction):
         lambda problem: tt.sweep(problem, {"launch.spin": [100.0]}, duration=0.01),
     ],
 )
-def test_what_no_law_can_use_is_told_in_a_sentence(
+def test_a_law_that_cannot_be_recorded_is_refused(
     rooted: bool, sentence: str, run: Callable[[tt.Problem], Any]
 ) -> None:
     problem = REPORT.model_copy(update={"friction": NotPlainFriction(rooted=rooted)})
@@ -397,7 +398,7 @@ def test_functions_take_numbers_arrays_and_recorded_numbers(number: float) -> No
     ]
     assert values([number], []) == expected
     assert np.array(values([np.array([number, number])], [])).T.tolist() == [expected, expected]
-    assert played(record(values, 1, 0), [number], []) == expected
+    assert evaluated(record(values, 1, 0), [number], []) == expected
 
 
 def test_rolling_resistance_is_a_torque_beside_the_law_defined() -> None:
@@ -493,7 +494,7 @@ def test_worker_processes_find_the_same(what: str, monkeypatch: pytest.MonkeyPat
 
 
 @EACH
-def test_they_go_into_text_and_come_back(what: str) -> None:
+def test_added_parts_survive_toml_and_json(what: str) -> None:
     problem = PROBLEMS[what]
     assert tt.Problem.from_toml(problem.to_toml()) == problem
     assert tt.Problem.from_json(problem.to_json()) == problem
@@ -543,6 +544,7 @@ def test_a_kind_needs_a_word_of_its_own() -> None:
 
 
 SCRIPT = """
+print("once")
 import sys
 import tippetop as tt
 from typing import Literal, NamedTuple
@@ -572,32 +574,35 @@ for count in workers:
         print(*found["final_omega3"].values)
     except tt.InvalidInput as error:
         print(error)
+print(__file__.endswith("script.py"), __spec__)
+"""
+"""It has no `if __name__ == "__main__"`, which the standard library asks for where processes are
+started.
 """
 
 
-def outputs(workers: str, *missing: str) -> list[str]:
+def outputs(folder: Path, workers: str, *missing: str) -> list[str]:
     """Return what the script prints for numbers of workers (0 lets the sweep choose) where modules
     are missing.
     """
-    done = subprocess.run(
-        [sys.executable, "-c", SCRIPT, workers, *missing],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    script = folder / "script.py"
+    script.write_text(SCRIPT, encoding="utf-8")
+    command = [sys.executable, script, workers, *missing]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
     return done.stdout.splitlines()
 
 
-def test_what_a_script_defines_is_computed_by_workers() -> None:
+def test_what_a_script_defines_is_computed_by_workers_that_do_not_run_it(tmp_path: Path) -> None:
     problem = tt.presets.report_problem()
     found = tt.sweep(problem, {"launch.spin": [100.0, 155.0]}, duration=0.1, workers=1)
-    (line,) = outputs("2")
+    first, line, last = outputs(tmp_path, "2")
+    assert (first, last) == ("once", "True None")
     numbers = list(map(float, line.split()))
     np.testing.assert_allclose(numbers, found["final_omega3"].values, rtol=1e-12)
 
 
-def test_without_cloudpickle_it_is_computed_in_its_own_process() -> None:
-    first, second = outputs("0,2", "cloudpickle")
+def test_without_cloudpickle_it_is_computed_in_its_own_process(tmp_path: Path) -> None:
+    _, first, second, _ = outputs(tmp_path, "0,2", "cloudpickle")
     assert len(first.split()) == 2
     assert second.startswith("workers: 2 asks for other processes")
     assert "cloudpickle" in second

@@ -337,7 +337,7 @@ def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPa
 def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """Numbers that turn for ever, as the direction of slip may, in the clock in which it ends."""
     monkeypatch.setattr(slip_end_motion, "MOST", 4)
-    monkeypatch.setattr(sampling, "MANY", 16)
+    monkeypatch.setattr(sampling, "ARC_STEPS", 16)
     turning = Motion(
         lambda y, pace: (pace[0] * y[1], -pace[0] * y[0]), size=2, parameters=1, guards=()
     )
@@ -345,7 +345,7 @@ def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     arcs = list(slip_end_motion.slip_end_arcs(method, turning, [1e4], start))
     assert arcs[-1].failure == "slip, or rolling, takes too many steps to end"
     assert len(arcs) == 4
-    monkeypatch.setattr(sampling, "MANY", 64)
+    monkeypatch.setattr(sampling, "ARC_STEPS", 64)
     slow = list(slip_end_motion.slip_end_arcs(method, turning, [1e-4], start))
     assert slow[-1].failure is None
     assert [arc.solution.end for arc in slow] == [*slip_end_motion.SOON, slip_end_motion.LONGEST]

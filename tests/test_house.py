@@ -88,12 +88,27 @@ def test_every_target_in_the_guide_exists() -> None:
     assert named - {target for line in lines for target in line.split()} == set()
 
 
-def test_a_launch_goes_the_way_that_the_guide_tells() -> None:
-    told = re.findall(r"^\d+\. `src/tippetop/([\w/]+\.py)`, `([\w.]+)`", GUIDE, re.MULTILINE)
+@pytest.fixture(scope="module")
+def calls() -> list[tuple[str, str]]:
+    """Functions in the order in which a launch first calls them: file and name."""
     done = subprocess.run(
         [sys.executable, "-c", FIRST_CALLS], capture_output=True, text=True, check=True
     )
-    calls = [tuple(call) for call in json.loads(done.stdout)]
+    return [tuple(call) for call in json.loads(done.stdout)]
+
+
+def test_a_launch_goes_the_way_that_the_guide_tells(calls: list[tuple[str, str]]) -> None:
+    told = re.findall(r"^\d+\. `src/tippetop/([\w/]+\.py)`, `([\w.]+)`", GUIDE, re.MULTILINE)
     first = [calls.index((str(SOURCE / path), name)) for path, name in told]
     assert len(told) == 20
     assert first == sorted(first)
+
+
+def test_an_equation_becomes_a_number_as_the_guide_tells(calls: list[tuple[str, str]]) -> None:
+    step = r"^(\d+)\. [\w ]+: `src/tippetop/([\w/]+\.py)`, `([\w.]+)`"
+    told = re.findall(step, GUIDE, re.MULTILINE)
+    assert [int(number) for number, *_ in told] == list(range(1, 8))
+    called = {int(number) for number, path, name in told if (str(SOURCE / path), name) in calls}
+    assert called == set(range(1, 7))
+    _, path, name = told[-1]
+    assert f"def {name}(" in (SOURCE / path).read_text(encoding="utf-8")

@@ -6,8 +6,6 @@ which friction in some directions of slip makes less than zero. Slip that is slo
 towards them.
 """
 
-import itertools
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -81,11 +79,11 @@ def test_a_contact_that_jams_is_struck_as_the_limit_of_elastic_ones_is(slip: flo
     # It has slipped until then, and while it sticks weight alone turns it.
     after = tt.simulate(jamming(slip=slip), 1.1 * jams, times=[0.0, jams * (1.0 + 1e-9)])
     turning = angular_velocity(after)
-    off = [np.abs(on_springs(slip, stiffness, jams) - turning) for stiffness in (1e8, 1e9, 1e10)]
+    off = [np.abs(on_springs(slip, stiffness, jams) - turning) for stiffness in (1e9, 1e10)]
     size = np.linalg.norm(turning)
-    assert np.linalg.norm(off[2]) < 1e-4 * size
+    assert np.linalg.norm(off[1]) < 1e-4 * size
     # What gravity does meanwhile falls as the time of compression, and the rest faster.
-    assert all(np.linalg.norm(b) < 0.6 * np.linalg.norm(a) for a, b in itertools.pairwise(off))
+    assert np.linalg.norm(off[1]) < 0.6 * np.linalg.norm(off[0])
 
 
 def angular_velocity(run) -> np.ndarray:

@@ -84,7 +84,7 @@ def test_what_turns_stops_under_the_couple_of_forces_and_of_drilling(pressure: s
 
 
 @pytest.mark.parametrize("pressure", among(PRESSURES, check=1))
-def test_both_end_at_once_and_neither_slips_nor_drills_then(pressure: str) -> None:
+def test_slip_and_drilling_end_together_on_both_patches(pressure: str) -> None:
     problem = with_patch(lying(ONE_THEN_BOTH), pressure, 2e-3)
     run = followed_by_steps(problem, 0.2, 101)
     ends = times(run, "stick")
@@ -116,7 +116,7 @@ def test_small_patches_stick_when_coulombs_friction_has_both_stick() -> None:
 
 
 @pytest.mark.parametrize("pressure", PRESSURES)
-def test_it_rolls_on_as_long_as_friction_can_turn_its_way_round(pressure: str) -> None:
+def test_rolling_lasts_as_long_as_friction_can_turn_the_path(pressure: str) -> None:
     """It rolls as a cone, Omega along the line of both contacts: its centre, h high, with Omega^2 h
     cot(tilt).
     """

@@ -29,8 +29,10 @@ def ball(*others: tt.Shape, **launch: Any) -> tt.Problem:
     )
 
 
-@pytest.mark.parametrize("tilt", TILTS[:-1])
-@pytest.mark.parametrize("friction", ["viscous", "coulomb"])
+@pytest.mark.parametrize(
+    ("friction", "tilt"),
+    [("coulomb", 0.0), ("coulomb", 1e-8), ("viscous", 0.0), ("viscous", 1e-9), ("viscous", 1e-3)],
+)
 def test_a_ring_that_never_touches_changes_nothing(tilt: float, friction: str) -> None:
     changes = {"friction": {"kind": friction, "mu": 0.3}}
     launch = {"tilt": tilt, "spin": 40.0, "tilt_rate": 1.0, "slip": (0.0, 0.02)}

@@ -281,7 +281,7 @@ def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(
 
 
 @pytest.mark.parametrize(("seed", "duration"), among(list(SEEDS.values()), check=1))
-def test_it_is_the_limit_of_what_is_smoothed(seed: int, duration: float) -> None:
+def test_dry_rolling_is_the_limit_of_smoothed_friction(seed: int, duration: float) -> None:
     """Where nothing sticks and no rolling stops, and two contacts that slip are all there is."""
     problem = resisted(seed)
     dry, modes = ends(problem, duration)

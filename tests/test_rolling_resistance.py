@@ -31,8 +31,11 @@ def events(run, kind):
     return run["event_time"].values[run["event_kind"].values == kind]
 
 
-@pytest.mark.parametrize("friction", [COULOMB, *PATCHES], ids=["coulomb", "hertz", "ellipsoidal"])
-@pytest.mark.parametrize("integrator", ["taylor", "dop853"])
+@pytest.mark.parametrize(
+    ("friction", "integrator"),
+    [(COULOMB, "taylor"), (PATCHES[0], "taylor"), (PATCHES[1], "dop853")],
+    ids=["coulomb-taylor", "hertz-taylor", "ellipsoidal-dop853"],
+)
 def test_a_rolling_ball_slows_down_evenly_and_stays_where_it_stops(friction, integrator):
     """About the contact point, (I + m R^2) w' = -N arm: w falls evenly to zero."""
     spin = 10.0
@@ -53,9 +56,15 @@ def test_a_rolling_ball_slows_down_evenly_and_stays_where_it_stops(friction, int
     assert np.abs(run["angular_momentum"].values[-1]).max() < 1e-20
 
 
-@pytest.mark.parametrize("pressure", ["hertz", "ellipsoidal"])
-@pytest.mark.parametrize("arm", [0.0, 1e-5])
-@pytest.mark.parametrize("tilt", [0.0, math.pi])
+@pytest.mark.parametrize(
+    ("pressure", "arm", "tilt"),
+    [
+        ("hertz", 0.0, 0.0),
+        ("hertz", 1e-5, math.pi),
+        ("ellipsoidal", 0.0, math.pi),
+        ("ellipsoidal", 1e-5, 0.0),
+    ],
+)
 def test_a_standing_top_loses_its_spin_by_drilling_and_comes_to_rest(pressure, arm, tilt):
     """I3 w' = -(3 pi / 16) mu N patch, whether it stands stably or not."""
     mu, patch, spin = 0.3, 2e-3, 100.0
@@ -156,10 +165,13 @@ def test_losses_add_up_to_the_energy_lost():
 
 def test_sweeps_find_what_runs_find():
     problem = REPORT.model_copy(update={"friction": PATCHES[1], "rolling_resistance": ARM})
-    arms, spins = [0.0, 2e-4], [0.0, 60.0]
+    arms, spins, duration = [0.0, 4e-4], [5.0], 1.2
     problem = problem.replace({"launch.tilt": 0.5})
     found = tt.sweep(
-        problem, {"rolling_resistance": arms, "launch.spin": spins}, duration=3.0, tolerance=1e-15
+        problem,
+        {"rolling_resistance": arms, "launch.spin": spins},
+        duration=duration,
+        tolerance=1e-15,
     )
     names = (
         "final_theta",
@@ -170,7 +182,9 @@ def test_sweeps_find_what_runs_find():
     for i, arm in enumerate(arms):
         for j, spin in enumerate(spins):
             run = tt.simulate(
-                problem.replace({"rolling_resistance": arm, "launch.spin": spin}), 3.0, samples=3
+                problem.replace({"rolling_resistance": arm, "launch.spin": spin}),
+                duration,
+                samples=3,
             )
             cell = found.isel(rolling_resistance=i, spin=j)
             scale = float(run["energy_start"])

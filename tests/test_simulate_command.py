@@ -139,7 +139,7 @@ def test_a_command_line_that_is_none_is_refused_in_one_sentence(
 )
 def test_a_field_is_given_once(twice: str) -> None:
     done = CliRunner().invoke(app, ["problem", *twice.split()])
-    assert str(done.exception).startswith("launch.spin: 1 stands beside ")
+    assert str(done.exception).startswith("launch.spin: 1 is given beside ")
 
 
 @pytest.mark.parametrize(

@@ -111,7 +111,7 @@ def states(segment, count=5):
 
 
 @pytest.mark.parametrize("seed", [ONE_THEN_BOTH, SLIPS_AGAIN])
-def test_what_sticks_does_not_slip_and_takes_no_more_than_it_can(seed: int) -> None:
+def test_sticking_contacts_do_not_slip_and_stay_within_the_friction_cone(seed: int) -> None:
     seen = set()
     for segment in followed(seed):
         mode = segment.mode
@@ -132,7 +132,10 @@ def test_what_sticks_does_not_slip_and_takes_no_more_than_it_can(seed: int) -> N
             if all(mode.sticks):
                 found = pair_motion(pair, (None, None), 0.0)
                 assert min(found.normal) > 0.0
-                assert min(found.left(0), found.left(1), found.both_reserve) >= 0.0
+                assert (
+                    min(found.sticking_reserve(0), found.sticking_reserve(1), found.both_reserve)
+                    >= 0.0
+                )
             else:
                 across = mode.sense * np.array([-state.axis[1], state.axis[0]])
                 found = pair_motion(pair, (None, tuple(across)), 0.0)
@@ -143,7 +146,7 @@ def test_what_sticks_does_not_slip_and_takes_no_more_than_it_can(seed: int) -> N
     assert ((True, False), -1.0) in seen
 
 
-def test_force_across_leaves_less_along() -> None:
+def test_force_across_the_line_reduces_the_reserve_along_it() -> None:
     """Against many ways to share the force out between both contacts."""
     segment = next(s for s in followed(ONE_THEN_BOTH) if s.mode.label == "sticking_on_0_and_1")
     (_, state), *_ = states(segment)
@@ -171,7 +174,7 @@ def test_force_across_leaves_less_along() -> None:
 @pytest.mark.parametrize(
     ("seed", "near"), among([(ONE_THEN_BOTH, 1e-3), (SLIPS_AGAIN, 1e-2)], check=1)
 )
-def test_it_is_the_limit_of_friction_that_is_smoothed(seed, near) -> None:
+def test_sticking_on_two_is_the_limit_of_smoothed_friction(seed, near) -> None:
     """With f = -mu v / sqrt(v^2 + eps^2) both contacts creep, by the equations of sliding on
     two.
     """
@@ -221,7 +224,7 @@ def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
     (arc,) = make_integrator("collocation").integrate(slides.motion, slides.parameters, start, late)
     assert arc.end_state == pytest.approx(slides.numbers(mode.state(last)), abs=1e-11)
     part = (late - knots[-2]) / (knots[-1] - knots[-2])
-    assert mode.found(last)[0].rate == pytest.approx(
+    assert mode.contact_forces(last)[0].rate == pytest.approx(
         [
             np.polynomial.polynomial.polyval(part, np.polynomial.polynomial.polyder(row))
             / (knots[-1] - knots[-2])

@@ -1,5 +1,5 @@
-"""What moves in a page: ``{player}`` plays the run of a `problem` that its lines state;
-``{laboratory}``.
+"""Frames in pages: ``{player}`` plays the run of a `problem` that its lines state, ``{laboratory}``
+is the laboratory, and ``{torque}`` its picture of the torque that lifts the stem.
 """
 
 import shutil
@@ -29,10 +29,10 @@ class Frame(SphinxDirective):
         found.mkdir(parents=True, exist_ok=True)
         return found
 
-    def frame(self, name: str, kind: str) -> list[nodes.Node]:
-        """The frame with the page of a name."""
+    def frame(self, name: str, kind: str, link: str = "") -> list[nodes.Node]:
+        """The frame with the page of a name, opened at a link."""
         title = self.arguments[0]
-        where = "../" * self.env.docname.count("/") + f"{FOLDER}/{name}.html"
+        where = "../" * self.env.docname.count("/") + f"{FOLDER}/{name}.html{link}"
         frame = (
             f'<figure class="{kind}"><iframe src="{where}" title="{title}" loading="lazy"'
             f' allowfullscreen></iframe><figcaption>{title} <a href="{where}">Alone on a'
@@ -48,6 +48,15 @@ class Laboratory(Frame):
         """Copy its page, and show it in a frame."""
         shutil.copyfile(page_path(), self.folder / "lab.html")
         return self.frame("lab", "player laboratory")
+
+
+class Torque(Frame):
+    """The laboratory's picture of the torque that lifts the stem."""
+
+    def run(self) -> list[nodes.Node]:
+        """Copy the laboratory's page, and show its picture in a frame."""
+        shutil.copyfile(page_path(), self.folder / "lab.html")
+        return self.frame("lab", "player picture", "#picture=torque&amp;lang=en")
 
 
 class Player(Frame):
@@ -72,4 +81,5 @@ def setup(app: Any) -> dict[str, Any]:
     """Register the directives."""
     app.add_directive("player", Player)
     app.add_directive("laboratory", Laboratory)
+    app.add_directive("torque", Torque)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import tippetop as tt
 from independent_reference import computed
-from independent_solver import hertz
+from independent_solver import Solver, hertz
 from tippetop.cli.commands import app
 from tippetop.engines import reference as suite
 from tippetop.engines.cases import CASES
@@ -24,7 +24,7 @@ WHOLE = [
     for case in CASES
 ]
 
-LONG = ("viscous", "stick-slip", "flights", "stem")
+LONG = ("viscous", "flights", "stem")
 AGAIN = [
     pytest.param(case.name, marks=pytest.mark.campaign)
     if case.name in LONG
@@ -54,6 +54,29 @@ def test_the_stored_numbers_are_the_independent_solvers(name):
     assert [(kind, i) for _, kind, i in events] == [(kind, i) for _, kind, i in stored["events"]]
     apart = [abs(a[0] - b[0]) for a, b in zip(events, stored["events"], strict=True)]
     assert max(apart, default=0.0) < 1e-10
+
+
+@pytest.mark.slow
+def test_the_solvers_agree_on_a_top_that_sticks_and_slips_again_and_again():
+    """Slip hardly grows, and its direction is stiff: the second solver has Radau for it."""
+    problem = tt.Problem(
+        body=tt.presets.REPORT,
+        friction=tt.CoulombFriction(mu=0.02985),
+        launch=tt.Launch(tilt=0.1, spin=155.0),
+    )
+    times = np.array([0.04, 0.08, 0.12])
+    run = tt.simulate(problem, times[-1], times=[0.0, *times])
+    solver = Solver(problem).follow(times)
+    assert len(solver.events) == len(run["event_time"]) == 9
+    assert solver.methods == {"DOP853", "Radau"}
+    for (time, kind, _), event, name in zip(
+        solver.events, run["event_time"].values, run["event_kind"].values, strict=True
+    ):
+        assert kind == name
+        assert abs(time - event) < 1e-11
+    states = np.array(solver.samples)
+    assert np.abs(states[:, 1:4] - run["axis"].values[1:]).max() < 1e-12
+    assert np.abs(states[:, 4:7] - run["angular_velocity"].values[1:]).max() < 1e-10
 
 
 def test_a_wrong_number_does_not_agree(monkeypatch):

@@ -15,7 +15,7 @@ from node import NODE
 from tippetop.contact.contact_mode import sliding_motion
 from tippetop.graph import graph, llvm
 from tippetop.graph.graph import NotRecordable
-from tippetop.graph.hoisting import hoisted, played
+from tippetop.graph.hoisting import evaluated, hoisted
 from tippetop.graph.javascript import javascript_source
 from tippetop.graph.recording import record
 from tippetop.graph.taylor_coefficients import NodeArithmetic
@@ -218,8 +218,8 @@ def test_what_parameters_alone_make_is_made_apart_from_the_rest(shape):
             if node.operands and all(operand.name in constants for operand in node.operands)
         ]
         apart += operations(own)
-        given = [*case.parameters, *played(own, (), case.parameters)]
-        found = by_floats(lambda y, p, rest=rest: played(rest, y, p), rows, given)
+        given = [*case.parameters, *evaluated(own, (), case.parameters)]
+        found = by_floats(lambda y, p, rest=rest: evaluated(rest, y, p), rows, given)
         exact = by_floats(function, rows, case.parameters)
         assert [row is None for row in found] == [row is None for row in exact]
         assert_same(found, exact)

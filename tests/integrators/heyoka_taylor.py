@@ -14,7 +14,7 @@ from typing import Any, ClassVar, TypeAlias
 import heyoka as hy
 import numpy as np
 
-from tippetop.graph.hoisting import hoisted, played
+from tippetop.graph.hoisting import evaluated, hoisted
 from tippetop.graph.recording import recordable
 from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution
@@ -229,9 +229,9 @@ def _expressions(motion: Motion, state: Sequence[Any]) -> tuple[Sequence[Any], N
     @lru_cache(maxsize=16)
     def numbers(parameters: tuple[float, ...]) -> Sequence[float]:
         with np.errstate(all="ignore"):  # what is infinite, heyoka tells
-            return [*parameters, *played(own, (), list(np.array(parameters)))]
+            return [*parameters, *evaluated(own, (), list(np.array(parameters)))]
 
-    return played(rest, state, [hy.par[i] for i in range(rest.parameters)]), numbers
+    return evaluated(rest, state, [hy.par[i] for i in range(rest.parameters)]), numbers
 
 
 def _cut(solution: DenseSolution, accuracy: float) -> DenseSolution | None:

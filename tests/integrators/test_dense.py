@@ -176,8 +176,8 @@ def test_a_solution_is_moved_in_time_to_end_exactly():
 
 
 def test_what_does_not_exist_is_a_solution_too():
-    assert DenseSolution.nothing(2.0, 8).end == 2.0
-    assert len(DenseSolution.nothing(2.0, 8).terms) == 0
+    assert DenseSolution.empty(2.0, 8).end == 2.0
+    assert len(DenseSolution.empty(2.0, 8).terms) == 0
 
 
 @given(arrays(float, (4, 2, 9), elements=st.floats(-1.0, 1.0, allow_subnormal=False)))

@@ -168,7 +168,7 @@ CUTS = {
 @every_method
 def test_how_a_solution_is_cut_into_arcs_does_not_show(method, monkeypatch):
     uncut = followed(method, KEPLER)
-    module, smaller = CUTS.get(method.integrator.name) or (sampling, {"MANY": 7})
+    module, smaller = CUTS.get(method.integrator.name) or (sampling, {"ARC_STEPS": 7})
     for name, number in smaller.items():
         monkeypatch.setattr(module, name, number)
     arcs = list(

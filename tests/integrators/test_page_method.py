@@ -73,15 +73,13 @@ def pendulums(count):
     return Motion(rates, size=2 * count, parameters=count, guards=tuple(map(guard, range(count))))
 
 
-@pytest.mark.parametrize("count", [1, 4, 5])
+@pytest.mark.parametrize("count", [1, 5])
 def test_states_of_any_size_and_every_one_of_several_guards(count):
     """Numbers fill a row, or a part, or more than one, and levels are passed at every part of a
     step.
     """
     motion, frequencies = pendulums(count), 1.0 + np.arange(count)
-    for last, side, level in itertools.product(
-        range(count), (1.0, -1.0), np.linspace(-0.9, 0.9, 4)
-    ):
+    for last, side, level in itertools.product(range(count), (1.0, -1.0), (-0.9, 0.4)):
         levels = np.where(np.arange(count) == last, level, -1.5)
         start = np.repeat([side, 0.0], count)
         arc = whole(PageMethod().integrate(motion, levels, (0.0, start), 9.0))

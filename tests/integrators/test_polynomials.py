@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tippetop.contact.block import NODES
-from tippetop.integrators.polynomials import LOOKS, Polynomials, least_of_each
+from tippetop.integrators.polynomials import INTERVALS, Polynomials, least_of_each
 
 
 def with_roots(roots, factor=1.0):
@@ -24,7 +24,7 @@ def test_first_fall_is_the_smallest_root_at_which_the_polynomial_falls(roots, sp
     if np.any(gaps < 1e-2) or abs(roots[0] - span) < 1e-9:
         # Roots that merge, or a root at the very end, are decided by rounding.
         return
-    if np.any(triples < 2.0 * span / LOOKS):
+    if np.any(triples < 2.0 * span / INTERVALS):
         # More than one extreme between two looks is not seen.
         return
     terms = with_roots(roots)
@@ -46,16 +46,16 @@ def test_backward_a_polynomial_is_read_from_the_end_of_its_interval(terms, span)
 
 @pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
 def test_a_dip_between_two_looks_is_found(width):
-    middle = 0.5 / LOOKS + 10 / LOOKS
+    middle = 0.5 / INTERVALS + 10 / INTERVALS
     found = Polynomials(
-        with_roots([middle - width / LOOKS, middle + width / LOOKS]), ones()
+        with_roots([middle - width / INTERVALS, middle + width / INTERVALS]), ones()
     ).first_fall()[0]
-    assert found == pytest.approx(middle - width / LOOKS, rel=1e-9)
+    assert found == pytest.approx(middle - width / INTERVALS, rel=1e-9)
 
 
-@pytest.mark.parametrize("middle", [0.4 / LOOKS, 1.0 - 0.4 / LOOKS])
+@pytest.mark.parametrize("middle", [0.4 / INTERVALS, 1.0 - 0.4 / INTERVALS])
 def test_a_dip_in_the_first_or_the_last_interval_is_found(middle):
-    width = 0.3 / LOOKS
+    width = 0.3 / INTERVALS
     found = Polynomials(with_roots([middle - width, middle + width]), ones()).first_fall()[0]
     assert found == pytest.approx(middle - width, rel=1e-9)
 
@@ -68,7 +68,7 @@ def test_a_dip_right_before_a_fall_is_found():
 
 
 def test_a_graze_that_does_not_touch_is_none():
-    middle = 0.5 / LOOKS + 10 / LOOKS
+    middle = 0.5 / INTERVALS + 10 / INTERVALS
     terms = with_roots([middle, middle])
     terms[0] += 1e-8
     assert np.isnan(Polynomials(terms, ones()).first_fall()[0])
@@ -212,5 +212,5 @@ def test_so_many_that_they_are_taken_in_parts_are_as_one_by_one():
         assert getattr(many, name)[..., middle] == pytest.approx(
             getattr(few, name), rel=1e-14, abs=1e-14
         )
-    assert many.values.shape == (LOOKS + 1, 600)
-    assert few.values[LOOKS] == pytest.approx(np.sum(few.unit, axis=0), rel=1e-13, abs=1e-13)
+    assert many.values.shape == (INTERVALS + 1, 600)
+    assert few.values[INTERVALS] == pytest.approx(np.sum(few.unit, axis=0), rel=1e-13, abs=1e-13)

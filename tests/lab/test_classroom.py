@@ -9,12 +9,14 @@ from bundled import found_in_the_page
 Lab = Callable[..., Visit]
 
 RESULTS = """
-import { readResults, resultCode, spinsOf } from "./results.js";
+import { readResults, resultCode, resultLink, spinsOf } from "./results.js";
 const run = { problem: { launch: { spin: 123.456 } }, metrics: { final_theta: Math.PI / 2 } };
 const code = resultCode(run);
 export const found = {
   code,
   back: readResults(code),
+  link: readResults(resultLink("https://school/lab.html", new URLSearchParams("tab=class"), run)),
+  bare: readResults("https://school/lab.html#launch.spin=155"),
   mixed: readResults("155 179,9\\n\\nabout 12\\n50;86.1°\\n20 200\\n"),
   spins: spinsOf(4, 10, 100),
 };
@@ -25,6 +27,8 @@ def test_result_codes_are_read_back() -> None:
     found = found_in_the_page(RESULTS)
     assert found["code"] == "123.5 90.0"
     assert found["back"] == {"points": [[123.5, 90.0]], "wrong": []}
+    assert found["link"] == found["back"], "a link brings its result along"
+    assert found["bare"] == {"points": [], "wrong": [1]}
     assert found["mixed"] == {"points": [[155, 179.9], [50, 86.1]], "wrong": [3, 5]}
     assert found["spins"] == [10, 40, 70, 100]
 
@@ -37,7 +41,7 @@ def test_a_class_makes_one_diagram(lab: Lab) -> None:
     tilt = float(tt.simulate(tt.presets.report_problem(spin=50.0), 12.0, samples=2)["final_theta"])
     code = page.locator(".mine").inner_text()
     assert code == f"50 {tilt * 57.29577951308232:.1f}"
-    page.locator(".classroom textarea").fill(f"{code}\n155 179.9\nnothing\n")
+    page.locator(".classroom textarea").last.fill(f"{code}\n155 179.9\nnothing\n")
     assert page.locator(".scatter .dot").count() == 2
     assert "lines 3" in page.locator(".classroom [role=alert]").inner_text()
     address = page.locator(".codes a").last.get_attribute("href")

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from profiles import BALL, brute_support, profiles
 
 from campaigns import examples
+from tippetop.lathe.edges import Edge
 from tippetop.lathe.hull import hull_of
 from tippetop.lathe.profile import profile_of
 
@@ -134,3 +135,12 @@ def test_a_sphere_whose_edge_has_few_digits_is_one_still():
     face = hull((0, -15), (12.990, 7.5, 15), (0, 7.5))
     assert named(face) == ["sphere", "edge"]
     assert face.zones[0].low == 0.0
+
+
+@pytest.mark.parametrize("turn", [0.0, 1e-300, 1e-9, 0.3, -2.0, 3.1])
+def test_a_single_point_of_an_edge_is_one_of_its_points(turn):
+    edge = Edge(0.1 + 0.2j, 0.5 - 0.3j, turn)
+    shares = np.linspace(-1.0, 2.0, 7)
+    np.testing.assert_allclose([edge.point(s) for s in shares], edge.points(shares), rtol=1e-15)
+    velocities = [edge.velocity(s) for s in shares]
+    np.testing.assert_allclose(velocities, edge.velocities(shares), rtol=1e-15)

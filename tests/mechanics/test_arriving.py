@@ -61,7 +61,7 @@ def spin_for(top, axis, momentum, rate):
 
 
 @pytest.mark.parametrize("law", [EllipsoidalLaw(0.4, 0.1), HertzDrillingLaw(0.4, 0.1)])
-def test_its_end_by_collocation_is_where_an_implicit_method_comes_to(law):
+def test_the_end_of_slip_by_collocation_agrees_with_an_implicit_method(law):
     top, start = slipping(law)
     assert collocated_end(slip_end_state(start, SLIP), SLIP, top, EXACT) is None, (
         "its direction is not at rest"
@@ -70,17 +70,17 @@ def test_its_end_by_collocation_is_where_an_implicit_method_comes_to(law):
     found = collocated_end(slip_end_state(settled, SLIP), SLIP, top, EXACT)
     assert found is not None
     end = in_its_clock(top, settled, 25.0)
-    assert settled[-1] + found.left == pytest.approx(end[-1], rel=1e-8)
+    assert settled[-1] + found.time_left == pytest.approx(end[-1], rel=1e-8)
     assert found.at(0.0)[:6] == pytest.approx(end[:6], abs=1e-9)
     assert found.at(0.0)[6:] == [0.0, 0.0, 0.0]
     solution = found.solution(2.0)
     for part in (1.0, 0.7, 0.5, 1e-6):
-        time = np.array([2.0 + (1.0 - part) * found.left])
+        time = np.array([2.0 + (1.0 - part) * found.time_left])
         assert solution(time)[0].tolist() == pytest.approx(found.at(part), abs=1e-15)
     assert size(found.at(0.5)[6:]) < 0.6 * settled[-2]
 
 
-def test_a_top_on_a_small_patch_sticks_when_it_does():
+def test_a_top_on_a_small_patch_sticks_when_an_implicit_method_says():
     law = HertzLaw(0.4, 0.02)
     top, start = slipping(law)
     end = in_its_clock(top._replace(friction=HertzDrillingLaw(*law)), start, 25.0)
@@ -89,9 +89,10 @@ def test_a_top_on_a_small_patch_sticks_when_it_does():
     assert run.times("stick") == pytest.approx([end[-1]], rel=1e-7)
 
 
-@pytest.mark.parametrize("resists", [False, True], ids=["", "rolling"])
 @pytest.mark.parametrize(
-    "integrator", [make_integrator(), SciPy("dop853", 1e-12)], ids=["best", "dop853"]
+    ("integrator", "resists"),
+    [(make_integrator(), True), (SciPy("dop853", 1e-12), False)],
+    ids=["best-rolling", "dop853"],
 )
 def test_friction_that_turns_slip_much_faster_than_it_ends_takes_few_steps(integrator, resists):
     """Its direction is at rest soon: explicit steps as short as it is turned then go no farther."""
@@ -114,7 +115,7 @@ def test_friction_that_turns_slip_much_faster_than_it_ends_takes_few_steps(integ
 
 
 @pytest.mark.parametrize("law", [EllipsoidalLaw(0.4, 0.1), HertzDrillingLaw(0.4, 0.1)])
-def test_a_direction_is_at_rest_as_well_as_an_integrator_of_some_tolerance_tells(law):
+def test_a_slip_direction_counts_as_at_rest_within_the_tolerance(law):
     top, start = slipping(law)
     exact = slip_end_state(in_its_clock(top, start, 1.0), SLIP)
     x, y, z = exact.direction
@@ -124,5 +125,5 @@ def test_a_direction_is_at_rest_as_well_as_an_integrator_of_some_tolerance_tells
     found, known = collocated_end(rough, SLIP, top, 1e-10), collocated_end(exact, SLIP, top, EXACT)
     assert found is not None
     assert known is not None
-    assert found.left == pytest.approx(known.left, abs=1e-12)
+    assert found.time_left == pytest.approx(known.time_left, abs=1e-12)
     assert found.at(0.0)[:6] == pytest.approx(known.at(0.0)[:6], abs=1e-12)

@@ -137,7 +137,7 @@ def test_a_direction_that_slip_keeps_is_followed_in_one_step(law, monkeypatch):
 
     quick = [struck(patch) for patch in (3e-3, 1e-5, 1e-8)]
     assert all(one.steps < 500 for one in quick)
-    monkeypatch.setattr(DryProcess, "straight", lambda *_: None)
+    monkeypatch.setattr(DryProcess, "along_line", lambda *_: None)
     slow = struck(3e-3)
     assert slow.steps > 2 * quick[0].steps
     assert quick[0].state.momentum == pytest.approx(slow.state.momentum, abs=1e-9)
@@ -201,13 +201,13 @@ def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_
         axis = (math.sin(tilt), 0.0, math.cos(tilt))
         state = on_table(SlidingState(axis, (0.0, 0.0, 0.0), (0.0, 0.0)), top)
         body = StruckBody.of(state._replace(velocity=(0.0, 0.0, -1.0)), top)
-        contact = DryProcess(body).settled(NO_IMPULSE)
+        contact = DryProcess(body).with_status(NO_IMPULSE)
         unit = contact.friction(body.before)
         change = body.change(unit)
         slip, rolling = slip_part(change, contact.reach), change[3:5]
         for way, rate, reserve in (
-            (contact.way, slip, law.reserve(1.0, unit[:2], unit[5])),
-            (contact.rolling_way, rolling, RollingResistance(arm).reserve(1.0, unit[3:5])),
+            (contact.direction, slip, law.reserve(1.0, unit[:2], unit[5])),
+            (contact.rolling_direction, rolling, RollingResistance(arm).reserve(1.0, unit[3:5])),
         ):
             if way is None:
                 assert rate == pytest.approx((0.0,) * len(rate), abs=1e-12)
@@ -216,5 +216,5 @@ def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_
                 along = sum(a * b for a, b in zip(way, rate, strict=True))
                 assert along >= -1e-12
                 assert rate == pytest.approx(tuple(along * e for e in way), abs=1e-12)
-        kinds.add((contact.way is None, contact.rolling_way is None))
+        kinds.add((contact.direction is None, contact.rolling_direction is None))
     assert len(kinds) == 3, "what does not roll has no reason to slip; all else should come about"

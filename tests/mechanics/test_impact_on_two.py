@@ -399,11 +399,11 @@ def test_an_error_counts_at_either_end(number):
     arms, turn = [contact_vector(state.axis, top.surface) for top in tops], (0.0, 0.0, 1e-6)
     at_first = np.cross(turn, np.subtract(arms[0], arms[1 - number]))
     ends = [
-        (process.body.velocities(end), process.there(end))[number]
-        for end in (taken.here, taken.there)
+        (process.body.velocities(end), process.velocities_beside(end))[number]
+        for end in (taken.start, taken.end)
     ]
     slip, moved = max(math.hypot(*end[:2]) for end in ends), 1e-6 * math.dist(*arms)
-    assert process.wrong(taken, (*at_first, *turn)) == pytest.approx(moved / slip, rel=1e-9)
+    assert process.error_norm(taken, (*at_first, *turn)) == pytest.approx(moved / slip, rel=1e-9)
 
 
 def test_steps_are_bounded_and_told(monkeypatch):

@@ -26,7 +26,7 @@ def followed(span, steps):
     here, doubt = (1.0, 0.3), 0.0
     for _ in range(steps):
         taken = step_from(here, pendulum(here), span / steps, pendulum)
-        here, doubt = taken.there, max(doubt, taken.doubt(lambda error: math.hypot(*error)))
+        here, doubt = taken.end, max(doubt, taken.error_estimate(lambda error: math.hypot(*error)))
     return here, doubt
 
 
@@ -41,8 +41,8 @@ def test_it_is_of_order_8_and_so_is_its_estimate_of_a_steps_error():
 
 def test_the_cubic_through_a_steps_ends_has_their_slopes():
     taken = step_from((1.0, 0.3), pendulum((1.0, 0.3)), 0.4, pendulum)
-    assert taken.between(0.0) == taken.here
-    assert taken.between(1.0) == pytest.approx(taken.there, abs=1e-16)
+    assert taken.between(0.0) == taken.start
+    assert taken.between(1.0) == pytest.approx(taken.end, abs=1e-16)
     for part, slope in ((0.0, taken.slopes[0]), (1.0, taken.new_slope)):
         ahead, behind = taken.between(part + 1e-6), taken.between(part - 1e-6)
         rate = [(a - b) / 2e-6 / taken.size for a, b in zip(ahead, behind, strict=True)]

@@ -89,20 +89,6 @@ def test_a_first_step_and_the_clock_tell_the_same_of_it(name, monkeypatch):
     assert times == pytest.approx(seconds, abs=1e-11)
 
 
-def test_it_is_the_same_where_nothing_is_compiled(monkeypatch):
-    kinds, times = told(followed("sphere", 6.0)[1])
-    monkeypatch.setattr(iteration, "has_llvm", lambda: False)
-    for cached in (slip_step.compiled_step, slip_step.parameters_of):
-        cached.cache_clear()
-    try:
-        others, seconds = told(followed("sphere", 6.0)[1])
-    finally:
-        for cached in (slip_step.compiled_step, slip_step.parameters_of):
-            cached.cache_clear()
-    assert kinds == others
-    assert times == pytest.approx(seconds, abs=1e-12)
-
-
 def test_a_share_of_a_piece_is_the_same_polynomial():
     whole = np.random.default_rng(1).normal(size=(3, 3, STAGES))
     numbers = iteration.room(whole.size)

@@ -13,8 +13,7 @@ from dry_runs import DryRun, launched
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import SLIP, ContactMode, split
 from tippetop.contact.mode import EventKind
-from tippetop.contact.onset_motion import BOTH as TOGETHER
-from tippetop.contact.onset_motion import onset_motion
+from tippetop.contact.onset_motion import SLIP_AND_ROLLING, onset_motion
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.contact.slip_onset import SlipOnset
 from tippetop.contact.slip_phase import follow_slip
@@ -326,7 +325,7 @@ def test_slip_and_rolling_begin_together(family):
     axis, momentum = (0.48, 0.64, 0.6), (0.0, 0.0, 0.0)
     point = ContactPoint.of(axis, momentum, top)
     begin = find_onset(point, None, None, (True, True))
-    begun = Followed(top, axis, momentum, [begin.slip, begin.rolling], TOGETHER)
+    begun = Followed(top, axis, momentum, [begin.slip, begin.rolling], SLIP_AND_ROLLING)
     count = len(begin.slip)
     for part in (1e-3, 0.1, 0.5, 0.9):
         numbers, rates = begun(part)

@@ -12,7 +12,6 @@ import shutil
 import pytest
 
 import tippetop as tt
-from campaigns import among
 from launches import TOLERANCE, asked, in_javascript
 from node import printed
 from tippetop.page_engine import HERE
@@ -81,7 +80,8 @@ def broken(launches, checked):
     return runs, [run["broken"] for run in runs if "broken" in run]
 
 
-@pytest.mark.parametrize("seed", among(SEEDS, check=1))
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", SEEDS)
 def test_operands_are_numbers_in_launches_of_every_kind(checked, seed):
     assert broken([asked(seed, 0.05)], checked)[1] == []
 
@@ -100,6 +100,7 @@ def test_operands_are_numbers_in_many_flights(checked, friction, flights):
     assert len(run["flights"]) > flights  # on dry friction it sticks, and does not fly
 
 
+@pytest.mark.slow
 def test_what_is_no_number_is_seen(checked):
     asking = f"""
       import * as m from {json.dumps((checked / "mechanics.js").as_uri())};

@@ -29,8 +29,10 @@ def swept(problem: tt.Problem, **options: Any) -> Any:
     return tt.sweep(problem, {"launch.spin": SPINS}, duration=0.01, workers=1, **options)
 
 
-@pytest.mark.parametrize("several", [False, True])
-@pytest.mark.parametrize("error", [ZeroDivisionError("by nothing"), RuntimeError("whatever")])
+@pytest.mark.parametrize(
+    ("several", "error"),
+    [(False, ZeroDivisionError("by nothing")), (True, RuntimeError("whatever"))],
+)
 def test_a_launch_that_raises_fails_alone(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, several: bool, error: Exception
 ) -> None:

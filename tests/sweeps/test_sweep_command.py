@@ -51,7 +51,7 @@ def test_a_sweep_writes_a_store_and_maps_beside_it(tmp_path):
     assert xr.open_zarr(out)["final_theta"].shape == (3, 2)
 
 
-def test_the_first_launch_that_cannot_be_is_told(tmp_path):
+def test_the_first_invalid_launch_is_reported(tmp_path):
     options = [
         "--axis",
         "launch.tilt=0.1,45,90",
@@ -169,7 +169,7 @@ def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["x.txt", "x", "x.zarr.nc"])
-def test_stores_are_called_so(tmp_path, name):
+def test_the_name_of_a_store_ends_in_zarr(tmp_path, name):
     with pytest.raises(InvalidInput, match=r"is not a file name that ends in \.zarr"):
         run(*AXES, *SHORT, "--out", tmp_path / name)
     assert list(tmp_path.iterdir()) == []
@@ -217,7 +217,7 @@ def test_misuse_is_refused_by_what_is_wrong(tmp_path, arguments, field):
     assert refusal.value.field == field
 
 
-def test_a_picture_of_somebody_else_is_not_overwritten(tmp_path):
+def test_a_foreign_picture_is_not_overwritten(tmp_path):
     (tmp_path / "a.flights.png").write_text("a holiday")
     with pytest.raises(FileTrouble, match=r"a\.flights\.png exists"):
         run(*AXES, *SHORT, "--out", tmp_path / "a.zarr")
@@ -239,7 +239,9 @@ def test_a_store_is_not_overwritten_or_mixed_with_another(tmp_path):
     run(*AXES, *SHORT, "--mu", 0.9, "--force", "--out", out, "--no-maps")
 
 
-def test_sentences_name_options_here_and_arguments_in_python(tmp_path, monkeypatch, capsys):
+def test_messages_name_options_at_the_command_line_and_arguments_in_python(
+    tmp_path, monkeypatch, capsys
+):
     out = tmp_path / "a.zarr"
     run(*AXES, *SHORT, "--out", out, "--no-maps")
     problem = report_problem()

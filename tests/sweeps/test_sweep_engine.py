@@ -182,18 +182,18 @@ def test_arrays_make_the_steps_that_are_compiled():
     before = np.zeros((layout.rows, 16))
     for row, number in enumerate((*state.axis, *state.momentum, *state.velocity[:2])):
         before[row] = number
-    before[layout.left] = launches.end
+    before[layout.remaining] = launches.end
     pauses = np.tile([[1.0], [1.0], [np.inf], [-np.inf]], 16)
     numbers = np.concatenate((launches.numbers, pauses))
     compiled, order, plain = stepper(motion, 1e-9), order_for(1e-9), NumPyArithmetic()
     one = np.empty_like(before)
     compiled.step(before, one, numbers)
     jet = expansion(motion, order, list(before[: layout.size]), list(numbers), plain)
-    other = stride(layout, jet, list(before[: layout.kept]), list(numbers), plain)
+    other = stride(layout, jet, list(before[: layout.carried_rows]), list(numbers), plain)
     assert one == pytest.approx(np.array(other), rel=1e-11, abs=1e-13)
     for ours, theirs in zip(compiled.jet(before, numbers), map(np.array, jet), strict=True):
         assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9 * np.abs(theirs).max())
-    assert np.all(one[layout.taken] > 0)
+    assert np.all(one[layout.step_time] > 0)
 
 
 @pytest.mark.parametrize("field", ["launch.spin", "launch.slip.0"])
@@ -211,13 +211,14 @@ def test_a_step_of_a_fast_top_leaves_little_out_of_its_axis(field):
     before, after = np.zeros((2, usual.layout.rows, count))
     for row, number in enumerate(along_table(launches.state).pack()):
         before[row] = number
-    before[usual.layout.left] = np.inf
+    before[usual.layout.remaining] = np.inf
     numbers = np.concatenate(
         (launches.numbers, np.tile([[0.0], [0.0], [np.inf], [-np.inf]], count))
     )
     usual.step(before, after, numbers)
     exact = [
-        horner(terms, after[usual.layout.taken]) for terms in finer.jet(before, numbers).state[:3]
+        horner(terms, after[usual.layout.step_time])
+        for terms in finer.jet(before, numbers).state[:3]
     ]
     off = np.linalg.norm(after[:3] - exact, axis=0)
     assert off.max() <= taylor_step.FAST * tolerance

@@ -21,7 +21,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.sweeps.flight_steps import GIVEN, LEFT, STATE, TIME, VANISHING, WANTED, pieces
-from tippetop.sweeps.flights import fly_all, look
+from tippetop.sweeps.flights import closer_extremes, fly_all
 from tippetop.sweeps.flights import slides as goes_on
 from tippetop.sweeps.impacts import collide
 from tippetop.sweeps.launch_arrays import branched, single
@@ -126,9 +126,9 @@ def test_pieces_of_flights_are_what_a_closer_look_finds_and_rarely_need_it(surfa
     given[TIME], given[LEFT] = 0.0, 10.0 ** random.uniform(-3.0, 1.0, count)
     tip, lanes = TipMotion.of(count), np.arange(count)
     tip.turned[:] = 0.0
-    given[WANTED] = tip.wanted(lanes)
+    given[WANTED] = tip.pauses(lanes)
     found = pieces(kind, given, numbers)
-    looked = look(kind, given, numbers, (tip, lanes, np.zeros(count)))
+    looked = closer_extremes(kind, given, numbers, (tip, lanes, np.zeros(count)))
     sure = found.doubt == 0.0
     assert sure[vanishing < 2].mean() > 0.9
     assert np.count_nonzero(found.touches[sure]) > 100

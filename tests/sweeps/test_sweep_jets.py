@@ -73,7 +73,7 @@ def test_where_guards_fall_is_what_a_closer_look_finds():
 def test_where_polynomials_end_is_where_single_launches_are():
     """As far as they serve, or to where a guard falls; the tops go on as dop853 has it."""
     method, slots = anywhere()
-    slots.left[:] = np.inf
+    slots.remaining[:] = np.inf
     jet, none = method.jet(slots.rows, slots.numbers), np.zeros(COUNT)
     pauses = slots.numbers[method.layout.parameters :]
     found = arcs(jet, none, none + np.inf, pauses)
@@ -106,20 +106,20 @@ def test_guards_that_are_no_numbers_end_nothing_as_in_single_launches():
         method, pauses = stepper(motion, 1e-12), [1.0] * len(guards) + [0.0, np.inf, -np.inf]
         layout, numbers = method.layout, np.tile(np.array([[0.0, *pauses]]).T, 16)
         before, after = np.zeros((2, layout.rows, 16))
-        before[[0, 2, layout.left]] = np.array([[1.0], [0.5], [3.0]])
+        before[[0, 2, layout.remaining]] = np.array([[1.0], [0.5], [3.0]])
         paused = np.zeros(16)
         for _ in range(50):
             method.step(before, after, numbers)
             paused = after[layout.pause]
-            if paused.any() or not after[layout.left].any():
+            if paused.any() or not after[layout.remaining].any():
                 break
             before, after = after, before
         assert paused.any() == (len(guards) == 3)
-        end = 3.0 - after[layout.left]
+        end = 3.0 - after[layout.remaining]
         if paused.any():
-            jet, held = method.jet(before, numbers), after[layout.taken]
+            jet, held = method.jet(before, numbers), after[layout.step_time]
             found = arcs(jet, held, held, numbers[layout.parameters :])
-            end = 3.0 - before[layout.left] + found.span
+            end = 3.0 - before[layout.remaining] + found.span
             assert np.all(found.fallen == 2.0)
         assert end == pytest.approx(np.full(16, ends), rel=1e-12)
         assert arc.solution.end == pytest.approx(ends, rel=1e-9)

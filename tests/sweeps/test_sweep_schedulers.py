@@ -34,26 +34,6 @@ def test_several_processes_find_what_one_does(small_tasks):
     assert same(arrays(compute(quick(), workers=1)), arrays(compute(quick(), workers=2)))
 
 
-UNGUARDED = """
-from tippetop.problem.presets import report_problem
-from tippetop.sweeps import Axis
-from tippetop.sweeps import Product
-from tippetop.sweeps import Sweep
-from tippetop.sweeps import compute
-print("once")
-axis = Axis.of("launch.spin", {"from": 10, "to": 100, "count": 600})
-print(compute(Sweep(report_problem(), Product((axis,)), 0.01), workers=2).sizes["spin"])
-print(__file__.endswith("script.py"), __spec__)
-"""
-
-
-def test_workers_do_not_run_the_script_that_started_them(tmp_path):
-    script = tmp_path / "script.py"
-    script.write_text(UNGUARDED)
-    ran = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
-    assert ran.stdout.split() == ["once", "600", "True", "None"]
-
-
 def test_a_number_of_workers_that_cannot_be_is_refused():
     with pytest.raises(InvalidInput, match="workers"):
         compute(quick(), workers=0)
@@ -100,7 +80,7 @@ def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks, mo
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_sweep_that_is_kept_connects_once(monkeypatch, tmp_path):
+def test_a_sweep_into_a_store_connects_to_the_cluster_once(monkeypatch, tmp_path):
     distributed = pytest.importorskip("distributed")
     made, client = [], distributed.Client
     monkeypatch.setattr(
@@ -130,14 +110,14 @@ def test_a_scheduler_that_is_not_there_is_refused(monkeypatch):
         compute(quick(), scheduler="nonsense://")
 
 
-def test_dask_that_is_not_installed_is_said_to_be_missing(monkeypatch):
+def test_a_missing_dask_is_reported(monkeypatch):
     monkeypatch.setattr(schedulers, "find_spec", lambda name: None)
     with pytest.raises(Unavailable, match=r"pip install '.*\[sweep\]'"):
         compute(quick(), scheduler="tcp://127.0.0.1:1")
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_cluster_without_workers_is_refused_and_one_that_is_lost_is_told_of(small_tasks):
+def test_a_cluster_without_workers_is_refused_and_a_lost_one_is_reported(small_tasks):
     distributed = pytest.importorskip("distributed")
     quiet = {"dashboard_address": None, "silence_logs": 50}
     with (
@@ -158,9 +138,7 @@ def test_a_cluster_without_workers_is_refused_and_one_that_is_lost_is_told_of(sm
     ("raised_in", "expected"),
     among([("distributed.cfexecutor", Unavailable), ("tippetop.sweeps", ValueError)], check=1),
 )
-def test_the_library_that_stumbles_over_a_lost_result_means_a_lost_cluster(
-    monkeypatch, raised_in, expected
-):
+def test_an_error_inside_dask_is_reported_as_a_lost_cluster(monkeypatch, raised_in, expected):
     """Dask takes a result whose worker is lost for an error, and unpacks it as one."""
     distributed = pytest.importorskip("distributed")
     names = {"__name__": raised_in}
@@ -225,7 +203,7 @@ def cluster(tmp_path):
         ("worker", 0.0, "has had no workers for 2 s"),
     ],
 )
-def test_a_cluster_that_is_gone_is_told_of_in_a_sentence_and_what_is_done_is_kept(
+def test_a_lost_cluster_is_reported_and_finished_tasks_are_kept(
     cluster, small_tasks, tmp_path, lost, pause, sentence
 ):
     """With a pause, more tasks are handed out to what is known to be gone."""

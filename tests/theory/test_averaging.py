@@ -106,7 +106,7 @@ def test_full_runs_approach_the_limit_quadratically():
     assert excess[0] / excess[1] == pytest.approx(4.0, rel=0.1)
 
 
-@pytest.mark.parametrize("problem", LAUNCHES)
+@pytest.mark.parametrize("problem", LAUNCHES[::2])
 def test_the_tilt_of_a_full_run_with_little_friction_is_in_the_envelope_of_the_flow(problem):
     mu = 0.001
     flow = averaged_flow(problem)

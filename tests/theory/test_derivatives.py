@@ -8,6 +8,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from strategies import numbers, slides
 from tippetop.mechanics.motion import sliding_rates
 from tippetop.mechanics.state import SlidingState
@@ -69,7 +70,7 @@ def test_many_points_give_the_matrices_of_each():
         assert np.array_equal(matrix, alone)
 
 
-@settings(max_examples=10)
+@settings(max_examples=examples(check=4, claim=50))
 @given(slides(), st.lists(numbers(-1.0, 1.0), min_size=8, max_size=8))
 def test_the_jacobian_of_the_mechanics_is_that_of_computer_algebra(case, direction):
     """Along a direction, sliding_rates(y + s v) is a function of s alone, which SymPy

@@ -138,7 +138,7 @@ ALL = list(itertools.product(BODIES, FRICTION, TILTS, SPINS, RATES))
 
 
 @pytest.mark.parametrize("body", among(list(BODIES), check=4))
-def test_every_launch_gets_an_answer_or_a_sentence(body):
+def test_every_launch_gets_an_answer_or_a_refusal(body):
     """A part of all combinations, the same in every run, and all that are set down without
     rates.
     """
@@ -160,7 +160,7 @@ def test_every_launch_gets_an_answer_or_a_sentence(body):
     st.floats(allow_nan=False, allow_infinity=False),
     st.tuples(st.floats(-1e9, 1e9), st.floats(-1e9, 1e9)),
 )
-def test_any_launch_gets_an_answer_or_a_sentence(body, friction, tilt, spin, rates):
+def test_any_launch_gets_an_answer_or_a_refusal(body, friction, tilt, spin, rates):
     problem = launch_of(body, friction, tilt, spin, rates)
     if problem is not None:
         check_what_is_said(problem)
@@ -194,7 +194,7 @@ def test_the_time_to_leave_a_pole_grows_as_the_logarithm_of_the_distance(body, p
 
 
 @pytest.mark.parametrize(("body", "spin"), [("report", 300.0), ("Ia", -60.0), ("III", 20.0)])
-def test_at_a_pole_the_theory_says_what_it_says_beside_it(body, spin):
+def test_theory_at_a_pole_is_the_limit_of_theory_near_it(body, spin):
     for pole, beside in ((0.0, 1e-7), (math.pi, math.pi - 1e-7)):
         there, near = (
             outlook(launch_of(body, FRICTION[0], tilt, spin, (0.0, 0.0))) for tilt in (pole, beside)

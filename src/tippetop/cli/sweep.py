@@ -98,7 +98,7 @@ def sweep(
     from tippetop.sweeps import Store, fill  # noqa: PLC0415
     from tippetop.sweeps.implausible_cells import implausible_cells  # noqa: PLC0415
     from tippetop.sweeps.schedulers import need_workers  # noqa: PLC0415
-    from tippetop.sweeps.store_layout import kept_sweep, refuse_existing  # noqa: PLC0415
+    from tippetop.sweeps.store_layout import refuse_existing, stored_sweep  # noqa: PLC0415
 
     if resume and force:
         raise InvalidInput(
@@ -108,7 +108,7 @@ def sweep(
             "would overwrite the store that is to be resumed",
         )
     with in_words(out, "read"):
-        stored = kept_sweep(out) if resume and choice.file is None else None
+        stored = stored_sweep(out) if resume and choice.file is None else None
     limits = {
         "duration": number_of("--duration", duration, "s"),
         "tolerance": tolerance,

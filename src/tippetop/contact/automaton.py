@@ -38,7 +38,7 @@ from tippetop.contact.mode import (
 from tippetop.contact.settling_flat import FLAT, SettlingFlat, settling_flat
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.contact.slip_end_motion import JAMMED, LANDED, OVERTAKEN, REOPENING
-from tippetop.contact.slip_onset import BEGUN, ENDED, UNSEEN, SlipAndRollingOnset, SlipOnset
+from tippetop.contact.slip_onset import BEGUN, ENDED, UNSEEN, SlipOnset
 from tippetop.contact.slip_onset_on_two import (
     SlipOnsetOnTwo,
 )
@@ -122,20 +122,20 @@ class Automaton:
 
     def launch(self, state: State) -> Transition:
         """Return the first mode: flight, what follows an impact, or contact."""
-        here = self
+        automaton = self
         if isinstance(self.top.surface, Hull):
             lowest = lowest_surface(self.top.surface, state.axis[2])
-            here = self._of(self.top._replace(surface=lowest))
+            automaton = self._of(self.top._replace(surface=lowest))
         if self.liftoff != "fly":
-            return here.resting(0.0, state)
-        if gap(state, here.top) > TOUCHING:
-            return Transition((), here._flight(Start.AIRBORNE), state)
-        rate = gap_rate(state, here.top)
+            return automaton.resting(0.0, state)
+        if gap(state, automaton.top) > TOUCHING:
+            return Transition((), automaton._flight(Start.AIRBORNE), state)
+        rate = gap_rate(state, automaton.top)
         if rate > TOUCHING:
-            return Transition((), here._flight(Start.REBOUND), state)
+            return Transition((), automaton._flight(Start.REBOUND), state)
         if rate < -TOUCHING:
-            return here.touchdown(0.0, state)
-        return here.resting(0.0, state)
+            return automaton.touchdown(0.0, state)
+        return automaton.resting(0.0, state)
 
     def follow(
         self, mode: Mode, end: ModeEnd, time: float, integrator: Integrator | None = None
@@ -144,7 +144,7 @@ class Automaton:
         if end.cause == COMPLETED:
             return Transition((), Outcome.COMPLETED, end.state)
         top = off_branch(mode.top)
-        here = self if top == self.top else self._of(top)
+        automaton = self if top == self.top else self._of(top)
         if end.cause == FAILURE and not _may_jam(mode):
             return Transition((), Outcome.FAILED, end.state, end.detail)
         if end.cause == FLAT:
@@ -155,19 +155,19 @@ class Automaton:
             then = SettlingFlat(mode.top, contact_mode, slaps=end.cause == FACE)
             return Transition((), then, end.state)
         if isinstance(mode, Flight):
-            return here._after_flight(end, time, integrator)
+            return automaton._after_flight(end, time, integrator)
         if end.cause == TOUCH:
-            return here.touch(end.contact, time, end.state)
+            return automaton.touch(end.contact, time, end.state)
         if isinstance(mode, Resting):
             return Transition((), Outcome.AT_REST, end.state)
         if isinstance(mode, SlipOnset):
-            return here._after_onset(mode, end, time)
+            return automaton._after_onset(mode, end, time)
         if isinstance(mode, SlipEnd):
-            return here._after_clock(mode, end, time)
+            return automaton._after_clock(mode, end, time)
         if isinstance(mode, TwoContactMode):
-            return here._after_two(mode, end, time)
+            return automaton._after_two(mode, end, time)
         assert isinstance(mode, ContactMode), f"nothing follows {mode.name}"
-        return here._after_one(mode, end, time)
+        return automaton._after_one(mode, end, time)
 
     def _after_flight(self, end: ModeEnd, time: float, integrator: Integrator | None) -> Transition:
         """Return what follows where a surface lands."""
@@ -191,7 +191,7 @@ class Automaton:
         if end.cause in (BRANCH, LIMIT_BRANCH):
             return Transition((), replace(mode, top=on_other_branch(mode.top)), state)
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
-        wrench = mode.found(mode.numbers(state))[2]
+        wrench = mode.contact_forces(mode.numbers(state))[2]
         if wrench.force[2] <= 0.0 and not self.pulls:
             return self.lift_off(time, state)
         begins = SlipComponent(
@@ -224,8 +224,8 @@ class Automaton:
             stuck = not ending.slip and ending.held
             return Transition((), self.mode_for(state, slips=not stuck), state)
         if end.cause == OVERTAKEN:
-            other = replace(mode, ending=SlipComponent(not ending.slip), begin=())
-            return Transition((), other, state)
+            second = replace(mode, ending=SlipComponent(not ending.slip), begin=())
+            return Transition((), second, state)
         if end.cause in (BRANCH, LIMIT_BRANCH):
             top, begin = on_other_branch(mode.top), (*end.numbers[:-1], 0.0)
             return Transition((), replace(mode, top=top, begin=begin), state)
@@ -270,8 +270,8 @@ class Automaton:
         settling = settling_flat(mode, state) if is_edge(top.surface) else None
         if settling is not None:
             return settling
-        ending, left = soonest_end(self.top, state, slips)
-        if ending is not None and left <= HORIZON:
+        ending, time_left = soonest_end(self.top, state, slips)
+        if ending is not None and time_left <= HORIZON:
             return SlipEnd(top, ending, self.pulls)
         return mode
 
@@ -330,11 +330,13 @@ class Automaton:
         """Return the mode of a contact of which is resolved what is held and what begins."""
         if resolved.wrench.force[2] <= 0.0 and not self.pulls:
             return self._release(time, state, events)
-        if all(begins):
-            return Transition(events, SlipAndRollingOnset(self.top, pulls=self.pulls), state)
         if any(begins):
-            ending = SlipComponent(begins[0], held=ended[1] if begins[0] else ended[0])
-            return Transition(events, SlipOnset(self.top, ending, self.pulls), state)
+            both = all(begins)
+            held = not both and (ended[1] if begins[0] else ended[0])
+            onset = SlipOnset(
+                self.top, SlipComponent(begins[0], held), self.pulls, with_rolling=both
+            )
+            return Transition(events, onset, state)
         mode = self.mode_for(state, slips=not ended[0])
         at, turning = resolved.acceleration
         if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
@@ -366,26 +368,26 @@ class Automaton:
         outermost two. One that sinks faster than rocking that has ended strikes.
         """
         beside = other_touching(self.top, state)
-        closed, told = False, events
-        if any(lands_flat(other, state.axis) for other in beside):
+        closed, reported = False, events
+        if any(lands_flat(neighbour, state.axis) for neighbour in beside):
             return Transition(events, Outcome.LYING_FLAT, state)
-        for other in beside:
-            if gap_rate(state, other) < -SLOWEST_ROCKING:
+        for neighbour in beside:
+            if gap_rate(state, neighbour) < -SLOWEST_ROCKING:
                 if sum(event.kind is EventKind.IMPACT for event in events) >= MOST_IN_TURNS:
                     detail = "surfaces strike in turns for ever"
                     return Transition(events, Outcome.FAILED, state, detail)
-                return self._of(other)._collide(time, state, told, 0.0)
-            if stays_closed(self.top, other, state):
+                return self._of(neighbour)._collide(time, state, reported, 0.0)
+            if stays_closed(self.top, neighbour, state):
                 closed = True
             else:
-                told = (*told, Event(EventKind.OPENING, time, surface=number_of(other)))
+                reported = (*reported, Event(EventKind.OPENING, time, surface=number_of(neighbour)))
         if not closed:
-            return self.resting_alone(time, state, told)
+            return self.resting_alone(time, state, reported)
         tops = outermost((self.top, *beside), state.axis)
         before = Before((), bool(rolling_of(state, self.top)))
         rolls = rolling_of(without_tilting(state, self.top), self.top)
-        here = self._of(tops[0])
-        return here.resolve_two(time, state, tops, before, rolls, events, arrived=True)
+        automaton = self._of(tops[0])
+        return automaton.resolve_two(time, state, tops, before, rolls, events, arrived=True)
 
     def resting_alone(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
         """Go on on the active surface, whatever else touches: slide, stick, leave or lie flat.
@@ -433,8 +435,8 @@ class Automaton:
         self, time: float, state: State, events: tuple[Event, ...], start: Start
     ) -> Transition:
         """End the run, or fly."""
-        then = self._flight(start) if self.liftoff == "fly" else Outcome.LIFTED_OFF
-        return Transition((*events, self.event(EventKind.LIFT_OFF, time)), then, state)
+        following = self._flight(start) if self.liftoff == "fly" else Outcome.LIFTED_OFF
+        return Transition((*events, self.event(EventKind.LIFT_OFF, time)), following, state)
 
     def _flight(self, start: Start) -> Flight:
         return Flight(self.top, start)
@@ -443,10 +445,10 @@ class Automaton:
         self, time: float, state: State, integrator: Integrator | None = None
     ) -> Transition:
         """Collide, unless with a face, and go on as the impact leaves the top."""
-        told = (self.event(EventKind.TOUCHDOWN, time),)
+        reported = (self.event(EventKind.TOUCHDOWN, time),)
         if lands_flat(self.top, state.axis):
-            return Transition(told, Outcome.LYING_FLAT, state)
-        return self._collide(time, state, told, self.restitution, integrator)
+            return Transition(reported, Outcome.LYING_FLAT, state)
+        return self._collide(time, state, reported, self.restitution, integrator)
 
     def touch(
         self, surface: int, time: float, state: State, integrator: Integrator | None = None
@@ -458,9 +460,9 @@ class Automaton:
         """
         striking = self.on(surface)
         faster = [
-            other
-            for other in other_touching(self.top, state)[:1]
-            if gap_rate(state, other) < gap_rate(state, striking.top)
+            neighbour
+            for neighbour in other_touching(self.top, state)[:1]
+            if gap_rate(state, neighbour) < gap_rate(state, striking.top)
         ]
         return (self._of(faster[0]) if faster else striking).touchdown(time, state, integrator)
 
@@ -515,32 +517,32 @@ class Automaton:
             return failed(what, error, state) if isinstance(error, Unsolved) else None
         if past is None:
             return None
-        beyond, *taken = past
-        found = self.inconsistent(time, beyond, ())
-        if not found.events and isinstance(found.then, Mode):
+        beyond, *prior = past
+        following = self.inconsistent(time, beyond, ())
+        if not following.events and isinstance(following.then, Mode):
             # Slip is so little that by rounding nothing strikes, and slipping on it would jam at
             # once.
-            found = self.resolve(time, stuck_at_once(beyond, self.top), (True, False))
-        return add_prior_impulse(found, state, *taken)
+            following = self.resolve(time, stuck_at_once(beyond, self.top), (True, False))
+        return add_prior_impulse(following, state, *prior)
 
     # Two contacts.
 
-    def _with_other_surfaces(self, time: float, found: Transition) -> Transition:
+    def _with_other_surfaces(self, time: float, following: Transition) -> Transition:
         """Return what follows on one contact, unless it presses another surface that touches onto
         the table: then both are resolved.
         """
-        mode, state = found.then, found.state
+        mode, state = following.then, following.state
         if not isinstance(self.top.surface, Hull) or not isinstance(mode, IntegratedMode):
-            return found
+            return following
         reaction = mode.reaction(mode.numbers(state))
         wrench = Wrench(reaction.force, reaction.torque)
-        for other in other_touching(self.top, state):
-            closes = stays_closed(self.top, other, state)
-            if closes and gap_acceleration(self.top, other, state, wrench) < 0.0:
+        for neighbour in other_touching(self.top, state):
+            closes = stays_closed(self.top, neighbour, state)
+            if closes and gap_acceleration(self.top, neighbour, state, wrench) < 0.0:
                 # The resolver of both reports what sticks.
-                halts = [event for event in found.events if event.kind is EventKind.HALT]
+                halts = [event for event in following.events if event.kind is EventKind.HALT]
                 return self.resting(time, state, tuple(halts))
-        return found
+        return following
 
     def resolve_two(
         self,
@@ -554,10 +556,10 @@ class Automaton:
         arrived: bool = False,
     ) -> Transition:
         """Return what two contacts do, where the body rolls as signed, or not (0)."""
-        here = TwoClosed.of(state, tops, rolls)
+        contacts = TwoClosed.of(state, tops, rolls)
         try:
-            resolved = here.resolved()
-            consistent = here.consistent(resolved)
+            resolved = contacts.resolved()
+            consistent = contacts.consistent(resolved)
         except ArithmeticError as error:
             return failed("The forces on two surfaces that touch", error, state, events)
         if len(consistent) != 1:
@@ -565,17 +567,17 @@ class Automaton:
             return Transition(events, Outcome.FAILED, state, detail)
         if consistent == [BOTH]:
             if arrived:
-                lost = float(energy(state, tops[0]) - energy(here.state, tops[0]))
+                lost = float(energy(state, tops[0]) - energy(contacts.state, tops[0]))
                 events = (*events, self.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost))
-            ended = time + time_to_end(state, here)
+            ended = time + time_to_end(state, contacts)
             # Rolling that begins now began when the slip ended that held it up.
             turned = ended if resolved.rolls != rolls else time
-            events = (*events, *here.changes((ended, turned), resolved, before))
-            return replace(self._mode_on_two(here, resolved), events=events)
-        numbers = [number_of(top) for top in here.tops]
+            events = (*events, *contacts.changes((ended, turned), resolved, before))
+            return replace(self._mode_on_two(contacts, resolved), events=events)
+        numbers = [number_of(top) for top in contacts.tops]
         opens, stays = numbers if consistent == [SECOND] else numbers[::-1]
         events = (*events, Event(EventKind.OPENING, time, surface=opens))
-        return self.on(stays).resting_alone(time, here.state, events)
+        return self.on(stays).resting_alone(time, contacts.state, events)
 
     def slip_on_two(
         self, time: float, state: State, mode: TwoContactMode, contact: int
@@ -583,48 +585,58 @@ class Automaton:
         """Return the mode in which a contact of two begins to slip at the limit of what the table
         can, or both do (-1).
         """
-        here = TwoClosed.of(state, mode.tops, mode.rolls, mode.sticks)
+        contacts = TwoClosed.of(state, mode.tops, mode.rolls, mode.sticks)
         try:
-            resolved = here.slipping(None if contact < 0 else contact)
+            resolved = contacts.slipping(None if contact < 0 else contact)
         except ArithmeticError as error:
             what = "The direction in which slip, or rolling, begins on two surfaces"
             return failed(what, error, state)
-        events = here.changes((time, time), resolved, Before.of(mode))
-        return replace(self._slip_begins(here, resolved), events=events)
+        events = contacts.changes((time, time), resolved, Before.of(mode))
+        return replace(self._slip_begins(contacts, resolved), events=events)
 
-    def _mode_on_two(self, here: TwoClosed, resolved: Resolution) -> Transition:
+    def _mode_on_two(self, contacts: TwoClosed, resolved: Resolution) -> Transition:
         """Return the mode in which both contacts go on."""
-        if resolved.rolls != here.rolls:
-            return self._mode_on_two(replace(here, rolls=resolved.rolls), resolved)
+        if resolved.rolls != contacts.rolls:
+            return self._mode_on_two(replace(contacts, rolls=resolved.rolls), resolved)
         if resolved.begins is not None:
-            return self._slip_begins(here, resolved)
+            return self._slip_begins(contacts, resolved)
         if not any(resolved.sticks):
-            return Transition((), on_two(here.state, here.tops, here.rolls), here.state)
+            return Transition(
+                (), on_two(contacts.state, contacts.tops, contacts.rolls), contacts.state
+            )
         if all(resolved.sticks):
-            one, other = here.tops
-            slowest = here.slowest_rolling
-            mode = TwoContactMode(one, other, (True, True), here.rolls, slowest_rolling=slowest)
-            still = rests(here.state, *resolved.motion.rates.turning)
-            return Transition((), Resting(here.tops[0], mode) if still else mode, here.state)
-        return Transition((), self._turning(here.tops, here.xi[2], here.rolls), here.state)
+            first, second = contacts.tops
+            slowest = contacts.slowest_rolling
+            mode = TwoContactMode(
+                first, second, (True, True), contacts.rolls, slowest_rolling=slowest
+            )
+            still = rests(contacts.state, *resolved.motion.rates.turning)
+            return Transition(
+                (), Resting(contacts.tops[0], mode) if still else mode, contacts.state
+            )
+        return Transition(
+            (), self._turning(contacts.tops, contacts.xi[2], contacts.rolls), contacts.state
+        )
 
     def _turning(self, tops: Tops, zeta: float, rolls: float) -> TwoContactMode:
         """Return the mode in which the first contact sticks, and the second slips so."""
         sense = 1.0 if zeta >= 0.0 else -1.0
         return TwoContactMode(tops[0], tops[1], (True, False), rolls, sense)
 
-    def _slip_begins(self, here: TwoClosed, resolved: Resolution) -> Transition:
+    def _slip_begins(self, contacts: TwoClosed, resolved: Resolution) -> Transition:
         """Return the mode in which slip begins on two contacts."""
         begins: Slip = resolved.begins or ()
         if any(resolved.sticks):
-            tops = here.tops if resolved.sticks[0] else here.tops[::-1]
+            tops = contacts.tops if resolved.sticks[0] else contacts.tops[::-1]
             sign = begins[2] if resolved.sticks[0] else -begins[2]
-            return Transition((), self._turning(tops, sign, here.rolls), here.state)
-        begin = (*here.state.axis, *here.state.momentum, 0.0, 0.0, here.xi[2])
-        slips = slips_of(here.pair, begins)
-        one, other = (on_branch(top, slip) for top, slip in zip(here.tops, slips, strict=True))
-        way = begins if all(here.ended) else begins[:2]
-        mode = SlipOnsetOnTwo(one, other, rolls=here.rolls, begin=begin, direction=way)
+            return Transition((), self._turning(tops, sign, contacts.rolls), contacts.state)
+        begin = (*contacts.state.axis, *contacts.state.momentum, 0.0, 0.0, contacts.xi[2])
+        slips = slips_of(contacts.pair, begins)
+        first, second = (
+            on_branch(top, slip) for top, slip in zip(contacts.tops, slips, strict=True)
+        )
+        direction = begins if all(contacts.ended) else begins[:2]
+        mode = SlipOnsetOnTwo(first, second, rolls=contacts.rolls, begin=begin, direction=direction)
         return Transition((), mode, mode.state(begin))
 
 
@@ -633,19 +645,21 @@ def _may_jam(mode: Mode) -> bool:
     return isinstance(mode, ContactMode) and mode.slides_freely
 
 
-def add_prior_impulse(found: Transition, before: State, impulse: float, lost: float) -> Transition:
+def add_prior_impulse(
+    following: Transition, before: State, impulse: float, lost: float
+) -> Transition:
     """Return what follows an impact that had begun with some normal impulse, which took energy.
 
     A run that ends without one ends in the state before.
     """
-    if not found.events and isinstance(found.then, Outcome):
-        return replace(found, state=before)
+    if not following.events and isinstance(following.then, Outcome):
+        return replace(following, state=before)
     hit = [
         replace(event, impulse=event.impulse + impulse, energy_lost=event.energy_lost + lost)
-        for event in found.events[:1]
+        for event in following.events[:1]
         if event.kind is EventKind.IMPACT
     ]
-    return replace(found, events=(*hit, *found.events[len(hit) :]))
+    return replace(following, events=(*hit, *following.events[len(hit) :]))
 
 
 def rests(state: State, *rates: Scalar) -> bool:

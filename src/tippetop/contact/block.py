@@ -54,15 +54,13 @@ class ModeSteps:
         return read(Rates.of, self.mode, y, nearer_pole(y[2]), total=len(NODES) * len(self.which))
 
     @property
-    def begun(self) -> Array:
+    def start_numbers(self) -> Array:
         """The numbers with which the steps begin, shape (size, k)."""
         return np.ascontiguousarray(self.terms[:, :, 0].T)
 
 
 def nearer_pole(axis: Array) -> Array:
-    """The pole from whose other one the axis stays farther in steps, shape (k,), by n_z, shape (m,
-    k).
-    """
+    """Return the pole nearer to the axis in each step, shape (k,), by n_z, shape (m, k)."""
     return np.where(axis.min(axis=0) + axis.max(axis=0) >= 0.0, 1.0, -1.0)
 
 
@@ -105,17 +103,17 @@ class Block:
                 kinds.setdefault(key, []).append(number)
         first = np.concatenate([[0], np.cumsum(self.lengths)])
         spans = self.spans
-        found = []
+        groups = []
         for numbers in kinds.values():
             which = np.concatenate([np.arange(first[n], first[n + 1]) for n in numbers])
             pieces = [self.segments[n].solution.terms for n in numbers]
             terms = pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
             mode = self.segments[numbers[0]].mode
-            found.append(ModeSteps(mode, which, terms, spans[which]))
-        return found
+            groups.append(ModeSteps(mode, which, terms, spans[which]))
+        return groups
 
     def step_at(self, times: Array) -> NDArray[np.intp]:
-        """Which step some times lie in, the earlier one where two meet, shape (m,)."""
+        """Return the steps in which some times lie, the earlier one where two meet, shape (m,)."""
         return np.minimum(np.searchsorted(self.ends, times, side="left"), len(self.ends) - 1)
 
     def sampled(
@@ -126,10 +124,10 @@ class Block:
         An instant is told by its step and the part of it that has passed.
         """
         for group in self.groups:
-            here, own = self._within(group, step)
-            if len(own):
-                y = evaluated(group.terms, own, parts[here])
-                yield group.mode, here, read(instants, group.mode, y.T, total=len(own))
+            chosen, numbers = self._within(group, step)
+            if len(numbers):
+                y = evaluated(group.terms, numbers, parts[chosen])
+                yield group.mode, chosen, read(instants, group.mode, y.T, total=len(numbers))
 
     def until(self, step: int, part: float) -> tuple["Block", float, State]:
         """Return the block up to an instant, told by its step and the part of it that has passed.
@@ -149,13 +147,13 @@ class Block:
     def _within(
         self, group: ModeSteps, step: NDArray[np.intp]
     ) -> tuple[NDArray[np.intp] | slice, NDArray[np.intp]]:
-        """Which of some steps a group has, and their numbers in it."""
+        """Return which of some steps a group has, and their numbers in it."""
         if len(self.groups) == 1:
             return slice(None), step
         place = np.full(len(self.ends), -1)
         place[group.which] = np.arange(len(group.which))
-        here = np.flatnonzero(place[step] >= 0)
-        return here, place[step[here]]
+        chosen = np.flatnonzero(place[step] >= 0)
+        return chosen, place[step[chosen]]
 
 
 def in_blocks(segments: Iterable[Segment]) -> Iterator[Block]:

@@ -14,18 +14,18 @@ from tippetop.problem.contact_rules import Contact
 
 
 # translate: skip
-def automaton_of(way: Contact, top: Top, units: Units) -> Automaton:
+def automaton_of(rules: Contact, top: Top, units: Units) -> Automaton:
     """Return the automaton of a top in natural units: the one that its problem's contact brings, or
     the usual.
     """
-    own: Automaton | None = way.rules(top, units)
-    if own is not None:
-        return own
-    return Automaton(top, way.liftoff, way.restitution, way.indeterminate)
+    chosen: Automaton | None = rules.rules(top, units)
+    if chosen is not None:
+        return chosen
+    return Automaton(top, rules.liftoff, rules.restitution, rules.indeterminate)
 
 
 def initial_mode(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
-    """The mode that a launch is told in that ends as it begins, and its numbers.
+    """Return the mode that is reported for a launch that ends as it begins, and its numbers.
 
     It slides, but where the table would have to pull: then it lets go.
     """

@@ -52,15 +52,15 @@ def _impact(state: State, restitution: float, top: Top, integrator: Integrator |
     Where slip ends meanwhile, under a law that leaves the force open then, the surfaces strike in
     turns.
     """
-    alone = None if restitution else impact_of_patch(state, top, integrator)
-    if alone is None:
-        alone = impact(state, restitution, top)
-    for other in other_touching(top, alone.state):
-        pressed = gap_rate(alone.state, other) < -SLOWEST_ROCKING
-        if pressed and abs(gap_rate(state, other)) <= SLOWEST_ROCKING:
+    single = None if restitution else impact_of_patch(state, top, integrator)
+    if single is None:
+        single = impact(state, restitution, top)
+    for neighbour in other_touching(top, single.state):
+        pressed = gap_rate(single.state, neighbour) < -SLOWEST_ROCKING
+        if pressed and abs(gap_rate(state, neighbour)) <= SLOWEST_ROCKING:
             try:
-                both = impact(state, restitution, top, other)
+                both = impact(state, restitution, top, neighbour)
             except SlipEndsInImpact:
-                return alone
-            return both._replace(steps=alone.steps + both.steps)
-    return alone
+                return single
+            return both._replace(steps=single.steps + both.steps)
+    return single

@@ -35,7 +35,7 @@ natural units; or times the speed, which is the rounding of a state.
 class CollocatedEnd:
     """The end of slip."""
 
-    left: float
+    time_left: float
     """The time until slip ends."""
     start: list[Scalar]
     """Axis, angular momentum and slip now."""
@@ -45,11 +45,11 @@ class CollocatedEnd:
     def at(self, part: float) -> list[Scalar]:
         """Return the numbers where a part of the time is left; slip is exactly zero at the end."""
         count, place = len(self.start), PARTS * (1.0 - part)
-        whole = min(int(place), PARTS - 1)
+        full = min(int(place), PARTS - 1)
         terms, numbers = self.terms.tolist(), list[Scalar]()
         for number, begin in enumerate(self.start):
             value = begin
-            for earlier in range(whole + 1):
+            for earlier in range(full + 1):
                 first = (earlier * count + number) * STAGES
                 elapsed = min(place - earlier, 1.0)
                 value = value + elapsed * horner(terms[first : first + STAGES], elapsed)
@@ -58,18 +58,20 @@ class CollocatedEnd:
 
     def solution(self, time: float) -> DenseSolution:
         """Return the numbers as polynomials in time from an instant on."""
-        knots = [self.left * part / PARTS for part in range(PARTS + 1)]
-        return DenseSolution.of_rows(knots, self.start, [self.terms]).moved(time, time + self.left)
+        knots = [self.time_left * part / PARTS for part in range(PARTS + 1)]
+        return DenseSolution.of_rows(knots, self.start, [self.terms]).moved(
+            time, time + self.time_left
+        )
 
 
 def collocated_end(
-    here: SlipEndState, ending: SlipComponent, top: Top, tolerance: float
+    state: SlipEndState, ending: SlipComponent, top: Top, tolerance: float
 ) -> CollocatedEnd | None:
     """Return the end of slip from a state on; None where its direction has not come to rest.
 
     Parameters
     ----------
-    here
+    state
         The state.
     ending
         The slip, beside which nothing else ends.
@@ -78,21 +80,21 @@ def collocated_end(
     tolerance
         Error of the directions that an integrator has left.
     """
-    along = inner(rates_in_time(here, ending, top).xi, here.direction)
+    along = inner(rates_in_time(state, ending, top).xi, state.direction)
     if along >= 0.0:
         return None
     motion = onset_motion(top.kind, (ending,), True)
     step = SlipStep(motion, top.numbers, from_end=True)
-    now = [*here.axis, *here.momentum]
-    start, guess = [*now, *[0.0 for _ in here.direction]], [-here.speed / along]
-    if not step.solve(start, [here.direction], here.speed, guess):
+    now = [*state.axis, *state.momentum]
+    start, guess = [*now, *[0.0 for _ in state.direction]], [-state.speed / along]
+    if not step.solve(start, [state.direction], state.speed, guess):
         return None
     slip = tuple([-change for change in step.changes[6:]])
-    aside = math.dist(here.direction, scaled(1.0 / size(slip), slip))
+    aside = math.dist(state.direction, scaled(1.0 / size(slip), slip))
     at_rest = max(AT_REST, tolerance)
-    if not (aside * step.length < at_rest or aside * here.speed < UNSEEN):
+    if not (aside * step.length < at_rest or aside * state.speed < UNSEEN):
         return None
-    smooth = step.error < (ACCURACY * max(here.speed, SLOWEST)) ** 2
+    smooth = step.error < (ACCURACY * max(state.speed, SLOWEST)) ** 2
     if not smooth or step.least_speed <= 0.0:
         return None
     return CollocatedEnd(step.length, [*now, *slip], step.pieces(float(PARTS)))

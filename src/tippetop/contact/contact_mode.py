@@ -89,8 +89,8 @@ class StatedMode(IntegratedMode):
         """The numbers of its tops."""
         return tuple(number for top in self.tops for number in top.numbers)
 
-    def with_tops(self, tops: Sequence[Top], more: Sequence[Scalar]) -> Self:
-        """The same with tops, and with its further parameters."""
+    def with_tops(self, tops: Sequence[Top], further: Sequence[Scalar]) -> Self:
+        """Return the mode with tops, and with further parameters."""
         return replace(self, top=tops[0])
 
     @abstractmethod
@@ -99,7 +99,7 @@ class StatedMode(IntegratedMode):
 
     @abstractmethod
     def guard_values(self) -> list[GuardValue]:
-        """The guards."""
+        """Return the guards."""
 
 
 @lru_cache
@@ -117,8 +117,8 @@ def motion_of(form: Any, kinds: tuple[Kind, ...]) -> Motion:
         return Guard(name, lambda y, numbers: value(mode(numbers), y))
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        found: tuple[Scalar, ...] = mode(numbers).rates(y)
-        return found
+        values: tuple[Scalar, ...] = mode(numbers).rates(y)
+        return values
 
     example = form.with_tops([kind.example for kind in kinds], (0.0,) * form.further_count)
     guards = tuple(guard(name, value) for name, value in example.guard_values())
@@ -161,10 +161,8 @@ class ContactMode(StatedMode):
         """How many numbers the mode has: axis, angular momentum, and velocity if it slips."""
         return 6 if self.sticks else 8
 
-    def found(self, y: Row) -> tuple[ContactPoint, Slip | None, Wrench, Acceleration]:
-        """The contact point, its slip, what the table does, and the acceleration, from the
-        numbers.
-        """
+    def contact_forces(self, y: Row) -> tuple[ContactPoint, Slip | None, Wrench, Acceleration]:
+        """Return the contact point, its slip, the wrench of the table, and the acceleration."""
         point = ContactPoint.of(*split(y), self.top)
         slip = None if self.sticks else slip_of(*split(y), (y[6], y[7]), self.top)[:2]
         rolling = None if self.holds_rolling else point.turning[:2]
@@ -175,7 +173,7 @@ class ContactMode(StatedMode):
         return along_table(state).pack()[: self.count]
 
     def state(self, y: Row) -> State:
-        """The state, with its height and sinking; what is held is zero."""
+        """Return the state, with its height and sinking; what is held is zero."""
         axis, momentum = split(y)
         if self.holds_rolling:
             momentum = without_rolling(axis, momentum, self.top)
@@ -186,20 +184,22 @@ class ContactMode(StatedMode):
         """Rates of axis and angular momentum, and of the velocity if it slips."""
         if self.slides_freely:
             return sliding_rates(SlidingState.unpack(y), self.top).pack()
-        point, slip, wrench, _ = self.found(y)
+        point, slip, wrench, _ = self.contact_forces(y)
         drawn = () if slip is None else scaled(1.0 / self.top.mass, wrench.force[:2])
         return (*axis_rate(*split(y), self.top), *point.moment(wrench), *drawn)
 
     def reaction(self, y: Row) -> Reaction:
-        """The contact force and torque."""
-        point, slip, wrench, _ = self.found(y)
+        """Return the contact force and torque."""
+        point, slip, wrench, _ = self.contact_forces(y)
         power = dot(wrench.torque, point.turning)
         if slip is not None:
             power = wrench.force[0] * slip[0] + wrench.force[1] * slip[1] + power
         return Reaction(wrench.force, wrench.torque, power)
 
     def guard_values(self) -> list[GuardValue]:
-        """The guards of what holds the contact, or of slip; of rolling; and of the body's shape."""
+        """Return the guards of what holds the contact, or of slip; of rolling; and of the body's
+        shape.
+        """
         guards = self._sticking_guards() if self.sticks else self._slip_guards()
         if self.holds_rolling:
             guards.append((ROLLING, lambda mode, y: mode.rolling_reserve(y)))
@@ -211,16 +211,18 @@ class ContactMode(StatedMode):
 
     def _sticking_guards(self) -> list[GuardValue]:
         guards: list[GuardValue] = [
-            (SLIP, lambda mode, y: slip_reserve(mode.top, mode.found(y)[2]))
+            (SLIP, lambda mode, y: slip_reserve(mode.top, mode.contact_forces(y)[2]))
         ]
         if has_limit_branches(self.top.friction):
-            guards.append((LIMIT_BRANCH, lambda mode, y: limit_guard(mode.top, mode.found(y)[2])))
+            guards.append(
+                (LIMIT_BRANCH, lambda mode, y: limit_guard(mode.top, mode.contact_forces(y)[2]))
+            )
         return guards
 
     def _slip_guards(self) -> list[GuardValue]:
         law, guards = self.top.friction, list[GuardValue]()
         if not self.pulls:
-            guards.append((LIFT_OFF, lambda mode, y: mode.found(y)[2].force[2]))
+            guards.append((LIFT_OFF, lambda mode, y: mode.contact_forces(y)[2].force[2]))
         if is_set_valued(law) and self.near:
             guards.append((STOPPING, lambda mode, y: mode.slip_left(y)))
             guards.append(
@@ -240,7 +242,7 @@ class ContactMode(StatedMode):
 
     def slip_left(self, y: Row) -> Scalar:
         """Positive while slip goes on for a while."""
-        change = slip_part(flat(self.found(y)[3]), slip_length(self.top.friction))
+        change = slip_part(flat(self.contact_forces(y)[3]), slip_length(self.top.friction))
         return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
 
     def wobble(self, y: Row) -> Wobble:
@@ -250,7 +252,7 @@ class ContactMode(StatedMode):
 
     def rolling_reserve(self, y: Row) -> Scalar:
         """Positive while the table can exert the couple that holds rolling."""
-        point, slip, wrench, _ = self.found(y)
+        point, slip, wrench, _ = self.contact_forces(y)
         return rolling_reserve(point, wrench, slip)
 
     def rolling_left(self, y: Row) -> Scalar:
@@ -258,7 +260,7 @@ class ContactMode(StatedMode):
         if self.slides_freely:
             rates = SlidingState.unpack(self.rates(y))
             return rolling_stopping_guard(SlidingState.unpack(y), rates, self.top)
-        point, _, _, acceleration = self.found(y)
+        point, _, _, acceleration = self.contact_forces(y)
         return remaining(point.turning[:2], acceleration.turning[:2])
 
 
@@ -268,8 +270,8 @@ def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
     If `guarded`, the first guard is of lift-off. Where slip can end, another tells whether it may
     be soon.
     """
-    nothing: Any = None
-    return motion_of(ContactMode(nothing, holds_rolling=held, pulls=not guarded), (kind,))
+    no_top: Any = None
+    return motion_of(ContactMode(no_top, holds_rolling=held, pulls=not guarded), (kind,))
 
 
 def _of_top(value: SurfaceGuard) -> Callable[[Any, Row], Scalar]:

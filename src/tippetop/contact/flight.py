@@ -50,7 +50,7 @@ class Flight(Mode):
     touching: ClassVar[bool] = False
 
     def state(self, y: Row) -> State:
-        """The numbers of a flight are those of the state."""
+        """Return the state, whose numbers are those of a flight."""
         return State.unpack(y)
 
     def segments(
@@ -60,9 +60,9 @@ class Flight(Mode):
         try:
             landing, lowest = self._landing(state, end - time)
         except ArithmeticError as error:
-            nothing = DenseSolution.nothing(time, len(state.pack()))
+            empty = DenseSolution.empty(time, len(state.pack()))
             why = explanation("The end of the flight", error)
-            yield Segment(self, nothing, state, ModeEnd(FAILURE, state, detail=why))
+            yield Segment(self, empty, state, ModeEnd(FAILURE, state, detail=why))
             return
         duration = end - time if landing is None else landing
         count = 1 + int(duration * precession(state, self.top) / TURN)
@@ -70,48 +70,48 @@ class Flight(Mode):
             last = min(first + MOST_STEPS, count)
             elapsed = [duration / count * step for step in range(first, last + 1)]
             elapsed[-1] = duration if last == count else elapsed[-1]
-            here = fly(state, elapsed[-1], self.top, math)
+            later = fly(state, elapsed[-1], self.top, math)
             how, reach = None, time + elapsed[-1]
             if last == count:
                 reach = end if landing is None else reach
-                how = self._end(here, None if landing is None else lowest)
+                how = self._end(later, None if landing is None else lowest)
             solution = self._solution(state, elapsed).moved(time, reach)
             highest = highest_gap(state, self.top, elapsed[-1])
-            yield Segment(self, solution, here, how, highest_gap=highest)
+            yield Segment(self, solution, later, how, highest_gap=highest)
 
     def _solution(self, state: State, elapsed: Sequence[float]) -> DenseSolution:
-        """The flight from a state on, in steps of equal length."""
+        """Return the flight from a state on, in steps of equal length."""
 
         def moving(time: Scalar) -> tuple[Row, Row, Row]:
-            here = fly(state, time, self.top, ELEMENTARY)
-            rate, second = flight_rates(here, self.top)
-            return here.pack(), rate.pack(), second.pack()
+            later = fly(state, time, self.top, ELEMENTARY)
+            rate, second = flight_rates(later, self.top)
+            return later.pack(), rate.pack(), second.pack()
 
         swinging = precession(state, self.top), elapsed, DEGREE, len(state.axis)
         return DenseSolution.swinging(moving, *swinging)
 
     def _landing(self, state: State, horizon: float) -> tuple[float | None, Top]:
-        """When the first surface touches the table, and the top with that surface active."""
-        found = touchdown(state, self.top, horizon, self.start)
+        """Return when the first surface touches the table, and the top with that surface active."""
+        first_time = touchdown(state, self.top, horizon, self.start)
         lowest = self.top
-        for other in self.top.each:
-            if other != self.top:
-                limit = horizon if found is None else found
-                sooner = touchdown(state, other, limit, start_of(state, other))
-                if sooner is not None and (found is None or sooner < found):
-                    found, lowest = sooner, other
-        return found, lowest
+        for top in self.top.each:
+            if top != self.top:
+                limit = horizon if first_time is None else first_time
+                sooner = touchdown(state, top, limit, start_of(state, top))
+                if sooner is not None and (first_time is None or sooner < first_time):
+                    first_time, lowest = sooner, top
+        return first_time, lowest
 
     def _end(self, state: State, lowest: Top | None) -> ModeEnd:
         """Return how the flight ends: on a surface, or with the run."""
         if lowest is None:
             return ModeEnd(COMPLETED, state)
-        here = state._replace(height=support_at(state.axis, lowest.surface)[0])
-        return ModeEnd(LANDING, here, number_of(lowest))
+        later = state._replace(height=support_at(state.axis, lowest.surface)[0])
+        return ModeEnd(LANDING, later, number_of(lowest))
 
 
 def start_of(state: State, top: Top) -> Start:
-    """How a flight starts for a surface that did not decide it: far, or just opened."""
+    """Return how a flight starts for a surface: open, or just opened."""
     rate = gap_rate(state, top)
     if gap(state, top) > TOUCHING or rate < -TOUCHING:
         return Start.AIRBORNE

@@ -13,7 +13,7 @@ LEVEL = 1e-9
 counts.
 """
 
-LOOKS = 65
+PROBES = 65
 """Tilts at which the height of the centre of mass is looked at."""
 
 
@@ -31,7 +31,7 @@ def lowest_contact_vector(axis: Vector, surface: Surface) -> Vector:
     x, y, z = arms[-1]
     for arm in reversed(arms):
         lowest = np.less(arm[2], level)
-        x, y, z = (np.where(lowest, arm[i], other) for i, other in enumerate((x, y, z)))
+        x, y, z = (np.where(lowest, arm[i], former) for i, former in enumerate((x, y, z)))
     return (x, y, z)
 
 
@@ -42,10 +42,10 @@ def highest_between(surface: Surface, low: Scalar, high: Scalar) -> Scalar:
     A sphere's is linear in n_z: there it is at one of the ends.
     """
     low, high = np.maximum(low, -1.0), np.minimum(high, 1.0)
-    found, last = outer_height(surface, low), 1 if surface.spherical else LOOKS - 1
-    for look in range(1, last + 1):
-        found = np.maximum(found, outer_height(surface, low + look / last * (high - low)))
-    return found
+    highest, last = outer_height(surface, low), 1 if surface.spherical else PROBES - 1
+    for probe in range(1, last + 1):
+        highest = np.maximum(highest, outer_height(surface, low + probe / last * (high - low)))
+    return highest
 
 
 def lowest_jellett(state: State, top: Top) -> Scalar:

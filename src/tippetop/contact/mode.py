@@ -300,12 +300,10 @@ class Mode(ABC):
 
     @abstractmethod
     def state(self, y: Row) -> State:
-        """The state from the numbers of the mode, in plain operators."""
+        """Return the state from the numbers of the mode, in plain operators."""
 
     def reaction(self, y: Row) -> Reaction:
-        """What the table does, from the numbers of the mode, in plain operators; nothing by
-        default.
-        """
+        """Return the contact force and torque, from the numbers of the mode, in plain operators."""
         return NO_REACTION
 
 
@@ -319,9 +317,9 @@ class IntegratedMode(Mode):
         return True
 
     def without_tops(self) -> Self:
-        """What remains of it when its tops are taken away: what it is among its like."""
-        nothing: Any = None
-        return replace(self, top=nothing)
+        """Return the mode without its tops: modes of one form are equal then."""
+        no_top: Any = None
+        return replace(self, top=no_top)
 
     @property
     @abstractmethod
@@ -335,7 +333,7 @@ class IntegratedMode(Mode):
 
     @abstractmethod
     def numbers(self, state: State) -> tuple[Scalar, ...]:
-        """The numbers that the equations move, from a state, in plain operators."""
+        """Return the numbers that the equations move, from a state, in plain operators."""
 
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator

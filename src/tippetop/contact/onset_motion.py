@@ -20,7 +20,7 @@ from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Scalar
 
-BOTH = (SlipComponent(slip=True), SlipComponent(slip=False))
+SLIP_AND_ROLLING = (SlipComponent(slip=True), SlipComponent(slip=False))
 """Slip and rolling, which begin together."""
 
 
@@ -38,7 +38,7 @@ def onset_motion(kind: Kind, begins: tuple[SlipComponent, ...], guarded: bool) -
     kind
         The kind of top.
     begins
-        One component, or `BOTH`.
+        One component, or `SLIP_AND_ROLLING`.
     guarded
         Whether the table cannot pull.
     """

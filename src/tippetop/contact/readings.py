@@ -101,7 +101,7 @@ class Instants(NamedTuple):
         )
 
     def pack(self) -> tuple[Scalar, ...]:
-        """The numbers in the order of the attributes."""
+        """Return the numbers in the order of the attributes."""
         numbers = self.energy, self.jellett, self.gap, self.spin, self.precession, self.tilting
         return (*self.state.pack(), *self.force, *self.torque, *numbers, *self.slip, *self.point)
 
@@ -122,7 +122,7 @@ Reading: TypeAlias = Callable[..., Sequence[Scalar]]
 
 
 def instants(mode: Mode, y: Row) -> tuple[Scalar, ...]:
-    """The numbers of `Instants`."""
+    """Return the numbers of `Instants`."""
     return Instants.of(mode, y).pack()
 
 
@@ -154,15 +154,15 @@ def read(reading: Reading, mode: Mode, y: Array, *others: Scalar, total: int = 0
         return evaluation(y, (*mode.top.numbers, *others))
     with np.errstate(divide="ignore", invalid="ignore"):
         rows = reading(mode, y, *others)
-    found = np.empty((len(rows), *y.shape[1:]))
-    for place, row in zip(found, rows, strict=True):
+    values = np.empty((len(rows), *y.shape[1:]))
+    for place, row in zip(values, rows, strict=True):
         place[...] = row
-    return found
+    return values
 
 
 # translate: skip
 def _compiled(reading: Reading, mode: Mode, size: int, others: int) -> Evaluation | None:
-    """A reading of modes of this kind, compiled, if it can be and they are all alike."""
+    """Return the compiled reading of modes of this kind; None where it is not compiled."""
     if not isinstance(mode, IntegratedMode) or not mode.lasting:
         return None
     if len(mode.tops) > 1 or isinstance(mode.top.surface, Hull):
@@ -176,7 +176,7 @@ def _compiled(reading: Reading, mode: Mode, size: int, others: int) -> Evaluatio
 # translate: skip
 @lru_cache
 def _of_kind(reading: Reading, form: Any, kind: Kind) -> Rows:
-    """A reading of modes of this kind as a function of their numbers and those of their tops."""
+    """Return a reading as a function of the numbers of a mode and of its top."""
 
     def values(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
         top = kind.top(tuple(numbers[: kind.numbers]))

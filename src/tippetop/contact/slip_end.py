@@ -75,16 +75,16 @@ class SlipEnd(TransientMode):
     ) -> Iterator[Segment]:
         """Follow it to its end, or to where it is no longer about to end."""
         begin = self.begin or self._clock(state)
-        arcs, rest, arrival = self._followed(begin, end - time, integrator)
-        here = slip_end_state(arcs[-1].end_state.tolist() if arcs else begin, self.ending)
-        arc, until = arcs[-1] if arcs and arrival is None else None, float(here.time)
-        if arc is not None and arc.failure is not None and here.speed < SLOWEST:
+        arcs, last_state, arrival = self._followed(begin, end - time, integrator)
+        now = slip_end_state(arcs[-1].end_state.tolist() if arcs else begin, self.ending)
+        arc, until = arcs[-1] if arcs and arrival is None else None, float(now.time)
+        if arc is not None and arc.failure is not None and now.speed < SLOWEST:
             # It passes zero by so little that no step is short enough to see it turn round.
-            rest, arc = here._replace(speed=0.0), None
+            last_state, arc = now._replace(speed=0.0), None
         if arrival is None:
             last, onwards = (
-                self.state(pack_moment(rest)),
-                straight(pack_moment(here), pack_moment(rest), until, rest.time),
+                self.state(pack_moment(last_state)),
+                straight(pack_moment(now), pack_moment(last_state), until, last_state.time),
             )
         else:
             last, onwards = (
@@ -100,59 +100,61 @@ class SlipEnd(TransientMode):
     def _followed(
         self, begin: Row, longest: float, integrator: Integrator
     ) -> tuple[list[Arc], SlipEndState, CollocatedEnd | None]:
-        """It in its clock; and where it ends after that, in one step, if not by power series."""
-        here, start, arcs = slip_end_state(begin, self.ending), (0.0, as_array(begin)), list[Arc]()
+        """Follow the velocity in its clock; return the arcs, the end state, and a collocated end if
+        any.
+        """
+        now, start, arcs = slip_end_state(begin, self.ending), (0.0, as_array(begin)), list[Arc]()
         patch = slip_length(self.top.friction) is not None
-        arrival, rest = self._arrival(here, longest, integrator) if patch else None, here
+        arrival, last_state = self._arrival(now, longest, integrator) if patch else None, now
         for horizon in LANDING:
-            if arrival is not None or landing_guard(here, self.ending, self.top, horizon) <= 0.0:
+            if arrival is not None or landing_guard(now, self.ending, self.top, horizon) <= 0.0:
                 continue
             for arc in slip_end_arcs(
                 integrator, self.motion, (*self.top.numbers, longest, horizon), start
             ):
                 arcs.append(arc)
                 start = arc.solution.end, arc.end_state
-                here = slip_end_state(arc.end_state.tolist(), self.ending)
+                now = slip_end_state(arc.end_state.tolist(), self.ending)
                 if arc.guard is None and arc.failure is None and arc.steps >= FEW:
-                    arrival = self._arrival(here, longest, integrator)
+                    arrival = self._arrival(now, longest, integrator)
                 if arrival is not None:
-                    return arcs, here, arrival
+                    return arcs, now, arrival
             if arcs[-1].guard != LANDED:
-                return arcs, here, None
-            rest, doubt = landed(here, self.ending, self.top)
+                return arcs, now, None
+            last_state, doubt = landed(now, self.ending, self.top)
             if doubt < SETTLED:
                 break
         return (
             arcs,
-            rest if arcs or arrival is not None else landed(here, self.ending, self.top)[0],
+            last_state if arcs or arrival is not None else landed(now, self.ending, self.top)[0],
             arrival,
         )
 
     def _arrival(
-        self, here: SlipEndState, longest: float, integrator: Integrator
+        self, now: SlipEndState, longest: float, integrator: Integrator
     ) -> CollocatedEnd | None:
-        """The end of slip by collocation, if its direction has come to rest and nothing else
+        """Return the end of slip by collocation, if its direction has come to rest and nothing else
         happens.
         """
         if not self.ending.slip:
             return None
-        found = collocated_end(here, self.ending, self.top, getattr(integrator, "tolerance", 0.0))
-        if found is None or here.time + found.left > longest:
+        arrival = collocated_end(now, self.ending, self.top, getattr(integrator, "tolerance", 0.0))
+        if arrival is None or now.time + arrival.time_left > longest:
             return None
         numbers = (*self.top.numbers, longest, 0.0)
-        for look in range(LOOKS + 1):
-            then = found.at(look / LOOKS or ALMOST)
-            xi = tuple(then[6:])
-            clock = (*then[:6], *scaled(1.0 / size(xi), xi), size(xi), here.time)
+        for probe in range(LOOKS + 1):
+            later = arrival.at(probe / LOOKS or ALMOST)
+            xi = tuple(later[6:])
+            clock = (*later[:6], *scaled(1.0 / size(xi), xi), size(xi), now.time)
             if not all(
                 one.value(clock, numbers) > 0.0 for one in self.motion.guards if one.name not in OWN
             ):
                 return None
-        way = [found.at(look / LOOKS) for look in range(LOOKS + 1)]
-        return None if passes_flat(self.top, way) else found
+        rows = [arrival.at(probe / LOOKS) for probe in range(LOOKS + 1)]
+        return None if passes_flat(self.top, rows) else arrival
 
     def _clock(self, state: State) -> tuple[float, ...]:
-        """The numbers of the clock at a state."""
+        """Return the numbers of the clock at a state."""
         velocity = state.velocity[:2]
         xi = self.ending.of(state.axis, state.momentum, velocity, self.top)
         free = velocity if self.ending.moves else ()
@@ -169,13 +171,15 @@ class SlipEnd(TransientMode):
             return ModeEnd(COMPLETED, state)
         return ModeEnd.by_guard(arc.guard, state, tuple(arc.end_state.tolist()))
 
-    def _in_time(self, arcs: Sequence[Arc], until: float, rest: DenseSolution) -> DenseSolution:
-        """The numbers of the mode as polynomials in time: up to some time from the clock's, and the
-        rest.
+    def _in_time(
+        self, arcs: Sequence[Arc], until: float, last_state: DenseSolution
+    ) -> DenseSolution:
+        """Return the numbers of the mode as polynomials in time: up to some time from the clock's,
+        and the rest.
         """
         parts = [arc.solution for arc in arcs if len(arc.solution.terms)]
         if not parts:
-            return rest
+            return last_state
         clock, elapsed = DenseSolution.joined(parts), parts[0].size - 1
 
         def numbers(times: Array) -> tuple[Scalar, ...]:
@@ -186,25 +190,25 @@ class SlipEnd(TransientMode):
         solution = DenseSolution.fitted(numbers, graded(knots) if jams else thinned(knots), DEGREE)
         if solution.unresolved > RESOLVED and not jams:
             solution = DenseSolution.fitted(numbers, knots, DEGREE)
-        return DenseSolution.joined([solution, rest]) if rest.end > until else solution
+        return DenseSolution.joined([solution, last_state]) if last_state.end > until else solution
 
 
 def thinned(knots: Sequence[float]) -> list[float]:
     """Ends of steps, so few of them that each leaves but a share of the time to the last."""
-    end, found = knots[-1], [knots[0]]
+    end, chosen = knots[-1], [knots[0]]
     for knot in knots[1:-1]:
-        if end - knot <= SHARE * (end - found[-1]):
-            found.append(knot)
-    return [*found, end]
+        if end - knot <= SHARE * (end - chosen[-1]):
+            chosen.append(knot)
+    return [*chosen, end]
 
 
 def graded(knots: Sequence[float]) -> list[float]:
     """Ends of steps that grow as short as what is left to the last, where the normal force has no
     bound.
     """
-    end, found = knots[-1], [knots[0]]
+    end, chosen = knots[-1], [knots[0]]
     for knot in knots[1:]:
-        while NEARER * (end - found[-1]) > max(end - knot, NEAREST * (end - knots[0])):
-            found.append(end - NEARER * (end - found[-1]))
-        found.append(knot)
-    return found
+        while NEARER * (end - chosen[-1]) > max(end - knot, NEAREST * (end - knots[0])):
+            chosen.append(end - NEARER * (end - chosen[-1]))
+        chosen.append(knot)
+    return chosen

@@ -58,7 +58,7 @@ ends.
 def slip_end_arcs(
     integrator: Integrator, motion: Motion, parameters: Sequence[float], start: tuple[float, Array]
 ) -> Iterator[Arc]:
-    """The end of slip, or of rolling, in its clock, arc by arc."""
+    """Return the end of slip, or of rolling, in its clock, arc by arc."""
     arcs = 0
     for end in (*[start[0] + part for part in SOON if start[0] + part < LONGEST], LONGEST):
         for arc in integrator.integrate(motion, parameters, start, end):
@@ -156,7 +156,7 @@ def held_reserve(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar
 
 
 def slip_end_state(y: Row, ending: SlipComponent) -> SlipEndState:
-    """The state of a velocity that is about to end, from its numbers."""
+    """Return the state of a velocity that is about to end, from its numbers."""
     count, free = len(y), 8 if ending.moves else 6
     return SlipEndState(
         *split(y), tuple(y[6:free]), tuple(y[free : count - 2]), y[count - 2], y[count - 1]

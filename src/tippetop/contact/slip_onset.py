@@ -4,9 +4,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from tippetop.contact.contact_mode import split
 from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Reaction, Segment, explanation
-from tippetop.contact.onset_motion import BOTH, onset_motion
+from tippetop.contact.onset_motion import SLIP_AND_ROLLING, onset_motion
 from tippetop.contact.slip_phase import SlipPhase, follow_slip
 from tippetop.contact.transient import TransientMode
 from tippetop.integrators.base import Integrator
@@ -44,16 +43,42 @@ class SlipOnset(TransientMode):
 
     wrench: Wrench | None = None
     """The wrench that held what begins, if that is known."""
+    with_rolling: bool = False
+    """Whether rolling begins at once with slip."""
 
     @property
     def begins(self) -> tuple[SlipComponent, ...]:
         """The velocities that begin."""
-        return (self.ending,)
+        return SLIP_AND_ROLLING if self.with_rolling else (self.ending,)
 
     @property
-    def what(self) -> str:
-        """A clause of a sentence: they begin."""
+    def clause(self) -> str:
+        """Clause of a sentence that states what begins."""
+        if self.with_rolling:
+            return "slip and rolling begin"
         return "slip begins" if self.ending.slip else "rolling begins"
+
+    @property
+    def form(self) -> str:
+        """What begins decides how its numbers are read."""
+        slip, held = self.ending
+        return f"{self.name}: {len(self.begins)} begin, slip {slip}, held {held}"
+
+    def reaction(self, y: Row) -> Reaction:
+        """Return the contact force and torque, from the velocities that begin."""
+        if not self.with_rolling:
+            return super().reaction(y)
+        axis, momentum, _, slip = self._parts(y)
+        rolling = y[len(y) - 2 :]
+        point = ContactPoint.of(axis, momentum, self.top)
+        (force, torque), _ = forces_and_accelerations(point, slip, (rolling[0], rolling[1]))
+        turning: Vector = (rolling[0], rolling[1], point.turning[2])
+        power = dot(torque, turning) + (force[0] * slip[0] + force[1] * slip[1])
+        return Reaction(force, torque, power)
+
+    def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
+        """Return axis, angular momentum, velocity where it is free, and slip or else rolling."""
+        return super()._parts(y[: len(y) - 2] if self.with_rolling else y)
 
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
@@ -62,13 +87,13 @@ class SlipOnset(TransientMode):
         try:
             mode, directions = self._with_directions(state)
         except ArithmeticError as error:
-            why = explanation(f"The direction in which {self.what}", error)
+            why = explanation(f"The direction in which {self.clause}", error)
             yield failed_segment(self.reported_mode, time, state, why)
             return
         top = mode.top
         velocity = state.velocity[:2] if self.ending.moves else ()
         numbers = [*state.axis, *state.momentum, *velocity]
-        begin = [*numbers, *[0.0 for way in directions for _ in way]]
+        begin = [*numbers, *[0.0 for direction in directions for _ in direction]]
         phase = follow_slip(
             onset_motion(top.kind, self.begins, not self.pulls),
             top,
@@ -81,7 +106,7 @@ class SlipOnset(TransientMode):
             yield failed_segment(self.reported_mode, time, state, UNSEEN)
             return
         last = mode.state([*phase.last[: len(numbers)], 0.0, 0.0] if phase.ended else phase.last)
-        first = [TINY * number for way in directions for number in way]
+        first = [TINY * number for direction in directions for number in direction]
         solution = solution_of(phase, [*numbers, *first], (time, end))
         cause = COMPLETED if solution.end >= end else BEGUN
         how = ModeEnd(ENDED if phase.ended else cause, last)
@@ -91,6 +116,8 @@ class SlipOnset(TransientMode):
         """Return how long a step may be: a part of the time in which the velocity beside this one
         could end, at its present rate; infinity where nothing can.
         """
+        if self.with_rolling:
+            return math.inf
         axis, momentum, velocity, _ = self._parts(numbers)
         point = ContactPoint.of(axis, momentum, self.top)
         slip, can_end = None, self.top.resists_rolling
@@ -108,74 +135,29 @@ class SlipOnset(TransientMode):
     def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip]]":
         """Return the mode on its law's branch, and the directions of what begins."""
         ending = self.ending
+        begins = ending.slip, not ending.slip or self.with_rolling
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         slip, rolling = None, None
         if ending.moves:
             slip = slip_of(state.axis, state.momentum, state.velocity[:2], self.top)
-        if ending.slip and not ending.held:
+        if not ending.held and not begins[1]:
             rolling = point.turning[:2]
-        begun = find_onset(point, slip, rolling, (ending.slip, not ending.slip), self.wrench)
-        if begun.slip is None:
-            top = on_limit_branch(self.top, begun.wrench)
+        onset = find_onset(point, slip, rolling, begins, self.wrench)
+        if onset.slip is None:
+            top = on_limit_branch(self.top, onset.wrench)
         else:
-            top = on_branch(self.top, begun.slip)
-        way = begun.slip if ending.slip else begun.rolling
-        assert way is not None
-        return replace(self, top=top), [way]
+            top = on_branch(self.top, onset.slip)
+        directions = list[Slip]()
+        for direction, new in zip((onset.slip, onset.rolling), begins, strict=True):
+            if new:
+                assert direction is not None
+                directions.append(direction)
+        return replace(self, top=top), directions
 
     @property
     def stuck(self) -> bool:
         """Whether the contact sticks meanwhile."""
         return not self.ending.slip and self.ending.held
-
-
-@dataclass(frozen=True)
-class SlipAndRollingOnset(SlipOnset):
-    """The same where slip and rolling begin at once."""
-
-    ending: SlipComponent = SlipComponent(slip=True)  # noqa: RUF009
-
-    @property
-    def begins(self) -> tuple[SlipComponent, ...]:
-        """Slip and rolling."""
-        return BOTH
-
-    @property
-    def what(self) -> str:
-        """A clause of a sentence: they begin."""
-        return "slip and rolling begin"
-
-    @property
-    def form(self) -> str:
-        """Its numbers have both velocities."""
-        return f"{self.name}: slip and rolling"
-
-    def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
-        """Read axis, angular momentum and slip."""
-        return *split(y), (), tuple(y[6 : len(y) - 2])
-
-    def reaction(self, y: Row) -> Reaction:
-        """Return the contact force and torque, from both velocities."""
-        axis, momentum, _, slip = self._parts(y)
-        rolling = y[len(y) - 2 :]
-        point = ContactPoint.of(axis, momentum, self.top)
-        (force, torque), _ = forces_and_accelerations(point, slip, (rolling[0], rolling[1]))
-        turning: Vector = (rolling[0], rolling[1], point.turning[2])
-        power = dot(torque, turning) + (force[0] * slip[0] + force[1] * slip[1])
-        return Reaction(force, torque, power)
-
-    def longest_step(self, numbers: Row, direction: Slip) -> float:
-        """Return infinity: there is no other velocity."""
-        return math.inf
-
-    def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip]]":
-        """Return the mode on its law's branch, and both directions."""
-        point = ContactPoint.of(state.axis, state.momentum, self.top)
-        begun = find_onset(point, None, None, (True, True))
-        assert begun.slip is not None
-        assert begun.rolling is not None
-        directions: list[Slip] = [begun.slip, begun.rolling]
-        return replace(self, top=on_branch(self.top, begun.slip)), directions
 
 
 def solution_of(
@@ -192,4 +174,4 @@ def solution_of(
 
 def failed_segment(mode: Mode, time: float, state: State, why: str) -> Segment:
     """Return a segment without any motion, after which a run fails."""
-    return Segment(mode, DenseSolution.nothing(time, 8), state, ModeEnd(FAILURE, state, detail=why))
+    return Segment(mode, DenseSolution.empty(time, 8), state, ModeEnd(FAILURE, state, detail=why))

@@ -39,14 +39,14 @@ class SlipOnsetOnTwo(TwoContactMode):
     """Direction of what begins: of the slip of the first contact, or of xi."""
 
     def state(self, y: Row) -> State:
-        """The state, with its height."""
+        """Return the state, with its height."""
         axis, momentum = split(y)
         momentum = self.stilled(axis, momentum)
         velocity = velocity_of(axis, momentum, (y[6], y[7]), self.top)
         return on_table(SlidingState(axis, momentum, velocity), self.top)
 
-    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
-        """What the table does, and how both contacts slip."""
+    def contact_forces(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
+        """Return the forces and accelerations, and the slips of both contacts."""
         pair = ContactPair.of(*split(y), self.tops)
         slips = slips_of(pair, (y[6], y[7], y[8]))
         return pair_motion(pair, slips, self.rolls), slips
@@ -56,13 +56,13 @@ class SlipOnsetOnTwo(TwoContactMode):
         none = tuple([0.0 for _ in self.direction])
         return replace(super().without_tops(), begin=(), direction=none)
 
-    def onset_rates(self, y: Row, way: Slip) -> tuple[Row, Row]:
+    def onset_rates(self, y: Row, direction: Slip) -> tuple[Row, Row]:
         """Return the rates of the numbers, and margins, where what begins has a direction."""
         axis, momentum = split(y)
         pair = ContactPair.of(axis, momentum, self.tops)
-        slips = slips_of(pair, way if len(way) == 3 else (y[6], y[7], y[8]))
-        if len(way) == 2:
-            slips = way, slips[1]
+        slips = slips_of(pair, direction if len(direction) == 3 else (y[6], y[7], y[8]))
+        if len(direction) == 2:
+            slips = direction, slips[1]
         now = pair_motion(pair, slips, self.rolls)
         margins = [*now.normal]
         if self.stopped:
@@ -99,16 +99,18 @@ class SlipOnsetOnTwo(TwoContactMode):
 @lru_cache
 def onset_motion_on_two(form: Any, kinds: tuple[Kind, Kind]) -> SlipMotion:
     """Return the equations of motion of a mode without tops, for tops of these kinds."""
-    one, other = kinds
+    first_kind, second_kind = kinds
 
     def rates(
         numbers: Sequence[Scalar], ways: Sequence[Any], parameters: Sequence[Scalar]
     ) -> tuple[Sequence[Any], Sequence[Any]]:
-        first, second = parameters[: one.numbers], parameters[one.numbers :]
-        mode = form.with_tops((one.top(tuple(first)), other.top(tuple(second))), ())
+        first, second = parameters[: first_kind.numbers], parameters[first_kind.numbers :]
+        mode = form.with_tops((first_kind.top(tuple(first)), second_kind.top(tuple(second))), ())
         changes: tuple[Sequence[Any], Sequence[Any]] = mode.onset_rates(numbers, ways[0])
         return changes
 
-    margins = 2 + int(one.resists_rolling) + 2 * int(is_branched(one.example.friction))
+    margins = (
+        2 + int(first_kind.resists_rolling) + 2 * int(is_branched(first_kind.example.friction))
+    )
     velocities = ((6, len(form.direction)),)
-    return SlipMotion(rates, NUMBERS, velocities, one.numbers + other.numbers, margins)
+    return SlipMotion(rates, NUMBERS, velocities, first_kind.numbers + second_kind.numbers, margins)

@@ -161,8 +161,8 @@ def follow_slip(
             if to_end:
                 speed = step.speed(PARTS - 1, 0.0, last)
                 speed[0] = inner(velocity(after), last) - sum(speed)
-                longer, left = min(factor, LONGER), parts_left(speed)
-                length = min(length * longer, BEYOND * length / PARTS * left)
+                longer, remaining_parts = min(factor, LONGER), parts_left(speed)
+                length = min(length * longer, BEYOND * length / PARTS * remaining_parts)
         rows.append(pieces)
     return SlipPhase(knots, rows, now, ended, step.sweeps)
 

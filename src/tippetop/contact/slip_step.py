@@ -69,7 +69,7 @@ def compiled_step(motion: SlipMotion, from_end: bool) -> _Compiled:
     parameters = rows.parameters + motion.parameters + len(CONSTANTS) // STAGES
     return _Compiled(
         iterated(improve, rows.unknowns + int(from_end), parameters, STAGES),
-        iterated(terms, rows.size, 1 + len(TERMS) // STAGES, STAGES),
+        iterated(terms, rows.size, 1 + len(TERMS) // STAGES, STAGES, 0),  # once a step
     )
 
 
@@ -129,8 +129,8 @@ class SlipStep:
         guess
             From the end, a guess of the length.
         """
-        frames = [number for way in directions for number in frame_of(way)]
-        ways = [number for way in directions for number in way]
+        frames = [number for direction in directions for number in frame_of(direction)]
+        ways = [number for direction in directions for number in direction]
         put_rows(self.sweeping, 0, [*start, extent, *frames], STAGES)
         put_rows(self.unknowns, 0, [*start, *ways, *guess], STAGES)
         improve, terms = self.compiled
@@ -181,7 +181,9 @@ class SlipStep:
         return [[x, y] for x, y in pairs]
 
     def margin_falls(self) -> bool:
-        """Whether a margin falls to zero anywhere within the step, dips between points included."""
+        """Return whether a margin falls to zero anywhere within the step, dips between points
+        included.
+        """
         for number in range(self.layout.margins):
             values = row_of(self.results, self.layout.first_margin + number)
             if 2.0 * min(values) > max(values):
@@ -197,14 +199,14 @@ class SlipStep:
         """Return coefficients of the numbers in some parts; the last may be a fraction."""
         return pieces_of(self.rows, self.layout.size, parts)
 
-    def speed(self, number: int, begin: float, way: Slip) -> list[float]:
+    def speed(self, number: int, begin: float, direction: Slip) -> list[float]:
         """Return coefficients of the velocity, in a plane, along a direction in a part of the step.
 
         `begin` is the value at the start of the part. Beyond the end of slip it is negative.
         """
         first = number * self.layout.size + self.motion.velocities[0][0]
         x, y = row_of(self.rows, first), row_of(self.rows, first + 1)
-        return [begin, *[way[0] * a + way[1] * b for a, b in zip(x, y, strict=True)]]
+        return [begin, *[direction[0] * a + direction[1] * b for a, b in zip(x, y, strict=True)]]
 
     def end_of_slip(self, xi: Slip, speeds: Sequence[float]) -> float | None:
         """Return after how many parts slip ends that is xi at the start; None where no bracket of
@@ -214,10 +216,10 @@ class SlipStep:
         point = below[0] if below else STAGES
         if point == 0:
             return None
-        way, polynomials = self.last_direction, list[list[float]]()
-        begin = inner(xi, way)
+        direction, polynomials = self.last_direction, list[list[float]]()
+        begin = inner(xi, direction)
         for number in range(PARTS):
-            polynomials.append(self.speed(number, begin, way))
+            polynomials.append(self.speed(number, begin, direction))
             begin = sum(polynomials[number])
 
         def speed(place: float) -> float:
@@ -234,12 +236,12 @@ def pieces_of(rows: Any, size: int, parts: float) -> Array:
 
     Part after part, and one number after the other: coefficients from the first power on.
     """
-    whole, count = math.ceil(parts), size * STAGES
-    if parts == whole:
-        return first_of(rows, whole * count)
-    before, shares = (whole - 1) * count, [(parts - whole + 1) ** (k + 1) for k in range(STAGES)]
+    full, count = math.ceil(parts), size * STAGES
+    if parts == full:
+        return first_of(rows, full * count)
+    before, shares = (full - 1) * count, [(parts - full + 1) ** (k + 1) for k in range(STAGES)]
     last = [
         term * share
         for term, share in zip(rows[before : before + count], shares * size, strict=True)
     ]
-    return np.array([*first_of(rows, before), *last])
+    return np.array([*rows[:before], *last])

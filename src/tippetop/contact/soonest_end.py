@@ -43,7 +43,7 @@ def soonest_end(top: Top, state: State, slips: bool) -> tuple[SlipComponent | No
     soonest, least = None, float("inf")
     for ending in possible:
         xi = ending.of(*sliding, branched)
-        left = time_to_end(xi, ending.rate(acceleration, branched))
-        if left < least:
-            soonest, least = ending, left
+        time_left = time_to_end(xi, ending.rate(acceleration, branched))
+        if time_left < least:
+            soonest, least = ending, time_left
     return soonest, least

@@ -31,7 +31,7 @@ MOST_PIECES = 50
 
 
 def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Impact | None:
-    """What an impact without restitution does to a body that touches the table.
+    """Return the impact without restitution of a body that touches the table.
 
     None where this is no way to find it: there is no integrator, drilling is not resisted or
     rolling is, the contact point does not sink, or slip is about to end.
@@ -65,21 +65,21 @@ def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Im
 
 
 def after(state: State, y: Sequence[float]) -> State:
-    """A state with other momenta and velocities."""
+    """Return a state with other momenta and velocities."""
     return state._replace(momentum=(y[0], y[1], y[2]), velocity=(y[3], y[4], y[5]))
 
 
-def impact_between(before: State, then: State, normal: float, body: StruckBody) -> Impact:
-    """The impact that leads from one state to another."""
-    x, y, _ = scale(body.contact.top.mass, add(then.velocity, scale(-1.0, before.velocity)))
-    moment = add(then.momentum, scale(-1.0, before.momentum))
+def impact_between(before: State, later: State, normal: float, body: StruckBody) -> Impact:
+    """Return the impact that leads from one state to another."""
+    x, y, _ = scale(body.contact.top.mass, add(later.velocity, scale(-1.0, before.velocity)))
+    moment = add(later.momentum, scale(-1.0, before.momentum))
     torque = add(moment, cross((x, y, normal), body.contact.arm))
-    return Impact(then, normal, max(0.0, -body.work((x, y, normal, *torque, 0.0))), normal)
+    return Impact(later, normal, max(0.0, -body.work((x, y, normal, *torque, 0.0))), normal)
 
 
 @lru_cache
 def impact_motion(kind: Kind, *, ending: bool = False) -> Motion:
-    """How angular momentum and velocity of a struck top change with the normal impulse.
+    """Return the equations of motion of a struck top, with the normal impulse as time.
 
     The parameters are its numbers and its axis, which does not move. If `ending`, slip that is
     about to end ends the motion.

@@ -32,13 +32,13 @@ def surface_guards(top: Top) -> list[tuple[str, SurfaceGuard]]:
     """Return the guards of the open surfaces of a body, by name, and of the face that the active
     one is the edge of.
     """
-    found: list[tuple[str, SurfaceGuard]] = []
+    guards: list[tuple[str, SurfaceGuard]] = []
     if is_edge(top.surface):
-        found.append((FACE, lambda top, axis, momentum: slap_guard(axis, momentum, top)))
+        guards.append((FACE, lambda top, axis, momentum: slap_guard(axis, momentum, top)))
     open_ones = [
         number for number in range(len(each_surface(top.surface))) if number != number_of(top)
     ]
-    return found + [(numbered(TOUCH, number), _gap_of(number)) for number in open_ones]
+    return guards + [(numbered(TOUCH, number), _gap_of(number)) for number in open_ones]
 
 
 def lies_flat(top: Top, axis: Vector) -> Scalar:
@@ -57,8 +57,8 @@ def lands_flat(top: Top, axis: Vector) -> Scalar:
     return is_edge(top.surface) and edge.lies_flat(axis, FLAT)
 
 
-def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
-    """Return whether a body may come to lie flat between looks at its axis, the first of the
+def passes_flat(top: Top, rows: Sequence[Row]) -> bool:
+    """Return whether a body may come to lie flat between rows of numbers, the first of the
     numbers, floats.
 
     In one plane its tip passes the pole within so little that no look tells: the straight line
@@ -67,8 +67,8 @@ def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
     """
     if not is_edge(top.surface):
         return False
-    for look in range(1, len(looks)):
-        a, b = looks[look - 1], looks[look]
+    for number in range(1, len(rows)):
+        a, b = rows[number - 1], rows[number]
         x, y = b[0] - a[0], b[1] - a[1]
         square = x * x + y * y
         part = min(max(-(a[0] * x + a[1] * y) / square, 0.0), 1.0) if square > 0.0 else 0.0
@@ -78,9 +78,7 @@ def passes_flat(top: Top, looks: Sequence[Row]) -> bool:
 
 
 def _gap_of(number: int) -> SurfaceGuard:
-    """What falls through zero as the gap of a surface and `MARGIN` do while the active one
-    touches.
-    """
+    """Return the guard that falls through zero as the gap of a surface plus `MARGIN` does."""
 
     def gap(top: Top, axis: Vector, _: Vector) -> Scalar:
         height = support_at(axis, top.surface)[0]
@@ -90,19 +88,19 @@ def _gap_of(number: int) -> SurfaceGuard:
 
 
 def stays_open(top: Top, y: Row) -> bool:
-    """Whether no other surface touches at these numbers of a mode on the active one, floats."""
+    """Return whether no surface but the active one touches at the numbers of a mode, floats."""
     return clearance(top, y[2]) > -MARGIN
 
 
 def clearance(top: Top, c: float) -> float:
-    """The least gap of the other surfaces while the active one touches, at a cosine of the tilt,
-    floats.
+    """Return the least gap of the other surfaces while the active one touches, at a cosine of the
+    tilt, floats.
     """
     c = min(max(c, -1.0), 1.0)
     height = top.surface.height(c)
     gaps = [
-        height - other.height(c)
-        for number, other in enumerate(each_surface(top.surface))
+        height - surface.height(c)
+        for number, surface in enumerate(each_surface(top.surface))
         if number != number_of(top)
     ]
     return float(min(gaps))

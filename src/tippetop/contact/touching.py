@@ -27,37 +27,37 @@ of reach of rounding.
 
 def other_touching(top: Top, state: State) -> list[Top]:
     """Return the top with each other surface active that touches, the fastest sinking first."""
-    others = [other for other in top.each if other != top and gap(state, other) <= TOUCHING]
-    return sorted(others, key=lambda other: float(gap_rate(state, other)))
+    others = [each for each in top.each if each != top and gap(state, each) <= TOUCHING]
+    return sorted(others, key=lambda each: float(gap_rate(state, each)))
 
 
-def stays_closed(top: Top, other: Top, state: State) -> bool:
+def stays_closed(top: Top, beside: Top, state: State) -> bool:
     """Return whether another touching surface stays, or comes back at once.
 
     It also stays where it does not come out of the table, in which it is by no more than what is
     taken for touching.
     """
-    back, depth = 1.0, max(0.0, float(gap(state, top) - gap(state, other)))
-    if _both_slip(top, other, state):
-        point = ContactPair.of(state.axis, state.momentum, (top, other)).first
+    back, depth = 1.0, max(0.0, float(gap(state, top) - gap(state, beside)))
+    if _both_slip(top, beside, state):
+        point = ContactPair.of(state.axis, state.momentum, (top, beside)).first
         slip = slip_of(*along_table(state), top)
         wrench = forces_and_accelerations(point, slip, point.turning[:2])[0]
-        back = float(abs(gap_acceleration(top, other, state, wrench)))
+        back = float(abs(gap_acceleration(top, beside, state, wrench)))
     slowest = max(SLOWEST_ROCKING * max(1.0, back) ** 0.5, (2.0 * back * depth) ** 0.5)
-    return bool(gap_rate(state, other) <= slowest)
+    return bool(gap_rate(state, beside) <= slowest)
 
 
-def gap_acceleration(top: Top, other: Top, state: State, wrench: Wrench) -> float:
+def gap_acceleration(top: Top, beside: Top, state: State, wrench: Wrench) -> float:
     """Return the acceleration of another surface's gap under a wrench at the active one."""
-    pair = ContactPair.of(state.axis, state.momentum, (top, other))
+    pair = ContactPair.of(state.axis, state.momentum, (top, beside))
     return float(rates_under(pair, [(0, wrench)], free_rates(pair)).points[1][2])
 
 
-def _both_slip(top: Top, other: Top, state: State) -> bool:
+def _both_slip(top: Top, beside: Top, state: State) -> bool:
     """Return whether both contacts slip faster than where slip on two contacts ends, if it can."""
     if not is_set_valued(top.friction):
         return True
-    return all(size(slip_of(*along_table(state), one)) > SLOWEST_SLIP for one in (top, other))
+    return all(size(slip_of(*along_table(state), one)) > SLOWEST_SLIP for one in (top, beside))
 
 
 def outermost(touching: Sequence[Top], axis: Vector) -> Tops:

@@ -67,7 +67,7 @@ class TransientMode(Mode):
         return f"{self.name}: slip {self.ending.slip}, held {self.ending.held}"
 
     def state(self, y: Row) -> State:
-        """The state from axis, momentum, velocity where it is free, and what ends or begins."""
+        """Return the state from axis, momentum, velocity where it is free, and xi."""
         axis, momentum, velocity, xi = self._parts(y)
         if self.ending.slip:
             velocity = velocity_of(axis, momentum, xi, self.top)
@@ -77,14 +77,12 @@ class TransientMode(Mode):
         return on_table(SlidingState(axis, momentum, (velocity[0], velocity[1])), self.top)
 
     def reaction(self, y: Row) -> Reaction:
-        """The contact force and torque, from what ends or begins itself: a state has but few digits
-        of it.
-        """
+        """Return the contact force and torque, from xi, of which a state has few digits."""
         axis, momentum, velocity, xi = self._parts(y)
-        here = SlipEndState(axis, momentum, velocity, xi, 0.0, 0.0)
-        force, torque = rates_in_time(here, self.ending, self.top).wrench
+        now = SlipEndState(axis, momentum, velocity, xi, 0.0, 0.0)
+        force, torque = rates_in_time(now, self.ending, self.top).wrench
         power = dot(torque, angular_velocity(axis, momentum, self.top))
-        slip = xi if self.ending.slip else slip_beside(here, self.ending, self.top)
+        slip = xi if self.ending.slip else slip_beside(now, self.ending, self.top)
         if slip is not None:
             power = power + (force[0] * slip[0] + force[1] * slip[1])
         return Reaction(force, torque, power)
@@ -108,7 +106,7 @@ class Resting(Mode):
     name: ClassVar[str] = "resting"
 
     def state(self, y: Row) -> State:
-        """As in the reported mode."""
+        """Return the state as the reported mode has it."""
         return self.reported_mode.state(y)
 
     def segments(
@@ -134,6 +132,8 @@ def in_one_step(rows: Sequence[list[Scalar]], start: float, lasts: float) -> Den
     return DenseSolution.in_time([0.0, lasts], [terms]).moved(start, start + lasts)
 
 
-def pack_moment(here: SlipEndState) -> tuple[Scalar, ...]:
-    """The numbers of a moment that passes: axis, momentum, velocity where it is free, and xi."""
-    return (*here.axis, *here.momentum, *here.velocity, *scaled(here.speed, here.direction))
+def pack_moment(now: SlipEndState) -> tuple[Scalar, ...]:
+    """Return the numbers of a moment that passes: axis, momentum, velocity where it is free, and
+    xi.
+    """
+    return (*now.axis, *now.momentum, *now.velocity, *scaled(now.speed, now.direction))

@@ -85,9 +85,7 @@ class TwoClosed:
         rolls: float,
         ended: tuple[bool, bool] | None = None,
     ) -> "TwoClosed":
-        """The contacts in a state that has slip, or tilts, by no more than what is taken for
-        none.
-        """
+        """Return the contacts in a state, without slip and tilting that are rounding."""
         tops = off_branch(tops[0]), off_branch(tops[1])
         # What sticks does not slip because tilting has ended: that is held, too.
         ended = ended_slips(state, tops) if ended is None else ended
@@ -116,40 +114,40 @@ class TwoClosed:
         return (slip[0], slip[1], slip_apart(self.pair))
 
     def resolved(self) -> Resolution:
-        """How both go on while they stay closed."""
+        """Return how both contacts go on while they stay closed."""
         return resolution(self.pair, self.xi, self.ended, self.rolls)
 
-    def consistent(self, found: Resolution) -> list[str]:
-        """Which contacts may stay closed: exactly one candidate is expected.
+    def consistent(self, resolved: Resolution) -> list[str]:
+        """Return the sets of contacts that may stay closed; exactly one is expected.
 
         Where rolling is held, what one contact may do alone both may; else that which is pressed
         the more.
         """
-        normal, free = found.motion.normal, free_rates(self.pair).points
+        normal, free = resolved.motion.normal, free_rates(self.pair).points
         candidates = [BOTH] if normal[0] > 0.0 and normal[1] > 0.0 else []
-        if self.stopped and candidates and not found.rolls:
+        if self.stopped and candidates and not resolved.rolls:
             return candidates
-        ways = [self._alone(number) for number in (0, 1)]
-        held = [number for number in (0, 1) if ways[number] == HELD]
+        results = [self._beside_pressed(number) for number in (0, 1)]
+        held = [number for number in (0, 1) if results[number] == HELD]
         if held and not candidates:
             return [(FIRST, SECOND)[max(held, key=lambda number: normal[number])]]
         candidates += [
-            name for way, name in zip(ways, (FIRST, SECOND), strict=True) if way == OPENS
+            name for result, name in zip(results, (FIRST, SECOND), strict=True) if result == OPENS
         ]
         return candidates + ([NEITHER] if min(free[0][2], free[1][2]) >= 0.0 else [])
 
-    def _alone(self, number: int) -> str:
-        """What the other contact does where one alone is pressed: opens, or is held as it is."""
+    def _beside_pressed(self, number: int) -> str:
+        """Return what the other contact does where this one alone is pressed: a status."""
         point = self.pair[number]
         if point.free.point[2] >= 0.0:
             return CLOSES
         slip = None if self.ended[number] else slip_of(*along_table(self.state), self.tops[number])
-        found, _ = resolve_onset(point, slip, None if self.stopped else point.turning[:2])
-        if found.wrench.force[2] <= 0.0:
+        onset, _ = resolve_onset(point, slip, None if self.stopped else point.turning[:2])
+        if onset.wrench.force[2] <= 0.0:
             return CLOSES
-        if found.rolling is None:
+        if onset.rolling is None:
             return HELD
-        rates = rates_under(self.pair, [(number, found.wrench)], free_rates(self.pair))
+        rates = rates_under(self.pair, [(number, onset.wrench)], free_rates(self.pair))
         opens = rates.points[1 - number][2] >= 0.0
         return OPENS if opens else CLOSES
 
@@ -196,21 +194,21 @@ class TwoClosed:
         return tuple(sorted(events, key=lambda event: event.time))
 
 
-def time_to_end(state: State, here: TwoClosed) -> float:
+def time_to_end(state: State, contacts: TwoClosed) -> float:
     """Return the time to the end of slip that is followed no further, at its present rate."""
-    if not any(here.ended):
+    if not any(contacts.ended):
         return 0.0
-    tops = here.tops
+    tops = contacts.tops
     slips = [slip_of(*along_table(state), top) for top in tops]
     number = 0 if size(slips[0]) <= size(slips[1]) else 1
     slip, speed = slips[number], size(slips[number])
     if not 0.0 < speed <= TOGETHER * SLOWEST_SLIP or not size(slips[1 - number]):
         return 0.0
     pair = ContactPair.of(state.axis, state.momentum, tops)
-    found = pair_motion(pair, (slips[0], slips[1]), here.rolls)
-    change: Slip = found.rates.points[number][:2]
+    motion = pair_motion(pair, (slips[0], slips[1]), contacts.rolls)
+    change: Slip = motion.rates.points[number][:2]
     if slip_length(tops[0].friction) is not None:
-        slip, change = (slips[0][0], slips[0][1], slip_apart(pair)), found.rate
+        slip, change = (slips[0][0], slips[0][1], slip_apart(pair)), motion.rate
     rate = inner(slip, change)
     return inner(slip, slip) / -rate if rate < 0.0 else 0.0
 
@@ -228,10 +226,10 @@ def ended_slips(state: State, tops: Tops) -> tuple[bool, bool]:
     """On which contacts slip has ended: on both at once where drilling is resisted too."""
     if not is_set_valued(tops[0].friction):
         return False, False
-    one, other = (size(slip_of(*along_table(state), top)) for top in tops)
-    least, limit = min(one, other), ABOUT * SLOWEST_SLIP
+    first, second = (size(slip_of(*along_table(state), top)) for top in tops)
+    least, limit = min(first, second), ABOUT * SLOWEST_SLIP
     if slip_length(tops[0].friction) is not None:
-        return (True, True) if one * one + other * other <= limit * limit else (False, False)
+        return (True, True) if first * first + second * second <= limit * limit else (False, False)
     if least > limit:
         return False, False
-    return one <= TOGETHER * limit, other <= TOGETHER * limit
+    return first <= TOGETHER * limit, second <= TOGETHER * limit

@@ -27,7 +27,7 @@ from tippetop.mechanics.contacts.forces import (
 )
 from tippetop.mechanics.contacts.pair import ContactPair, Tops, slip_apart, slips_of
 from tippetop.mechanics.contacts.pair_motion import PairMotion, pair_motion
-from tippetop.mechanics.contacts.pair_resolver import rolling_way
+from tippetop.mechanics.contacts.pair_resolver import rolling_direction
 from tippetop.mechanics.contacts.slip_variables import branch_guard, inner, scaled, slip_of
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.motion import along_table, axis_rate, on_table
@@ -92,10 +92,10 @@ class TwoContactMode(StatedMode):
     def label(self) -> str:
         """Its status, and the numbers of the surfaces."""
         rolling = "_without_rolling" if self.stopped else ""
-        one, other = number_of(self.top), number_of(self.other)
+        first, second = number_of(self.top), number_of(self.other)
         if self.is_mixed:
-            return f"{STICKS}{rolling}_on_{one}_{SLIPS}_on_{other}"
-        return f"{self.status}{rolling}_on_{min(one, other)}_and_{max(one, other)}"
+            return f"{STICKS}{rolling}_on_{first}_{SLIPS}_on_{second}"
+        return f"{self.status}{rolling}_on_{min(first, second)}_and_{max(first, second)}"
 
     @property
     def is_mixed(self) -> bool:
@@ -128,19 +128,19 @@ class TwoContactMode(StatedMode):
         return (*numbers, self.sense if self.is_mixed else self.slowest_rolling)
 
     def without_tops(self) -> Self:
-        """What remains of it when its tops, and its parameters, are taken away."""
-        nothing: Any = None
-        return replace(super().without_tops(), other=nothing, sense=1.0, slowest_rolling=0.0)
+        """Return the mode without its tops and parameters."""
+        no_top: Any = None
+        return replace(super().without_tops(), other=no_top, sense=1.0, slowest_rolling=0.0)
 
-    def with_tops(self, tops: Sequence[Top], more: Sequence[Scalar]) -> Self:
-        """The same with both tops, and with its further parameters."""
+    def with_tops(self, tops: Sequence[Top], further: Sequence[Scalar]) -> Self:
+        """Return the mode with both tops, and with further parameters."""
         mode = replace(self, top=tops[0], other=tops[1])
         if not any(self.sticks):
             return mode
         return (
-            replace(mode, sense=more[0])
+            replace(mode, sense=further[0])
             if self.is_mixed
-            else replace(mode, slowest_rolling=more[0])
+            else replace(mode, slowest_rolling=further[0])
         )
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
@@ -148,7 +148,7 @@ class TwoContactMode(StatedMode):
         return along_table(state).pack()[: self.count]
 
     def state(self, y: Row) -> State:
-        """The state, with its height; what is held is zero."""
+        """Return the state, with its height; what is held is zero."""
         if not any(self.sticks):
             return on_table(SlidingState.unpack(y), self.top)
         axis, momentum = split(y)
@@ -158,115 +158,122 @@ class TwoContactMode(StatedMode):
         velocity = velocity_without_slip(axis, momentum, self.top)
         return on_table(SlidingState(axis, momentum, velocity), self.top)
 
-    def found(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
-        """What the table does, and how both contacts slip, from the numbers of the mode."""
+    def contact_forces(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
+        """Return the forces and accelerations, and the slips of both contacts, from the numbers."""
         pair = ContactPair.of(*split(y), self.tops)
         if all(self.sticks):
             return pair_motion(pair, (None, None), self.rolls), ((0.0, 0.0), (0.0, 0.0))
         if self.is_mixed:
             zeta = slip_apart(pair)
-            way = scaled(self.sense, directions_of(pair.first.axis)[1][:2])
+            direction = scaled(self.sense, directions_of(pair.first.axis)[1][:2])
             slips = slips_of(pair, (0.0 * zeta, 0.0 * zeta, zeta))
-            return pair_motion(pair, (None, way), self.rolls), slips
-        one, other = (slip_of(*SlidingState.unpack(y), top) for top in self.tops)
-        return pair_motion(pair, (one, other), self.rolls), (one, other)
+            return pair_motion(pair, (None, direction), self.rolls), slips
+        first, second = (slip_of(*SlidingState.unpack(y), top) for top in self.tops)
+        return pair_motion(pair, (first, second), self.rolls), (first, second)
 
     def rates(self, y: Row) -> tuple[Scalar, ...]:
         """Time derivatives of the numbers."""
-        now = self.found(y)[0]
+        now = self.contact_forces(y)[0]
         drawn = () if any(self.sticks) else scaled(1.0 / self.top.mass, now.force[:2])
         return (*axis_rate(*split(y), self.top), *now.moment, *drawn)
 
     def reaction(self, y: Row) -> Reaction:
         """Force of both contacts, and their torque about the first contact point."""
-        found, slips = self.found(y)
-        power: Any = dot(found.couple, found.pair.first.turning)
-        for slip, wrench in zip(slips, found.wrenches, strict=True):
+        motion, slips = self.contact_forces(y)
+        power: Any = dot(motion.couple, motion.pair.first.turning)
+        for slip, wrench in zip(slips, motion.wrenches, strict=True):
             power = power + (wrench.force[0] * slip[0] + wrench.force[1] * slip[1])
-        return Reaction(found.force, found.torque, power, found.couple)
+        return Reaction(motion.force, motion.torque, power, motion.couple)
 
     def guard_values(self) -> list[GuardValue]:
-        """The guards of normal forces, of rolling, and of slip that ends or begins.
+        """Return the guards of normal forces, of rolling, and of slip that ends or begins.
 
         While both contacts stay closed the tilt does not change, and no further surface comes to
         the table.
         """
         guards = [(numbered(OPENING, number), _normal(number)) for number in (0, 1)]
         if self.stopped:
-            guards.append((ROLLING, lambda mode, y: mode.found(y)[0].rolling_reserve))
+            guards.append((ROLLING, lambda mode, y: mode.contact_forces(y)[0].rolling_reserve))
         elif self.top.resists_rolling:
-            guards.append((ROLLING_STOPPING, lambda mode, y: mode.rolls * mode.found(y)[0].rolling))
+            guards.append(
+                (ROLLING_STOPPING, lambda mode, y: mode.rolls * mode.contact_forces(y)[0].rolling)
+            )
         if self.is_mixed:
             return [*self._mixed_guards(), *guards]
         return guards + (self._sticking_guards() if all(self.sticks) else self._slip_guards())
 
     def _mixed_guards(self) -> list[GuardValue]:
-        """The guards of what holds the first contact, and of slip on the second."""
+        """Return the guards of what holds the first contact, and of slip on the second."""
         return [
-            (numbered(SLIP, 0), lambda mode, y: mode.found(y)[0].reserve(0)),
+            (numbered(SLIP, 0), lambda mode, y: mode.contact_forces(y)[0].reserve(0)),
             (ENDING, lambda mode, y: mode.sense * slip_apart(ContactPair.of(*split(y), mode.tops))),
         ]
 
     def _sticking_guards(self) -> list[GuardValue]:
-        """The guards of what holds both contacts."""
+        """Return the guards of what holds both contacts."""
         if slip_length(self.top.friction) is None:
             return [
-                (numbered(SLIP, 0), lambda mode, y: mode.found(y)[0].left(0)),
-                (numbered(SLIP, 1), lambda mode, y: mode.found(y)[0].left(1)),
-                (SLIP, lambda mode, y: mode.found(y)[0].both_reserve),
+                (numbered(SLIP, 0), lambda mode, y: mode.contact_forces(y)[0].sticking_reserve(0)),
+                (numbered(SLIP, 1), lambda mode, y: mode.contact_forces(y)[0].sticking_reserve(1)),
+                (SLIP, lambda mode, y: mode.contact_forces(y)[0].both_reserve),
             ]
         if not self.rolls:
             return []
         return [
-            (SLIP, lambda mode, y: mode.rolls * mode.found(y)[0].rolling - mode.slowest_rolling)
+            (
+                SLIP,
+                lambda mode, y: (
+                    mode.rolls * mode.contact_forces(y)[0].rolling - mode.slowest_rolling
+                ),
+            )
         ]
 
     def _slip_guards(self) -> list[GuardValue]:
-        """The guards of slip's end, and of the branches of the law."""
+        """Return the guards of slip's end, and of the branches of the law."""
         guards = self.endings()
         if is_branched(self.top.friction):
             guards += [(numbered(BRANCHING, number), _branch(number)) for number in (0, 1)]
         return guards
 
     def endings(self) -> list[GuardValue]:
-        """The guards of slip's end: on both contacts at once where drilling is resisted too."""
+        """Return the guards of slip's end: of both contacts at once if drilling is resisted."""
         law = self.top.friction
         if slip_length(law) is not None:
-            return [(ENDING, lambda mode, y: _left(*mode.found(y)[1]))]
+            return [(ENDING, lambda mode, y: _slip_beyond_least(*mode.contact_forces(y)[1]))]
         if not is_set_valued(law):
             return []
         return [(numbered(ENDING, number), _slip(number)) for number in (0, 1)]
 
     def stilled(self, axis: Vector, momentum: Vector) -> Vector:
-        """The angular momentum, without rolling where that is held."""
+        """Return the angular momentum, without rolling where that is held."""
         return without_rolling(axis, momentum, self.top) if self.stopped else momentum
 
     def rolling_direction(self, state: State) -> float:
         """Return the sign of omega_e with which rolling begins that can be held no longer."""
-        return rolling_way(self.found(self.numbers(state))[0])
+        return rolling_direction(self.contact_forces(self.numbers(state))[0])
 
 
 def on_two(state: State, tops: Tops, rolls: float) -> TwoContactMode:
     """Return the mode of a body that slides on two surfaces."""
-    one, other = tops
-    if is_branched(other.friction):
-        one, other = (on_numbered_branch(top, slip_of(*along_table(state), top)) for top in tops)
-    return TwoContactMode(one, other, rolls=rolls)
+    first, second = tops
+    if is_branched(second.friction):
+        first, second = (on_numbered_branch(top, slip_of(*along_table(state), top)) for top in tops)
+    return TwoContactMode(first, second, rolls=rolls)
 
 
 def _normal(number: int) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: mode.found(y)[0].normal[number]
+    return lambda mode, y: mode.contact_forces(y)[0].normal[number]
 
 
 def _slip(number: int) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: _left(mode.found(y)[1][number])
+    return lambda mode, y: _slip_beyond_least(mode.contact_forces(y)[1][number])
 
 
 def _branch(number: int) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: branch_guard(mode.found(y)[1][number], mode.tops[number])
+    return lambda mode, y: branch_guard(mode.contact_forces(y)[1][number], mode.tops[number])
 
 
-def _left(*slips: Slip) -> Scalar:
+def _slip_beyond_least(*slips: Slip) -> Scalar:
     """Falls through zero where so little is left of all these that they are followed no further.
 
     A length: it falls straight through, where its square would only touch zero. In straight motion

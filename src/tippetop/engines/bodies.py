@@ -271,9 +271,9 @@ def urdf(
                 outline = _add(geometry, "mesh", filename=mesh_name)
                 Xml.SubElement(outline, f"{{{DRAKE}}}declare_convex")
             if role == "collision":
-                told = Xml.SubElement(part, f"{{{DRAKE}}}proximity_properties")
+                contact = Xml.SubElement(part, f"{{{DRAKE}}}proximity_properties")
                 for kind in ("mu_dynamic", "mu_static"):
-                    Xml.SubElement(told, f"{{{DRAKE}}}{kind}", value=f"{friction.sliding:.17g}")
+                    Xml.SubElement(contact, f"{{{DRAKE}}}{kind}", value=f"{friction.sliding:.17g}")
     if shapes is None:
         mesh = revolved(body, facets)
         remarks.append(_mesh_remark(mesh))
@@ -309,14 +309,9 @@ def write_mjcf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -
     >>> tt.write_mjcf(problem, "top.xml").remarks
     ()
     """
-    require_problem(problem)
-    require("overwrite", overwrite, bool, "True or False")
-    require_ending("path", path_of(path), (".xml",))
-    place_for(path, overwrite)
+    path = _checked(problem, path, overwrite, ".xml")
     text, written = mjcf(problem)
-    with written_beside(path, overwrite) as beside:
-        beside.write_text(text, encoding="utf-8")
-    return written._replace(files=(Path(path),))
+    return _write_texts({path: text}, overwrite, written)
 
 
 def write_urdf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -> Written:
@@ -336,18 +331,26 @@ def write_urdf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -
     >>> [path.name for path in tt.write_urdf(problem, "top.urdf").files]
     ['top.urdf']
     """
-    require_problem(problem)
-    require("overwrite", overwrite, bool, "True or False")
-    path = path_of(path)
-    require_ending("path", path, (".urdf",))
+    path = _checked(problem, path, overwrite, ".urdf")
     outline = path.with_suffix(MESH_ENDING)
     text, mesh, written = urdf(problem, outline.name)
-    paths = [path, *([outline] if mesh else [])]
-    for one in paths:
-        place_for(one, overwrite)
-    if mesh:
-        with written_beside(outline, overwrite) as beside:
-            beside.write_text(obj(mesh), encoding="utf-8")
-    with written_beside(path, overwrite) as beside:
-        beside.write_text(text, encoding="utf-8")
-    return written._replace(files=tuple(paths))
+    return _write_texts({path: text, **({outline: obj(mesh)} if mesh else {})}, overwrite, written)
+
+
+def _checked(problem: object, path: object, overwrite: object, ending: str) -> Path:
+    """Return the path; raises `InvalidInput` where an argument is none."""
+    require_problem(problem)
+    require("overwrite", overwrite, bool, "True or False")
+    checked = path_of(path)
+    require_ending("path", checked, (ending,))
+    return checked
+
+
+def _write_texts(texts: dict[Path, str], overwrite: bool, written: Written) -> Written:
+    """Write files, of which the first refers to the others and comes last."""
+    for path in texts:
+        place_for(path, overwrite)
+    for path, text in reversed(texts.items()):
+        with written_beside(path, overwrite) as beside:
+            beside.write_text(text, encoding="utf-8")
+    return written._replace(files=tuple(texts))

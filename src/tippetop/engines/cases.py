@@ -26,11 +26,39 @@ class Case(NamedTuple):
     """Length of the run, s."""
     cut_off: float = 0.0
     """How long before its limit an infinite sequence of rebounds may be cut off, s."""
+    compared: int = SAMPLES
+    """Number of instants up to which other programs are compared, for the sake of their time."""
+    judged: int = 1
+    """Number of the instant at which other programs are judged: late errors are of phase only."""
 
     @property
     def times(self) -> NDArray[np.float64]:
         """The instants of the states, s: evenly spaced, the last at the end."""
         return self.duration * np.arange(1, SAMPLES + 1) / SAMPLES
+
+
+_REPORT = tt.presets.REPORT
+_RHO = 3.0 * math.pi / 16.0
+"""Semi-axis of the ellipsoidal limit surface over the radius of the patch."""
+
+_AT_REST = (0.0, 0.0, 0.0)
+
+
+def _on_friction(friction: tt.Friction, spin: float, **launch: object) -> tt.Problem:
+    """Return the report's top, leaning by 0.1 rad and spinning on friction of a kind."""
+    return tt.Problem(
+        body=_REPORT, friction=friction, launch=tt.Launch(tilt=0.1, spin=spin, **launch)
+    )
+
+
+def _of_leine_and_glocker(body: tt.Body, pressure: str) -> tt.Problem:
+    """Return a top of Leine and Glocker on the contact patch of their paper."""
+    return tt.Problem(
+        body=body,
+        friction=tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure=pressure),
+        launch=tt.Launch(tilt=0.1, spin=180.0, velocity=_AT_REST),
+        gravity=9.81,
+    )
 
 
 def _rolling_balls() -> tt.Launch:
@@ -42,43 +70,27 @@ def _rolling_balls() -> tt.Launch:
     return tt.Launch(tilt=tilt, precession=turning, spin=spin, tilt_rate=2.0)
 
 
-_REPORT, _LEINE = tt.presets.REPORT, tt.presets.LEINE_GLOCKER
-_RHO = 3.0 * math.pi / 16.0
-"""Semi-axis of the ellipsoidal limit surface over the radius of the patch."""
-
-_AT_REST = (0.0, 0.0, 0.0)
-
 CASES = (
     Case(
         "viscous",
         "A tippe top on a viscous film",
         "smooth friction, the turning over, and Jellett's integral",
-        tt.Problem(
-            body=_REPORT,
-            friction=tt.ViscousFriction(mu=0.3),
-            launch=tt.Launch(tilt=0.1, spin=155.0),
-        ),
+        _on_friction(tt.ViscousFriction(mu=0.3), 155.0),
         8.0,
     ),
     Case(
         "coulomb-roll",
         "A top on dry friction slips, sticks and rolls",
         "the end of slip, and rolling without loss",
-        tt.Problem(
-            body=_REPORT,
-            friction=tt.CoulombFriction(mu=0.3),
-            launch=tt.Launch(tilt=0.1, spin=155.0, velocity=_AT_REST),
-        ),
+        _on_friction(tt.CoulombFriction(mu=0.3), 155.0, velocity=_AT_REST),
         2.0,
     ),
     Case(
         "drilling",
         "A top on a contact patch turns over (ellipsoidal limit surface)",
         "slipping and drilling at once",
-        tt.Problem(
-            body=_REPORT,
-            friction=tt.ContensouFriction(mu=0.3, patch_radius=1e-3 / _RHO, pressure="ellipsoidal"),
-            launch=tt.Launch(tilt=0.1, spin=100.0),
+        _on_friction(
+            tt.ContensouFriction(mu=0.3, patch_radius=1e-3 / _RHO, pressure="ellipsoidal"), 100.0
         ),
         4.0,
     ),
@@ -86,23 +98,14 @@ CASES = (
         "drilling-hertz",
         "Leine and Glocker's ball on a contact patch turns over (pressure of Hertz)",
         "slipping and drilling at once, with two branches of the law",
-        tt.Problem(
-            body=_LEINE,
-            friction=tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="hertz"),
-            launch=tt.Launch(tilt=0.1, spin=180.0, velocity=_AT_REST),
-            gravity=9.81,
-        ),
+        _of_leine_and_glocker(tt.presets.LEINE_GLOCKER, "hertz"),
         1.3,
     ),
     Case(
         "flights",
         "A fast top leaves the table and comes down",
         "lift-off, flights and impacts without rebound",
-        tt.Problem(
-            body=_REPORT,
-            friction=tt.ViscousFriction(mu=0.3),
-            launch=tt.Launch(tilt=0.1, spin=175.0),
-        ),
+        _on_friction(tt.ViscousFriction(mu=0.3), 175.0),
         6.0,
     ),
     Case(
@@ -116,19 +119,16 @@ CASES = (
             contact=tt.Contact(restitution=0.8),
         ),
         0.3,
+        judged=SAMPLES,
     ),
     Case(
         "stem",
         "Leine and Glocker's top strikes the table with its stem, stands on it and falls back",
         "impacts of a second surface, infinite rocking, and contact in two points",
-        tt.Problem(
-            body=tt.presets.LEINE_GLOCKER_STEM,
-            friction=tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal"),
-            launch=tt.Launch(tilt=0.1, spin=180.0, velocity=_AT_REST),
-            gravity=9.81,
-        ),
+        _of_leine_and_glocker(tt.presets.LEINE_GLOCKER_STEM, "ellipsoidal"),
         8.0,
         cut_off=1e-6,
+        compared=8,
     ),
     Case(
         "egg",
@@ -195,6 +195,7 @@ CASES = (
             gravity=9.81,
         ),
         2e-3,
+        judged=SAMPLES,
     ),
 )
 """The suite, in the order of its files."""

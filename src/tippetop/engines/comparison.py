@@ -16,7 +16,15 @@ import tippetop as tt
 from tippetop.engines.adapters import ADAPTERS, adapter
 from tippetop.engines.adapters.base import Adapter, EngineState, Setting, is_installed, version_of
 from tippetop.engines.cases import CASES, Case
-from tippetop.engines.reference import SUITE_VERSION, case_of, independent, numbers_of
+from tippetop.engines.limits import Limit, limit_of
+from tippetop.engines.reference import (
+    SUITE_VERSION,
+    case_of,
+    independent,
+    judged_state,
+    numbers_of,
+    reference_state,
+)
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import read_text, written_beside
 from tippetop.support.suggestions import not_one_of
@@ -26,19 +34,20 @@ Array = NDArray[np.float64]
 STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4)
 """Lengths of the steps, s; each is shortened to fit the instants of the states."""
 
-GLANCE = 1e-3
-"""How often the tilt is read for the time of turning over, s."""
+READINGS = 2e-3
+"""How often the tilt is read for the time of turning over, s: a case whose states are closer has
+steps shorter in the same proportion."""
 
 HOLDS = 0.01
 """Error of the tilt up to which a run holds, rad."""
 
 LONGEST = 60.0
-"""Longest run, s: where the next shorter step would take longer, it is left out."""
+"""Longest processor time of a run, s: a shorter step that would take longer is left out."""
 
 DRAWN = 200
 """Number of tilts that are stored of the shortest step, for figures."""
 
-FOLDER = "results"
+RESULTS_FOLDER = "results"
 """Where stored results are, in this package."""
 
 Progress = Callable[[float, float, str], None]
@@ -95,16 +104,17 @@ def exact(case: Case) -> Exact:
 def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dict[str, Any]:
     """Follow a task with steps of about this length, and return the row of a table."""
     case, problem = task.case, task.case.problem
-    between = case.duration / len(case.times)
-    glances = max(1, math.ceil(between / GLANCE))
-    each = max(1, math.ceil(between / glances / step))
-    length = between / glances / each
-    started = time.perf_counter()
+    between, times = case.times[0], case.times[: case.compared]
+    readings_between = max(1, math.ceil(between / READINGS * (1.0 - 1e-9)))
+    interval = between / readings_between
+    each = max(1, math.ceil(READINGS / step * (1.0 - 1e-9)))
+    length = interval / each
+    started = time.process_time()
     stepper = task.adapter.start(case, length, task.setting)
     readings, tilts, over = list[EngineState](), [problem.launch.tilt], math.nan
     try:
-        for _ in case.times:
-            for _ in range(glances):
+        for _ in times:
+            for _ in range(readings_between):
                 stepper.advance(each)
                 reading = stepper.read()
                 x, y, z = reading.axis
@@ -112,38 +122,39 @@ def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dic
                 a, b = tilts[-2:]
                 if math.isnan(over) and a < math.pi / 2 <= b:
                     at = len(tilts) - 2 + (math.pi / 2 - a) / (b - a)
-                    over = at * between / glances
+                    over = at * interval
             readings.append(reading)
     finally:
         stepper.close()
-    took = time.perf_counter() - started
+    took = time.process_time() - started
     vectors = [np.array([getattr(one, name) for one in readings]) for name in EngineState._fields]
     numbers = numbers_of(problem, *vectors)
-    apart = np.abs(numbers["theta"] - reference.numbers["theta"])
-    early = max(
-        abs(numbers[f"axis_{letter}"][0] - reference.numbers[f"axis_{letter}"][0])
-        for letter in "xyz"
-    )
+    exact = {name: values[: len(times)] for name, values in reference.numbers.items()}
+    apart = np.abs(numbers["theta"] - exact["theta"])
+    judged = readings[case.judged - 1]
+    state = judged_state(case, judged.axis, judged.omega)
     past = np.flatnonzero(~(apart <= HOLDS))
-    holds = case.duration if not len(past) else float(case.times[past[0] - 1]) if past[0] else 0.0
+    holds = times[-1] if not len(past) else times[past[0] - 1] if past[0] else 0.0
     energies = np.concatenate([[reference.energy], numbers["energy"]])
+    late = reference.turns_over > times[-1]
     row = {
         "case": case.name,
         "setting": task.setting.name,
         "step": length,
         "asked_step": step,
-        "early_error": early,
+        "error": float(np.abs(state - reference_state(case)).max()),
+        "state": [round(float(x), 9) for x in state],
         "tilt_error": float(apart.max()),
-        "holds_until": holds,
+        "holds_until": float(holds),
         "turns_over": over,
-        "turns_over_exactly": reference.turns_over,
-        "energy_error": float((energies[-1] - reference.numbers["energy"][-1]) / reference.energy),
+        "turns_over_exactly": math.nan if late else reference.turns_over,
+        "energy_error": float((energies[-1] - exact["energy"][-1]) / reference.energy),
         "energy_gain": float(np.diff(energies).max() / reference.energy),
         "jellett_error": _part(
-            float(numbers["jellett"][-1] - reference.numbers["jellett"][-1]), reference.jellett
+            float(numbers["jellett"][-1] - exact["jellett"][-1]), reference.jellett
         ),
         "seconds": took,
-        "microseconds_per_step": 1e6 * took / (len(case.times) * glances * each),
+        "microseconds_per_step": 1e6 * took / (len(times) * readings_between * each),
     }
     if drawn:
         chosen = np.linspace(0, len(tilts) - 1, DRAWN + 1).round().astype(int)
@@ -151,8 +162,9 @@ def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dic
     return {name: _plain(value) for name, value in row.items()}
 
 
-def _part(value: float, whole: float) -> float:
-    return value / whole if whole else math.nan
+def _part(value: float, total: float) -> float:
+    """Return a value over a total; nan where the total is nothing beside it but rounding."""
+    return value / total if abs(total) > 1e-6 * abs(value) else math.nan
 
 
 def _plain(value: Any) -> Any:
@@ -179,11 +191,11 @@ def load(folder: Path, name: str) -> dict[str, Any] | None:
     return results
 
 
-def stored() -> dict[str, dict[str, Any]]:
+def stored(names: Sequence[str] | None = None) -> dict[str, dict[str, Any]]:
     """Return the results that come with this package, by program."""
-    folder = files(__package__) / FOLDER
+    folder = files(__package__) / RESULTS_FOLDER
     results = {}
-    for name in ADAPTERS:
+    for name in names or ADAPTERS:
         path = folder / f"{name}.json"
         if path.is_file():
             results[name] = json.loads(path.read_text(encoding="utf-8"))
@@ -209,8 +221,8 @@ def compare(
     FileTrouble
         If results cannot be read or written.
     """
-    if not all(math.isfinite(step) and 0.0 < step <= 0.1 for step in steps):
-        raise InvalidInput("step", list(steps), "lengths above 0 and at most 0.1 s")
+    if not all(0.0 < step <= READINGS for step in steps):
+        raise InvalidInput("step", list(steps), f"lengths above 0 and at most {READINGS:g} s")
     folder = Path(folder)
     chosen = list(tasks(installed(names) if names else installed(), cases))
     folder.mkdir(parents=True, exist_ok=True)
@@ -222,19 +234,37 @@ def compare(
         progress(k, len(chosen), f"{task.adapter.name}, {task.case.name}")
         result = results.get(name) or _opened(folder, name, task.adapter)
         results[name] = result
-        for number, step in enumerate(steps):
-            if _has(result, task, step):
-                continue
-            before = result["rows"][-1] if number else None
+        missing = [step for step in steps if not _has(result, task, step)]
+        if missing and task.case.name not in references:
+            references[task.case.name] = exact(task.case)
+        for step in missing:
+            before = result["rows"][-1] if step != steps[0] else None
             if before and _predicted(before, task, step) > longest:
                 continue
-            if task.case.name not in references:
-                references[task.case.name] = exact(task.case)
             result["rows"].append(_tried(task, step, references[task.case.name], step == steps[-1]))
             result["date"] = datetime.datetime.now(datetime.UTC).date().isoformat()
             _save(folder, name, result)
+        if missing or not _limit_in(result, task):
+            _add_limit(result, task)
+            _save(folder, name, result)
     progress(len(chosen), len(chosen), "")
     return results
+
+
+def _limit_in(result: Mapping[str, Any], task: EngineTask) -> dict[str, Any] | None:
+    """Return what results have of the limit of a task; None without it."""
+    key = (task.case.name, task.setting.name)
+    return next((one for one in result["limits"] if (one["case"], one["setting"]) == key), None)
+
+
+def _add_limit(result: dict[str, Any], task: EngineTask) -> None:
+    """Put the limit of a task's rows into results, in place of an earlier one."""
+    case, setting = task.case.name, task.setting.name
+    rows = [row for row in result["rows"] if (row["case"], row["setting"]) == (case, setting)]
+    limit = limit_of(task.case, rows)._replace(case=case, setting=setting)
+    others = [one for one in result["limits"] if one != _limit_in(result, task)]
+    record = {name: _plain(value) for name, value in limit._asdict().items()}
+    result["limits"] = [*others, record]
 
 
 def _tried(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dict[str, Any]:
@@ -260,14 +290,23 @@ def _predicted(before: Mapping[str, Any], task: EngineTask, step: float) -> floa
 
 
 def _opened(folder: Path, name: str, made: Adapter) -> dict[str, Any]:
-    """Return the results of a folder if they are of the same versions, or empty ones."""
+    """Return the results of a folder if they are of the same versions and options, or empty ones.
+
+    Results of settings whose options are no longer the same are left out.
+    """
     head = {"engine": made.name, "version": version_of(made), "suite": SUITE_VERSION}
-    stored = load(folder, name)
-    if stored is not None and all(stored.get(key) == value for key, value in head.items()):
-        return stored
-    settings = [setting._asdict() for setting in made.settings]
-    refused = {case.name: made.refusal(case) for case in CASES if made.refusal(case)}
-    return {**head, "settings": settings, "refused": refused, "rows": []}
+    about = {
+        "settings": [setting._asdict() for setting in made.settings],
+        "refused": {case.name: made.refusal(case) for case in CASES if made.refusal(case)},
+    }
+    results = load(folder, name)
+    if results is None or any(results.get(key) != value for key, value in head.items()):
+        return {**head, **about, "limits": [], "rows": []}
+    options = {setting["name"]: setting["options"] for setting in results["settings"]}
+    unchanged = [one.name for one in made.settings if options.get(one.name) == one.options]
+    for part in ("limits", "rows"):
+        results[part] = [one for one in results[part] if one["setting"] in unchanged]
+    return {**results, **about}
 
 
 def _has(result: Mapping[str, Any], task: EngineTask, step: float) -> bool:
@@ -293,9 +332,9 @@ class EngineVerdict(NamedTuple):
     case: str
     setting: str
     step: float
-    early_error: float
+    error: float
     order: float
-    """Observed order of the early error, of the last two steps; nan where it cannot be said."""
+    """Observed order of the error, of the last two steps; nan where it cannot be said."""
     holds_until: float
     turns_over: float
     turns_over_exactly: float
@@ -303,22 +342,49 @@ class EngineVerdict(NamedTuple):
     jellett_error: float
     microseconds_per_step: float
     step_for_1_percent: float
-    """Largest step from which on the early error is below 0.01; nan if none is."""
+    """Largest step from which on the error is below 0.01; nan if none is."""
     step_for_0_1_percent: float
+    limit: Limit
 
 
 def verdicts(results: Mapping[str, Mapping[str, Any]]) -> list[EngineVerdict]:
-    """Return what each program makes of each case, at the setting with the least early error."""
+    """Return what each program makes of each case, at the setting with the least error."""
     verdicts = []
     for result in results.values():
         rows = [row for row in result["rows"] if "failure" not in row]
         for case in dict.fromkeys(row["case"] for row in rows):
             of_case = [row for row in rows if row["case"] == case]
             finest = _finest(of_case)
-            best = min(finest, key=lambda row: _number(row["early_error"], math.inf))
+            best = min(finest, key=lambda row: _number(row["error"], math.inf))
             same = [row for row in of_case if row["setting"] == best["setting"]]
-            verdicts.append(_verdict(result["engine"], sorted(same, key=lambda row: -row["step"])))
+            key = (case, best["setting"])
+            limits = [one for one in result["limits"] if (one["case"], one["setting"]) == key]
+            limit = _limit(limits[0]) if limits else Limit(*key, "none", *4 * (math.nan,))
+            same.sort(key=lambda row: -row["step"])
+            verdicts.append(_verdict(result["engine"], same, limit))
     return verdicts
+
+
+def _limit(record: Mapping[str, Any]) -> Limit:
+    """Return a limit from its record in a file."""
+    values: dict[str, Any] = {
+        name: math.nan if value is None else value for name, value in record.items()
+    }
+    return Limit(**values)
+
+
+def errors_at(
+    results: Mapping[str, Mapping[str, Any]], step: float
+) -> dict[tuple[str, str], float]:
+    """Return the errors at one step, by case and program, each at its best setting there."""
+    errors: dict[tuple[str, str], float] = {}
+    for result in results.values():
+        for row in result["rows"]:
+            if row["asked_step"] == step and "failure" not in row:
+                key = (row["case"], result["engine"])
+                error = _number(row["error"], math.inf)
+                errors[key] = min(error, errors.get(key, math.inf))
+    return errors
 
 
 def _finest(rows: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -331,9 +397,9 @@ def _finest(rows: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     return list(finest.values())
 
 
-def _verdict(engine: str, rows: Sequence[Mapping[str, Any]]) -> EngineVerdict:
+def _verdict(engine: str, rows: Sequence[Mapping[str, Any]], limit: Limit) -> EngineVerdict:
     best = rows[-1]
-    errors = [_number(row["early_error"]) for row in rows]
+    errors = [_number(row["error"]) for row in rows]
     return EngineVerdict(
         engine,
         best["case"],
@@ -349,6 +415,7 @@ def _verdict(engine: str, rows: Sequence[Mapping[str, Any]]) -> EngineVerdict:
         best["microseconds_per_step"],
         _largest_step(rows, errors, 1e-2),
         _largest_step(rows, errors, 1e-3),
+        limit,
     )
 
 

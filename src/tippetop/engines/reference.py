@@ -22,7 +22,7 @@ from tippetop.support.suggestions import not_one_of
 SUITE_VERSION = "1.0"
 """Version of the cases: another problem, launch or instant is another version."""
 
-FOLDER = "independent"
+INDEPENDENT_FOLDER = "independent"
 """Where the numbers of the independent solver are, in this package."""
 
 EVENT_LIMIT, STATE_LIMIT = 1e-10, 1e-8
@@ -142,9 +142,26 @@ def _components(name: str, vectors: Array) -> dict[str, Array]:
 
 def independent(case: Case) -> dict[str, Any]:
     """Return the stored states, events and method of the independent solver."""
-    text = (files(__package__) / FOLDER / f"{case.name}.json").read_text(encoding="utf-8")
+    text = (files(__package__) / INDEPENDENT_FOLDER / f"{case.name}.json").read_text(
+        encoding="utf-8"
+    )
     stored: dict[str, Any] = json.loads(text)
     return stored
+
+
+def judged_state(case: Case, axis: Array, omega: Array) -> Array:
+    """Return the numbers by which programs are judged: the axis, and the angular velocity over the
+    largest of the case.
+    """
+    rows = np.array(independent(case)["states"])[: case.compared]
+    largest = float(np.linalg.norm(rows[:, 4:7], axis=1).max())
+    return np.concatenate([axis, omega / largest])
+
+
+def reference_state(case: Case) -> Array:
+    """Return the `judged_state` of the independent solver."""
+    row = np.array(independent(case)["states"][case.judged - 1])
+    return judged_state(case, row[1:4], row[4:7])
 
 
 def reference(case: Case) -> Reference:
@@ -157,10 +174,10 @@ def reference(case: Case) -> Reference:
     sampled = [_lasting(values, len(times)) for values in sampled]
     computed = numbers_of(case.problem, *sampled)
     rows = np.array(stored["states"])
-    other = numbers_of(case.problem, rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[:, 10])
+    second = numbers_of(case.problem, rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[:, 10])
     variables = {}
     for name, (unit, meaning) in COLUMNS.items():
-        apart = np.maximum(np.abs(computed[name] - other[name]), ROUNDING * np.abs(computed[name]))
+        apart = np.maximum(np.abs(computed[name] - second[name]), ROUNDING * np.abs(computed[name]))
         attributes = {"units": unit, "long_name": meaning}
         variables[name] = ("time", computed[name], attributes)
         about = {"units": unit, "long_name": f"difference of two methods: {name}"}

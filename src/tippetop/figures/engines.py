@@ -15,22 +15,20 @@ from tippetop.engines.reference import case_of
 
 
 def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw the early error over the step, a panel a case, each program at its best setting."""
+    """Draw the error over the step, a panel a case, each program at its best setting."""
     best = {(one.engine, one.case): one.setting for one in verdicts(results)}
     cases = list(dict.fromkeys(case for _, case in best))
     columns = min(4, max(1, len(cases)))
     rows = -(-len(cases) // columns) or 1
-    figure, axes = plt.subplots(
-        rows, columns, figsize=(2.6 * columns, 2.3 * rows), sharex=True, squeeze=False
-    )
+    figure, axes = plt.subplots(rows, columns, figsize=(2.6 * columns, 2.3 * rows), squeeze=False)
     engines = [result["engine"] for result in results.values()]
     for panel, case in zip(axes.flat, cases, strict=False):
         for number, result in enumerate(results.values()):
             setting = best.get((result["engine"], case))
             drawn = [
-                (row["step"], row["early_error"])
+                (row["step"], row["error"])
                 for row in result["rows"]
-                if (row["case"], row["setting"]) == (case, setting) and row.get("early_error")
+                if (row["case"], row["setting"]) == (case, setting) and row.get("error")
             ]
             if drawn:
                 steps, errors = zip(*sorted(drawn), strict=True)
@@ -41,7 +39,7 @@ def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
     for panel in axes[-1]:
         panel.set_xlabel("step (ms)")
     for panel in axes[:, 0]:
-        panel.set_ylabel("error of the axis")
+        panel.set_ylabel("error")
     handles = [Line2D([], [], marker="o", ms=3, color=f"C{k}") for k in range(len(engines))]
     figure.legend(handles, engines, loc="outside upper center", ncols=len(engines), frameon=False)
     figure.set_layout_engine("constrained")

@@ -49,7 +49,7 @@ class _Quadric(NamedTuple):
 
     @property
     def inwards(self) -> "_Quadric":
-        """The same quadric with normals that point inwards."""
+        """Copy of this quadric with normals that point inwards."""
         return self._replace(w=-self.w, p=-self.p, q=-self.q, s=-self.s)
 
     def meet(self, o: Array, d: Array) -> tuple[Array, ...]:

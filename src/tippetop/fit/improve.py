@@ -169,12 +169,15 @@ def improve(
 def _require_top(body: Body, gravity: float, tilt: float) -> None:
     """Refuse, with `InvalidInput`, a body that cannot turn over as a tippe top does."""
     if prospects(body, list(body.shapes), gravity, tilt) is None:
-        shape = body.shapes[0]
+        kind = body.shapes[0].kind.replace("_", " ")
+        shown = f"a body that lies on a {kind}"
+        if kind == "sphere":
+            shown = "a body that its sphere does not right"
         raise InvalidInput(
             "body",
-            Described(f"a body that lies on a {shape.kind.replace('_', ' ')}"),
+            Described(shown),
             "a top that lies on a sphere, its centre of mass between its centre and the table",
-            "has no sphere on which friction could turn it over",
+            "is no tippe top: friction does not raise it",
         )
 
 

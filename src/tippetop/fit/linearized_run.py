@@ -182,8 +182,6 @@ class Junction:
     """What follows the leg, or the launch, and each of the visits."""
     visits: list[Visit]
     """The visits, one after each transition but the last."""
-    completes: bool = False
-    """Whether the run ends with the last visit."""
 
 
 @dataclass
@@ -265,8 +263,6 @@ class LinearizedRun:
     @np.errstate(all="ignore")
     def _differentiate(self) -> None:
         """Go from leg to leg with the derivatives."""
-        count = len(self.directions)
-        times = np.zeros(count)
         before: IntegratedLeg | None = None
         transition, visits = self.launch, list(self.visits)
         while True:
@@ -278,22 +274,20 @@ class LinearizedRun:
                     break
                 junction.transitions.append(visit.transition)
             self.legs.append(junction)
-            junction.completes = not visits
             if not visits:
                 return
             visit = visits.pop(0)
             assert isinstance(visit.mode, IntegratedMode)
-            times, changes = self._through(junction, visit, times)
+            times, changes = self._through(junction, visit)
             before = self._integrated(visit, times, changes)
             self.legs.append(before)
-            times = before.times[1]
             if visit.transition is None:
                 return
             transition = visit.transition
             if visit.end is not None and visit.end.cause in (COMPLETED, FAILURE):
                 return
 
-    def _through(self, junction: Junction, visit: Visit, times: Array) -> tuple[Array, Array]:
+    def _through(self, junction: Junction, visit: Visit) -> tuple[Array, Array]:
         """Return the derivatives of the time and numbers with which a leg begins."""
         mode: Any = visit.mode
         size = len(mode.numbers(visit.state))
@@ -309,7 +303,8 @@ class LinearizedRun:
                 try:
                     for place, weight in FOUR:
                         beside = self.beside(junction, direction, place * change)
-                        row = np.array(mode_of(beside, junction).numbers(beside.state))
+                        mode_beside: Any = beside.transitions[-1].then
+                        row = np.array(mode_beside.numbers(beside.state))
                         changes[direction] += weight / change * row
                         ahead[direction] += weight / change * (beside.time - visit.time)
                     break
@@ -371,7 +366,7 @@ class LinearizedRun:
             )
             if solved is None:
                 size = (1 + len(tangents[some])) * len(start)
-                solutions.append(DenseSolution.nothing(visit.time, size))
+                solutions.append(DenseSolution.empty(visit.time, size))
                 for direction in range(first, first + len(tangents[some])):
                     self.fail(direction, visit.time, UNSOLVED)
                 ended.append(np.zeros_like(tangents[some]))
@@ -682,11 +677,6 @@ def with_event_states(run: xr.Dataset, states: Sequence[State], units: Units) ->
 def is_integrated(mode: object) -> bool:
     """Return whether a mode is followed by its equations of motion alone."""
     return isinstance(mode, IntegratedMode) and (type(mode).segments is IntegratedMode.segments)
-
-
-def mode_of(beside: Beside, junction: Junction) -> Any:
-    """Return the mode that follows a junction beside the run."""
-    return beside.transitions[-1].then
 
 
 def guard_of(guards: Sequence[Guard], end: ModeEnd | None) -> Guard | None:

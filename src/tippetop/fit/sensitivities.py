@@ -1,4 +1,4 @@
-"""Derivatives of a run with respect to fields of its problem, exact through every event."""
+"""Derivatives of a run with respect to fields of its problem, through every event."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -36,9 +36,11 @@ def sensitivities(
 ) -> xr.Dataset:
     """Return the derivatives of a run with respect to fields of its problem.
 
-    The derivatives go through every event exactly: through slides by the variational equations,
-    which are integrated with the motion, and through guards by the derivative of the time at which
-    they fall (saltation). Nothing is smoothed, and no run is compared with another.
+    Nothing is smoothed, and whole runs are not compared. Motion in contact is followed with its
+    variational equations, and the derivative of the time at which a guard falls takes them through
+    events (saltation). What an event does - an impact, a reset - with flights and the first and
+    last moments of slip, and how variables are read off the solution, are differentiated by
+    differences at 1e-5 beside the run, which leaves relative errors of 1e-9 to 1e-7.
 
     Parameters
     ----------

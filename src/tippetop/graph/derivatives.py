@@ -64,7 +64,7 @@ def _derived(node: Node, parts: Sequence[Tangent]) -> Tangent:
             factor = -make.node(graph.SINE, (a,))
             return tuple([_times(da, factor) for (da,) in rows])
         case graph.SIZE:
-            rises = make.taken(0.0) < a
+            rises = make.as_node(0.0) < a
             return tuple([make.select(rises, da, -da) for (da,) in rows])
         case graph.SELECT | graph.RARELY:
             condition = node.operands[0]

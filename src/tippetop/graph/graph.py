@@ -48,29 +48,31 @@ class Node:
     __array_ufunc__ = None
     """Keeps NumPy from taking a node for an element of an array."""
 
-    def __add__(self, other: Any) -> Any:
-        return NotImplemented if isinstance(other, Series) else self.graph.sum(self, other)
+    def __add__(self, operand: Any) -> Any:
+        return NotImplemented if isinstance(operand, Series) else self.graph.sum(self, operand)
 
-    def __radd__(self, other: Any) -> Any:
-        return self.graph.sum(other, self)
+    def __radd__(self, operand: Any) -> Any:
+        return self.graph.sum(operand, self)
 
-    def __sub__(self, other: Any) -> Any:
-        return NotImplemented if isinstance(other, Series) else self.graph.difference(self, other)
+    def __sub__(self, operand: Any) -> Any:
+        if isinstance(operand, Series):
+            return NotImplemented
+        return self.graph.difference(self, operand)
 
-    def __rsub__(self, other: Any) -> Any:
-        return self.graph.difference(other, self)
+    def __rsub__(self, operand: Any) -> Any:
+        return self.graph.difference(operand, self)
 
-    def __mul__(self, other: Any) -> Any:
-        return NotImplemented if isinstance(other, Series) else self.graph.product(self, other)
+    def __mul__(self, operand: Any) -> Any:
+        return NotImplemented if isinstance(operand, Series) else self.graph.product(self, operand)
 
-    def __rmul__(self, other: Any) -> Any:
-        return self.graph.product(other, self)
+    def __rmul__(self, operand: Any) -> Any:
+        return self.graph.product(operand, self)
 
-    def __truediv__(self, other: Any) -> Any:
-        return NotImplemented if isinstance(other, Series) else self.graph.quotient(self, other)
+    def __truediv__(self, operand: Any) -> Any:
+        return NotImplemented if isinstance(operand, Series) else self.graph.quotient(self, operand)
 
-    def __rtruediv__(self, other: Any) -> Any:
-        return self.graph.quotient(other, self)
+    def __rtruediv__(self, operand: Any) -> Any:
+        return self.graph.quotient(operand, self)
 
     def __pow__(self, exponent: Any) -> Any:
         return self.graph.power(self, exponent)
@@ -81,15 +83,15 @@ class Node:
     def __abs__(self) -> Any:
         return self.graph.node(SIZE, (self.operands[0] if self.name == NEGATIVE else self,))
 
-    def __lt__(self, other: Any) -> Any:
-        return self.graph.node(LESS, (self, self.graph.taken(other)))
+    def __lt__(self, operand: Any) -> Any:
+        return self.graph.node(LESS, (self, self.graph.as_node(operand)))
 
-    def __gt__(self, other: Any) -> Any:
-        return self.graph.node(LESS, (self.graph.taken(other), self))
+    def __gt__(self, operand: Any) -> Any:
+        return self.graph.node(LESS, (self.graph.as_node(operand), self))
 
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, Node):
-            return self is other
+    def __eq__(self, operand: object) -> bool:
+        if isinstance(operand, Node):
+            return self is operand
         raise NotRecordable(NO_CHOICE)
 
     # translate: skip
@@ -112,80 +114,80 @@ class Graph:
     def __init__(self) -> None:
         self.nodes = list[Node]()
         # The same by what they are.
-        self._known = dict[str, Node]()
+        self._by_description = dict[str, Node]()
 
     def node(self, name: str, operands: tuple[Node, ...], value: float = 0.0) -> Node:
-        """The node of this description, which is made if there is none."""
+        """Return the node of this description, made if there is none."""
         key = " ".join([name, f"{value:.17g}", *[str(operand.place) for operand in operands]])
-        found = self._known.get(key)
-        if found is None:
-            found = Node(self, name, operands, value, len(self.nodes))
-            self.nodes.append(found)
-            self._known[key] = found
-        return found
+        node = self._by_description.get(key)
+        if node is None:
+            node = Node(self, name, operands, value, len(self.nodes))
+            self.nodes.append(node)
+            self._by_description[key] = node
+        return node
 
-    def taken(self, number: Any) -> Node:
-        """A number as a node."""
+    def as_node(self, number: Any) -> Node:
+        """Return a number as a node."""
         if isinstance(number, Node):
             return number
         return self.node(CONSTANT, (), float(number))
 
     def sum(self, a: Any, b: Any) -> Any:
         """Sum of two, as a difference if one of them is negative."""
-        for one, other in ((a, b), (b, a)):
-            if isinstance(other, Node):
-                if other.name == NEGATIVE:
-                    return self.difference(one, other.operands[0])
-            elif other == 0.0:
-                return one
-        return self.node(SUM, in_order(self.taken(a), self.taken(b)))
+        for first, second in ((a, b), (b, a)):
+            if isinstance(second, Node):
+                if second.name == NEGATIVE:
+                    return self.difference(first, second.operands[0])
+            elif second == 0.0:
+                return first
+        return self.node(SUM, in_order(self.as_node(a), self.as_node(b)))
 
     def difference(self, a: Any, b: Any) -> Any:
         """Difference of two."""
         if is_exactly(a, 0.0) or is_exactly(b, 0.0):
             return -b if is_exactly(a, 0.0) else a
-        return 0.0 if a is b else self.node(DIFFERENCE, (self.taken(a), self.taken(b)))
+        return 0.0 if a is b else self.node(DIFFERENCE, (self.as_node(a), self.as_node(b)))
 
     def product(self, a: Any, b: Any) -> Any:
         """Product of two."""
-        for one, other in ((a, b), (b, a)):
-            if not isinstance(one, Node):
-                if one == 0.0:
+        for first, second in ((a, b), (b, a)):
+            if not isinstance(first, Node):
+                if first == 0.0:
                     return 0.0
-                if abs(one) == 1.0:
-                    return other if one > 0.0 else -other
-        return self.node(PRODUCT, in_order(self.taken(a), self.taken(b)))
+                if abs(first) == 1.0:
+                    return second if first > 0.0 else -second
+        return self.node(PRODUCT, in_order(self.as_node(a), self.as_node(b)))
 
     def quotient(self, a: Any, b: Any) -> Any:
         """Quotient of two."""
         if is_exactly(a, 0.0) or is_exactly(b, 1.0):
             return a
-        return self.node(QUOTIENT, (self.taken(a), self.taken(b)))
+        return self.node(QUOTIENT, (self.as_node(a), self.as_node(b)))
 
     def power(self, base: Node, exponent: Any) -> Any:
-        """A power: by products and roots where the exponent is a whole number of quarters."""
+        """Return a power: products and roots if the exponent is a whole number of quarters."""
         if not isinstance(exponent, (int, float)):
             raise NotRecordable("exponents are numbers")
         if (4.0 * exponent) % 1.0 != 0.0 or abs(exponent) > LARGEST_POWER:
-            return self.node(POWER, (base, self.taken(exponent)))
+            return self.node(POWER, (base, self.as_node(exponent)))
         if exponent < 0.0:
             return self.quotient(1.0, self.power(base, -exponent))
-        part, whole = exponent % 1.0, exponent // 1.0
-        if part > 0.0:
-            return self.power(self.node(ROOT, (base,)), 2.0 * part) * self.power(base, whole)
-        half = self.power(base, whole // 2.0) if whole > 1.0 else 1.0
-        return half * half * base if whole % 2.0 == 1.0 else half * half
+        fraction, integer = exponent % 1.0, exponent // 1.0
+        if fraction > 0.0:
+            return self.power(self.node(ROOT, (base,)), 2.0 * fraction) * self.power(base, integer)
+        half = self.power(base, integer // 2.0) if integer > 1.0 else 1.0
+        return half * half * base if integer % 2.0 == 1.0 else half * half
 
     def select(self, condition: Any, a: Any, b: Any) -> Any:
-        """The first where a condition is not 0, else the second."""
+        """Return the first where a condition is not 0, else the second."""
         if not isinstance(condition, Node):
             return a if condition else b
-        return self.node(SELECT, (condition, self.taken(a), self.taken(b)))
+        return self.node(SELECT, (condition, self.as_node(a), self.as_node(b)))
 
     # translate: skip
     def rarely(self, condition: Any, a: Any, b: Any) -> Any:
-        """The same; the first is computed only where launches abreast have need of it."""
-        return self.node(RARELY, (self.taken(condition), self.taken(a), self.taken(b)))
+        """Return the same as `select`; the first is computed only if a launch abreast needs it."""
+        return self.node(RARELY, (self.as_node(condition), self.as_node(a), self.as_node(b)))
 
 
 def in_order(a: Node, b: Node) -> tuple[Node, Node]:

@@ -23,13 +23,13 @@ OPERATIONS: Mapping[str, Callable[..., Any]] = {
 
 
 def hoisted(recorded: Recorded) -> tuple[Recorded, Recorded]:
-    """A function of the parameters alone, and the rest, to which what that makes are further
-    parameters.
+    """Return a function of the parameters alone, and the rest, which has the results of the first
+    as further parameters.
     """
     fixed = set[int]()
     for node in recorded.nodes:
-        given = node.name in (graph.PARAMETER, graph.CONSTANT)
-        if given or (
+        is_given = node.name in (graph.PARAMETER, graph.CONSTANT)
+        if is_given or (
             node.operands and fixed.issuperset([operand.place for operand in node.operands])
         ):
             fixed.add(node.place)
@@ -38,26 +38,24 @@ def hoisted(recorded: Recorded) -> tuple[Recorded, Recorded]:
     asked.update([node.place for node in recorded.outputs])
     made = [node for node in recorded.nodes if node.operands and node.place in fixed & asked]
     further = {node.place: recorded.parameters + k for k, node in enumerate(made)}
-    rest, found = graph.Graph(), dict[int, graph.Node]()
+    remainder, replaced = graph.Graph(), dict[int, graph.Node]()
     for node in recorded.nodes:
         if node.place in further:
-            found[node.place] = rest.node(graph.PARAMETER, (), further[node.place])
+            replaced[node.place] = remainder.node(graph.PARAMETER, (), further[node.place])
         elif node.place not in fixed or not node.operands:
-            operands = tuple([found[operand.place] for operand in node.operands])
-            found[node.place] = rest.node(node.name, operands, node.value)
-    outputs = tuple([found[node.place] for node in recorded.outputs])
+            operands = tuple([replaced[operand.place] for operand in node.operands])
+            replaced[node.place] = remainder.node(node.name, operands, node.value)
+    outputs = tuple([replaced[node.place] for node in recorded.outputs])
     count = recorded.parameters + len(made)
     return (
         Recorded(needed(made[0].graph, made) if made else (), tuple(made), 0, recorded.parameters),
-        Recorded(needed(rest, outputs), outputs, recorded.size, count),
+        Recorded(needed(remainder, outputs), outputs, recorded.size, count),
     )
 
 
-def played(recorded: Recorded, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
-    """What a recorded function makes of a state and parameters, in the arithmetic that they
-    have.
-    """
-    found = dict[int, Any]()
+def evaluated(recorded: Recorded, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
+    """Return the outputs of a recorded function at a state and parameters, in their arithmetic."""
+    values = dict[int, Any]()
     for node in recorded.nodes:
         match node.name:
             case graph.CONSTANT:
@@ -67,6 +65,6 @@ def played(recorded: Recorded, state: Sequence[Any], parameters: Sequence[Any]) 
             case graph.PARAMETER:
                 value = parameters[int(node.value)]
             case name:
-                value = OPERATIONS[name](*[found[operand.place] for operand in node.operands])
-        found[node.place] = value
-    return [found[node.place] for node in recorded.outputs]
+                value = OPERATIONS[name](*[values[operand.place] for operand in node.operands])
+        values[node.place] = value
+    return [values[node.place] for node in recorded.outputs]

@@ -5,7 +5,7 @@ from tippetop.graph.recording import Recorded
 
 
 def javascript_source(recorded: Recorded, name: str) -> str:
-    """A JavaScript function `name(y, p, out)` that puts what was recorded of y and p into out."""
+    """Return a JavaScript function `name(y, p, out)` that puts the outputs for y and p into out."""
     lines = [f"  const t{node.place} = {_written(node)};" for node in recorded.nodes]
     lines += [f"  out[{number}] = t{node.place};" for number, node in enumerate(recorded.outputs)]
     return "\n".join([f"function {name}(y, p, out) {{", *lines, "}"])

@@ -60,7 +60,7 @@ NEED = """\
   br i1 %somewhere, label %rare, label %rest
 rare:"""
 RARE = "{t}_rare = select <{n} x i1> %need, {v} {1}, {v} {2}"
-EITHER = "{t} = phi {v} [ {2}, %ready ], [ {t}_rare, %rare ]"
+PHI = "{t} = phi {v} [ {2}, %ready ], [ {t}_rare, %rare ]"
 """What is computed only where one of the launches has need of it: how that begins, and what it
 makes.
 """
@@ -93,13 +93,13 @@ none:
 }}
 """
 
-MORE = """\
+OPTIONAL_OUTPUTS = """\
 %asked = icmp ne ptr %more, null
   br i1 %asked, label %give, label %last
 give:"""
 """What is before that which is only given where it is asked for."""
 
-AGAIN = """\
+ITERATION_FRAME = """\
 define i64 @{name}(ptr noalias %y, ptr noalias %p, ptr noalias %out, double %enough, i64 %most)
 alignstack(64) {{
 entry:
@@ -136,7 +136,7 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     `out`, until the last of that is less than enough, or no number, or as many times as may be;
     they return how many.
     """
-    frame, vector = AGAIN if again else FRAME, f"<{abreast} x double>"
+    frame, vector = ITERATION_FRAME if again else FRAME, f"<{abreast} x double>"
     count = abreast if again else "%count" if abreast > 1 else 1
     words = {"v": vector, "n": abreast, "r": ROUNDING, "count": count}
 
@@ -155,51 +155,51 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     ):
         parts.append(power_function(abreast))
     for name, recorded in functions.items():
-        known = {node.place: name_of(node) for node in recorded.nodes}
-        lines = spelt(recorded, known, words)
+        names = {node.place: name_of(node) for node in recorded.nodes}
+        lines = spelt(recorded, names, words)
         replaced = recorded.size if again else 0
-        given = {
+        destinations = {
             "y": recorded.outputs[:replaced],
             "out": recorded.outputs[replaced:],
-            "more": recorded.more,
+            "more": recorded.optional,
         }
-        for place, nodes in given.items():
-            lines += [MORE] if place == "more" and nodes else []
+        for place, nodes in destinations.items():
+            lines += [OPTIONAL_OUTPUTS] if place == "more" and nodes else []
             lines += [
-                STORE.format(known[node.place], t=f"%{place}{row}", name=place, row=row, **words)
+                STORE.format(names[node.place], t=f"%{place}{row}", name=place, row=row, **words)
                 for row, node in enumerate(nodes)
             ]
-        last = known[recorded.outputs[-1].place] if again else ""
-        more = ", ptr noalias %more" if recorded.more else ""
+        last = names[recorded.outputs[-1].place] if again else ""
+        argument = ", ptr noalias %more" if recorded.optional else ""
         parts.append(
-            frame.format(name=name, body="\n  ".join(lines), last=last, more=more, **words)
+            frame.format(name=name, body="\n  ".join(lines), last=last, more=argument, **words)
         )
     return "".join(parts)
 
 
-def spelt(recorded: Recorded, known: Mapping[int, str], words: Mapping[str, object]) -> list[str]:
-    """What computes the nodes, given what they are called."""
+def spelt(recorded: Recorded, names: Mapping[int, str], words: Mapping[str, object]) -> list[str]:
+    """Return the lines that compute nodes, whose names are known."""
 
     def line(node: graph.Node, spelling: str | None = None) -> str:
-        operands = [known[operand.place] for operand in node.operands]
-        own = {"t": known[node.place], "name": node.name, "row": node.value}
+        operands = [names[operand.place] for operand in node.operands]
+        gaps = {"t": names[node.place], "name": node.name, "row": node.value}
         text = spelling or spelling_of(node, words["n"] != 1)
-        return text.format(*operands, **own, **words)
+        return text.format(*operands, **gaps, **words)
 
-    always, seldom, either, rest = parted(recorded)
+    always, seldom, either, later = parted(recorded)
     lines = in_blocks(list(map(line, always)), "part")
     if either:
         lines += ["br label %ready", "ready:", line(either[0], NEED), *map(line, seldom)]
         lines += [*(line(node, RARE) for node in either), "br label %rest", "rest:"]
         lines += [
-            *(line(node, EITHER) for node in either),
-            *in_blocks(list(map(line, rest)), "later"),
+            *(line(node, PHI) for node in either),
+            *in_blocks(list(map(line, later)), "later"),
         ]
     return lines
 
 
 def spelling_of(node: graph.Node, several: bool) -> str:
-    """What makes a node, of one launch or of several."""
+    """Return the template of the line that computes a node, of one launch or of several."""
     if node.name == graph.SELECT and node.operands[0].name == graph.LESS:
         return CHOICE
     return SMALL_POWER if several and is_small_power(node) else SPELLINGS[node.name]
@@ -207,19 +207,21 @@ def spelling_of(node: graph.Node, several: bool) -> str:
 
 def in_blocks(lines: Sequence[str], name: str) -> list[str]:
     """Lines with ends of blocks between them."""
-    found = list(lines[:PART])
+    separated = list(lines[:PART])
     for first in range(PART, len(lines), PART):
-        found += [BLOCK.format(name=f"{name}{first}"), *lines[first : first + PART]]
-    return found
+        separated += [BLOCK.format(name=f"{name}{first}"), *lines[first : first + PART]]
+    return separated
 
 
 def parted(recorded: Recorded) -> tuple[Sequence[graph.Node], ...]:
-    """What is computed first, what only where there is need, what is one of both, and the rest."""
-    needed = {node.place for node in (*recorded.outputs, *recorded.more)}
+    """Return the nodes that are computed always, those computed rarely, those that choose between
+    both, and those that depend on a choice.
+    """
+    needed = {node.place for node in (*recorded.outputs, *recorded.optional)}
     for node in reversed(recorded.nodes):
         if node.place in needed:
-            kept = node.operands[::2] if node.name == graph.RARELY else node.operands
-            needed.update([operand.place for operand in kept])
+            operands = node.operands[::2] if node.name == graph.RARELY else node.operands
+            needed.update([operand.place for operand in operands])
     later = set[int]()
     for node in recorded.nodes:
         if node.name == graph.RARELY or not later.isdisjoint(

@@ -71,18 +71,20 @@ Where x has no logarithm, its square root is what the power is.
 
 
 def is_small_power(node: graph.Node) -> bool:
-    """Whether a node is a power that is served."""
+    """Return whether a node is a power that `small_power` computes."""
     return node.name == graph.POWER and 0.0 < node.operands[1].value <= LARGEST
 
 
 def spread(value: float, abreast: int) -> str:
-    """A vector of so many times a number."""
+    """Return a vector of so many times a number."""
     bits = pack(">d", value).hex().upper()
     return f"<{', '.join([f'double 0x{bits}'] * abreast)}>"
 
 
 def power_function(abreast: int) -> str:
-    """The function `small_power(x, y)`, y from 0 to `LARGEST`, of vectors of so many numbers."""
+    """Return the function `small_power(x, y)`, y from 0 to `LARGEST`, of vectors of so many
+    numbers.
+    """
     v = f"<{abreast} x double>"
     numbers = {
         "smallest": 2.0**-1022,
@@ -95,12 +97,12 @@ def power_function(abreast: int) -> str:
     wholes = {"half": 0x3FE6A09E667F3BCD, "places": 52}
 
     def polynomial(name: str, terms: Sequence[float], place: str) -> str:
-        known, lines = spread(terms[-1], abreast), []
+        total, lines = spread(terms[-1], abreast), []
         for k in range(len(terms) - 2, -1, -1):
-            found, term = f"%{name}{k}" if k else f"%{name}", spread(terms[k], abreast)
-            sum_of = f"({v} {known}, {v} {place}, {v} {term})"
-            lines.append(f"  {found} = call {v} @llvm.fma.v{abreast}f64{sum_of}")
-            known = found
+            result, term = f"%{name}{k}" if k else f"%{name}", spread(terms[k], abreast)
+            sum_of = f"({v} {total}, {v} {place}, {v} {term})"
+            lines.append(f"  {result} = call {v} @llvm.fma.v{abreast}f64{sum_of}")
+            total = result
         return "\n".join(lines)
 
     return FUNCTION.format(

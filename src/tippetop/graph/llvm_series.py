@@ -79,13 +79,13 @@ def with_choices(recorded: Recorded) -> Recorded:
     margins = dict[int, graph.Node]()
     for node in recorded.nodes:
         a, b = _two_of(node)
-        found = None
+        margin = None
         if node.name == graph.SIZE and a.place in moving:
-            found = node
+            margin = node
         elif node.name == graph.LESS and not moving.isdisjoint([a.place, b.place]):
-            found = node.graph.select(node, b - a, a - b)
-        if found is not None:
-            margins[found.place] = found
+            margin = node.graph.select(node, b - a, a - b)
+        if margin is not None:
+            margins[margin.place] = margin
     if not margins:
         return recorded
     outputs = (*recorded.outputs, *margins.values())
@@ -339,8 +339,8 @@ class _SeriesPrinter:
                 return self._power(node, a, b)
             case graph.SELECT:
                 flag = self._new(f"fcmp une double {self.first[node.operands[0].place]}, {ZERO}")
-                one, other = (self.term.get(operand.place, ZERO) for operand in node.operands[1:])
-                return self._new(f"select i1 {flag}, double {one}, double {other}")
+                yes, no = (self.term.get(operand.place, ZERO) for operand in node.operands[1:])
+                return self._new(f"select i1 {flag}, double {yes}, double {no}")
             case graph.SIZE:
                 flag = self._new(f"fcmp ult double {self.first[a.place]}, {ZERO}")
                 negative = self._new(f"fneg double {self.term[a.place]}")
@@ -402,9 +402,9 @@ class _SeriesPrinter:
                 ends.append((sign, self.term[x], self.first[y]))
             else:
                 terms.append((sign, self.term[leaf.place]))
-        terms += [(sign, self._product(one, other)) for sign, one, other in ends]
+        terms += [(sign, self._product(first, second)) for sign, first, second in ends]
         vector = None
-        for sign, a, b in sorted(convolved, key=lambda one: -one[0]):
+        for sign, a, b in sorted(convolved, key=lambda term: -term[0]):
             for chunk in range(self.vectors):
                 vector = self._accumulated(vector, sign, a, b, chunk)
         if vector is not None:
@@ -413,8 +413,8 @@ class _SeriesPrinter:
                 f" <{WIDTH} x double> {vector})"
             )
             terms.append((1.0, total))
-        found = self._sum(terms)
-        return ZERO if found is None else found
+        total_name = self._sum(terms)
+        return ZERO if total_name is None else total_name
 
     def _accumulated(self, vector: str | None, sign: float, a: Row, b: Row, chunk: int) -> str:
         """Return a vector plus, or minus, products of a part of two rows, one of them backwards."""

@@ -30,13 +30,14 @@ def require_recordable(top: Top) -> None:
 
 
 def has_choices(top: Top) -> bool:
-    """Whether a user's law or surface chooses by the numbers, as `tippetop.extend.where` does.
+    """Return whether a user's law or surface chooses by the numbers, as `tippetop.extend.where`
+    does.
 
     Raises `InvalidInput` if it asks of its arguments what only numbers have.
     """
     parts = (top.friction, *each_surface(top.surface))
-    own = [part for part in parts if type(part).__module__.partition(".")[0] != PACKAGE]
-    return bool(own) and _of_kind(top.kind)
+    user_parts = [part for part in parts if type(part).__module__.partition(".")[0] != PACKAGE]
+    return bool(user_parts) and _of_kind(top.kind)
 
 
 @lru_cache
@@ -45,8 +46,8 @@ def _of_kind(kind: Kind) -> bool:
     law = kind.law.__name__
 
     def traction(y: Any, numbers: Any) -> list[Scalar]:
-        found = kind.top(tuple(numbers)).friction.traction((y[0], y[1]), (y[2], y[3], y[4]))
-        return [*found.force, *found.torque]
+        wrench = kind.top(tuple(numbers)).friction.traction((y[0], y[1]), (y[2], y[3], y[4]))
+        return [*wrench.force, *wrench.torque]
 
     def heights(y: Any, numbers: Any) -> list[Scalar]:
         surfaces = each_surface(kind.top(tuple(numbers)).surface)

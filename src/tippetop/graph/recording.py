@@ -20,11 +20,11 @@ class Recorded(NamedTuple):
     size: int
     parameters: int
     """How many numbers the state has, and how many parameters there are."""
-    more: tuple[Node, ...] = ()
+    optional: tuple[Node, ...] = ()
     """Some of what it computes on the way, to be had where it is asked for."""
 
 
-def record(function: Function, size: int, parameters: int, more: int = 0) -> Recorded:
+def record(function: Function, size: int, parameters: int, optional: int = 0) -> Recorded:
     """Record what a function of a state and parameters does.
 
     Parameters
@@ -33,7 +33,7 @@ def record(function: Function, size: int, parameters: int, more: int = 0) -> Rec
         It returns a sequence of numbers, and asks nothing of its arguments but operators.
     size, parameters
         How many numbers the state has, and how many parameters there are.
-    more
+    optional
         How many of the last numbers it returns are not always asked for.
 
     Raises
@@ -43,9 +43,9 @@ def record(function: Function, size: int, parameters: int, more: int = 0) -> Rec
     """
     graph = Graph()
     state = [graph.node(STATE, (), i) for i in range(size)]
-    given = [graph.node(PARAMETER, (), i) for i in range(parameters)]
-    outputs = [graph.taken(output) for output in function(state, given)]
-    always = len(outputs) - more
+    numbers = [graph.node(PARAMETER, (), i) for i in range(parameters)]
+    outputs = [graph.as_node(output) for output in function(state, numbers)]
+    always = len(outputs) - optional
     return Recorded(
         needed(graph, outputs), tuple(outputs[:always]), size, parameters, tuple(outputs[always:])
     )
@@ -53,7 +53,7 @@ def record(function: Function, size: int, parameters: int, more: int = 0) -> Rec
 
 # translate: skip
 def recordable(function: Function, size: int, parameters: int) -> Recorded | None:
-    """What a function does, see `record`; None where it asks nodes for what only numbers have."""
+    """Return what `record` does; None where the function asks of nodes what only numbers have."""
     try:
         return record(function, size, parameters)
     except (TypeError, ValueError, ArithmeticError, AttributeError):
@@ -61,7 +61,7 @@ def recordable(function: Function, size: int, parameters: int) -> Recorded | Non
 
 
 def needed(graph: Graph, outputs: Sequence[Node]) -> tuple[Node, ...]:
-    """The nodes of a graph of which some are made."""
+    """Return the nodes of a graph from which some nodes are computed."""
     places = {node.place for node in outputs}
     for node in reversed(graph.nodes):
         if node.place in places:

@@ -14,7 +14,7 @@ class NodeArithmetic(PlainArithmetic):
     """Coefficients that are nodes, or numbers."""
 
     def least(self, a: Any, b: Any) -> Any:
-        """The smaller of two; the second where one is not a number."""
+        """Return the smaller of two; the second where one is not a number."""
         return self.choose(self.below(a, b), a, b)
 
     def size(self, a: Any) -> Any:
@@ -26,14 +26,14 @@ class NodeArithmetic(PlainArithmetic):
         return 1.0 * (a < b)
 
     def choose(self, condition: Any, a: Any, b: Any) -> Any:
-        """The first where a condition is not 0, else the second."""
+        """Return the first where a condition is not 0, else the second."""
         if isinstance(condition, Node):
             return condition.graph.select(condition, a, b)
         return a if condition else b
 
     def rarely(self, condition: Any, a: Any, b: Any) -> Any:
-        """The same, where it is the second mostly; one condition for all that a function computes
-        rarely.
+        """Return the same as `choose`, where that is mostly the second; a function has one such
+        condition.
         """
         return condition.graph.rarely(condition, a, b)
 
@@ -53,12 +53,12 @@ class SharedSeries(Series):
 
 
 def _once(operation: Callable[..., Any]) -> Callable[..., Any]:
-    def shared(series: SharedSeries, *other: Any) -> Any:
-        if not all(isinstance(one, (Series, float, int)) for one in other):
-            return operation(series, *other)
-        if (operation, *other) not in series.shared:
-            series.shared[operation, *other] = operation(series, *other)
-        return series.shared[operation, *other]
+    def shared(series: SharedSeries, *operands: Any) -> Any:
+        if not all(isinstance(one, (Series, float, int)) for one in operands):
+            return operation(series, *operands)
+        if (operation, *operands) not in series.shared:
+            series.shared[operation, *operands] = operation(series, *operands)
+        return series.shared[operation, *operands]
 
     return shared
 

@@ -10,41 +10,41 @@ class NodeValues:
     """What is done with the values of nodes that have several."""
 
     def spread(self, a: Any, lane: int) -> Any:
-        """One of a node's values, for all."""
+        """Return one of a node's values, for all."""
         return a.graph.node(SPREAD, (a,), lane) if isinstance(a, Node) else a
 
     def total(self, a: Any) -> Any:
-        """The sum of a node's values, for all."""
+        """Return the sum of a node's values, for all."""
         return a.graph.node(TOTAL, (a,))
 
 
 def unrolled(recorded: Recorded, abreast: int) -> Recorded:
-    """What does the same with each of so many values, one after another in the state and the
-    parameters.
+    """Return a function of single numbers that does the same with each of so many values, which lie
+    one after another in state and parameters.
     """
     graph, values = Graph(), dict[int, list[Node]]()
     for node in recorded.nodes:
         operands = [values[operand.place] for operand in node.operands]
         if node.name == CONSTANT:
-            found = [graph.taken(node.value)] * abreast
+            lanes = [graph.as_node(node.value)] * abreast
         elif node.name in (STATE, PARAMETER):
-            found = [
+            lanes = [
                 graph.node(node.name, (), int(node.value) * abreast + lane)
                 for lane in range(abreast)
             ]
         elif node.name == SPREAD:
-            found = [operands[0][int(node.value)]] * abreast
+            lanes = [operands[0][int(node.value)]] * abreast
         elif node.name == TOTAL:
             total = operands[0][0]
             for number in operands[0][1:]:
                 total = total + number
-            found = [total] * abreast
+            lanes = [total] * abreast
         else:
-            found = [
+            lanes = [
                 graph.node(node.name, tuple([operand[lane] for operand in operands]), node.value)
                 for lane in range(abreast)
             ]
-        values[node.place] = found
+        values[node.place] = lanes
     outputs = [number for output in recorded.outputs for number in values[output.place]]
     size, parameters = recorded.size * abreast, recorded.parameters * abreast
     return Recorded(needed(graph, outputs), tuple(outputs), size, parameters)

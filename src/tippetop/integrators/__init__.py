@@ -1,7 +1,5 @@
 """Integrators by name: Taylor's method, collocation, SciPy's, and Runge and Kutta's."""
 
-from importlib.util import find_spec
-
 from tippetop.integrators.base import TOLERANCES as TOLERANCES
 from tippetop.integrators.base import Arc as Arc
 from tippetop.integrators.base import Guard as Guard
@@ -17,11 +15,6 @@ NAMES = [*TOLERANCES, "rk4"]
 
 DEFAULT = "taylor"
 """The integrator where nobody names one."""
-
-
-def has_llvm() -> bool:
-    """Return whether llvmlite is installed."""
-    return find_spec("llvmlite") is not None
 
 
 def make_integrator(

@@ -60,7 +60,7 @@ class Guard:
 
     # translate: skip
     def with_parameters(self, parameters: Sequence[Scalar]) -> Callable[[Array], float]:
-        """The value as a function of the state alone."""
+        """Return the value as a function of the state alone."""
         return lambda state: float(self.value(state.tolist(), parameters))
 
 

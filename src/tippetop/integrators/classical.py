@@ -29,7 +29,7 @@ class ClassicalRK4(StepByStep):
     def steps(
         self, rates: RightHandSide, start: tuple[float, Array], end: float
     ) -> Iterator[Accepted | str]:
-        """The steps; see `StepByStep`."""
+        """Yield the steps; see `StepByStep`."""
         time, state = start
         steps = max(1, int(np.ceil((end - start[0]) / self.step - 1e-9)))
         for count in range(1, steps + 1):
@@ -46,7 +46,9 @@ class ClassicalRK4(StepByStep):
 
 
 def classical_step(rates: RightHandSide, state: Array, step: float) -> Array:
-    """One step of the classical method, for a motion that does not depend on the time."""
+    """Return the state after a step of the classical method, for a motion that does not depend on
+    the time.
+    """
     k1 = rates(0.0, state)
     k2 = rates(0.0, state + 0.5 * step * k1)
     k3 = rates(0.0, state + 0.5 * step * k2)

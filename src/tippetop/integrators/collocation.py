@@ -100,7 +100,7 @@ class Collocation(StepByStep):
     def steps(
         self, rates: RightHandSide, start: tuple[float, Array], end: float
     ) -> Iterator[Accepted | str]:
-        """The steps; see `StepByStep`."""
+        """Yield the steps; see `StepByStep`."""
         (time, state), before, slope = start, None, rates(*start)
         if not np.all(np.isfinite(slope)):
             yield NO_START
@@ -111,31 +111,31 @@ class Collocation(StepByStep):
                 yield TOO_SHORT if self.shortest else NO_STEP
                 return
             reach = end if step >= end - time else time + step
-            found, factor = self._step(rates, (time, state), reach, before)
-            step, before = factor * (reach - time), found
-            if found is None:
+            solution, factor = self._step(rates, (time, state), reach, before)
+            step, before = factor * (reach - time), solution
+            if solution is None:
                 continue
 
-            def advance(at: float, base: Array = state, step: Step = found) -> Array:
+            def advance(at: float, base: Array = state, step: Step = solution) -> Array:
                 return _landed(rates, base, step, at)
 
             for until in np.linspace(time, reach, PARTS + 1)[1:].tolist():
-                state = found.end_state if until == reach else found(until)
-                yield Accepted(until, state, found, advance)
+                state = solution.end_state if until == reach else solution(until)
+                yield Accepted(until, state, solution, advance)
             time = reach
 
     def _step(
         self, rates: RightHandSide, start: tuple[float, Array], end: float, before: "Step | None"
     ) -> "tuple[Step | None, float]":
-        """A step, None if it is not to be had, and how much longer the next should be."""
+        """Return a step, None if none converges, and the factor for the length of the next."""
         places, _, transform = radau_points()
         times = start[0] + places[1:] * (end - start[0])
         guess = np.tile(start[1], (STAGES, 1)) if before is None else before.beyond(times)
-        found = solved(rates, start[1], end - start[0], guess)
-        if found is None:
+        states = solved(rates, start[1], end - start[0], guess)
+        if states is None:
             return None, SLOWER
-        step = Step(start[0], end, transform @ np.vstack((start[1], found)), found[-1])
-        sizes = np.max(np.abs(step.terms) / scale(np.vstack((start[1], found))), axis=1) + TINY
+        step = Step(start[0], end, transform @ np.vstack((start[1], states)), states[-1])
+        sizes = np.max(np.abs(step.terms) / scale(np.vstack((start[1], states))), axis=1) + TINY
         error = float(np.max(sizes[-LAST:]))
         if error > self.tolerance:
             return None, max(SAFETY * (self.tolerance / error) ** (1.0 / STAGES), SLOWER)
@@ -160,13 +160,13 @@ class Step:
     """The state at its end."""
 
     def __call__(self, time: Any) -> Array:
-        """The solution at a time within the step, shape (size,), or at m times, shape (m, size)."""
+        """Return the solution at a time within the step, shape (size,), or at m times, shape (m,
+        size).
+        """
         return np.asarray(chebval(self._place(time), self.terms)).T
 
     def beyond(self, times: Array) -> Array:
-        """What the polynomial, but for its last terms, says of times after the step, shape (m,
-        size).
-        """
+        """Return the polynomial without its last terms at times after the step, shape (m, size)."""
         return np.asarray(chebval(self._place(times), self.terms[:SMOOTH])).T
 
     def _place(self, time: Any) -> Any:
@@ -174,8 +174,8 @@ class Step:
 
 
 def solved(rates: RightHandSide, start: Array, span: float, guess: Array) -> Array | None:
-    """The states at the points of a step, shape (s, size), by Newton's method; None if it does not
-    settle.
+    """Return the states at the points of a step, shape (s, size), by Newton's method; None if it
+    does not converge.
     """
     integrals, size, states, last = span * radau_points().integrals, len(start), guess, np.inf
     for _ in range(NEWTON):
@@ -197,13 +197,15 @@ def solved(rates: RightHandSide, start: Array, span: float, guess: Array) -> Arr
 
 
 def _landed(rates: RightHandSide, start: Array, step: Step, end: float) -> Array:
-    """The state after a step that begins as another does, and ends at exactly this time."""
+    """Return the state after a step that begins as another does, and ends at exactly this time."""
     span = end - step.start
-    found = solved(rates, start, span, step(step.start + span * radau_points().places[1:]))
-    return step(end) if found is None else found[-1]
+    states = solved(rates, start, span, step(step.start + span * radau_points().places[1:]))
+    return step(end) if states is None else states[-1]
 
 
 def scale(states: Array) -> Array:
-    """What counts as relative: the size of each number, at least 1, over one or more states."""
-    found: Array = np.maximum(1.0, np.max(np.abs(np.atleast_2d(states)), axis=0))
-    return found
+    """Return the scale of relative errors: the size of each number, at least 1, over one or more
+    states.
+    """
+    sizes: Array = np.maximum(1.0, np.max(np.abs(np.atleast_2d(states)), axis=0))
+    return sizes

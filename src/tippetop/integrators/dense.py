@@ -35,10 +35,10 @@ ALONE = 2**17
 for other programs.
 """
 
-FEW = 64
+FEW_NUMBERS = 64
 """Numbers whose powers are made one after another, and not all at once."""
 
-MANY = 1024
+BATCH = 1024
 """Polynomials that are evaluated at a time, so that their coefficients stay in the processor's
 cache.
 """
@@ -80,12 +80,12 @@ class DenseSolution:
         return float(self.knots[-1])
 
     def __call__(self, times: Array) -> Array:
-        """The solution at times between the first and the last knot, shape (m, size)."""
+        """Return the solution at times between the first and the last knot, shape (m, size)."""
         step = np.minimum(np.searchsorted(self.knots[1:], times, side="left"), len(self.terms) - 1)
         return evaluated(self.terms, step, parts_of(times, self.knots[step], self.knots[step + 1]))
 
     def rows(self, times: Array) -> Sequence[Array]:
-        """The numbers of the solution at times, each of shape (m,)."""
+        """Return the numbers of the solution at times, each of shape (m,)."""
         return tuple(self(times).T)
 
     def until(self, step: int, part: float) -> "DenseSolution":
@@ -100,7 +100,9 @@ class DenseSolution:
         return DenseSolution(knots, terms)
 
     def moved(self, start: float, end: float) -> "DenseSolution":
-        """The solution, whose time begins at zero, from `start` on; it ends exactly at `end`."""
+        """Return the solution, whose time begins at zero, from `start` on; it ends exactly at
+        `end`.
+        """
         knots = start + self.knots
         knots[-1] = end
         return DenseSolution(knots, self.terms)
@@ -127,11 +129,11 @@ class DenseSolution:
             moved, part = np.abs(better - part).max(initial=0.0), better
             if moved <= EXACT:
                 break
-        found: Array = self.knots[step] + part * (self.knots[step + 1] - self.knots[step])
-        return found
+        times: Array = self.knots[step] + part * (self.knots[step + 1] - self.knots[step])
+        return times
 
     @classmethod
-    def nothing(cls, time: float, size: int) -> "DenseSolution":
+    def empty(cls, time: float, size: int) -> "DenseSolution":
         """No solution at all."""
         return cls(np.array([time]), np.empty((0, size, 1)))
 
@@ -139,8 +141,8 @@ class DenseSolution:
     def of_steps(
         cls, knots: Array, terms: Array, size: int, count: int, width: int
     ) -> "DenseSolution":
-        """The first of some steps, with all coefficients in a row, beside those of further
-        numbers.
+        """Return the solution of the first `count` steps, from rows that hold further numbers
+        beside it.
         """
         steps = terms.reshape(len(knots) - 1, width, -1)
         return cls(knots[: count + 1].copy(), steps[:count, :size].copy())
@@ -176,15 +178,15 @@ class DenseSolution:
 
     @classmethod
     def in_time(cls, knots: ArrayLike, terms: ArrayLike) -> "DenseSolution":
-        """The solution by coefficients in powers of the time since a step's start."""
-        ends, known = np.array(knots, dtype=float), np.asarray(terms, dtype=float)
+        """Return the solution by coefficients in powers of the time since a step's start."""
+        ends, coefficients = np.array(knots, dtype=float), np.asarray(terms, dtype=float)
         with np.errstate(over="ignore"):  # the step of a motion that stands still has no bound
-            lengths = powers(ends[1:] - ends[:-1], known.shape[2])
+            lengths = powers(ends[1:] - ends[:-1], coefficients.shape[2])
         if not np.isfinite(lengths[:, -1]).all():
             lengths = np.nan_to_num(lengths)
         # Rows as long as those of the terms are multiplied in half the time.
-        scaled = np.repeat(lengths[:, None, :], known.shape[1], axis=1)
-        scaled *= known
+        scaled = np.repeat(lengths[:, None, :], coefficients.shape[1], axis=1)
+        scaled *= coefficients
         return cls(ends, scaled)
 
     @classmethod
@@ -254,10 +256,10 @@ class DenseSolution:
 
 def table(rows: Row, count: int) -> Array:
     """Numbers, of so many values each, or of one for all, beside one another: shape (count, n)."""
-    found = np.empty((len(rows), count))
+    columns = np.empty((len(rows), count))
     for place, row in enumerate(rows):
-        found[place] = row
-    return found.T
+        columns[place] = row
+    return columns.T
 
 
 def as_array(numbers: Sequence[float]) -> Array:
@@ -271,43 +273,43 @@ def longer(numbers: Array, count: int) -> Array:
 
 
 def parts_of(times: Array, starts: Array, ends: Array) -> Array:
-    """Which part of their steps has passed at some times; 0 in steps of no length."""
+    """Return the part of their steps that has passed at some times; 0 in steps of no length."""
     spans = ends - starts
-    found: Array = (times - starts) / np.where(spans > 0.0, spans, 1.0)
-    return found
+    parts: Array = (times - starts) / np.where(spans > 0.0, spans, 1.0)
+    return parts
 
 
 def evaluated(terms: Array, which: NDArray[np.intp], parts: Array) -> Array:
     """Values of polynomials, terms of shape (k, size, degree + 1), at one place each, shape (m,
     size).
     """
-    found = np.empty((len(parts), terms.shape[1]))
-    for first in range(0, len(parts), MANY):
-        here = slice(first, first + MANY)
-        places = np.ascontiguousarray(powers(parts[here], terms.shape[2]))
-        np.matmul(terms.take(which[here], axis=0), places[:, :, None], out=found[here, :, None])
-    return found
+    values = np.empty((len(parts), terms.shape[1]))
+    for first in range(0, len(parts), BATCH):
+        batch = slice(first, first + BATCH)
+        places = np.ascontiguousarray(powers(parts[batch], terms.shape[2]))
+        np.matmul(terms.take(which[batch], axis=0), places[:, :, None], out=values[batch, :, None])
+    return values
 
 
 def at_fractions(terms: Array, fractions: Array) -> Array:
     """Values of k polynomials at fractions of their steps, shape (m,); of shape (size, m, k)."""
-    found = np.empty((terms.shape[1], len(fractions), len(terms)))
+    values = np.empty((terms.shape[1], len(fractions), len(terms)))
     places = powers(fractions, terms.shape[2])
     most = max(ALONE // max(places.size, 1), 1)
     for first in range(0, len(terms), most):
-        here = slice(first, first + most)
-        np.matmul(places, terms[here].transpose(1, 2, 0), out=found[:, :, here])
-    return found
+        batch = slice(first, first + most)
+        np.matmul(places, terms[batch].transpose(1, 2, 0), out=values[:, :, batch])
+    return values
 
 
 def powers(numbers: Array, count: int) -> Array:
-    """The first powers of n numbers, shape (n, count)."""
-    if len(numbers) <= FEW:
+    """Return the first powers of n numbers, shape (n, count)."""
+    if len(numbers) <= FEW_NUMBERS:
         return np.vander(numbers, count, increasing=True)
-    found = np.ones((count, len(numbers)))
+    rows = np.ones((count, len(numbers)))
     for power in range(1, count):
-        np.multiply(found[power - 1], numbers, out=found[power])
-    return found.T
+        np.multiply(rows[power - 1], numbers, out=rows[power])
+    return rows.T
 
 
 @lru_cache

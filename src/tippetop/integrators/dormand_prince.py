@@ -62,11 +62,11 @@ def evaluate(function: Compiled, y: Array, p: Array, out: Array) -> None:
 
 
 def fixed(array: Array) -> Array:
-    """An array whose shape a compiler may rely on."""
+    """Return an array whose shape a compiler may rely on."""
     return array
 
 
-def look(
+def probe_guards(
     guards: Compiled,
     p: Array,
     terms: Array,
@@ -94,7 +94,7 @@ def look(
 
 
 def are_steady(values: Array) -> bool:
-    """Whether all guards vary so little from the start of a step to its middle and its end."""
+    """Return whether all guards vary little from the start of a step to its middle and end."""
     for guard in range(len(values[0])):
         begin, middle, end = values[0, guard], values[LOOKS // 2, guard], values[LOOKS, guard]
         bound = STEADY * min(begin, middle, end)
@@ -120,7 +120,7 @@ def error_of(h: float, y: Array, new: Array, k: Array, tolerance: Array, size: i
 
 
 def eighth_root(number: float) -> float:
-    """What a power takes longer for."""
+    """Return the eighth root, quicker than by a power."""
     return math.sqrt(math.sqrt(math.sqrt(number)))
 
 
@@ -135,7 +135,7 @@ def factor_for(error: float, tries: int) -> float:
 
 
 def measure(a: Array, b: Array, y: Array, tolerance: Array, size: int) -> float:
-    """How large the difference of two is beside the errors that are allowed: a mean."""
+    """Return the root mean square of a difference, relative to the errors that are allowed."""
     total = 0.0
     for i in range(len(y)):
         part = (a[i] - b[i]) / (tolerance[1] + tolerance[0] * abs(y[i]))
@@ -153,8 +153,8 @@ def first_step(
     tolerance: Array,
     size: int,
 ) -> float:
-    """A step to begin with, whose error is about right, and the rates in k[0]; -1 where there are
-    none.
+    """Return a step to begin with, whose error is about right, and put the rates into k[0]; -1
+    where there are none.
     """
     evaluate(rates, y, p, k[0])
     for i in range(size):
@@ -168,8 +168,8 @@ def first_step(
         place[i] = y[i] + trial * k[0, i]
     evaluate(rates, place, p, k[1])
     steepest = max(slope, measure(k[1], k[0], y, tolerance, size) / trial)
-    found = max(1e-6, trial * 1e-3) if steepest <= 1e-15 else eighth_root(0.01 / steepest)
-    return min(100.0 * trial, found, span)
+    allowed = max(1e-6, trial * 1e-3) if steepest <= 1e-15 else eighth_root(0.01 / steepest)
+    return min(100.0 * trial, allowed, span)
 
 
 def within(terms: Array, first: int, part: float, y: Array) -> None:
@@ -185,8 +185,8 @@ def within(terms: Array, first: int, part: float, y: Array) -> None:
 
 
 def may_fall(values: Array, guard: int) -> bool:
-    """Whether a guard with these values at the looks falls through zero, or may dip below it in
-    between.
+    """Return whether a guard with these values at the looks falls through zero, or may dip below it
+    in between.
     """
     least, most = values[0, guard], values[0, guard]
     for i in range(1, LOOKS + 1):
@@ -195,13 +195,13 @@ def may_fall(values: Array, guard: int) -> bool:
     if least > 0.0 and 2.0 * least >= most:
         return False
     for i in range(LOOKS + 1):
-        before, here, after = max(i - 1, 0), values[i, guard], min(i + 1, LOOKS)
-        if here > 0.0:
+        before, value, after = max(i - 1, 0), values[i, guard], min(i + 1, LOOKS)
+        if value > 0.0:
             if values[after, guard] <= 0.0:
                 return True
-            if here <= values[before, guard] and here <= values[after, guard]:
+            if value <= values[before, guard] and value <= values[after, guard]:
                 for j in range(max(i - 2, 0), min(i + 2, LOOKS) + 1):
-                    if 2.0 * here < values[j, guard]:
+                    if 2.0 * value < values[j, guard]:
                         return True
     return False
 
@@ -209,7 +209,9 @@ def may_fall(values: Array, guard: int) -> bool:
 def rises(
     guards: Compiled, p: Array, terms: Array, first: int, y: Array, values: Array, guard: int
 ) -> bool:
-    """Whether a guard that starts at zero, or by rounding below, rises before the first look."""
+    """Return whether a guard that starts at zero, or by rounding below, rises before the first
+    look.
+    """
     part = 1.0 / LOOKS
     while part > EARLIEST:
         part *= 0.5
@@ -230,10 +232,10 @@ def suspect(
     room: Array,
     tight: bool,
 ) -> bool:
-    """Whether a guard may fall in a step; values has those at its start, and room for the other
-    looks.
+    """Return whether a guard may fall in a step; values has those at its start, and room for the
+    other looks.
     """
-    if not look(guards, p, terms, first, y, values, room, tight):
+    if not probe_guards(guards, p, terms, first, y, values, room, tight):
         return False
     for guard in range(len(values[0])):
         if may_fall(values, guard):
@@ -317,10 +319,10 @@ def advance(
     values, room = np.empty((LOOKS + 2, count)), np.empty(LOOKS * (len(y) + count))
     calls = 0
     if span[2] <= 0.0:
-        found = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size)
-        if found < 0.0:
+        trial = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size)
+        if trial < 0.0:
             return steps, 1, SINGULAR
-        span[2] = max(found, -span[2])
+        span[2] = max(trial, -span[2])
         calls += 2
     if count > 0:
         evaluate(guards, y, p, values[0])

@@ -28,20 +28,20 @@ def compiled_evaluation(function: Rows, size: int, parameters: int) -> Evaluatio
 
     compiled, count = machine_code({"values": recorded}, ABREAST)["values"], len(recorded.outputs)
 
-    def evaluate(y: Array, given: Sequence[Any]) -> Array:
+    def evaluate(y: Array, numbers: Sequence[Any]) -> Array:
         shape = y.shape[1:]
         number = int(np.prod(shape))
-        whole = -(-number // ABREAST) * ABREAST
-        if whole == number:
+        padded = -(-number // ABREAST) * ABREAST
+        if padded == number:
             states = np.ascontiguousarray(y).reshape(size, number)
         else:
-            states = np.empty((size, whole))
+            states = np.empty((size, padded))
             states[:, :number] = y.reshape(size, number)
-        rows = np.empty((parameters, whole))
-        for row, value in zip(rows[:, :number].reshape(parameters, *shape), given, strict=True):
+        rows = np.empty((parameters, padded))
+        for row, value in zip(rows[:, :number].reshape(parameters, *shape), numbers, strict=True):
             row[...] = value
-        found = np.empty((count, whole))
-        compiled(states, rows, found)
-        return found[:, :number].reshape(count, *shape)
+        results = np.empty((count, padded))
+        compiled(states, rows, results)
+        return results[:, :number].reshape(count, *shape)
 
     return evaluate

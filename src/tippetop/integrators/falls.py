@@ -35,7 +35,7 @@ def first_fall(
     advance: Dense,
     step: tuple[float, float],
 ) -> tuple[int, float, Array] | None:
-    """The guard that first falls through zero within a step, when, and the state there.
+    """Return the guard that first falls through zero within a step, when, and the state then.
 
     A guard that dips below zero and returns within the step is found by minimising it between the
     probes where its probed values bend that way; one that starts at zero, rises, and is back before
@@ -53,10 +53,10 @@ def first_fall(
     step
         Where it begins and ends.
     """
-    found = _fall_along(guards, dense, advance, step, 0.0)
-    if found is None:
+    fall = _fall_along(guards, dense, advance, step, 0.0)
+    if fall is None:
         return None
-    number, guess = found
+    number, guess = fall
     polished = _polished(guards[number], advance, step, guess)
     if polished is not None:
         return number, *polished
@@ -65,8 +65,8 @@ def first_fall(
         return advance(time) if step[0] < time < step[1] else dense(time)
 
     # The interpolation is wrong by more than the guard is: only ends of steps tell.
-    found = _fall_along(guards, landed, landed, step, AT_ONCE)
-    return None if found is None else (*found, landed(found[1]))
+    fall = _fall_along(guards, landed, landed, step, AT_ONCE)
+    return None if fall is None else (*fall, landed(fall[1]))
 
 
 def _fall_along(
@@ -76,7 +76,7 @@ def _fall_along(
     step: tuple[float, float],
     least: float,
 ) -> tuple[int, float] | None:
-    """The guard that first falls along a solution, and when; see `first_fall`.
+    """Return the guard that first falls along a solution, and when; see `first_fall`.
 
     One that falls before this least part of the step and is positive at its end is passed over.
     """
@@ -84,7 +84,7 @@ def _fall_along(
         return None
     first: tuple[int, float] | None = None
     start, end = step
-    probes = [start + look / LOOKS * (end - start) for look in range(LOOKS)] + [end]
+    probes = [start + probe / LOOKS * (end - start) for probe in range(LOOKS)] + [end]
     states = [dense(time) for time in probes]
     for index, guard in enumerate(guards):
         values = [_value_of(guard, state) for state in states]
@@ -100,12 +100,12 @@ def _fall_along(
 
 
 def _along(guard: GuardValue, solution: Dense) -> Value:
-    """A guard along a solution."""
+    """Return a guard along a solution as a function of time."""
     return lambda time: _value_of(guard, solution(time))
 
 
 def _value_of(guard: GuardValue, state: Array) -> float:
-    """The value of a guard; infinite at a pole, before which another guard may fall."""
+    """Return the value of a guard; infinite at a pole, before which another guard may fall."""
     try:
         return guard(state)
     except ArithmeticError:
@@ -115,8 +115,8 @@ def _value_of(guard: GuardValue, state: Array) -> float:
 def brackets(
     probes: Sequence[float], values: Sequence[float], value: Value, exact: Value
 ) -> Iterator[tuple[float, float, Value]]:
-    """The intervals over which the guard falls from positive to not positive, in turn; in which
-    solution.
+    """Yield the intervals over which the guard falls from positive to not positive, and the
+    solution in which it does, in turn.
     """
     last, least = len(probes) - 1, min(values)
     if least > 0.0 and 2.0 * least >= max(values):
@@ -144,7 +144,7 @@ def brackets(
 
 
 def _early_bracket(start: float, end: float, value: Value) -> tuple[float, float, Value] | None:
-    """The interval before the first probe over which a guard falls that starts at zero and
+    """Return the interval before the first probe over which a guard falls that starts at zero and
     rises.
     """
     part = EARLIEST
@@ -168,23 +168,23 @@ def _polished(
     """
     start, end = step
     shift = min(1e-4 * (end - start), 0.1 * (guess - start))
-    time, other = guess, guess - shift if guess - shift > start else guess + shift
-    state, beside = advance(time), advance(other)
+    time, previous = guess, guess - shift if guess - shift > start else guess + shift
+    state, beside = advance(time), advance(previous)
     value, theirs = (_value_of(guard, one) for one in (state, beside))
     moved, finest = shift, 1e-3 * shift
     for _ in range(8):
         if not 0.0 < abs(value - theirs) < math.inf:
             break
-        new = time - value * (time - other) / (value - theirs)
+        new = time - value * (time - previous) / (value - theirs)
         moved = abs(new - time)
         new = min(max(new, start + finest), end + shift)
         if abs(new - time) <= 4e-16 * max(1.0, abs(new)):
             break
-        time, other, beside, theirs = new, time, state, value
+        time, previous, beside, theirs = new, time, state, value
         state = advance(new)
         value = _value_of(guard, state)
     if moved > max(finest, 4e-16 * max(1.0, abs(time))) or abs(time - guess) > 0.5 * (
         guess - start
     ):
         return None
-    return (time, state) if abs(value) <= abs(theirs) else (other, beside)
+    return (time, state) if abs(value) <= abs(theirs) else (previous, beside)

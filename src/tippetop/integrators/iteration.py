@@ -1,6 +1,4 @@
-"""Functions that make numbers of several values better again and again, compiled where they can
-be.
-"""
+"""Fixed-point iterations on numbers of several values each, compiled."""
 
 # translate module: by hand in compile.js
 
@@ -12,28 +10,27 @@ import numpy as np
 
 from tippetop.graph.recording import record
 from tippetop.graph.unrolling import NodeValues
-from tippetop.integrators import has_llvm
 from tippetop.integrators.base import Array
 from tippetop.mechanics.vectors import Scalar
 
 Iteration: TypeAlias = Callable[[Any, Any, Any, float, int], int]
-"""From room for numbers, parameters, and what is made besides: the numbers are made better, until
-the last of what is made besides is less than something, or no number, or as many times as may be.
-It tells how many.
+"""A function of the rooms of unknowns, parameters and results, a tolerance and the most turns.
+
+It improves the unknowns until the last result is less than the tolerance or is not a number, and
+returns the number of turns.
 """
 
 Improvement: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar], Any], Sequence[Scalar]]
-"""From numbers and parameters, and who spreads and adds up their values, to better ones, and more.
-"""
+"""A function of unknowns, parameters and `NodeValues` that returns better unknowns and results."""
 
 
 def room(count: int) -> Any:
-    """Room for so many numbers."""
+    """Return room for so many numbers."""
     return (ctypes.c_double * count)()
 
 
 def copied(numbers: Any) -> Any:
-    """Room that holds the same numbers."""
+    """Return a copy of a room with its numbers."""
     return type(numbers).from_buffer_copy(numbers)
 
 
@@ -50,11 +47,13 @@ def put_rows(numbers: Any, first: int, values: Sequence[float], abreast: int) ->
 
 
 def first_of(numbers: Any, count: int) -> Array:
-    """An array of the first of some numbers."""
+    """Return an array of the first numbers of a room."""
     return np.frombuffer(numbers, count=count).copy()
 
 
-def iterated(function: Improvement, size: int, parameters: int, abreast: int) -> Iteration:
+def iterated(
+    function: Improvement, size: int, parameters: int, abreast: int, effort: int = 1
+) -> Iteration:
     """Compile an improvement.
 
     Raises `NotRecordable` if the function makes a choice that depends on the numbers.
@@ -62,47 +61,20 @@ def iterated(function: Improvement, size: int, parameters: int, abreast: int) ->
     Parameters
     ----------
     function
-        What is done.
+        The improvement.
     size, parameters
         How many numbers and parameters there are.
     abreast
         How many values each has, one after another in the room for them.
+    effort
+        How hard the compiler tries, see `tippetop.integrators.machine_code`; 0 for a function that
+        is seldom called.
     """
-    if not has_llvm():
-        return _by_arrays(function, size, abreast)
-    from tippetop.integrators.machine_code import iteration  # noqa: PLC0415 - optional
+    from tippetop.integrators.machine_code import iteration  # noqa: PLC0415 - slow to import
 
     values = NodeValues()
-    return iteration(record(lambda y, p: function(y, p, values), size, parameters), abreast)
-
-
-class _Lanes:
-    """What is done with the values of arrays."""
-
-    def spread(self, a: Any, lane: int) -> Any:
-        """One of them, for all."""
-        return a[lane] if np.ndim(a) else a
-
-    def total(self, a: Any) -> Any:
-        """Their sum, for all."""
-        return np.sum(a)
-
-
-def _by_arrays(function: Improvement, size: int, abreast: int) -> Iteration:
-    """The same by arrays."""
-
-    def iterate(y: Any, p: Any, out: Any, enough: float, most: int) -> int:
-        rows = [_rows(numbers, abreast) for numbers in (y, p, out)]
-        with np.errstate(all="ignore"):
-            for turn in range(1, most + 1):
-                found = function(list(rows[0][:size].copy()), list(rows[1]), _Lanes())
-                rows[0][:size] = np.stack([np.broadcast_to(row, abreast) for row in found[:size]])
-                rows[2][:] = np.stack([np.broadcast_to(row, abreast) for row in found[size:]])
-                if not rows[2][-1, 0] >= enough:
-                    return turn
-        return most
-
-    return iterate
+    recorded = record(lambda y, p: function(y, p, values), size, parameters)
+    return iteration(recorded, abreast, effort)
 
 
 def _rows(numbers: Any, abreast: int) -> Array:

@@ -23,24 +23,25 @@ FORMATS = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")
 
 
 def machine_code(
-    functions: Mapping[str, Recorded], abreast: int = 1, effort: int = EFFORT
+    functions: Mapping[str, Recorded], abreast: int = 1, effort: int | None = None
 ) -> "dict[str, Compiled]":
     """Compile what was recorded, for so many launches an instruction, or take it from the cache."""
     engine = loaded(llvm_source(functions, abreast), effort)
-    return {name: Compiled(engine, name, bool(one.more)) for name, one in functions.items()}
+    return {name: Compiled(engine, name, bool(one.optional)) for name, one in functions.items()}
 
 
-def iteration(function: Recorded, abreast: int) -> Callable[..., int]:
-    """The same of what is made again and again; see `llvm_source`. It takes arrays of `ctypes`."""
-    engine = loaded(llvm_source({"made": function}, abreast, again=True))
+def iteration(function: Recorded, abreast: int, effort: int | None = None) -> Callable[..., int]:
+    """Compile a function that is iterated, of arrays of `ctypes`; see `llvm_source`."""
+    engine = loaded(llvm_source({"made": function}, abreast, again=True), effort)
     kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3, ctypes.c_double, ctypes.c_int64)
-    found: Any = kind(engine.get_function_address("made"))
-    found.engine = engine
-    return cast(Callable[..., int], found)
+    compiled: Any = kind(engine.get_function_address("made"))
+    compiled.engine = engine
+    return cast(Callable[..., int], compiled)
 
 
-def loaded(source: str, effort: int = EFFORT) -> llvm.ExecutionEngine:
-    """The machine code of a source, compiled or taken from the cache."""
+def loaded(source: str, effort: int | None = None) -> llvm.ExecutionEngine:
+    """Return the machine code of a source, compiled with an effort or taken from the cache."""
+    effort = EFFORT if effort is None else effort
     made = (source, llvmlite.__version__, effort)
     content = run_interruptibly(lambda: kept_content(made, lambda: _compiled(source, effort)))
     if not content.startswith(FORMATS):
@@ -79,16 +80,16 @@ class Compiled:
             self.address
         )
 
-    def __call__(self, y: Array, p: Array, out: Array, more: Array | None = None) -> None:
+    def __call__(self, y: Array, p: Array, out: Array, optional: Array | None = None) -> None:
         """Compute, for as many launches as the rows have numbers, and give more if that is asked
         for.
         """
-        asked = [None if more is None else _address(more)] * self._gives_more
+        asked = [None if optional is None else _address(optional)] * self._gives_more
         self._function(*map(_address, (y, p, out)), y.shape[1] if y.ndim > 1 else 1, *asked)
 
 
 def _address(rows: Array) -> int:
-    """Where rows are that lie one after another; a quarter of the time that `rows.ctypes.data`
-    takes.
+    """Return the address of rows that lie one after another, in a quarter of the time that
+    `rows.ctypes.data` takes.
     """
     return ctypes.addressof(ctypes.c_char.from_buffer(rows.data)) if rows.size else 0

@@ -24,29 +24,29 @@ TINY = 1e-300
 """Stands for zero where a number that is zero is to count as below it."""
 
 
-def looked_at(terms: Sequence[Scalar], taken: Scalar, looks: int) -> list[Scalar]:
+def looked_at(terms: Sequence[Scalar], length: Scalar, count: int) -> list[Scalar]:
     """Values of a polynomial at the looks of a step."""
-    part = taken * (1.0 / looks)
-    return [horner(terms, part * float(look)) for look in range(looks + 1)]
+    part = length * (1.0 / count)
+    return [horner(terms, part * float(probe)) for probe in range(count + 1)]
 
 
-def slack(terms: Sequence[Scalar], taken: Scalar, looks: int, plain: Arithmetic) -> Scalar:
-    """How far a polynomial may go beyond its looks: between two by (interval)^2 / 8 max |f''| at
-    most.
+def slack(terms: Sequence[Scalar], length: Scalar, count: int, plain: Arithmetic) -> Scalar:
+    """Return how far a polynomial may go beyond its looks: between two by (interval)^2 / 8 max
+    |f''| at most.
     """
-    part = taken * (1.0 / looks)
+    part = length * (1.0 / count)
     bends = [float(k * (k - 1)) * plain.size(terms[k]) for k in range(2, len(terms))]
-    return part * part * (1.0 / 8.0) * horner(bends, taken)
+    return part * part * (1.0 / 8.0) * horner(bends, length)
 
 
-def lower_bound(terms: Sequence[Scalar], whole: Scalar, plain: Arithmetic) -> Scalar:
-    """What a polynomial is at least in a step: its tangent's ends less all that bends."""
-    bends = horner([plain.size(term) for term in terms[2:]], whole)
-    return plain.least(terms[0], terms[0] + whole * terms[1]) - whole * whole * bends
+def lower_bound(terms: Sequence[Scalar], length: Scalar, plain: Arithmetic) -> Scalar:
+    """Return a lower bound of a polynomial in a step: its tangent's ends less all that bends."""
+    bends = horner([plain.size(term) for term in terms[2:]], length)
+    return plain.least(terms[0], terms[0] + length * terms[1]) - length * length * bends
 
 
 def lowest(values: Sequence[Scalar], plain: Arithmetic) -> Scalar:
-    """The least of many."""
+    """Return the least of many numbers."""
     least = values[0]
     for value in values[1:]:
         least = plain.least(value, least)
@@ -54,29 +54,30 @@ def lowest(values: Sequence[Scalar], plain: Arithmetic) -> Scalar:
 
 
 def may_fall(
-    terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic
+    terms: Sequence[Scalar], values: Sequence[Scalar], length: Scalar, plain: Arithmetic
 ) -> Scalar:
-    """Whether a guard may fall through zero in a step, given its looks."""
-    return plain.below(lowest(values, plain) - slack(terms, taken, len(values) - 1, plain), TINY)
+    """Return whether a guard may fall through zero in a step, from its values at the looks."""
+    return plain.below(lowest(values, plain) - slack(terms, length, len(values) - 1, plain), TINY)
 
 
 def first_fall(
-    terms: Sequence[Scalar], whole: Scalar, looks: int, plain: Arithmetic
+    terms: Sequence[Scalar], length: Scalar, count: int, plain: Arithmetic
 ) -> tuple[Scalar, Scalar]:
-    """Where in a step a polynomial first falls through zero, and whether that is not told.
+    """Return the time in a step at which a polynomial first falls through zero, and whether that is
+    undecided.
 
     It is inf where no look is below zero. It is not told where the polynomial begins there, or may
     dip between looks before it falls, or where its zero is not found in a few improvements.
     """
-    values, part = looked_at(terms, whole, looks), whole * (1.0 / looks)
-    falls = high = late = 0.0 * whole
-    nearest = before = math.inf + 0.0 * whole
-    for k in range(looks, 0, -1):
+    values, part = looked_at(terms, length, count), length * (1.0 / count)
+    falls = high = late = 0.0 * length
+    nearest = before = math.inf + 0.0 * length
+    for k in range(count, 0, -1):
         under = plain.below(values[k], TINY)
         falls, high = plain.choose(under, under, falls), plain.choose(under, part * float(k), high)
         before = plain.choose(under, values[k - 1], before)
         nearest = plain.choose(
-            under + late, math.inf + 0.0 * whole, plain.least(values[k], nearest)
+            under + late, math.inf + 0.0 * length, plain.least(values[k], nearest)
         )
         late = under
     nearest = plain.choose(late, nearest, plain.least(values[0], nearest))
@@ -93,31 +94,30 @@ def first_fall(
     # Where it rises at the look before its fall, it may have dipped before that, too.
     rises = plain.below(0.0, horner(slopes, first))
     nearest = plain.choose(rises, plain.least(before, nearest), nearest)
-    least = plain.choose(
-        falls, nearest - slack(terms, whole, looks, plain), least_value(terms, values, whole, plain)
-    )
-    begins, found = plain.below(values[0], TINY), plain.below(moved, NEAR * place)
-    told = plain.choose(falls * (1.0 - begins), place, math.inf + 0.0 * whole)
-    return told, begins + plain.below(least, TINY) + falls * (1.0 - found)
+    before_fall = nearest - slack(terms, length, count, plain)
+    least = plain.choose(falls, before_fall, least_value(terms, values, length, plain))
+    begins, converged = plain.below(values[0], TINY), plain.below(moved, NEAR * place)
+    fall = plain.choose(falls * (1.0 - begins), place, math.inf + 0.0 * length)
+    return fall, begins + plain.below(least, TINY) + falls * (1.0 - converged)
 
 
 def least_value(
-    terms: Sequence[Scalar], values: Sequence[Scalar], taken: Scalar, plain: Arithmetic
+    terms: Sequence[Scalar], values: Sequence[Scalar], length: Scalar, plain: Arithmetic
 ) -> Scalar:
-    """The least value of a polynomial in a step, given its looks, from the least of which it is
-    sought.
+    """Return the least value of a polynomial in a step, sought from the least of its values at the
+    looks.
     """
-    part = taken * (1.0 / (len(values) - 1))
-    least, place = values[0], 0.0 * taken
-    for look, value in enumerate(values[1:], start=1):
+    part = length * (1.0 / (len(values) - 1))
+    least, place = values[0], 0.0 * length
+    for probe, value in enumerate(values[1:], start=1):
         lower = plain.below(value, least)
         least, place = (
             plain.choose(lower, value, least),
-            plain.choose(lower, part * float(look), place),
+            plain.choose(lower, part * float(probe), place),
         )
     slopes = [float(k) * terms[k] for k in range(1, len(terms))]
     bends = [float(k) * slopes[k] for k in range(1, len(slopes))]
-    low, high = -plain.least(0.0 * part, part - place), plain.least(place + part, taken)
+    low, high = -plain.least(0.0 * part, part - place), plain.least(place + part, length)
     for _ in range(NEWTON):
         bend = horner(bends, place)
         better = place - horner(slopes, place) / bend

@@ -17,11 +17,11 @@ from tippetop.mechanics.vectors import Row, Scalar
 Choice: TypeAlias = Callable[[Any, Any, Any], Any]
 """What chooses between two by a flag: of numbers, or of arrays."""
 
-LOOKS = 32
+INTERVALS = 32
 """Intervals at whose ends a polynomial is looked at; between them its second derivative bounds it.
 """
 
-FEW = 4
+ONE_BY_ONE = 4
 """So many polynomials at most are taken one by one in plain numbers, quicker than arrays so short.
 """
 
@@ -38,8 +38,8 @@ not.
 
 @lru_cache
 def _places(count: int) -> Array:
-    """The first powers of the places of the looks, shape (LOOKS + 1, count)."""
-    return powers(np.linspace(0.0, 1.0, LOOKS + 1), count)
+    """Return the first powers of the places of the looks, shape (INTERVALS + 1, count)."""
+    return powers(np.linspace(0.0, 1.0, INTERVALS + 1), count)
 
 
 @lru_cache
@@ -71,9 +71,9 @@ class Polynomials:
         """Polynomials whose coefficients are in powers of the part of their intervals that has
         passed.
         """
-        found = cls.__new__(cls)
-        found.span, found.unit = span, unit
-        return found
+        polynomials = cls.__new__(cls)
+        polynomials.span, polynomials.unit = span, unit
+        return polynomials
 
     @property
     def sag(self) -> Array:
@@ -85,12 +85,12 @@ class Polynomials:
 
     @cached_property
     def values(self) -> Array:
-        """Values at the looks, shape (LOOKS + 1, n)."""
+        """Values at the looks, shape (INTERVALS + 1, n)."""
         return times(_places(len(self.unit)), self.unit)
 
     @property
     def slopes(self) -> Array:
-        """First derivatives at the looks, over the interval, shape (LOOKS + 1, n)."""
+        """First derivatives at the looks, over the interval, shape (INTERVALS + 1, n)."""
         return times(
             _places(len(self.unit) - 1), self.unit[1:] * np.arange(1, len(self.unit))[:, None]
         )
@@ -101,13 +101,13 @@ class Polynomials:
         shape (n,).
         """
         k = np.arange(len(self.unit))
-        return times(k * (k - 1) / (8.0 * LOOKS**2), np.abs(self.unit))
+        return times(k * (k - 1) / (8.0 * INTERVALS**2), np.abs(self.unit))
 
     @cached_property
     def lowest(self) -> Array:
         """Least values at the looks, shape (n,)."""
-        found: Array = self.values.min(axis=0)
-        return found
+        least: Array = self.values.min(axis=0)
+        return least
 
     @property
     def floor(self) -> Array:
@@ -117,7 +117,7 @@ class Polynomials:
     def some(
         self, which: NDArray[np.intp], sign: Array | float = 1.0, shift: Array | float = 0.0
     ) -> "Polynomials":
-        """Some of the polynomials, times signs and plus numbers."""
+        """Return some of the polynomials, times signs and plus numbers."""
         unit = sign * self.unit.take(which, axis=1)
         unit[0] += shift
         return Polynomials.of_unit(unit, self.span.take(which))
@@ -126,46 +126,48 @@ class Polynomials:
         """Return the polynomials as functions of the time that is left of their intervals."""
         return Polynomials.of_unit(times(_of_the_rest(len(self.unit)), self.unit), self.span)
 
-    def first_fall(self, from_above: bool = False, after_rise: bool = False) -> Array:
+    def first_fall(
+        self, from_above: bool = False, after_rise: bool | NDArray[np.bool_] = False
+    ) -> Array:
         """First times at which the polynomials fall to zero from above, nan where they do not,
         shape (n,).
 
         Where no look finds a polynomial at or below zero, but its second derivative could take it
         there between two looks, its least value there is found first. A polynomial that starts at
         or below zero and does not rise falls at 0, unless it has to come `from_above`: then it may
-        start at zero, not below. `after_rise`, it falls no sooner than it has been positive.
+        start at zero, not below. `after_rise`, for all or for some, it falls no sooner than it has
+        been positive.
         """
         values = self.values
         falls = (values[1:] <= 0.0) & (values[:-1] > 0.0)
-        found = np.asarray(falls.any(axis=0))
-        after = np.where(found, falls.argmax(axis=0) + 1, LOOKS + 1)
-        low, high = (after - 1) / LOOKS, after / LOOKS
+        has_fall = np.asarray(falls.any(axis=0))
+        after = np.where(has_fall, falls.argmax(axis=0) + 1, INTERVALS + 1)
+        low, high = (after - 1) / INTERVALS, after / INTERVALS
 
         nearer = np.minimum(values[:-1], values[1:])
-        dips = (nearer > 0.0) & (nearer <= self.bending) & (np.arange(LOOKS)[:, None] < after)
+        dips = (nearer > 0.0) & (nearer <= self.bending) & (np.arange(INTERVALS)[:, None] < after)
         if dips.any():
             slopes = self.slopes
             dips &= (slopes[:-1] < 0.0) & (slopes[1:] > 0.0)
         for lane in np.flatnonzero(dips.any(axis=0)):
-            for look in np.flatnonzero(dips[:, lane]):
+            for interval in np.flatnonzero(dips[:, lane]):
                 place, value = of_each(
-                    _least_near, self.unit[:, [lane]], np.array([(look + 0.5) / LOOKS])
+                    _least_near, self.unit[:, [lane]], np.array([(interval + 0.5) / INTERVALS])
                 )
                 if value[0] <= 0.0:
-                    low[lane], high[lane], found[lane] = look / LOOKS, place[0], True
+                    low[lane], high[lane], has_fall[lane] = interval / INTERVALS, place[0], True
                     break
-        zeros = np.full(found.shape, np.nan)
-        which = np.flatnonzero(found)
+        zeros = np.full(has_fall.shape, np.nan)
+        which = np.flatnonzero(has_fall)
         if len(which):
             zeros[which] = of_each(_zero, self.unit[:, which], low[which], high[which])
         starts = (values[0] == 0.0) if from_above else (values[0] <= 0.0)
         at_once = starts & (values[1] <= 0.0)
-        if after_rise:
-            for lane in np.flatnonzero(at_once):
+        if at_once.any():
+            zeros[at_once & np.logical_not(after_rise)] = 0.0
+            for lane in np.flatnonzero(at_once & after_rise):
                 early = _early_fall(self.unit[:, lane].tolist())
                 zeros[lane] = zeros[lane] if early is None else early
-        else:
-            zeros[at_once] = 0.0
         return zeros * self.span
 
     def refined_least(self) -> tuple[Array, Array]:
@@ -173,32 +175,32 @@ class Polynomials:
         (n,).
         """
         best = self.values.argmin(axis=0)
-        place, value = best / LOOKS, self.lowest.copy()
+        place, value = best / INTERVALS, self.lowest.copy()
         # At an end away from which it rises there is nothing to find.
         rises = (best == 0) & (self.unit[1] >= 0.0)
-        rises |= (best == LOOKS) & (times(np.arange(float(len(self.unit))), self.unit) <= 0.0)
+        rises |= (best == INTERVALS) & (times(np.arange(float(len(self.unit))), self.unit) <= 0.0)
         dips = np.flatnonzero(~rises)
         if len(dips):
             # The parabola through the least look and its neighbours is near it.
-            inside = np.minimum(np.maximum(best[dips], 1), LOOKS - 1)
-            before, here, after = (self.values[inside + k, dips] for k in (-1, 0, 1))
-            bend = before - 2.0 * here + after
+            inside = np.minimum(np.maximum(best[dips], 1), INTERVALS - 1)
+            before, middle, after = (self.values[inside + k, dips] for k in (-1, 0, 1))
+            bend = before - 2.0 * middle + after
             vertex = inside + 0.5 * (before - after) / np.where(bend > 0.0, bend, np.inf)
-            guess = np.where(np.abs(vertex - best[dips]) <= 1.0, vertex, best[dips]) / LOOKS
-            there, low = of_each(_least_near, self.unit[:, dips], guess)
-            better = (there >= 0.0) & (there <= 1.0) & (low < value[dips])
-            place[dips[better]], value[dips[better]] = there[better], low[better]
+            guess = np.where(np.abs(vertex - best[dips]) <= 1.0, vertex, best[dips]) / INTERVALS
+            places, low = of_each(_least_near, self.unit[:, dips], guess)
+            better = (places >= 0.0) & (places <= 1.0) & (low < value[dips])
+            place[dips[better]], value[dips[better]] = places[better], low[better]
         return place * self.span, value
 
     def negative(self) -> "Polynomials":
-        """The polynomials times -1."""
-        found = Polynomials.of_unit(-self.unit, self.span)
-        found.values, found.bending = -self.values, self.bending
-        return found
+        """Return the polynomials times -1."""
+        polynomials = Polynomials.of_unit(-self.unit, self.span)
+        polynomials.values, polynomials.bending = -self.values, self.bending
+        return polynomials
 
 
 def times(matrix: Array, columns: Array) -> Array:
-    """A matrix, or a row, times columns: so few at once that NumPy's library has no use for
+    """Return a matrix, or a row, times columns: so few at once that NumPy's library has no use for
     threads.
     """
     count = columns.shape[1]
@@ -234,37 +236,36 @@ def least_of_each(*lots: Sequence["Polynomials"]) -> list[Least]:
     np.fmin.at(least, owner, joined.lowest)
     lower = np.flatnonzero(joined.floor <= least[owner])
     times, values = joined.some(lower).refined_least()
-    found = list[Least]()
+    results = list[Least]()
     for lot, begin in enumerate(np.cumsum([0, *counts[:-1]])):
         which = np.flatnonzero(owner[lower] == lot)
         if not len(which):
-            found.append(Least(float(least[lot])))
+            results.append(Least(float(least[lot])))
             continue
         best = which[np.argmin(values[which])]
-        found.append(Least(float(values[best]), int(lower[best] - begin), float(times[best])))
-    return found
+        results.append(Least(float(values[best]), int(lower[best] - begin), float(times[best])))
+    return results
 
 
-def of_each(find: Callable[..., Any], unit: Array, *given: Array) -> Array:
-    """What is found of each of many polynomials at once, or, where they are few, of one after the
-    other.
+def of_each(find: Callable[..., Any], unit: Array, *numbers: Array) -> Array:
+    """Apply a function to many polynomials at once, or, where they are few, to one after the other.
 
     Either way it does not depend on the others: each stands still where it has arrived.
     """
-    if len(given[0]) > FEW:
-        return np.asarray(find(unit, *given, np.where, np.any))
-    each = zip(unit.T.tolist(), *(numbers.tolist() for numbers in given), strict=True)
+    if len(numbers[0]) > ONE_BY_ONE:
+        return np.asarray(find(unit, *numbers, np.where, np.any))
+    each = zip(unit.T.tolist(), *(column.tolist() for column in numbers), strict=True)
     return np.array([find(*one, _chosen, bool) for one in each]).T
 
 
 def _least_near(
     terms: Row, guess: Scalar, where: Choice, some: Callable[[Any], Any]
 ) -> tuple[Scalar, Scalar]:
-    """The place of a least value no further than a look from a guess, and that value, by Newton's
-    method.
+    """Return the place of a least value no further than a look from a guess, and that value, by
+    Newton's method.
     """
     slopes = [power * term for power, term in enumerate(terms)][1:]
-    first, last, place, moving = guess - 1.0 / LOOKS, guess + 1.0 / LOOKS, guess, True
+    first, last, place, moving = guess - 1.0 / INTERVALS, guess + 1.0 / INTERVALS, guess, True
     for _ in range(5):
         slope, bend = _horner(slopes, place)
         move = where(moving, slope / where(bend > 0.0, bend, np.inf), 0.0)
@@ -278,7 +279,7 @@ def _least_near(
 def _zero(
     terms: Row, low: Scalar, high: Scalar, where: Choice, some: Callable[[Any], Any]
 ) -> Scalar:
-    """A zero between places where a polynomial is positive and not positive."""
+    """Return a zero between places where a polynomial is positive and not positive."""
     place, moving = 0.5 * (low + high), True
     for _ in range(TURNS):
         value, slope = _horner(terms, place)
@@ -301,7 +302,7 @@ def _early_fall(terms: Row) -> float | None:
     look; None if it does not.
     """
     part = EARLIEST
-    while part < 1.0 / LOOKS:
+    while part < 1.0 / INTERVALS:
         if _horner(terms, part)[0] > RISEN and _horner(terms, 2.0 * part)[0] <= 0.0:
             return float(_zero(terms, part, 2.0 * part, _chosen, bool))
         part *= 2.0
@@ -309,12 +310,12 @@ def _early_fall(terms: Row) -> float | None:
 
 
 def _chosen(flag: bool, yes: float, no: float) -> float:
-    """What `numpy.where` chooses, of plain numbers."""
+    """Return what `numpy.where` chooses, of plain numbers."""
     return yes if flag else no
 
 
 def _horner(terms: Row, place: Scalar) -> tuple[Scalar, Scalar]:
-    """The value and first derivative of a polynomial."""
+    """Return the value and first derivative of a polynomial."""
     value, slope = terms[-1], 0.0 * place
     for term in terms[-2::-1]:
         slope = slope * place + value

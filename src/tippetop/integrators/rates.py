@@ -22,7 +22,7 @@ class RightHandSide:
         self.motion, self.parameters, self.calls = motion, parameters, 0
 
     def __call__(self, _: float, state: Array) -> Array:
-        """The rates at a state, whatever the time."""
+        """Return the rates at a state, whatever the time."""
         self.calls += 1
         try:
             rates = np.array(self.motion.rates(state.tolist(), self.parameters))
@@ -32,7 +32,8 @@ class RightHandSide:
         return np.full(self.motion.size, np.nan) if np.iscomplexobj(rates) else rates
 
     def linearized(self, states: Array) -> tuple[Array, Array]:
-        """The rates at n states, shape (n, size), and their derivatives, shape (n, size, size).
+        """Return the rates at n states, shape (n, size), and their derivatives, shape (n, size,
+        size).
 
         The derivatives are taken along imaginary steps, which are exact however short
         (Squire and Trapp 1998).

@@ -54,7 +54,7 @@ class Relieved:
         return float(getattr(self.explicit, "tolerance", 0.0))
 
     def _implicit(self, shortest: float) -> Integrator:
-        """The method where the motion is stiff."""
+        """Return the method for stiff motions."""
         # Slow to import, and seldom needed.
         from tippetop.integrators.collocation import Collocation  # noqa: PLC0415
 
@@ -66,14 +66,14 @@ class Relieved:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
         step = 0.0
         while start[0] < end:
-            begun, taken = start[0], 0
+            checked, steps = start[0], 0
             for arc in self.explicit.integrate(motion, parameters, start, end):
                 yield arc
-                start, taken = (arc.solution.end, arc.end_state), taken + arc.steps
+                start, steps = (arc.solution.end, arc.end_state), steps + arc.steps
                 if arc.guard is not None or arc.failure is not None or start[0] >= end:
                     return
-                if taken >= PATIENCE:
-                    step, begun, taken = (start[0] - begun) / taken, start[0], 0
+                if steps >= PATIENCE:
+                    step, checked, steps = (start[0] - checked) / steps, start[0], 0
                     if is_stiff(motion, parameters, start[1][None], np.array([step]))[0]:
                         break
             else:
@@ -90,11 +90,11 @@ class Relieved:
 def is_stiff(
     motion: Motion, parameters: Sequence[Scalar], states: Array, steps: Array
 ) -> NDArray[np.bool_]:
-    """Whether a motion is stiff in states, shape (n, size), about which it took steps, shape
+    """Return whether a motion is stiff in states, shape (n, size), about which it took steps, shape
     (n,).
     """
     slopes = RightHandSide(motion, parameters).linearized(states)[1]
-    known = np.all(np.isfinite(slopes), axis=(1, 2))
-    damping = -np.linalg.eigvals(np.where(known[:, None, None], slopes, 0.0)).real.min(axis=1)
-    found: NDArray[np.bool_] = known & (steps * damping > STIFF)
-    return found
+    finite = np.all(np.isfinite(slopes), axis=(1, 2))
+    damping = -np.linalg.eigvals(np.where(finite[:, None, None], slopes, 0.0)).real.min(axis=1)
+    stiff: NDArray[np.bool_] = finite & (steps * damping > STIFF)
+    return stiff

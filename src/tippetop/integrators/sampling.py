@@ -13,7 +13,7 @@ from tippetop.integrators.dense import DenseSolution, chebyshev
 from tippetop.integrators.falls import Dense, first_fall
 from tippetop.integrators.rates import RightHandSide
 
-MANY = 512
+ARC_STEPS = 512
 """Steps in an arc."""
 
 
@@ -63,10 +63,10 @@ class StepByStep(ABC):
             nonlocal counted
             rows = np.array(values).reshape(-1, motion.size).T
             solution = DenseSolution.fitted(lambda _: rows, np.array(knots), self.degree)
-            found = Arc(solution, end_state, guard, failure, len(values), rates.calls - counted)
+            ended = Arc(solution, end_state, guard, failure, len(values), rates.calls - counted)
             del knots[:-1], values[:]
             counted = rates.calls
-            return found
+            return ended
 
         for step in self.steps(rates, start, end):
             if isinstance(step, str):
@@ -80,7 +80,7 @@ class StepByStep(ABC):
                 return
             keep(step.end, step.dense)
             state = step.end_state
-            if len(values) == MANY:
+            if len(values) == ARC_STEPS:
                 yield arc(state)
         if values:
             yield arc(state)

@@ -44,7 +44,7 @@ class SciPy(StepByStep):
     def steps(
         self, rates: RightHandSide, start: tuple[float, Array], end: float
     ) -> Iterator[Accepted | str]:
-        """The steps; see `StepByStep`."""
+        """Yield the steps; see `StepByStep`."""
         if not np.all(np.isfinite(rates(*start))):
             yield NO_START
             return
@@ -75,7 +75,7 @@ class SciPy(StepByStep):
         )
 
     def _land(self, rates: RightHandSide, start: tuple[float, Array], end: float) -> Array:
-        """The state after integrating afresh to exactly this time."""
+        """Return the state after integrating afresh to exactly this time."""
         if end <= start[0]:
             return start[1]
         solver = self._solver(rates, start, end)

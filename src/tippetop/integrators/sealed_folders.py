@@ -39,8 +39,8 @@ OLD = "cache.db*", "making-*"
 """What else earlier versions kept in the user's folder."""
 
 
-def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
-    """What comes of a folder of compiled code.
+def cached_folder(made: object, use: Callable[[Path | None], Found]) -> Found:
+    """Return what `use` makes of a folder of compiled code.
 
     What is damaged in it is thrown away, and where none can be kept every process compiles for
     itself.
@@ -70,12 +70,12 @@ def kept(made: object, use: Callable[[Path | None], Found]) -> Found:
 
 
 def users_folder() -> Path:
-    """The user's own folder for the cache: all that is in it is of this package."""
+    """Return the user's own folder for the cache, which holds files of this package only."""
     return platformdirs.user_cache_path("tippetop", appauthor=False)
 
 
 def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
-    """Compiled code that is one file, made or taken from the cache; see `kept`."""
+    """Compiled code that is one file, made or taken from the cache; see `cached_folder`."""
 
     def use(folder: Path | None) -> bytes:
         path = folder and folder / CONTENT
@@ -88,11 +88,11 @@ def kept_content(made: object, make: Callable[[], bytes]) -> bytes:
         return content
 
     # What was kept under another name, by an earlier version, is another thing.
-    return kept((CONTENT, made), use)
+    return cached_folder((CONTENT, made), use)
 
 
 def _processor() -> tuple[str, ...]:
-    """What code is compiled for."""
+    """Return the system, the processor and its features, for which code is compiled."""
     import llvmlite.binding as llvm  # noqa: PLC0415 - slow to import
 
     return (
@@ -108,13 +108,13 @@ def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
     _clear(folder.parent)
     beside = Path(tempfile.mkdtemp(prefix=f"{folder.name}-{os.getpid()}-", dir=folder.parent))
     try:
-        found = use(beside)
+        result = use(beside)
         (beside / SEAL).write_text(json.dumps(_digests(beside)), encoding="utf-8")
         with contextlib.suppress(OSError):  # Another process was sooner.
             beside.rename(folder)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
-    return found
+    return result
 
 
 def _clear(place: Path) -> None:
@@ -134,10 +134,10 @@ def _clear(place: Path) -> None:
             old.unlink(missing_ok=True)
         elif not SEALED.fullmatch(old.name) or _seal(old) is not None:
             shutil.rmtree(old, ignore_errors=True)
-    for left in folders:
-        process = MAKING.fullmatch(left.name)
+    for folder in folders:
+        process = MAKING.fullmatch(folder.name)
         if process and not psutil.pid_exists(int(process[1])):
-            shutil.rmtree(left, ignore_errors=True)
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _size(place: Path) -> int:
@@ -149,14 +149,14 @@ def _size(place: Path) -> int:
 
 
 def _is_own(folder: Path) -> bool:
-    """Whether this user made a folder: code of others is not run. Only its maker can write to
-    it.
+    """Return whether this user made a folder: code of others is not run. Only its maker can write
+    to it.
     """
     return not hasattr(os, "getuid") or folder.stat().st_uid == os.getuid()
 
 
 def _is_whole(folder: Path) -> bool:
-    """Whether a folder has what was put there, as it was."""
+    """Return whether a folder has the files that were put into it, as they were."""
     try:
         return _seal(folder) == _digests(folder)
     except OSError:
@@ -164,7 +164,7 @@ def _is_whole(folder: Path) -> bool:
 
 
 def _seal(folder: Path) -> dict[str, str] | None:
-    """The digests that a folder is sealed with; none if it is not."""
+    """Return the digests that a folder is sealed with; None if it is not."""
     try:
         seal = json.loads((folder / SEAL).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):

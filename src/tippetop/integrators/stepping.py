@@ -38,7 +38,7 @@ class Machinery(NamedTuple):
     """How long a row of the motion's numbers is, with zeros at its end."""
     values: Callable[[Array, Array, Array], None]
     """The guards as functions (y, p, out) for Python."""
-    kept: Any = None
+    owner: Any = None
     """What has to last as long as these."""
 
 
@@ -88,7 +88,7 @@ class Stepping:
         self.row, self.lost = longer(start[1], width), np.zeros(width)
         self.stages, self.span = np.zeros((ROWS, width)), np.array([start[0], end, 0.0])
         self.steps, self.calls = 0, 0
-        self.other: Stepping | None = None
+        self.trial: Stepping | None = None
         self.make_room(room)
 
     @property
@@ -134,7 +134,7 @@ class Stepping:
         return ended
 
     def arc(self, guard: str | None = None, failure: str | None = None) -> Arc:
-        """The arc that has been made, whose solution may keep the room there was for it."""
+        """Return the arc that has been made, whose solution may keep the room there was for it."""
         width = len(self.row)
         solution = DenseSolution.of_steps(self.knots, self.terms, self.size, self.steps, width)
         arc = Arc(solution, self.state, guard, failure, self.steps, self.calls)
@@ -142,10 +142,12 @@ class Stepping:
         return arc
 
     def fall(self) -> tuple[int, float, Array] | None:
-        """Which guard first falls through zero in the last step, when, and the state there."""
+        """Return the guard that first falls through zero in the last step, when, and the state
+        then.
+        """
         begin, reach = float(self.knots[self.steps - 1]), self.time
         first, row = (self.steps - 1) * len(self.row) * POWERS, np.empty(len(self.row))
-        functions, found = self.functions, np.empty(self.functions.number)
+        functions, values = self.functions, np.empty(self.functions.number)
 
         def dense(at: float) -> Array:
             functions.within(self.terms, first, (at - begin) / (reach - begin), row)
@@ -156,8 +158,8 @@ class Stepping:
 
         def guard(number: int) -> Callable[[Array], float]:
             def value(state: Array) -> float:
-                functions.values(state, self.parameters, found)
-                return float(found[number])
+                functions.values(state, self.parameters, values)
+                return float(values[number])
 
             return value
 
@@ -178,17 +180,19 @@ class Stepping:
 
     def beside(self) -> "Stepping":
         """Another motion of the same kind, for trial."""
-        if self.other is None:
+        if self.trial is None:
             start, end, tolerance = (
                 (self.time, self.state),
                 float(self.span[1]),
                 float(self.tolerance[0]),
             )
-            self.other = Stepping(self.functions, self.parameters, start, end, tolerance, 1)
-        return self.other
+            self.trial = Stepping(self.functions, self.parameters, start, end, tolerance, 1)
+        return self.trial
 
     def landed(self, time: float, state: Array, end: float) -> Array:
-        """The state after a step from another, or some, that end at exactly this time."""
+        """Return the state after one step or several from another state, which end at exactly this
+        time.
+        """
         self.row, self.lost = longer(state, len(self.row)), np.zeros(len(self.row))
         self.span = np.array([time, end, time - end])
         ended = FULL

@@ -18,22 +18,22 @@ SLOPE = "k{}_i"
 
 
 def written_out(size: int | None = None) -> str:
-    """The functions in which the method's coefficients are, as code; stages of a size without
-    loops.
+    """Return the source of functions that contain the method's coefficients; stages of a size
+    without loops.
     """
     lines = list[str]()
-    for name, first, rows, taken in (
+    for name, first, rows, arguments in (
         ("stages", 1, [*DOP853.A[1:], DOP853.B], f"{TAKEN}, moved"),
         ("more_stages", 13, DOP853.A_EXTRA, TAKEN),
     ):
         stages = list(enumerate(rows, start=first))
-        lines.append(f"def {name}({taken}):")
+        lines.append(f"def {name}({arguments}):")
         if size is not None:
-            lines += [f"    if len(y) == {size}:", f"        return {name}_of_{size}({taken})"]
+            lines += [f"    if len(y) == {size}:", f"        return {name}_of_{size}({arguments})"]
         for number, weights in stages:
             lines += [*_for_each(*_stage(number, weights)), _evaluated(number)]
         if size is not None:
-            lines += [f"def {name}_of_{size}({taken}):", *_straight(stages, size)]
+            lines += [f"def {name}_of_{size}({arguments}):", *_straight(stages, size)]
     lines.append("def combined(y: Array, k: Array):")
     errors = DOP853.E5, DOP853.E3
     lines += _for_each(
@@ -67,7 +67,7 @@ def _stage(
     lost: str = "lost[i]",
     slope: str = "k[{}, i]",
 ) -> list[str]:
-    """Where the rates of a stage are found: those of stage 12 at the end of the step."""
+    """Return the row of a stage's rates; stage 12 is at the end of the step."""
     lines = [f"step = h * ({_sum(weights, slope)}) + {lost}", f"place[{i}] = {y} + step"]
     return [*lines, f"moved[{i}] = step"] if number == 12 else lines
 
@@ -91,17 +91,19 @@ def _straight(stages: Sequence[tuple[int, Array]], size: int) -> list[str]:
 
 
 def _used(rows: Iterable[Array]) -> list[int]:
-    """The stages of which there is some in rows of weights."""
+    """Return the stages that have a weight in some of these rows."""
     return sorted({int(j) for weights in rows for j in np.flatnonzero(weights)})
 
 
 def _reads(*rows: Array) -> list[str]:
-    """What is used by rows of weights, each read once: compilers for pages do not see that."""
+    """Return the reads of the stages that rows of weights use, each once: compilers for pages do
+    not merge them.
+    """
     return [_read(j, "i") for j in _used(rows)]
 
 
 def _read(stage: int, i: str) -> str:
-    """A number's rate at a stage gets a name: `SLOPE` for the i of a loop."""
+    """Return the read of a number's rate at a stage into a name: `SLOPE` for the i of a loop."""
     return f"k{stage}_{i} = k[{stage}, {i}]"
 
 
@@ -116,9 +118,9 @@ def _sum(weights: Array, name: str = "k[{}, i]") -> str:
 
 def _powers() -> Array:
     """Powers of x, shape (8, 7), in the polynomials of the dense output."""
-    found = np.zeros((8, 7))
+    matrix = np.zeros((8, 7))
     for row in range(7):
         polynomial = np.polynomial.Polynomial([0.0, 1.0]) ** (row // 2 + 1)
         polynomial *= np.polynomial.Polynomial([1.0, -1.0]) ** ((row + 1) // 2)
-        found[: len(polynomial.coef), row] = polynomial.coef
-    return found
+        matrix[: len(polynomial.coef), row] = polynomial.coef
+    return matrix

@@ -17,7 +17,7 @@ from tippetop.graph.taylor_coefficients import NodeArithmetic
 from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.machine_code import loaded
-from tippetop.integrators.polynomial_minima import looked_at, may_fall
+from tippetop.integrators.polynomial_minima import first_fall, looked_at, may_fall
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar
@@ -61,49 +61,145 @@ CACHE_LINE = 64
 
 NODES = NodeArithmetic()
 
+_PLACE = ctypes.c_void_p
+
 DRIVER = """\
 declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
-define i64 @follow(ptr %jet, ptr %y, ptr %p, ptr %room, ptr %raw, ptr %rows, i64 %most)
-alignstack(64) {{
+declare void @llvm.memset.p0.i64(ptr, i8, i64, i1)
+define void @measure(ptr %raw, i64 %size, i64 %guards, ptr %measures) {{
+entry:
+  %most_place = getelementptr double, ptr %measures, i64 {largest}
+  store double 1.0, ptr %most_place
+  %first_place = getelementptr double, ptr %measures, i64 0
+  call void @llvm.memset.p0.i64(ptr %first_place, i8 0, i64 24, i1 false)
+  br label %number
+number:
+  %i = phi i64 [ 0, %entry ], [ %next_i, %number ]
+  %row = mul i64 %i, {count}
+  %begin = getelementptr double, ptr %raw, i64 %row
+  call void @largest(ptr %begin, ptr %measures, ptr %most_place, i64 1)
+  %next_i = add i64 %i, 1
+  %more = icmp ult i64 %next_i, %size
+  br i1 %more, label %number, label %ratios
+ratios:
+  %j = phi i64 [ 0, %number ], [ %next_j, %ratios ]
+  %ratio_row = mul i64 %j, {count}
+  %ratio_begin = getelementptr double, ptr %raw, i64 %ratio_row
+  call void @ratios(ptr %ratio_begin, ptr %measures, ptr %measures, i64 1)
+  %next_j = add i64 %j, 1
+  %more_ratios = icmp ult i64 %next_j, %size
+  br i1 %more_ratios, label %ratios, label %guard_terms
+guard_terms:
+  %terms = mul i64 %size, {count}
+  %guard_place = getelementptr double, ptr %raw, i64 %terms
+  br label %guard
+guard:
+  %g = phi i64 [ 0, %guard_terms ], [ %next_g, %guard_ratio ]
+  %guard_left = icmp ult i64 %g, %guards
+  br i1 %guard_left, label %guard_ratio, label %end
+guard_ratio:
+  %guard_row = mul i64 %g, {order}
+  %guard_begin = getelementptr double, ptr %guard_place, i64 %guard_row
+  call void @guard_ratio(ptr %guard_begin, ptr %measures, ptr %measures, i64 1)
+  %next_g = add i64 %g, 1
+  br label %guard
+end:
+  ret void
+}}
+define void @scale_all(ptr %raw, i64 %size, ptr %powers, ptr %row) {{
+entry:
+  %terms = mul i64 %size, {count}
+  %after = getelementptr double, ptr %row, i64 %terms
+  br label %number
+number:
+  %i = phi i64 [ 0, %entry ], [ %next, %number ]
+  %offset = mul i64 %i, {count}
+  %from = getelementptr double, ptr %raw, i64 %offset
+  %to = getelementptr double, ptr %row, i64 %offset
+  %sum = getelementptr double, ptr %after, i64 %i
+  call void @scale(ptr %from, ptr %powers, ptr %to, i64 1, ptr %sum)
+  %next = add i64 %i, 1
+  %more = icmp ult i64 %next, %size
+  br i1 %more, label %number, label %end
+end:
+  ret void
+}}
+define void @falls(ptr %raw, i64 %size, i64 %guards, ptr %span, ptr %out) {{
+entry:
+  %terms = mul i64 %size, {count}
+  %guard_place = getelementptr double, ptr %raw, i64 %terms
+  br label %guard
+guard:
+  %g = phi i64 [ 0, %entry ], [ %next, %search ]
+  %guard_left = icmp ult i64 %g, %guards
+  br i1 %guard_left, label %search, label %end
+search:
+  %row = mul i64 %g, {order}
+  %begin = getelementptr double, ptr %guard_place, i64 %row
+  %pair = mul i64 %g, 2
+  %fall = getelementptr double, ptr %out, i64 %pair
+  call void @fall(ptr %begin, ptr %span, ptr %fall, i64 1)
+  %next = add i64 %g, 1
+  br label %guard
+end:
+  ret void
+}}
+define i64 @follow(ptr %jet, ptr %y, ptr %p, ptr %room, ptr %raw, ptr %rows, i64 %most, i64 %size,
+i64 %guards) alignstack(64) {{
 entry:
   %doubt = alloca double
-  %clock = getelementptr double, ptr %raw, i64 {clock}
-  %watch = getelementptr double, ptr %raw, i64 {watch}
+  %measures = alloca [{measures} x double]
+  %powers = alloca [{order} x double]
+  %terms = mul i64 %size, {count}
+  %guard_numbers = mul i64 %guards, {order}
+  %clock_at = add i64 %terms, %guard_numbers
+  %clock = getelementptr double, ptr %raw, i64 %clock_at
+  %watch = getelementptr double, ptr %clock, i64 3
+  %clock_copy = getelementptr double, ptr %measures, i64 {clock}
+  %time_at = add i64 %terms, %size
+  %width = add i64 %time_at, 4
+  %state_bytes = mul i64 %size, 8
   br label %step
 step:
   %steps = phi i64 [ 0, %entry ], [ %next, %advance ]
-  %begin = mul i64 %steps, {width}
+  %begin = mul i64 %steps, %width
   %row = getelementptr double, ptr %rows, i64 %begin
   call void %jet(ptr %y, ptr %p, ptr %room, ptr %raw)
-  call void @step(ptr %raw, ptr %p, ptr %row, i64 1)
-  %span_place = getelementptr double, ptr %row, i64 {span}
+  call void @measure(ptr %raw, i64 %size, i64 %guards, ptr %measures)
+  call void @llvm.memcpy.p0.p0.i64(ptr %clock_copy, ptr %clock, i64 24, i1 false)
+  %time = getelementptr double, ptr %row, i64 %time_at
+  call void @timing(ptr %measures, ptr %measures, ptr %time, i64 1)
+  %span_place = getelementptr double, ptr %time, i64 3
+  call void @powers(ptr %span_place, ptr %span_place, ptr %powers, i64 1)
+  call void @scale_all(ptr %raw, i64 %size, ptr %powers, ptr %row)
   %span = load double, ptr %span_place
   %watches = load double, ptr %watch
   %moves = fcmp ogt double %span, 0.0
-  br i1 %moves, label %guards, label %stop
-guards:
-  %guard = phi i64 [ 0, %step ], [ %next_guard, %look ]
-  %guard_left = icmp ult i64 %guard, {guards}
+  br i1 %moves, label %guards_begin, label %stop
+guards_begin:
+  %guard_terms_begin = getelementptr double, ptr %raw, i64 %terms
+  br label %guard_loop
+guard_loop:
+  %guard = phi i64 [ 0, %guards_begin ], [ %next_guard, %look ]
+  %guard_left = icmp ult i64 %guard, %guards
   %watched = fcmp ogt double %watches, 0.0
   %looks = and i1 %guard_left, %watched
   br i1 %looks, label %look, label %advance
 look:
   %guard_row = mul i64 %guard, {order}
-  %guard_begin = add i64 %guard_row, {terms}
-  %guard_terms = getelementptr double, ptr %raw, i64 %guard_begin
+  %guard_terms = getelementptr double, ptr %guard_terms_begin, i64 %guard_row
   call void @look(ptr %guard_terms, ptr %span_place, ptr %doubt, i64 1)
   %doubted = load double, ptr %doubt
   %falls = fcmp ogt double %doubted, 0.0
   %next_guard = add i64 %guard, 1
-  br i1 %falls, label %stop, label %guards
+  br i1 %falls, label %stop, label %guard_loop
 advance:
-  %state = getelementptr double, ptr %row, i64 {terms}
-  call void @llvm.memcpy.p0.p0.i64(ptr %y, ptr %state, i64 {state_bytes}, i1 false)
-  %time = getelementptr double, ptr %row, i64 {time}
+  %state = getelementptr double, ptr %row, i64 %terms
+  call void @llvm.memcpy.p0.p0.i64(ptr %y, ptr %state, i64 %state_bytes, i1 false)
   call void @llvm.memcpy.p0.p0.i64(ptr %clock, ptr %time, i64 16, i1 false)
   store double 1.0, ptr %watch
   %next = add i64 %steps, 1
-  %place = getelementptr double, ptr %row, i64 {goes_on}
+  %place = getelementptr double, ptr %time, i64 2
   %goes_on = load double, ptr %place
   %left = fcmp ogt double %goes_on, 0.0
   %room_left = icmp ult i64 %next, %most
@@ -152,7 +248,7 @@ class Taylor:
             solution = run.solution(begin, steps)
             if failure is not None:
                 solution = _before_blow_up(solution)
-                state = solution(solution.knots[-1:])[0] if len(solution.terms) else run.begun
+                state = solution(solution.knots[-1:])[0] if len(solution.terms) else run.start_state
                 yield Arc(solution, state, None, failure, steps, run.expansions)
                 return
             name = None if guard is None else motion.guards[guard].name
@@ -172,7 +268,7 @@ class SeriesExpansion:
     def __init__(self, recorded: Recorded, order: int) -> None:
         self._engine = loaded(series_source(recorded, order), EFFORT)
         self.address = self._engine.get_function_address("jet")
-        self._function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(self.address)
+        self._function = ctypes.CFUNCTYPE(None, *[_PLACE] * 4)(self.address)
         self._room = room_size(recorded, order)
         guards = len(recorded.outputs) - recorded.size
         self.coefficients = recorded.size * (order + 1) + guards * order
@@ -230,9 +326,11 @@ class CompiledSteps:
         self.jet = SeriesExpansion(recorded, order)
         self.guards, self.order = len(motion.guards), order
         self.layout = StepLayout(recorded.size, len(recorded.outputs) - recorded.size, order)
-        self._engine = _step_code(self.layout, min(LEFT_OUT, 1.0 / tolerance))
-        kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 6, ctypes.c_int64)
+        self._engine = _step_code(order, min(LEFT_OUT, 1.0 / tolerance))
+        kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[_PLACE] * 6, *[ctypes.c_int64] * 3)
         self.follow: Callable[..., int] = kind(self._engine.get_function_address("follow"))
+        falls = ctypes.CFUNCTYPE(None, _PLACE, *[ctypes.c_int64] * 2, *[_PLACE] * 2)
+        self.falls: Callable[..., None] = falls(self._engine.get_function_address("falls"))
         # Rooms that nobody uses at present: threads take one each.
         self.rooms = list[Array]()
 
@@ -259,7 +357,7 @@ class Run:
         self._clock[:] = start[0], 0.0, end, 1.0
         self._rows = np.empty((0, self.layout.row))
         self._knots, self._terms = np.empty(0), np.empty(0)
-        self.begun, self.expansions = self.state, 0
+        self.start_state, self.expansions = self.state, 0
 
     @property
     def time(self) -> float:
@@ -277,16 +375,16 @@ class Run:
         """
         stepper, layout = self.stepper, self.layout
         room = stepper.room()
-        rows, steps, self.begun, self.expansions = room.reshape(-1, layout.row), 0, self.state, 0
+        rows, steps = room.reshape(-1, layout.row), 0
+        self.start_state, self.expansions = self.state, 0
         address = [
             part.ctypes.data for part in (self._state, self.parameters, self._room, self._raw)
         ]
         guard = failure = None
         while steps < most and self.time < self._clock[2]:
-            taken = stepper.follow(
-                stepper.jet.address, *address, rows[steps:].ctypes.data, most - steps
-            )
-            steps, self.expansions = steps + taken, self.expansions + taken
+            place, counts = rows[steps:].ctypes.data, (most - steps, layout.size, layout.guards)
+            count = stepper.follow(stepper.jet.address, *address, place, *counts)
+            steps, self.expansions = steps + count, self.expansions + count
             if steps == most or self.time >= self._clock[2]:
                 break
             self.expansions += 1
@@ -294,7 +392,7 @@ class Run:
             if not span > 0.0:
                 failure = NOT_FINITE
                 break
-            fall = self._first_fall(span)
+            fall = self._first_fall(span, rows[steps, layout.row - 1 :].ctypes.data)
             if fall is None:
                 self._clock[3] = 0.0  # The step is taken again, whatever the guards.
                 continue
@@ -320,20 +418,28 @@ class Run:
         shape = steps, self.layout.size, self.layout.order + 1
         return DenseSolution(np.append(begin, self._knots), self._terms.reshape(shape))
 
-    def _first_fall(self, span: float) -> tuple[int, float] | None:
-        """Return which guard, or margin of a choice, falls first in a step, and when."""
-        layout, guards = self.layout, self.stepper.guards
-        terms = self._raw[layout.terms : layout.clock].reshape(layout.guards, layout.order).T
-        spans = np.full(layout.guards, span)
-        falls = Polynomials(terms, spans).first_fall(after_rise=True)
-        if layout.guards > guards:
+    def _first_fall(self, span: float, span_place: int) -> tuple[int, float] | None:
+        """Return which guard, or margin of a choice, falls first in a step, and when.
+
+        Compiled code searches. It leaves undecided guards that begin at zero or come near it.
+        """
+        layout = self.layout
+        results = np.empty((layout.guards, 2))
+        self.stepper.falls(
+            self._raw.ctypes.data, layout.size, layout.guards, span_place, results.ctypes.data
+        )
+        times, undecided = results.T.tolist()
+        if any(undecided):
+            terms = self._raw[layout.terms : layout.clock].reshape(layout.guards, layout.order).T
             # A margin may be zero at first, and then falls at once.
-            margins = Polynomials(terms[:, guards:], spans[guards:])
-            falls[guards:] = margins.first_fall()
-        if np.isnan(falls).all():
+            is_guard = np.arange(layout.guards) < self.stepper.guards
+            spans = np.full(layout.guards, span)
+            times = Polynomials(terms, spans).first_fall(after_rise=is_guard).tolist()
+        fallen = [(time, number) for number, time in enumerate(times) if time <= span]
+        if not fallen:
             return None
-        first = int(np.nanargmin(falls))
-        return first, float(falls[first])
+        fall_time, first = min(fallen)
+        return first, fall_time
 
     def _polished(self, row: Array, span: float, guard: int, fall: float) -> float:
         """Return when a guard falls along the polynomials of the state, by Newton's method.
@@ -386,28 +492,62 @@ def _recorded(motion: Motion) -> Recorded | None:
     return None if recorded is None else with_choices(recorded)
 
 
-@lru_cache(maxsize=64)
-def _step_code(layout: StepLayout, left_out: float) -> Any:
-    """Compile the functions that make a step of coefficients and look at a guard, and the loop over
-    steps.
+class Measures(NamedTuple):
+    """What a step's length and its end follow from: numbers beside one another in compiled code."""
 
-    They know nothing of what moves, so that they serve all motions with as many numbers and guards.
+    before_last: Scalar
+    """The largest last coefficient but one of a number or a guard, over what may be left out."""
+    last: Scalar
+    """The largest last coefficient."""
+    total: Scalar
+    """Sum of the last two coefficients of the state's numbers, which is finite if they are."""
+    largest: Scalar
+    """The largest number of the state, at least 1."""
+    time: Scalar
+    lost: Scalar
+    """What rounding has taken from the time."""
+    end: Scalar
+
+
+@lru_cache(maxsize=64)
+def _step_code(order: int, left_out: float) -> Any:
+    """Compile the functions that make a step of coefficients and look at a guard, and the loops
+    over numbers, guards and steps.
+
+    They know nothing of what moves, so that they serve all motions.
     """
-    step = record(lambda raw, _: step_of(layout, left_out, raw), layout.clock + 4, 0)
-    look = record(doubt_about, layout.order, 1)
+    measures, count = len(Measures._fields), order + 1
+
+    def largest(terms: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
+        return [larger(NODES.size(terms[0]), Measures(*p).largest)]
+
+    def ratios(terms: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
+        return with_number(Measures(*p), terms, left_out)
+
+    def guard_ratio(terms: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
+        return with_guard(Measures(*p), terms)
+
+    def timing(p: Sequence[Scalar], _: Sequence[Scalar]) -> list[Scalar]:
+        return timing_of(Measures(*p), order)
+
+    functions = {
+        "largest": record(largest, count, measures),
+        "ratios": record(ratios, count, measures),
+        "guard_ratio": record(guard_ratio, order, measures),
+        "timing": record(timing, measures, 0),
+        "powers": record(lambda span, _: span_powers(span[0], order), 1, 0),
+        "scale": record(scaled, count, order, 1),
+        "look": record(doubt_about, order, 1),
+        "fall": record(fall_of, order, 1),
+    }
     driver = DRIVER.format(
-        clock=layout.clock,
-        watch=layout.clock + 3,
-        width=layout.row,
-        guards=layout.guards,
-        order=layout.order,
-        terms=layout.terms,
-        state_bytes=8 * layout.size,
-        time=layout.time,
-        goes_on=layout.time + 2,
-        span=layout.time + 3,
+        order=order,
+        count=count,
+        measures=measures,
+        largest=Measures._fields.index("largest"),
+        clock=Measures._fields.index("time"),
     )
-    return loaded(llvm_source({"step": step, "look": look}, 1) + driver, EFFORT)
+    return loaded(llvm_source(functions, 1) + driver, EFFORT)
 
 
 def doubt_about(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar]:
@@ -416,71 +556,73 @@ def doubt_about(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar
     return [may_fall(terms, probes, spans[0], NODES)]
 
 
-def step_of(layout: StepLayout, left_out: float, raw: Sequence[Scalar]) -> list[Scalar]:
-    """Return a step: coefficients in powers of its part, and what follows (see `StepLayout`)."""
-    count, plain = layout.order + 1, NODES
-    state = [raw[k : k + count] for k in range(0, layout.terms, count)]
-    guards = [raw[k : k + count - 1] for k in range(layout.terms, layout.clock, count - 1)]
-    time, lost, end = raw[layout.clock : layout.clock + 3]
-    left = (end - time) - lost
-    span = plain.least(step_length(state, guards, left_out), left)
-    scaled, power = [[terms[0] for terms in state]], span
-    for k in range(1, count):
-        scaled.append([terms[k] * power for terms in state])
-        # A long step of what hardly moves has powers beyond all floats; 0 times inf is none.
-        power = plain.least(power * span, sys.float_info.max)
-    after = [horner(terms, span) for terms in state]
+def fall_of(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar]:
+    """Return when a guard first falls in a step, inf if never, and whether that is undecided."""
+    return [*first_fall(terms, spans[0], PROBES_PER_STEP, NODES)]
+
+
+def with_number(measures: Measures, terms: Sequence[Scalar], left_out: float) -> list[Scalar]:
+    """Return the first three measures with those of a number of the state.
+
+    Its last coefficients are compared with the largest number, but with no more than `left_out`
+    times the number itself, or 1 if that is larger.
+    """
+    bound = left_out * larger(NODES.size(terms[0]), 1.0)
+    weight = 1.0 / NODES.least(bound, measures.largest)
+    before_last, last = NODES.size(terms[-2]), NODES.size(terms[-1])
+    return [
+        larger(before_last * weight, measures.before_last),
+        larger(last * weight, measures.last),
+        measures.total + (before_last + last),
+    ]
+
+
+def with_guard(measures: Measures, terms: Sequence[Scalar]) -> list[Scalar]:
+    """Return the first measure with that of a guard, which has one coefficient less."""
+    weight = GUARDED / larger(NODES.size(terms[0]), 1.0)
+    return [larger(NODES.size(terms[-1]) * weight, measures.before_last)]
+
+
+def timing_of(measures: Measures, order: int) -> list[Scalar]:
+    """Return the time after a step, what rounding took from it, whether there is another step, and
+    the length of this one.
+
+    No polynomial's last two terms are more than may be left out in a step (Jorba and Zou 2005). Its
+    length is 0 where coefficients are no numbers.
+    """
+    plain, (time, lost, end) = NODES, measures[4:]
+    before_last = (1.0 / measures.before_last) ** (1.0 / (order - 1))
+    radius = plain.least(before_last, (1.0 / measures.last) ** (1.0 / order))
+    length = math.exp(-2.0 - 0.7 / (order - 1)) * radius
+    length = plain.choose(plain.below(measures.total, math.inf), length, 0.0)
+    remaining = (end - time) - lost
+    span = plain.least(length, remaining)
     # What rounding takes from the time is given back (Knuth's sum of two numbers).
     reached = time + span
     moved = reached - time
     lost = lost + ((time - (reached - moved)) + (span - moved))
-    goes_on = plain.below(span, left)
+    goes_on = plain.below(span, remaining)
     later = reached + lost
-    lost = lost - (later - reached)
-    return [
-        *[scaled[k][i] for i in range(layout.size) for k in range(count)],
-        *after,
-        plain.choose(goes_on, later, end),
-        lost,
-        goes_on,
-        span,
-    ]
+    return [plain.choose(goes_on, later, end), lost - (later - reached), goes_on, span]
 
 
-def step_length(
-    state: Sequence[Sequence[Scalar]], guards: Sequence[Sequence[Scalar]], left_out: float
-) -> Scalar:
-    """Return the step in which the last two terms of no polynomial are more than may be left out.
-
-    They are compared with the largest number, at least 1, but with no more than `left_out` times
-    the number itself. It is 0 where coefficients are no numbers.
-    """
-    plain, order = NODES, len(state[0]) - 1
-    largest: Scalar = 1.0
-    for terms in state:
-        largest = _larger(plain.size(terms[0]), largest)
-    weights = []
-    for terms in state:
-        own = left_out * _larger(plain.size(terms[0]), 1.0)
-        weights.append(1.0 / plain.least(own, largest))
-    guard_weights = [GUARDED / _larger(plain.size(terms[0]), 1.0) for terms in guards]
-
-    def radius(k: int) -> Scalar:
-        ratio: Scalar = 0.0
-        for terms, weight in zip(state, weights, strict=True):
-            ratio = _larger(plain.size(terms[k]) * weight, ratio)
-        for terms, weight in zip(guards, guard_weights, strict=True):
-            if k < order:
-                ratio = _larger(plain.size(terms[k]) * weight, ratio)
-        return (1.0 / ratio) ** (1.0 / k)
-
-    found = math.exp(-2.0 - 0.7 / (order - 1)) * plain.least(radius(order - 1), radius(order))
-    total = plain.total([plain.size(terms[k]) for terms in state for k in (order - 1, order)])
-    return plain.choose(plain.below(total, math.inf), found, 0.0)
+def span_powers(span: Scalar, order: int) -> list[Scalar]:
+    """Return the powers of a step's length from the first on."""
+    powers = [span]
+    for _ in range(1, order):
+        # A long step of what hardly moves has powers beyond all floats; 0 times inf is none.
+        powers.append(NODES.least(powers[-1] * span, sys.float_info.max))
+    return powers
 
 
-def _larger(a: Any, b: Any) -> Any:
-    """The larger of two; the second where the first is not a number."""
+def scaled(terms: Sequence[Scalar], powers: Sequence[Scalar]) -> list[Scalar]:
+    """Return a number's coefficients in powers of the part of a step, and the number after it."""
+    parts = [term * power for term, power in zip(terms[1:], powers, strict=True)]
+    return [terms[0], *parts, horner(terms, powers[0])]
+
+
+def larger(a: Any, b: Any) -> Any:
+    """Return the larger of two; the second where the first is not a number."""
     return NODES.choose(NODES.below(b, a), a, b)
 
 

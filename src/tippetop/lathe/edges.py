@@ -64,7 +64,7 @@ class Edge(NamedTuple):
 
     @property
     def backwards(self) -> "Edge":
-        """The same edge from its end to its start."""
+        """Reverse of this edge, from its end to its start."""
         return Edge(self.end, self.start, -self.turn)
 
     def direction(self, share: float) -> complex:
@@ -85,6 +85,17 @@ class Edge(NamedTuple):
         return np.asarray(
             self.chord / np.sinc(self.turn / math.tau) * np.exp(1j * (t - 0.5) * self.turn)
         )
+
+    def point(self, share: float) -> complex:
+        """Return one of `points`, in a tenth of the time."""
+        half = self.turn / 2.0
+        along = share * _sine_ratio(share * half) / _sine_ratio(half)
+        return self.start + self.chord * along * cmath.exp(1j * (share - 1.0) * half)
+
+    def velocity(self, share: float) -> complex:
+        """Return one of `velocities`, in a tenth of the time."""
+        turned = cmath.exp(1j * (share - 0.5) * self.turn)
+        return self.chord / _sine_ratio(self.turn / 2.0) * turned
 
     def nodes(self) -> tuple[Points, NDArray[np.float64]]:
         """Return points on the edge, and their weights in integrals of polynomials of r, z over dz.
@@ -129,6 +140,11 @@ class Edge(NamedTuple):
         return seen + math.copysign(math.tau, self.turn) if within and beyond else seen
 
 
+def _sine_ratio(angle: float) -> float:
+    """Return sin(angle) / angle."""
+    return math.sin(angle) / angle if angle else 1.0
+
+
 def meetings(first: Edge, second: Edge, within: float) -> list[complex]:
     """Return the points where two edges meet to within a distance, m.
 
@@ -160,14 +176,14 @@ def _polished(first: Edge, second: Edge, point: complex) -> complex:
     """
     t, u = first.share(point), second.share(point)
     for _ in range(NEWTON):
-        along, across = complex(first.velocities(t)), complex(second.velocities(u))
-        gap = complex(second.points(u)) - complex(first.points(t))
+        along, across = first.velocity(t), second.velocity(u)
+        gap = second.point(u) - first.point(t)
         area = (along.conjugate() * across).imag
         if abs(area) <= TANGENT * abs(along) * abs(across):
             return point
         t += (gap.conjugate() * across).imag / area
         u += (gap.conjugate() * along).imag / area
-    return complex(first.points(t))
+    return first.point(t)
 
 
 def _of_lines(first: Edge, second: Edge) -> list[complex]:

@@ -135,7 +135,7 @@ def free_acceleration(axis: Vector, momentum: Vector, top: Top) -> Scalar:
 
 
 def turning_parts(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
-    """The parts h'' c'^2 and h' [L x n']_z / I1 of that, m/s^2."""
+    """Return the parts h'' c'^2 and h' [L x n']_z / I1 of the free acceleration, m/s^2."""
     turning = axis_rate(axis, momentum, top)
     _, slope, curvature = support_at(axis, top.surface)
     lever = slope / top.transverse_inertia
@@ -144,15 +144,15 @@ def turning_parts(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
 
 
 def driven_acceleration(axis: Vector, upwards: Scalar, moment: Vector, top: Top) -> Scalar:
-    """What a force upwards, N, and a moment M about the centre of mass, N m, add: F/m - (h'/I1) [M
-    x n]_z.
+    """Return the gap acceleration F/m - (h'/I1) [M x n]_z of an upward force F, N, and a moment M,
+    N m.
     """
     lever = support_at(axis, top.surface)[1] / top.transverse_inertia
     return upwards / top.mass - lever * cross(moment, axis)[2]
 
 
 def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Whether the gap would close without a contact force, by more than errors of a run.
+    """Return whether the gap would close without a contact force, by more than errors of a run.
 
     A truth value of floats, or an array of them.
     """
@@ -186,8 +186,8 @@ def sliding_rates(state: SlidingState, top: Top) -> SlidingState:
 
 
 def on_table(state: SlidingState, top: Top) -> State:
-    """The whole state of a body that touches the table: height h(c) and vertical velocity h'(c) c'
-    added.
+    """Return the whole state of a body that touches the table: height h(c) and vertical velocity
+    h'(c) c' added.
     """
     height, slope, _ = support_at(state.axis, top.surface)
     sinking = slope * axis_rate(state.axis, state.momentum, top)[2]
@@ -195,5 +195,5 @@ def on_table(state: SlidingState, top: Top) -> State:
 
 
 def along_table(state: State) -> SlidingState:
-    """The part of the state that is free while the body touches the table."""
+    """Return the part of the state that is free while the body touches the table."""
     return SlidingState(state.axis, state.momentum, state.velocity[:2])

@@ -55,7 +55,7 @@ def first_root(
 def stays_positive(
     value: float, rate: float, acceleration: float, jerk: float, step: float
 ) -> bool:
-    """Whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0,
+    """Return whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0,
     step].
     """
 
@@ -72,8 +72,8 @@ def stays_positive(
 
 
 def is_one_way(rate: float, acceleration: float, jerk: float, step: float) -> bool:
-    """Whether a function surely falls, or surely is concave, all along a step: it has one root at
-    most.
+    """Return whether a function falls, or is concave, all along a step, so that it has at most one
+    root.
     """
     falls = rate < 0.0 and rate + step * (acceleration + 0.5 * step * jerk) < 0.0
     return falls or acceleration + step * jerk < 0.0

@@ -64,12 +64,10 @@ POWER = -0.125
 
 
 class RungeKuttaStep(NamedTuple):
-    """A step: the numbers at its start, the rates there and at the stages, the numbers at its
-    end.
-    """
+    """A step: the numbers at its ends, and the rates at its stages."""
 
-    here: Point
-    there: Point
+    start: Point
+    end: Point
     """Where it begins and ends."""
     slopes: Sequence[Point]
     """The rates at its stages, those at its start first and those at its end last."""
@@ -81,66 +79,67 @@ class RungeKuttaStep(NamedTuple):
         """The rates at its end."""
         return self.slopes[-1]
 
-    def doubt(self, measure: Callable[[Point], float]) -> float:
-        """Its error, given a measure of errors."""
-        nothing = (0.0,) * len(self.here)
-        fine = measure(combined(nothing, self.size, FINE, self.slopes))
-        rough = measure(combined(nothing, self.size, ROUGH, self.slopes))
+    def error_estimate(self, measure: Callable[[Point], float]) -> float:
+        """Return the error estimate of the step, by a norm of errors."""
+        zero = (0.0,) * len(self.start)
+        fine = measure(combined(zero, self.size, FINE, self.slopes))
+        rough = measure(combined(zero, self.size, ROUGH, self.slopes))
         return fine * fine / math.hypot(fine, 0.1 * rough) if fine > 0.0 else 0.0
 
     def between(self, part: float) -> Point:
-        """The cubic through its ends, at a part of it."""
-        rest = 1.0 - part
-        at, pull = part * part * (3.0 - 2.0 * part), part * rest * self.size
+        """Return the cubic through the ends of the step, at a part of the step."""
+        remainder = 1.0 - part
+        at, pull = part * part * (3.0 - 2.0 * part), part * remainder * self.size
         return tuple(
-            x + at * (y - x) + pull * (rest * a - part * b)
+            x + at * (y - x) + pull * (remainder * a - part * b)
             for x, y, a, b in zip(
-                self.here, self.there, self.slopes[0], self.slopes[-1], strict=True
+                self.start, self.end, self.slopes[0], self.slopes[-1], strict=True
             )
         )
 
 
 def step_from(
-    here: Point, slope: Point, size: float, rates: Callable[[Point], Point]
+    point: Point, slope: Point, size: float, rates: Callable[[Point], Point]
 ) -> RungeKuttaStep:
-    """A step from a point with known rates."""
-    slopes = stages(here, slope, size, rates)
-    there = combined(here, size, STAGES[-1], slopes)
-    return RungeKuttaStep(here, there, [*slopes, rates(there)], size)
+    """Return a step from a point with known rates."""
+    slopes = stages(point, slope, size, rates)
+    end = combined(point, size, STAGES[-1], slopes)
+    return RungeKuttaStep(point, end, [*slopes, rates(end)], size)
 
 
-def step_to(here: Point, slope: Point, size: float, rates: Callable[[Point], Point]) -> Point:
-    """Where such a step leads."""
-    return combined(here, size, STAGES[-1], stages(here, slope, size, rates))
+def step_to(point: Point, slope: Point, size: float, rates: Callable[[Point], Point]) -> Point:
+    """Return the end of a step of order 8."""
+    return combined(point, size, STAGES[-1], stages(point, slope, size, rates))
 
 
-def stages(here: Point, slope: Point, size: float, rates: Callable[[Point], Point]) -> list[Point]:
-    """The rates at its start and at its stages."""
+def stages(point: Point, slope: Point, size: float, rates: Callable[[Point], Point]) -> list[Point]:
+    """Return the rates at the start of a step and at its stages."""
     slopes = [slope]
     for weights in STAGES[:-1]:
-        slopes.append(rates(combined(here, size, weights, slopes)))
+        slopes.append(rates(combined(point, size, weights, slopes)))
     return slopes
 
 
-def short_step(here: Point, slope: Point, size: float, rates: Callable[[Point], Point]) -> Point:
-    """Where a step leads that is short beside those of order 8: Kutta's, of order 4, costs a
-    third.
-    """
+def short_step(point: Point, slope: Point, size: float, rates: Callable[[Point], Point]) -> Point:
+    """Return the end of a short step by Kutta's method of order 4, at a third of the cost."""
     half = 0.5 * size
-    second = rates(moved(here, half, slope))
-    third = rates(moved(here, half, second))
-    last = rates(moved(here, size, third))
-    return combined(here, size / 6.0, (1.0, 2.0, 2.0, 1.0), (slope, second, third, last))
+    second = rates(advanced(point, half, slope))
+    third = rates(advanced(point, half, second))
+    last = rates(advanced(point, size, third))
+    return combined(point, size / 6.0, (1.0, 2.0, 2.0, 1.0), (slope, second, third, last))
 
 
-def moved(here: Point, size: float, slope: Point) -> Point:
-    """A point moved straight on."""
-    return tuple(x + size * rate for x, rate in zip(here, slope, strict=True))
+def advanced(point: Point, size: float, slope: Point) -> Point:
+    """Return a point moved along a slope."""
+    return tuple(x + size * rate for x, rate in zip(point, slope, strict=True))
 
 
-def combined(here: Point, size: float, weights: Sequence[float], slopes: Sequence[Point]) -> Point:
-    """A point plus a step along a mean of slopes."""
+def combined(point: Point, size: float, weights: Sequence[float], slopes: Sequence[Point]) -> Point:
+    """Return a point plus a step along a mean of slopes."""
     columns = zip(*slopes, strict=True)
     return tuple(
-        [x + size * sum(map(mul, weights, column)) for x, column in zip(here, columns, strict=True)]
+        [
+            x + size * sum(map(mul, weights, column))
+            for x, column in zip(point, columns, strict=True)
+        ]
     )

@@ -26,7 +26,7 @@ class Arithmetic(Sums, Protocol):
     """What else is done to coefficients beside plain operators."""
 
     def least(self, a: Scalar, b: Scalar) -> Scalar:
-        """The smaller of two, element by element; the second where one is not a number."""
+        """Return the smaller of two, element by element; the second where one is not a number."""
 
     def size(self, a: Scalar) -> Scalar:
         """Absolute value."""
@@ -35,10 +35,10 @@ class Arithmetic(Sums, Protocol):
         """1 where the first is less than the second, else 0."""
 
     def choose(self, condition: Scalar, a: Scalar, b: Scalar) -> Scalar:
-        """The first where a condition is not 0, else the second."""
+        """Return the first where a condition is not 0, else the second."""
 
     def rarely(self, condition: Scalar, a: Scalar, b: Scalar) -> Scalar:
-        """The same, where it is the second mostly; all in a function have one condition."""
+        """Return the first where a condition is not 0, else the second, which is the usual case."""
 
 
 class PlainArithmetic:
@@ -70,58 +70,58 @@ class Series:
     def __init__(self, rule: Callable[[int], Scalar], arithmetic: Sums) -> None:
         self.rule = rule
         self.arithmetic = arithmetic
-        self.known: list[Scalar] = []
+        self.coefficients: list[Scalar] = []
 
     def __getitem__(self, k: int) -> Scalar:
         return self.up_to(k)[k]
 
     def up_to(self, k: int) -> list[Scalar]:
         """Coefficients, at least as many as up to the k-th."""
-        known = self.known
-        while len(known) <= k:
-            known.append(self.rule(len(known)))
-        return known
+        coefficients = self.coefficients
+        while len(coefficients) <= k:
+            coefficients.append(self.rule(len(coefficients)))
+        return coefficients
 
     def _made(self, rule: Callable[[int], Scalar]) -> "Series":
         return Series(rule, self.arithmetic)
 
-    def __add__(self, other: Any) -> "Series":
-        if isinstance(other, Series):
-            return self._made(lambda k: self[k] + other[k])
-        if is_exactly(other, 0.0):
+    def __add__(self, operand: Any) -> "Series":
+        if isinstance(operand, Series):
+            return self._made(lambda k: self[k] + operand[k])
+        if is_exactly(operand, 0.0):
             return self
-        return self._made(lambda k: self[k] if k else self[0] + other)
+        return self._made(lambda k: self[k] if k else self[0] + operand)
 
-    def __mul__(self, other: Any) -> Any:
-        if isinstance(other, Series):
-            if other is self:
+    def __mul__(self, operand: Any) -> Any:
+        if isinstance(operand, Series):
+            if operand is self:
                 return self._squared()
-            return self._made(lambda k: self._product(other, k))
-        if is_exactly(other, 0.0):
+            return self._made(lambda k: self._product(operand, k))
+        if is_exactly(operand, 0.0):
             return 0.0
-        if is_exactly(other, 1.0):
+        if is_exactly(operand, 1.0):
             return self
-        return self._made(lambda k: other * self[k])
+        return self._made(lambda k: operand * self[k])
 
-    def _product(self, other: "Series", k: int) -> Scalar:
-        ours, theirs = self.up_to(k), other.up_to(k)
+    def _product(self, operand: "Series", k: int) -> Scalar:
+        ours, theirs = self.up_to(k), operand.up_to(k)
         return self.arithmetic.total(list(map(mul, ours, theirs[k::-1])))
 
     def _squared(self) -> "Series":
         def rule(k: int) -> Scalar:
-            known = self.up_to(k)
-            middle = known[k // 2] * known[k // 2] if k % 2 == 0 else 0.0
-            return self._twice(known, range((k + 1) // 2), k) + middle
+            coefficients = self.up_to(k)
+            middle = coefficients[k // 2] * coefficients[k // 2] if k % 2 == 0 else 0.0
+            return self._twice(coefficients, range((k + 1) // 2), k) + middle
 
         return self._made(rule)
 
-    def _twice(self, known: list[Scalar], places: range, k: int) -> Scalar:
+    def _twice(self, coefficients: list[Scalar], places: range, k: int) -> Scalar:
         """Products of coefficients that come twice in the k-th of a square."""
-        terms = [known[j] * known[k - j] for j in places]
+        terms = [coefficients[j] * coefficients[k - j] for j in places]
         return 2.0 * self.arithmetic.total(terms) if terms else 0.0
 
     def _root(self) -> "Series":
-        """The square root: it takes half of what other powers do."""
+        """Return the square root, at half the cost of other powers."""
         half: list[Scalar] = []
 
         def rule(k: int) -> Scalar:
@@ -129,25 +129,29 @@ class Series:
                 first = self[0] ** 0.5
                 half.append(0.5 / first)
                 return first
-            known = root.known
-            middle = known[k // 2] * known[k // 2] if k % 2 == 0 else 0.0
-            return (self[k] - (self._twice(known, range(1, (k + 1) // 2), k) + middle)) * half[0]
+            coefficients = root.coefficients
+            middle = coefficients[k // 2] * coefficients[k // 2] if k % 2 == 0 else 0.0
+            return (
+                self[k] - (self._twice(coefficients, range(1, (k + 1) // 2), k) + middle)
+            ) * half[0]
 
         root = self._made(rule)
         return root
 
-    def __truediv__(self, other: Any) -> Any:
-        if not isinstance(other, Series):
-            return self * (1.0 / other)
+    def __truediv__(self, operand: Any) -> Any:
+        if not isinstance(operand, Series):
+            return self * (1.0 / operand)
         inverse: list[Scalar] = []
 
         def rule(k: int) -> Scalar:
             if k == 0:
-                inverse.append(1.0 / other[0])
+                inverse.append(1.0 / operand[0])
                 return self[0] * inverse[0]
-            divisor = other.up_to(k)
-            known = self.arithmetic.total(list(map(mul, quotient.known, divisor[k:0:-1])))
-            return (self[k] - known) * inverse[0]
+            divisor = operand.up_to(k)
+            coefficients = self.arithmetic.total(
+                list(map(mul, quotient.coefficients, divisor[k:0:-1]))
+            )
+            return (self[k] - coefficients) * inverse[0]
 
         quotient = self._made(rule)
         return quotient
@@ -164,9 +168,9 @@ class Series:
             if k == 0:
                 inverse.append(1.0 / self[0])
                 return self[0] ** exponent
-            base, found = self.up_to(k), power.known
+            base, made = self.up_to(k), power.coefficients
             factors = [((exponent + 1.0) * j - k) / k for j in range(1, k + 1)]
-            terms = list(map(mul, factors, map(mul, base[1:], found[k - 1 :: -1])))
+            terms = list(map(mul, factors, map(mul, base[1:], made[k - 1 :: -1])))
             return self.arithmetic.total(terms) * inverse[0]
 
         power = self._made(rule)
@@ -175,24 +179,24 @@ class Series:
     def __neg__(self) -> "Series":
         return self._made(lambda k: -self[k])
 
-    def __sub__(self, other: Any) -> "Series":
-        return self.__add__(-other)
+    def __sub__(self, operand: Any) -> "Series":
+        return self.__add__(-operand)
 
-    def __radd__(self, other: Any) -> "Series":
-        return self.__add__(other)
+    def __radd__(self, operand: Any) -> "Series":
+        return self.__add__(operand)
 
-    def __rsub__(self, other: Any) -> "Series":
-        return (-self).__add__(other)
+    def __rsub__(self, operand: Any) -> "Series":
+        return (-self).__add__(operand)
 
-    def __rmul__(self, other: Any) -> Any:
-        return self * other
+    def __rmul__(self, operand: Any) -> Any:
+        return self * operand
 
-    def __rtruediv__(self, other: Any) -> Any:
-        return self**-1.0 * other
+    def __rtruediv__(self, operand: Any) -> Any:
+        return self**-1.0 * operand
 
 
 def is_exactly(value: object, number: float) -> bool:
-    """Whether a value is a plain number, and this one."""
+    """Return whether a value is a plain number, and this one."""
     return isinstance(value, (int, float)) and value == number
 
 
@@ -214,7 +218,7 @@ def solved(
 
 
 def unknown(k: int) -> Scalar:
-    """The rule of a series that has none yet."""
+    """Refuse to give a coefficient of a series without a rule."""
     raise AssertionError(f"a series is asked for its coefficient {k} before that is known")
 
 

@@ -22,7 +22,7 @@ class State(NamedTuple):
     """Height of the centre of mass above the table, m."""
 
     def pack(self) -> tuple[Scalar, ...]:
-        """The 10 numbers of the state in the order of its attributes."""
+        """Return the 10 numbers of the state in the order of its attributes."""
         return (*self.axis, *self.momentum, *self.velocity, self.height)
 
     @classmethod
@@ -41,7 +41,7 @@ class SlidingState(NamedTuple):
     velocity: Horizontal
 
     def pack(self) -> tuple[Scalar, ...]:
-        """The 8 numbers of the state in the order of its attributes."""
+        """Return the 8 numbers of the state in the order of its attributes."""
         return (*self.axis, *self.momentum, *self.velocity)
 
     @classmethod

@@ -123,12 +123,12 @@ def natural_units(top: Top) -> Units:
 
 
 def natural(top: Top) -> Top:
-    """The same top in its natural units."""
+    """Return the top in its natural units."""
     return top.kind.top(top.numbers)
 
 
 def natural_state(state: State, units: Units) -> State:
-    """A state in natural units from one in SI."""
+    """Return a state in natural units from one in SI."""
     return State(
         state.axis,
         scale(1.0 / units.angular_momentum, state.momentum),

@@ -48,7 +48,7 @@ def add(a: Vector, b: Vector) -> Vector:
 
 
 def scale(factor: Scalar, a: Vector) -> Vector:
-    """A vector times a number."""
+    """Return a vector times a number."""
     return (factor * a[0], factor * a[1], factor * a[2])
 
 
@@ -58,7 +58,7 @@ def length(a: Vector) -> Scalar:
 
 
 def power(base: Scalar, exponent: float) -> Scalar:
-    """A power that is not whole; no number of a negative float, of which Python makes a complex
+    """Return a power that is not whole; nan of a negative float, of which Python makes a complex
     number.
     """
     return nan if isinstance(base, (int, float)) and base < 0.0 else base**exponent
@@ -79,8 +79,8 @@ def solve(matrix: list[list[Scalar]], right: list[Scalar]) -> list[Scalar]:
             for j in range(i + 1, count + 1):
                 row[j] = row[j] - factor * pivot[j]
     for i in reversed(range(count)):
-        known = rows[i][count]
+        value = rows[i][count]
         for j in range(i + 1, count):
-            known = known - rows[i][j] * rows[j][count]
-        rows[i][count] = known / rows[i][i]
+            value = value - rows[i][j] * rows[j][count]
+        rows[i][count] = value / rows[i][i]
     return [row[count] for row in rows]

@@ -80,7 +80,7 @@ class PoleExact(NamedTuple):
 
 
 def state_from_angles(angles: Angles, top: Top, functions: Functions) -> SlidingState:
-    """The state of a sliding body from Euler angles.
+    """Return the state of a sliding body from Euler angles.
 
     Parameters
     ----------

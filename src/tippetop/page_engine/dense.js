@@ -145,7 +145,7 @@ export class DenseSolution {
     return new DenseSolution(knots, Float64Array.from(terms), size);
   }
 
-  static nothing(time, size) {
+  static empty(time, size) {
     return new DenseSolution([time], new Float64Array(0), size);
   }
 

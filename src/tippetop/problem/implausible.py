@@ -58,12 +58,12 @@ def warn_if_implausible(problem: Problem) -> None:
 
 
 # translate: skip
-def warn(text: str) -> None:
-    """Warn with `Implausible`, at the line outside this package that called it."""
+def warn(text: str, category: type[Warning] = Implausible) -> None:
+    """Warn, at the line outside this package that called it."""
     frame, level = sys._getframe(1), 2
     while frame.f_back and frame.f_globals.get("__name__", "").startswith(CALLERS):
         frame, level = frame.f_back, level + 1
-    warnings.warn(text, Implausible, stacklevel=level)
+    warnings.warn(text, category, stacklevel=level)
 
 
 # translate: skip

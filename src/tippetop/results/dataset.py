@@ -1,6 +1,7 @@
 """Labelling of results as datasets, with names, units and provenance."""
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -22,14 +23,8 @@ from tippetop.support.lazy_pint import leave_pint_alone
 
 leave_pint_alone()
 
-NAMED = {
-    name: PandasIndex(np.array(list(components)), name, coord_dtype=np.dtype("<U1"))
-    for name, components in {"space": "xyz", "quaternion": "wxyz"}.items()
-}
-"""Indexes of the components of vectors and quaternions."""
-
-LABELS = {name: index.create_variables()[name] for name, index in NAMED.items()}
-"""Names of the components, as coordinates."""
+COMPONENTS = {"space": "xyz", "quaternion": "wxyz"}
+"""Names of the components of vectors and quaternions, by their dimensions."""
 
 TIME = {"long_name": "time since launch", "units": "s", "standard_name": "time"}
 CONVENTIONS = "CF-1.11"
@@ -85,18 +80,28 @@ def assemble(
         variable = METRICS.get(name) or MONITORS[name]
         number = np.array(value, dtype=variable.dtype)
         variables[name] = xr.Variable((), number, variable.attributes, fastpath=True)
-    lengths = {"time": len(times), **{name: len(index.index) for name, index in NAMED.items()}}
+    lengths = {"time": len(times), **{name: len(names) for name, names in COMPONENTS.items()}}
     for name, values in lists.items():
         dimension = name.partition("_")[0]
         variables[name] = xr.Variable((dimension,), values, LISTED[name].attributes, fastpath=True)
         lengths[dimension] = len(values)
     # A ready index saves xarray the analysis of the times.
     instants = PandasIndex(pd.Index(times, name="time"), "time", times.dtype, fastpath=True)
-    indexes: dict[Any, Index] = {"time": instants, **NAMED}
+    indexes: dict[Any, Index] = {"time": instants, **_component_indexes()}
     variables |= instants.create_variables()
-    variables |= {name: labels.copy(deep=False) for name, labels in LABELS.items()}
+    for index in _component_indexes().values():
+        variables |= index.create_variables()
     variables["time"].attrs = dict(TIME)
     # The public constructor would align and merge aligned variables: it takes five times as long.
     return xr.Dataset._construct_direct(
         variables, set(indexes), lengths, {"Conventions": CONVENTIONS, **attributes}, indexes
     )
+
+
+@cache
+def _component_indexes() -> dict[str, PandasIndex]:
+    """Return the indexes of `COMPONENTS`, made when first asked for: xarray imports dask then."""
+    return {
+        name: PandasIndex(np.array(list(names)), name, coord_dtype=np.dtype("<U1"))
+        for name, names in COMPONENTS.items()
+    }

@@ -169,7 +169,7 @@ class Recorder:
         self._sums, self._pole = values[:, -1], float(poles[-1])
         for group in block.groups:
             size, cosine, height, energy, jellett = read(
-                monitored_in, group.mode, group.begun, total=len(group.which)
+                monitored_in, group.mode, group.start_numbers, total=len(group.which)
             )
             with np.errstate(invalid="ignore"):  # edges have nan where the axis is vertical
                 self.monitor.check(size, cosine, height, energy, jellett, values[3, group.which])

@@ -34,9 +34,9 @@ grow.
 """
 
 END_SPACINGS = 4.0
-"""How many spacings of doubles the time of an event may be off: it is rounded where it is found
-within a step, and where the step's beginning is added. With 0 a run that ends as the top turns over
-may be said not to have turned over; with many, one that ends before it to have.
+"""Rounding of the time of an event, in spacings of doubles: of the time within a step, and of its
+sum with the start of the step. With 0, a run that ends as the top turns over might not count as
+turned over; with many, a run that ends before might.
 """
 
 FORCE_DEGREE = 20

@@ -32,7 +32,7 @@ class Described(NamedTuple):
 
 
 OVERWRITE, RESUME, OTHER_OUT = "overwrite=True", "resume=True", "another out"
-"""How sentences name arguments in Python; the command line names its options instead."""
+"""Names of arguments in Python in messages; the command line names its options instead."""
 
 
 # translate: skip

@@ -22,7 +22,7 @@ from tippetop.support.errors import TippetopError, Unavailable
 from tippetop.support.interrupts import deferred
 
 RESTARTS = 3
-"""How often a job whose process was killed is done again."""
+"""Number of times that a job whose process was killed is repeated."""
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 _SPAWN = multiprocessing.get_context("spawn")

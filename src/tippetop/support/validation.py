@@ -171,7 +171,7 @@ class Padded(NamedTuple):
     """Lets a field of several numbers omit the last one, which is then 0."""
 
     least: int
-    """How many numbers there must be."""
+    """Least number of numbers."""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler

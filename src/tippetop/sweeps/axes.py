@@ -90,7 +90,7 @@ class Entry(Part):
 
     @classmethod
     def written(cls, field: str, table: Mapping[str, Any]) -> Self:
-        """The entry of a field, from the table of its others."""
+        """Return the entry of a field, from the table of its other keys."""
         if "field" in table:
             raise InvalidInput(
                 f"{field}.field",
@@ -109,7 +109,7 @@ class Axis(Entry):
 
     @classmethod
     def of(cls, field: str, entry: Any) -> "Axis":
-        """The axis that is written as a list, or an array, or a table."""
+        """Return the axis that is written as a list, an array or a table."""
         if is_quantity(entry) and np.ndim(entry.magnitude):
             entry = {"values": in_si_of(field, entry)}
         elif isinstance(entry, list | tuple | range) or (
@@ -126,7 +126,7 @@ class Axis(Entry):
         raise NotImplementedError
 
     def at(self, places: Flat) -> Array:
-        """Some of the values, by their places, without making the others."""
+        """Return the values at some places, without making the others."""
         raise NotImplementedError
 
     @property
@@ -148,23 +148,23 @@ class Spaced(Axis):
 
     @model_validator(mode="after")
     def _has_values(self) -> Self:
-        given = f"{self.first:g} to {self.last:g}"
+        ends = f"{self.first:g} to {self.last:g}"
         if self.count > 1 and self.first == self.last:
             raise InvalidInput(
-                "", Described(given), "", "gives one value many times", "write ends that differ"
+                "", Described(ends), "", "gives one value many times", "write ends that differ"
             )
         if self.spacing == "geometric" and not (
             self.first > 0 < self.last or self.first < 0 > self.last
         ):
             raise InvalidInput(
-                "", Described(given), "ends of one sign, neither 0", "cannot be in equal ratios"
+                "", Described(ends), "ends of one sign, neither 0", "cannot be in equal ratios"
             )
         apart = self.last - self.first
         if self.spacing == "geometric":
             apart = max(self.last / self.first, self.first / self.last)
         if not math.isfinite(apart):
             raise InvalidInput(
-                "", Described(given), "ends that are closer", "reaches too far for numbers"
+                "", Described(ends), "ends that are closer", "reaches too far for numbers"
             )
         return self
 
@@ -174,7 +174,7 @@ class Spaced(Axis):
         return self.count
 
     def at(self, places: Flat) -> Array:
-        """Some of the values, by their places, without making the others."""
+        """Return the values at some places, without making the others."""
         inner = between(
             self.first, self.last, places / max(self.count - 1, 1), self.spacing == "geometric"
         )
@@ -205,5 +205,5 @@ class Listed(Axis):
         return len(self.numbers)
 
     def at(self, places: Flat) -> Array:
-        """Some of the values, by their places."""
+        """Return the values at some places."""
         return np.array(self.numbers)[places]

@@ -50,7 +50,7 @@ class Cells:
     """The problem whose fields are arrays of shape (n,) where they change."""
 
     def launches(self, which: NDArray[np.intp], duration: float) -> Launches:
-        """Some of the cells as launches."""
+        """Return some of the cells as launches."""
         count = len(self.fault)
         numbers = [spread(number, count)[which] for number in self.top.numbers]
         contact_rule = self.problem.contact
@@ -66,27 +66,29 @@ class Cells:
         )
 
     def _own_rules(self, which: NDArray[np.intp]) -> Own | None:
-        """What makes the rules of some of the cells, if their contact brings its own."""
+        """Return the function that makes the rules of some of the cells, if their contact has its
+        own.
+        """
         contact_rule = self.problem.contact
         if type(contact_rule).rules is Contact.rules:
             return None
         units = [spread(unit, len(self.fault)) for unit in self.units]
-        found = np.empty(len(which), dtype=object)
+        makers = np.empty(len(which), dtype=object)
         for place, cell in enumerate(which.tolist()):
-            here = Units(*(float(unit[cell]) for unit in units))
-            found[place] = partial(automaton_of, single_part(contact_rule, cell), units=here)
-        return found
+            cell_units = Units(*(float(unit[cell]) for unit in units))
+            makers[place] = partial(automaton_of, single_part(contact_rule, cell), units=cell_units)
+        return makers
 
 
 def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
-    """The cells that put these values, each of shape (n,), into a problem.
+    """Return the cells that put these values, each of shape (n,), into a problem.
 
     Raises `InvalidInput` if a field is none, or not a number.
     """
-    known = dict(numeric_fields(problem))
+    numeric = dict(numeric_fields(problem))
     for field in values:
-        if field not in known:
-            raise unknown_field(field, Described("what is swept"), list(known), Part.places)
+        if field not in numeric:
+            raise unknown_field(field, Described("what is swept"), list(numeric), Part.places)
     if problem.launch.velocity is not None and any(
         field.startswith("launch.slip.") for field in values
     ):
@@ -112,7 +114,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
             Fault.NO_SUCH_BODY
         )
         for field, numbers in values.items():
-            fault[~allowed(numbers, known[field])] = Fault.VALUE_OUT_OF_RANGE
+            fault[~allowed(numbers, numeric[field])] = Fault.VALUE_OUT_OF_RANGE
         for part in (*filled.body.shapes, filled.friction, filled.contact):
             fault[refused(part, count)] = Fault.VALUE_OUT_OF_RANGE
         size = np.max([spread(size, count) for size in sizes(filled.body.surface)], axis=0)
@@ -139,7 +141,9 @@ def numeric_fields(part: Part, prefix: str = "") -> Iterator[tuple[str, list[Any
 
 
 def put(part: PartType, values: Mapping[str, Array], prefix: str = "") -> PartType:
-    """A part with arrays for some of its numbers: not validated, but with all its properties."""
+    """Return a part with arrays for some of its numbers: not validated, but with all its
+    properties.
+    """
     fields: dict[str, Any] = {}
     for name in type(part).model_fields:
         value = getattr(part, name)
@@ -152,7 +156,9 @@ def put(part: PartType, values: Mapping[str, Array], prefix: str = "") -> PartTy
 
 
 def _each(value: Any, path: str) -> dict[str, Any]:
-    """A field by its name with dots, or what is in it by theirs if it is a tuple."""
+    """Return a field by its name with dots, or the fields inside it by their names if it is a
+    tuple.
+    """
     return (
         {f"{path}.{k}": one for k, one in enumerate(value)}
         if isinstance(value, tuple)
@@ -161,7 +167,7 @@ def _each(value: Any, path: str) -> dict[str, Any]:
 
 
 def single_part(part: PartType, cell: int) -> PartType:
-    """The part of one cell, from one with arrays for some of its numbers.
+    """Return the part of one cell, from one with arrays for some of its numbers.
 
     Raises `InvalidInput` if there is no such part.
     """
@@ -185,10 +191,10 @@ def single_part(part: PartType, cell: int) -> PartType:
 
 
 def refused(part: Part, count: int) -> NDArray[np.bool_]:
-    """The cells that a part refuses by rules of its own, beyond its numbers' limits, shape
+    """Return the cells that a part refuses by rules of its own, beyond its numbers' limits, shape
     (count,).
     """
-    found = np.zeros(count, dtype=bool)
+    is_refused = np.zeros(count, dtype=bool)
     rules = type(part).__pydantic_decorators__
     changes = any(isinstance(getattr(part, name), np.ndarray) for name in type(part).model_fields)
     if changes and (rules.model_validators or rules.field_validators):
@@ -196,12 +202,12 @@ def refused(part: Part, count: int) -> NDArray[np.bool_]:
             try:
                 single_part(part, cell)
             except InvalidInput:
-                found[cell] = True
-    return found
+                is_refused[cell] = True
+    return is_refused
 
 
 def allowed(values: Array, limits: list[Any]) -> NDArray[np.bool_]:
-    """Which values a field may have."""
+    """Return which values a field may have."""
     fine = np.isfinite(values)
     for limit in limits:
         for name, holds in _LIMITS.items():
@@ -215,7 +221,7 @@ _LIMITS = {"gt": np.greater, "ge": np.greater_equal, "lt": np.less, "le": np.les
 
 
 def launch_state(problem: Problem, fault: NDArray[np.int8]) -> State:
-    """The states at launch in SI of a problem with arrays for fields, every number of shape
+    """Return the states at launch in SI of a problem with arrays for fields, every number of shape
     (count,).
 
     Of a body of several surfaces, another one may be lowest in every cell: those are launched one
@@ -234,5 +240,5 @@ def launch_state(problem: Problem, fault: NDArray[np.int8]) -> State:
 
 
 def spread(number: Any, count: int) -> Array:
-    """A number, or an array of them, as an array of shape (count,)."""
+    """Return a number, or an array of them, as an array of shape (count,)."""
     return np.broadcast_to(np.asarray(number, dtype=float), (count,))

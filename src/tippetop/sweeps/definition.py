@@ -84,9 +84,9 @@ class Sweep(Part):
     def _can_be_computed(self) -> Self:
         chosen = [name for name in GRIDS if getattr(self, name) is not None]
         if len(chosen) != 1:
-            given = Described(" and ".join(chosen)) if chosen else MISSING
+            stated = Described(" and ".join(chosen)) if chosen else MISSING
             fault = "are given together" if chosen else ""
-            raise InvalidInput(", ".join(GRIDS), given, "one of them", fault)
+            raise InvalidInput(", ".join(GRIDS), stated, "one of them", fault)
         require_recordable(self.problem.top)
         if self.settled is not None:
             require_jellett(self.problem.top)
@@ -97,9 +97,9 @@ class Sweep(Part):
     @cached_property
     def grid(self) -> Product | Draws | LaunchSamples:
         """The cells."""
-        found = self.axes or self.draws or self.samples
-        assert found is not None
-        return found
+        grid = self.axes or self.draws or self.samples
+        assert grid is not None
+        return grid
 
     @property
     def cells(self) -> int:
@@ -125,17 +125,19 @@ class Sweep(Part):
         return [tuple(int(k) for k in place) for place in np.ndindex(*counts)]
 
     def region(self, task: Task) -> tuple[slice, ...]:
-        """The cells of a task along every dimension."""
+        """Return the cells of a task along every dimension."""
         parts = zip(task, self.chunk, self.grid.shape, strict=True)
         return tuple(slice(k * part, min((k + 1) * part, size)) for k, part, size in parts)
 
     def numbers(self, region: tuple[slice, ...]) -> Any:
-        """The cells of a region, counted row by row over the whole sweep, in its shape."""
+        """Return the numbers of the cells of a region, counted row by row over the sweep, in its
+        shape.
+        """
         ranges = [np.arange(part.start, part.stop) for part in region]
         return np.ravel_multi_index(np.ix_(*ranges), self.grid.shape)
 
     def to_fields(self) -> dict[str, Any]:
-        """The sweep as plain numbers and words, as in a file: ``Sweep(**fields)`` is the
+        """Return the sweep as plain numbers and words, as in a file: ``Sweep(**fields)`` is the
         sweep.
         """
         return self.model_dump(mode="json", by_alias=True, exclude_none=True)
@@ -167,5 +169,5 @@ def _only_refusals() -> Iterator[None]:
 
 
 def is_sweep(fields: Mapping[str, Any]) -> bool:
-    """Whether the tables of a TOML file are those of a sweep rather than of a problem."""
+    """Return whether the tables of a TOML file are those of a sweep rather than of a problem."""
     return bool({*GRIDS, "duration"} & set(fields)) or isinstance(fields.get("problem"), dict | str)

@@ -56,23 +56,23 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
 
 def _unknown(count: int, outcome: Ending) -> dict[str, NDArray[np.generic]]:
     """Return each variable for cells of which nothing but the outcome is known."""
-    found: dict[str, NDArray[np.generic]] = {
+    variables: dict[str, NDArray[np.generic]] = {
         name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()
     }
-    found["outcome"][:] = outcome
-    found["fault"][:] = Fault.NONE
-    return found
+    variables["outcome"][:] = outcome
+    variables["fault"][:] = Fault.NONE
+    return variables
 
 
-@np.errstate(all="ignore")  # what is no number is told by outcomes
+@np.errstate(all="ignore")  # numbers that are not finite show in outcomes
 def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
     count = len(numbers)
-    found = _unknown(count, Ending.BAD)
-    found["fault"][:] = cells.fault
+    variables = _unknown(count, Ending.BAD)
+    variables["fault"][:] = cells.fault
     good = np.flatnonzero(cells.fault == Fault.NONE)
     if not len(good):
-        return found
+        return variables
     launches = cells.launches(good, sweep.duration)
     method = None if is_alone(launches) else stepper(swept_motion(launches.kind), sweep.tolerance)
     alike = np.argsort(expected_cost(launches), kind="stable")
@@ -93,8 +93,8 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         units = Units(*(spread(unit, count)[which] for unit in cells.units))
         values = metrics(ends, some.state, some.top, units) | {"outcome": ending(ends, some.state)}
         for name, numbers_found in values.items():
-            found[name][which] = numbers_found.astype(SWEPT[name].dtype)
-    return found
+            variables[name][which] = numbers_found.astype(SWEPT[name].dtype)
+    return variables
 
 
 def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
@@ -107,8 +107,8 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     top, end = launches.top, ends.state
     monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
     monitor.check(*(number[None] for number in (*monitored_quantities(end, top), gone)))
-    told = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in OUTCOMES_OF_MOTION])
-    ends.outcome[told & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
+    is_reported = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in OUTCOMES_OF_MOTION])
+    ends.outcome[is_reported & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
 
 
 @lru_cache

@@ -67,30 +67,30 @@ class NodeFunctions:
         return angle.graph.node(COSINE, (angle,))
 
 
-def pieces(kind: Kind, given: Array, numbers: Array) -> Piece:
-    """The pieces that begin as given, of shape (GIVEN, n), of tops with these numbers,
-    (kind.numbers, n).
+def pieces(kind: Kind, starts: Array, numbers: Array) -> Piece:
+    """Return the parts of flights that begin with these numbers, of shape (GIVEN, n), of tops with
+    these numbers, (kind.numbers, n).
     """
-    count = given.shape[1]
-    start, parameters = padded(given), padded(numbers)
-    found = np.empty((len(Piece._fields), start.shape[1]))
-    _code(kind)(start, parameters, found)
-    return Piece(*found[:, :count])
+    count = starts.shape[1]
+    start, parameters = padded(starts), padded(numbers)
+    parts = np.empty((len(Piece._fields), start.shape[1]))
+    _code(kind)(start, parameters, parts)
+    return Piece(*parts[:, :count])
 
 
 @lru_cache(maxsize=16)
 def _code(kind: Kind) -> Callable[[Array, Array, Array], None]:
-    def rows(given: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
-        return piece(kind.top(tuple(numbers)), given, NODES)
+    def rows(start: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
+        return flight_part(kind.top(tuple(numbers)), start, NODES)
 
     return compiled(rows, GIVEN, kind.numbers, effort=0)
 
 
-def piece(top: Top, given: Sequence[Any], plain: Arithmetic) -> Piece:
-    """The piece of a flight that begins as given."""
-    here = fly(State.unpack(given[STATE]), given[TIME], top, NodeFunctions())
-    tip, gap, reach = flight_terms(here, given[LEFT], top, plain)
-    zero, doubt = first_fall(divided(gap, given[VANISHING], plain), reach, CLOSER_LOOKS, plain)
+def flight_part(top: Top, start: Sequence[Any], plain: Arithmetic) -> Piece:
+    """Return the part of a flight that begins with these numbers."""
+    motion = fly(State.unpack(start[STATE]), start[TIME], top, NodeFunctions())
+    tip, gap, reach = flight_terms(motion, start[LEFT], top, plain)
+    zero, doubt = first_fall(divided(gap, start[VANISHING], plain), reach, CLOSER_LOOKS, plain)
     touches = plain.below(zero, reach)
     span = plain.least(zero, reach)
     floor, ceiling = extremes(tip, span, plain)
@@ -99,12 +99,12 @@ def piece(top: Top, given: Sequence[Any], plain: Arithmetic) -> Piece:
     if is_edge(top.surface):
         doubt += 1.0 - plain.below(0.0, reach)
     return Piece(
-        span, touches, doubt + met(floor, ceiling, given[WANTED], plain), highest, floor, ceiling
+        span, touches, doubt + met(floor, ceiling, start[WANTED], plain), highest, floor, ceiling
     )
 
 
 def flight_terms(
-    state: State, left: Scalar, top: Top, plain: Arithmetic
+    state: State, remaining: Scalar, top: Top, plain: Arithmetic
 ) -> tuple[list[Scalar], list[Scalar], Scalar]:
     """Polynomials of n_z and of the gap in flight, and how far they serve, all that is left at
     most.
@@ -116,20 +116,24 @@ def flight_terms(
     support = support_terms(top.surface, tip, plain)
     fall = (state.height, state.velocity[2], -0.5 * top.gravity)
     gap = [b - s for b, s in zip(fall, support[:3], strict=True)] + [-term for term in support[3:]]
-    reach = step_size([tip, support], left, plain)
+    reach = step_size([tip, support], remaining, plain)
     if is_edge(top.surface):
         sine = axis_sine(state.axis)
         beside = plain.least(reach, BESIDE * sine / moving.frequency)
-        reach = plain.choose(plain.below(NARROWEST, sine), beside, 0.0 * left)
+        reach = plain.choose(plain.below(NARROWEST, sine), beside, 0.0 * remaining)
     return tip, gap, reach
 
 
 def divided(terms: Sequence[Scalar], vanishing: Scalar, plain: Arithmetic) -> list[Scalar]:
-    """A polynomial whose first coefficients vanish, divided by the power of time that it has."""
-    found = list(terms)
+    """Return a polynomial whose first coefficients vanish, divided by the power of time that it
+    has.
+    """
+    terms_left = list(terms)
     for most in range(int(max(Start))):
-        more, following = plain.below(most + 0.5, vanishing), [*found[1:], 0.0 * found[0]]
-        found = [
-            plain.choose(more, after, here) for here, after in zip(found, following, strict=True)
+        is_zero = plain.below(most + 0.5, vanishing)
+        shifted = [*terms_left[1:], 0.0 * terms_left[0]]
+        terms_left = [
+            plain.choose(is_zero, after, term)
+            for term, after in zip(terms_left, shifted, strict=True)
         ]
-    return found
+    return terms_left

@@ -86,7 +86,7 @@ def fly_all(
     gap acceleration so many are `vanishing` at the start. Given is also what follows the tip of the
     axis, under which numbers, and the times at the start.
     """
-    tip, launches, begun = seen
+    tip, launches, begins = seen
     time, highest = np.zeros_like(horizon), np.zeros_like(horizon)
     landed, lost = np.zeros((2, *horizon.shape), dtype=bool)
     top = kind.top(tuple(numbers))
@@ -95,30 +95,31 @@ def fly_all(
     def separation(i: int) -> Separation:
         return Separation.of(single(state, i), kind.top(tuple(numbers[:, i].tolist())))
 
-    given = np.array([*state.pack(), time, horizon, vanishing, *tip.wanted(launches)])
+    starts = np.array([*state.pack(), time, horizon, vanishing, *tip.pauses(launches)])
     for _ in range(PIECES):
         active = np.flatnonzero(~landed & ~lost & (time < horizon))
         if not len(active):
             break
-        found = pieces(kind, given[:, active], numbers[:, active])
-        doubtful = np.flatnonzero(found.doubt)
+        parts = pieces(kind, starts[:, active], numbers[:, active])
+        doubtful = np.flatnonzero(parts.doubt)
         if len(doubtful):
             which = active[doubtful]
-            moments = begun[which] + time[which]
-            looked = look(kind, given[:, which], numbers[:, which], (tip, launches[which], moments))
-            for kept, better in zip(found, looked, strict=True):
-                kept[doubtful] = better
-            given[WANTED] = tip.wanted(launches)
+            moments = begins[which] + time[which]
+            seen_there = tip, launches[which], moments
+            looked = closer_extremes(kind, starts[:, which], numbers[:, which], seen_there)
+            for numbers_of_part, better in zip(parts, looked, strict=True):
+                numbers_of_part[doubtful] = better
+            starts[WANTED] = tip.pauses(launches)
         none = np.full(len(active), np.nan)
-        tip.put_of(launches[active], np.array([none, found.floor, -found.ceiling]))
-        highest[active] = np.fmax(highest[active], found.highest_gap)
-        over, before = found.span == given[LEFT, active], time[active]
-        time[active] = np.where(over, horizon[active], before + found.span)
-        landed[active] = found.touches != 0.0
+        tip.put_of(launches[active], np.array([none, parts.floor, -parts.ceiling]))
+        highest[active] = np.fmax(highest[active], parts.highest_gap)
+        over, before = parts.span == starts[LEFT, active], time[active]
+        time[active] = np.where(over, horizon[active], before + parts.span)
+        landed[active] = parts.touches != 0.0
         lost[active] = ~landed[active] & ~(time[active] > before)
         flying = ~landed & ~lost & (time < horizon)
         time = np.minimum(turns.leap(time, flying, separation), horizon)
-        given[TIME], given[LEFT], given[VANISHING] = time, horizon - time, 0.0
+        starts[TIME], starts[LEFT], starts[VANISHING] = time, horizon - time, 0.0
     time[lost] = 0.0
     last = fly(state, time, top, np)
     ground = top.surface.height(np.clip(last.axis[2], -1.0, 1.0))
@@ -149,7 +150,7 @@ class Turns(NamedTuple):
 
     @classmethod
     def of(cls, state: State, top: Top, horizon: Array) -> "Turns":
-        """Those of flights from some states on, for so long at most."""
+        """Return the flights from some states on, for so long at most."""
         period: Array = np.asarray(2.0 * np.pi / Tip.of(state, top).frequency)
         return cls(
             period, np.clip(state.velocity[2] / top.gravity, 0.0, horizon), np.zeros_like(period)
@@ -170,49 +171,51 @@ class Turns(NamedTuple):
         return np.where(leaps, np.maximum(goal, time), time)
 
 
-def look(kind: Kind, given: Array, numbers: Array, seen: tuple[TipMotion, Indices, Array]) -> Piece:
-    """Pieces of flights, by looking at their polynomials, and what happens in them taken in."""
-    tip, launches, begun = seen
+def closer_extremes(
+    kind: Kind, starts: Array, numbers: Array, seen: tuple[TipMotion, Indices, Array]
+) -> Piece:
+    """Return parts of flights by a search of their polynomials, and take in their extremes."""
+    tip, launches, times = seen
     top = kind.top(tuple(numbers))
-    here = fly(State.unpack(list(given[STATE])), given[TIME], top, np)
-    height, gap, reach = flight_terms(here, given[LEFT], top, PLAIN)
+    motion = fly(State.unpack(list(starts[STATE])), starts[TIME], top, np)
+    height, gap, reach = flight_terms(motion, starts[LEFT], top, PLAIN)
     rise, ahead = (np.array(np.broadcast_arrays(*terms)) for terms in (height, gap))
-    zero = Polynomials(np.array(divided(list(ahead), given[VANISHING], PLAIN)), reach).first_fall()
+    zero = Polynomials(np.array(divided(list(ahead), starts[VANISHING], PLAIN)), reach).first_fall()
     touches = ~np.isnan(zero)
     span = np.where(touches, zero, reach)
     highest = -Polynomials(-ahead, span).refined_least()[1]
-    flat = axis_sine(here.axis) <= NARROWEST if is_edge(top.surface) else np.zeros(span.shape)
+    flat = axis_sine(motion.axis) <= NARROWEST if is_edge(top.surface) else np.zeros(span.shape)
     for i in np.flatnonzero(flat).tolist():
-        one, its = single(here, i), kind.top(tuple(numbers[:, i].tolist()))
-        end, root = Separation.of(one, its).across_flat(0.0, float(given[LEFT, i]))
+        one, its = single(motion, i), kind.top(tuple(numbers[:, i].tolist()))
+        end, root = Separation.of(one, its).across_flat(0.0, float(starts[LEFT, i]))
         touches[i], span[i] = root is not None, end if root is None else root
         highest[i] = highest_gap(one, its, float(span[i]))
-    tip.see(launches, begun, Polynomials(rise, span))
-    nothing = np.full(span.shape, np.nan)
-    return Piece(span, touches, nothing, highest, nothing, nothing)
+    tip.see(launches, times, Polynomials(rise, span))
+    missing = np.full(span.shape, np.nan)
+    return Piece(span, touches, missing, highest, missing, missing)
 
 
 def slides(state: State, top: Top) -> Flags:
-    """Whether tops in contact, whose contact point is at rest vertically, go on sliding."""
+    """Return whether tops in contact, whose contact point is at rest vertically, go on sliding."""
     sliding = along_table(state)
     touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
-    found: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
-    return found
+    flags: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
+    return flags
 
 
 def rolls(state: State, top: Top) -> Flags:
-    """Whether tops in contact roll on for a while, or nothing resists that."""
+    """Return whether tops in contact roll on for a while, or nothing resists that."""
     count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
     if not top.resists_rolling:
         return count
     y = along_table(state)
     lasting = rolling_stopping_guard(y, sliding_rates(y, top), top) > 0.0
-    found: Flags = count & is_rolling(y.axis, y.momentum, top) & lasting
-    return found
+    flags: Flags = count & is_rolling(y.axis, y.momentum, top) & lasting
+    return flags
 
 
 def slips(state: State, top: Top, *, far: bool = False) -> Flags:
-    """Whether tops in contact slip on for a while, for all that their law says of the end of slip.
+    """Return whether tops in contact slip on for a while, by their law's end of slip.
 
     If `far`, so fast that its end need not be guarded.
     """
@@ -221,5 +224,5 @@ def slips(state: State, top: Top, *, far: bool = False) -> Flags:
         return count
     y = along_table(state)
     lasting = ContactMode(top).slip_left(y.pack()) > 0.0
-    found: Flags = count & is_slipping(*y, top) & lasting
-    return found & ~is_near(y, top) if far else found
+    flags: Flags = count & is_slipping(*y, top) & lasting
+    return flags & ~is_near(y, top) if far else flags

@@ -53,7 +53,7 @@ class Product(Entry):
 
     @classmethod
     def of(cls, table: Any) -> "Product":
-        """The product of a table of axes by their fields, or of pairs."""
+        """Return the product of a table of axes by their fields, or of pairs."""
         return table if isinstance(table, cls) else cls(read_fields("axes", table, Axis.of))
 
     @model_serializer
@@ -76,12 +76,12 @@ class Product(Entry):
         return tuple(short_names(self.fields).values())
 
     def values(self, cells: Flat) -> dict[str, Array]:
-        """The values of the fields in these cells."""
+        """Return the values of the fields in these cells."""
         places = np.unravel_index(cells, self.shape)
         return {axis.field: axis.at(place) for axis, place in zip(self.axes, places, strict=True)}
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
-        """The coordinates."""
+        """Return the coordinates: the dimension and the values of each, by name."""
         return {
             name: (name, axis.values) for name, axis in zip(self.dimensions, self.axes, strict=True)
         }
@@ -115,11 +115,11 @@ class Range(Entry):
 
     @model_validator(mode="after")
     def _can_be_drawn_from(self) -> Self:
-        given, logarithmic = f"{self.low:g} to {self.high:g}", self.law == "log-uniform"
+        ends, logarithmic = f"{self.low:g} to {self.high:g}", self.law == "log-uniform"
         if self.low > self.high or (logarithmic and self.low <= 0):
             raise InvalidInput(
                 "",
-                Described(given),
+                Described(ends),
                 "a low and a higher end" + ", both above 0" * logarithmic,
                 "is no range",
             )
@@ -127,7 +127,7 @@ class Range(Entry):
 
     @classmethod
     def of(cls, field: str, entry: Any) -> "Range":
-        """The range of a field that is written as a table."""
+        """Return the range of a field that is written as a table."""
         if not isinstance(entry, Mapping):
             raise InvalidInput(field, entry, "a table { from, to, law }")
         return cls.written(field, entry)
@@ -154,7 +154,7 @@ class Draws(Entry):
     """
 
     ranges: Annotated[
-        tuple[Range, ...], BeforeValidator(lambda given: read_fields("fields", given, Range.of))
+        tuple[Range, ...], BeforeValidator(lambda table: read_fields("fields", table, Range.of))
     ] = Field(alias="fields")
     count: Count
     seed: Annotated[Whole, Field(ge=0)] = 0
@@ -184,22 +184,22 @@ class Draws(Entry):
         return (SAMPLE,)
 
     def values(self, cells: Flat) -> dict[str, Array]:
-        """The values of the fields in these draws."""
+        """Return the values of the fields in these draws."""
         first = int(cells.min())
         drawn = self._drawn(first, int(cells.max()) + 1)
         return {field: values[cells - first] for field, values in drawn.items()}
 
     def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
-        """The number of every draw, and the values drawn."""
+        """Return the number of every draw, and the values drawn, as coordinates."""
         return sampled_coordinates(self._drawn(0, self.count), self.count)
 
     def _drawn(self, first: int, last: int) -> dict[str, Array]:
-        """The draws from first to before last, without making those before."""
-        found = {}
+        """Return the draws from first to before last, without making those before."""
+        drawn = {}
         for place, entry in enumerate(self.ranges):
             shares = shares_of(self.seed, place, first, last)
-            found[entry.field] = between(entry.low, entry.high, shares, entry.law == "log-uniform")
-        return found
+            drawn[entry.field] = between(entry.low, entry.high, shares, entry.law == "log-uniform")
+        return drawn
 
 
 RESERVED_NAMES = {SAMPLE, "status", *SWEPT}
@@ -231,9 +231,9 @@ def sampled_coordinates(
     values: Mapping[str, Array], count: int
 ) -> dict[str, tuple[str, NDArray[Any]]]:
     """Return the number of every sample, and the values of its fields, as coordinates."""
-    found: dict[str, tuple[str, NDArray[Any]]] = {SAMPLE: (SAMPLE, np.arange(count))}
+    coordinates: dict[str, tuple[str, NDArray[Any]]] = {SAMPLE: (SAMPLE, np.arange(count))}
     names = short_names(list(values))
-    return found | {names[field]: (SAMPLE, sampled) for field, sampled in values.items()}
+    return coordinates | {names[field]: (SAMPLE, sampled) for field, sampled in values.items()}
 
 
 def shares_of(seed: int, place: int, first: int, last: int) -> Array:

@@ -48,19 +48,23 @@ def collide(state: State, top: Top) -> tuple[State, Flags]:
         if not len(work):
             break
         jet = polynomials(motion, TOLERANCE)(after[:, work], numbers[:, work])
-        found = arcs(jet, np.zeros(len(work)), longest[work], pauses[:, work])
-        found.look_closer(jet, pauses[:, work])
-        after[:, work], ended, branched = found.after, found.fallen == 0.0, found.fallen == 1.0
+        course = arcs(jet, np.zeros(len(work)), longest[work], pauses[:, work])
+        course.look_closer(jet, pauses[:, work])
+        after[:, work], ended, branched = (
+            course.after,
+            course.fallen == 0.0,
+            course.fallen == 1.0,
+        )
         if branched.any():
             numbers[: kind.numbers, work[branched]] = others(
                 kind, numbers[: kind.numbers, work[branched]]
             )
         struck[work[ended]] = True
-        work = work[~ended & (branched | (found.span > 0.0))]
+        work = work[~ended & (branched | (course.span > 0.0))]
     after[:, ~struck] = moving[:, ~struck]
     return state._replace(momentum=tuple(after[:3]), velocity=tuple(after[3:])), struck
 
 
 def others(kind: Kind, numbers: Array) -> Array:
-    """The numbers of tops with the branch of their law that takes over."""
+    """Return the numbers of tops with the branch of their law that takes over."""
     return np.array(np.broadcast_arrays(*on_other_branch(kind.top(tuple(numbers))).numbers))

@@ -69,34 +69,34 @@ class Slots:
         self.held, self.before = np.zeros((2, lanes))
 
     @property
-    def left(self) -> Array:
+    def remaining(self) -> Array:
         """The time left."""
-        found: Array = self.rows[self.layout.left]
-        return found
+        times: Array = self.rows[self.layout.remaining]
+        return times
 
     def time(self, lanes: Indices | Flags) -> Array:
-        """Where some lanes are."""
-        found: Array = self.end[lanes] - self.left[lanes]
-        return found
+        """Return the time of some lanes."""
+        times: Array = self.end[lanes] - self.remaining[lanes]
+        return times
 
     def keep(self, working: Indices) -> None:
         """Keep the lanes at work, and as many others as fill them up."""
         missing = -len(working) % LANES
-        kept = np.concatenate((working, np.full(missing, working[-1], dtype=np.intp)))
-        self.alive = np.arange(len(kept)) < len(working)
+        retained = np.concatenate((working, np.full(missing, working[-1], dtype=np.intp)))
+        self.alive = np.arange(len(retained)) < len(working)
         for name in ("cell", "end", "held", "before"):
-            setattr(self, name, getattr(self, name)[kept])
+            setattr(self, name, getattr(self, name)[retained])
         for name in ("numbers", "rows"):
-            setattr(self, name, np.ascontiguousarray(getattr(self, name)[:, kept]))
-        self.rows[self.layout.left] *= self.alive
+            setattr(self, name, np.ascontiguousarray(getattr(self, name)[:, retained]))
+        self.rows[self.layout.remaining] *= self.alive
         self.spare = np.zeros_like(self.rows)
-        self.tip = self.tip.some(kept)
+        self.tip = self.tip.some(retained)
 
     def tops(self, lanes: Indices | Flags) -> Top:
-        """Some of the tops, with arrays for numbers."""
+        """Return some of the tops, with arrays for numbers."""
         return self.launches.kind.top(tuple(self.numbers[: self.layout.parameters, lanes]))
 
-    def whole(self, lanes: Indices | Flags) -> State:
+    def states(self, lanes: Indices | Flags) -> State:
         """Whole states of sliding tops."""
         numbers = self.rows[: self.layout.size, lanes]
         return on_table(SlidingState.unpack(numbers), self.tops(lanes))
@@ -105,8 +105,8 @@ class Slots:
         """Let tops slide from these states on."""
         for row, number in enumerate(along_table(state).pack()):
             self.rows[row, lanes] = number
-        self.rows[self.layout.left, lanes] = self.end[lanes] - time
-        self.rows[self.layout.taken, lanes] = np.inf
+        self.rows[self.layout.remaining, lanes] = self.end[lanes] - time
+        self.rows[self.layout.step_time, lanes] = np.inf
         if is_branched(self.launches.kind.example.friction):
             self._put(lanes, branched(self.tops(lanes), state))
 
@@ -116,14 +116,14 @@ class Slots:
         """
         if is_branched(self.launches.kind.example.friction):
             lanes = np.arange(len(self.cell))
-            self._put(lanes, branched(self.tops(lanes), self.whole(lanes)))
+            self._put(lanes, branched(self.tops(lanes), self.states(lanes)))
 
     @cached_property
     def branch(self) -> int:
         """Row of the number, 0 or 1, that tells the branch of the law."""
         example = self.launches.kind.example
         pairs = zip(example.numbers, on_other_branch(example).numbers, strict=True)
-        return next(row for row, (one, other) in enumerate(pairs) if one != other)
+        return next(row for row, (first, second) in enumerate(pairs) if first != second)
 
     def change_branch(self, lanes: Indices) -> None:
         """Let tops slide on along the other branch of their law."""
@@ -141,8 +141,8 @@ class Slots:
         if not len(lanes):
             return
         ends, cells = self.ends, self.cell[lanes]
-        for kept, number in zip(ends.state.pack(), state.pack(), strict=True):
-            kept[cells] = number
+        for stored, number in zip(ends.state.pack(), state.pack(), strict=True):
+            stored[cells] = number
         fine = np.all(np.isfinite(np.array(np.broadcast_arrays(*state.pack()))), axis=0)
         ends.time[cells] = time
         ends.outcome[cells] = np.where(
@@ -154,7 +154,7 @@ class Slots:
             ends.drilled[cells] += drilled
             ends.rolled[cells] += rolled
         ends.turned[cells], ends.arrived[cells] = self.tip.turned[lanes], self.tip.reached[lanes]
-        self.rows[self.layout.left, lanes] = 0.0
+        self.rows[self.layout.remaining, lanes] = 0.0
         self.alive[lanes] = False
         stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
         force, down, up = self.tip.least[:, lanes]

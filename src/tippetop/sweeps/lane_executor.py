@@ -68,12 +68,12 @@ class Lanes:
         if resumed is None:
             lanes = np.arange(len(slots.cell))
             slots.place(lanes, picked(launches.state, slots.cell), np.zeros(len(lanes)))
-            slots.left[~slots.alive] = 0.0
+            slots.remaining[~slots.alive] = 0.0
             self.crossings.launch(lanes[: len(launches)], launches.state)
         else:
-            slots.rows[: stepper.layout.left + 1] = resumed[:, slots.cell]
+            slots.rows[: stepper.layout.remaining + 1] = resumed[:, slots.cell]
             slots.choose_branch()
-            slots.left[~slots.alive] = 0.0
+            slots.remaining[~slots.alive] = 0.0
         slots.numbers[stepper.layout.turns] = np.isnan(slots.tip.turned)
 
     def run(self) -> Ends:
@@ -81,16 +81,16 @@ class Lanes:
         # Launches that ended in the flight they began with are recorded in the first window.
         recorded, slots = self._launched, self.slots
         while recorded.any():
-            begun, lost, waiting = slots.rows[: slots.layout.kept].copy(), 0, 0
+            window_start, lost, waiting = slots.rows[: slots.layout.carried_rows].copy(), 0, 0
             bearable = LOST * np.count_nonzero(recorded)
             for _ in range(WINDOW):
                 waiting += self._stride()
                 lost += waiting
                 if lost >= bearable:
-                    self._look()
+                    self._resume_waiting()
                     lost = waiting = 0
-            self._look()
-            self._close(recorded, begun)
+            self._resume_waiting()
+            self._close(recorded, window_start)
             recorded = slots.alive.copy()
         return slots.ends
 
@@ -101,8 +101,8 @@ class Lanes:
         self.slots.stepper.step(before, after, slots.numbers)
         waiting = after[layout.pause].nonzero()[0]
         if len(waiting):
-            slots.held[waiting] = after[layout.taken, waiting]
-            slots.before[waiting] = before[layout.left, waiting]
+            slots.held[waiting] = after[layout.step_time, waiting]
+            slots.before[waiting] = before[layout.remaining, waiting]
         slots.tip.put(after[layout.least])
         slots.rows, slots.spare = after, before
         changed = after[layout.changed].nonzero()[0]
@@ -110,78 +110,79 @@ class Lanes:
             slots.change_branch(changed)
         return len(waiting)
 
-    def _look(self) -> None:
-        """Look at the lanes that wait, and let them go on."""
+    def _resume_waiting(self) -> None:
+        """Find what happens in the lanes that wait, and let them go on."""
         slots, layout = self.slots, self.slots.layout
         lanes = np.flatnonzero(slots.held > 0.0)
         if not len(lanes):
             return
-        left, numbers = slots.before[lanes], slots.numbers[:, lanes]
-        begun = slots.end[lanes] - left
+        remaining, numbers = slots.before[lanes], slots.numbers[:, lanes]
+        start = slots.end[lanes] - remaining
         held = slots.held[lanes]
         jet = slots.stepper.jet(slots.rows[:, lanes], numbers)
-        found = arcs(jet, held, held, numbers[layout.parameters :])
-        closer = found.look_closer(jet, numbers[layout.counts])
+        followed = arcs(jet, held, held, numbers[layout.parameters :])
+        closer = followed.look_closer(jet, numbers[layout.counts])
         if len(closer):
             pressing, tip = (
-                Polynomials(terms[:, closer], found.span[closer])
+                Polynomials(terms[:, closer], followed.span[closer])
                 for terms in (jet.guards[0], jet.state[2])
             )
             slots.tip.take(FORCE, lanes[closer], pressing)
-            slots.tip.see(lanes[closer], begun[closer], tip)
-            found.least[:, closer] = np.nan
-        slots.tip.put_of(lanes, found.least)
-        slots.rows[: layout.size, lanes], span = found.after, found.span
-        slots.rows[layout.left, lanes], slots.rows[layout.taken, lanes] = left - span, held
+            slots.tip.see(lanes[closer], start[closer], tip)
+            followed.least[:, closer] = np.nan
+        slots.tip.put_of(lanes, followed.least)
+        slots.rows[: layout.size, lanes], span = followed.after, followed.span
+        slots.rows[layout.remaining, lanes] = remaining - span
+        slots.rows[layout.step_time, lanes] = held
         slots.rows[layout.steps, lanes] += 1
         slots.held[lanes] = 0.0
-        some = found.fallen >= 0.0
+        some = followed.fallen >= 0.0
         if some.any():
             self.crossings.fall(
-                lanes[some], begun[some] + span[some], found.fallen[some].astype(np.intp)
+                lanes[some], start[some] + span[some], followed.fallen[some].astype(np.intp)
             )
         slots.numbers[layout.turns, lanes] = np.isnan(slots.tip.turned[lanes])
         if self.banded:
-            slots.rows[layout.left, ~np.isnan(slots.tip.reached)] = 0.0
+            slots.rows[layout.remaining, ~np.isnan(slots.tip.reached)] = 0.0
 
-    def _close(self, recorded: Flags, begun: Array) -> None:
+    def _close(self, recorded: Flags, window_start: Array) -> None:
         """End a window: record it, take out what has ended, and close ranks."""
         slots, layout = self.slots, self.slots.layout
         cells, (_, down, up) = slots.cell[recorded], slots.tip.lately[:, recorded]
         if not self.banded:
             self.checkpoints.append(
-                Checkpoint(cells, begun[: layout.left + 1, recorded], down, -up)
+                Checkpoint(cells, window_start[: layout.remaining + 1, recorded], down, -up)
             )
         slots.tip.put_aside()
-        ended = np.flatnonzero(slots.alive & (slots.left <= 0.0))
+        ended = np.flatnonzero(slots.alive & (slots.remaining <= 0.0))
         if len(ended):
-            slots.retire(ended, slots.whole(ended), slots.end[ended], Outcome.COMPLETED)
-        shortest = np.minimum(SHORTEST, ROUNDED * slots.left)
-        singular, many = slots.rows[layout.taken] < shortest, slots.rows[layout.steps] >= STEP_LIMIT
+            slots.retire(ended, slots.states(ended), slots.end[ended], Outcome.COMPLETED)
+        shortest = np.minimum(SHORTEST, ROUNDED * slots.remaining)
+        singular = slots.rows[layout.step_time] < shortest
+        many = slots.rows[layout.steps] >= STEP_LIMIT
         for lost, outcome in (
             (singular, Outcome.FAILED),
             (~singular & many, Outcome.TOO_MANY_STEPS),
         ):
             which = np.flatnonzero(slots.alive & lost)
-            slots.retire(which, slots.whole(which), slots.time(which), outcome)
+            slots.retire(which, slots.states(which), slots.time(which), outcome)
         if self.settled is not None:
             self._end_the_settled(self.settled)
-        self._relieve(np.flatnonzero(recorded & slots.alive), begun)
+        self._relieve(np.flatnonzero(recorded & slots.alive), window_start)
         working = np.flatnonzero(slots.alive)
         if len(working) and len(working) + LANES < CROWDED * len(slots.alive):
             slots.keep(working)
 
-    def _relieve(self, lanes: Indices, begun: Array) -> None:
+    def _relieve(self, lanes: Indices, window_start: Array) -> None:
         """Have launches whose motion is stiff, which is looked at now and then, followed alone."""
         slots, layout = self.slots, self.slots.layout
         steps = slots.rows[layout.steps, lanes]
-        taken = steps - begun[layout.steps, lanes]
-        lanes, taken = (
-            some[steps // PATIENCE > (steps - taken) // PATIENCE] for some in (lanes, taken)
-        )
+        steps_taken = steps - window_start[layout.steps, lanes]
+        patience_ends = steps // PATIENCE > (steps - steps_taken) // PATIENCE
+        lanes, steps_taken = lanes[patience_ends], steps_taken[patience_ends]
         if not len(lanes):
             return
-        step = (begun[layout.left, lanes] - slots.left[lanes]) / taken
+        step = (window_start[layout.remaining, lanes] - slots.remaining[lanes]) / steps_taken
         motion, numbers = self.crossings.motion, slots.numbers[: layout.parameters, lanes]
         stiff = is_stiff(motion, list(numbers), slots.rows[: motion.size, lanes].T, step)
         self.crossings.follow_alone(lanes[stiff])
@@ -192,7 +193,7 @@ class Lanes:
         lanes = np.flatnonzero(slots.alive)
         if not len(lanes):
             return
-        state = slots.whole(lanes)
+        state = slots.states(lanes)
         held = is_held(state, slots.launches.tops(slots.cell[lanes]), closeness)
         slots.retire(lanes[held], picked(state, held), slots.time(lanes[held]), Outcome.COMPLETED)
 
@@ -217,12 +218,12 @@ def arrivals(followed: Lanes, band: tuple[Array, Array]) -> Array:
         fresh = meets & (window[checkpoint.cells] < 0)
         window[checkpoint.cells[fresh]] = index
         rows[:, checkpoint.cells[fresh]] = checkpoint.rows[:, fresh]
-    found = np.full(count, np.nan)
+    times = np.full(count, np.nan)
     for first in (True, False):
         which = np.flatnonzero((window == 0) if first else (window > 0))
         if len(which):
             again = launches.some(which)
             edges, resumed = (low[which], high[which]), None if first else rows[:, which]
             lanes = Lanes(again, slots.stepper, followed.tolerance, edges, resumed)
-            found[which] = lanes.run().arrived
-    return found
+            times[which] = lanes.run().arrived
+    return times

@@ -37,19 +37,19 @@ class Launches:
     """Ratio of the normal impulses of restitution and compression, shape (n,)."""
     indeterminate: str
     """What the table does where the contact force is indeterminate: "impact" or "lift_off"."""
-    own: Own | None = None
+    rules: Own | None = None
     """For contacts that bring their own rules, what makes them of a top, shape (n,)."""
 
     def __len__(self) -> int:
         return len(self.end)
 
     def some(self, which: Indices) -> "Launches":
-        """Some of the launches."""
+        """Return some of the launches."""
         state = picked(self.state, which)
         numbers, end, restitution = self.numbers[:, which], self.end[which], self.restitution[which]
-        own = None if self.own is None else self.own[which]
+        rules = None if self.rules is None else self.rules[which]
         return Launches(
-            self.kind, numbers, state, end, self.liftoff, restitution, self.indeterminate, own
+            self.kind, numbers, state, end, self.liftoff, restitution, self.indeterminate, rules
         )
 
     @property
@@ -58,28 +58,28 @@ class Launches:
         return self.tops(slice(None))
 
     def tops(self, which: Indices | Flags | slice) -> Top:
-        """Some of the tops, with arrays for numbers."""
+        """Return some of the tops, with arrays for numbers."""
         return self.kind.top(tuple(self.numbers[:, which]))
 
     @property
     def unresisted(self) -> Flags:
         """Which roll without the resistance that the others have, shape (n,)."""
         resistance, none = self.top.rolling_resistance, np.zeros(len(self), dtype=bool)
-        found: Flags = none if resistance is None else none | (resistance.length == 0.0)
-        return found
+        is_free: Flags = none if resistance is None else none | (resistance.length == 0.0)
+        return is_free
 
     def automaton(self, launch: int) -> Automaton:
-        """What follows where the contact of one launch begins or ends."""
+        """Return the automaton of one launch, for when its contact begins or ends."""
         top = off_branch(self._top(launch))
         if top.rolling_resistance is not None and top.rolling_resistance.length == 0.0:
             top = top._replace(rolling_resistance=None)
-        if self.own is not None:
-            own: Automaton = self.own[launch](top)
-            return own
+        if self.rules is not None:
+            automaton: Automaton = self.rules[launch](top)
+            return automaton
         return Automaton(top, self.liftoff, float(self.restitution[launch]), self.indeterminate)
 
     def sliding(self, launch: int) -> ContactMode:
-        """The mode of one launch that slides."""
+        """Return the mode of one launch that slides."""
         return ContactMode(self._top(launch), pulls=self.liftoff == "ignore")
 
     def _top(self, launch: int) -> Top:
@@ -109,10 +109,10 @@ class Checkpoint:
 
 
 def picked(state: State, launches: Indices | Flags) -> State:
-    """Some of many states."""
+    """Return some of many states."""
     return State.unpack([np.asarray(number)[launches] for number in state.pack()])
 
 
 def single(state: State, launch: int) -> State:
-    """One of many states, in floats."""
+    """Return one of many states, in floats."""
     return State.unpack([float(number[launch]) for number in state.pack()])

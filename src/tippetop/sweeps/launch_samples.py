@@ -98,8 +98,10 @@ class DrawnColumn(Column):
                 "distribution", self.distribution, "the name of a distribution in scipy.stats"
             )
         if len(self.shape) != family.numargs:
-            wanted = f"the shape parameters {family.shapes}" if family.numargs else "no parameters"
-            raise InvalidInput("shape", list(self.shape), wanted)
+            accepted = (
+                f"the shape parameters {family.shapes}" if family.numargs else "no parameters"
+            )
+            raise InvalidInput("shape", list(self.shape), accepted)
         # Distributions of whole numbers have no scale.
         last = (self.loc, self.scale) if hasattr(family, "pdf") else (self.loc,)
         return np.asarray(family.ppf(shares, *self.shape, *last), np.float64)
@@ -123,7 +125,7 @@ class LaunchSamples(Entry):
     """
 
     columns: Annotated[
-        tuple[Column, ...], BeforeValidator(lambda given: read_fields("fields", given, Column.of))
+        tuple[Column, ...], BeforeValidator(lambda table: read_fields("fields", table, Column.of))
     ] = Field(alias="fields")
     count: Count
     seed: Annotated[Whole, Field(ge=0)] = 0
@@ -199,8 +201,8 @@ def _frozen(field: str, distribution: Any) -> DrawnColumn:
     """Return the column of a frozen distribution of `scipy.stats`."""
     family = distribution.dist
     shapes = [name.strip() for name in family.shapes.split(",")] if family.shapes else []
-    given = dict(zip([*shapes, "loc", "scale"], distribution.args, strict=False))
-    numbers = {"loc": 0.0, "scale": 1.0, **given, **distribution.kwds}
+    positional = dict(zip([*shapes, "loc", "scale"], distribution.args, strict=False))
+    numbers = {"loc": 0.0, "scale": 1.0, **positional, **distribution.kwds}
     table = {
         "distribution": family.name,
         "shape": tuple(float(numbers[name]) for name in shapes),
@@ -211,7 +213,7 @@ def _frozen(field: str, distribution: Any) -> DrawnColumn:
 
 
 def _named(field: str, entry: Mapping[str, Any]) -> dict[str, Any]:
-    """A table with the law's own numbers as those of a distribution of `scipy.stats`."""
+    """Return a table with the law's own numbers as those of a distribution of `scipy.stats`."""
     table = dict(entry)
     law = table.pop("law", None)
     if law is None:

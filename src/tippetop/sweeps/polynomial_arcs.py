@@ -30,7 +30,7 @@ class Arcs(NamedTuple):
     """Least values of the first guard, of the third number of the state, and of minus that, shape
     (3, n).
     """
-    whole: Array
+    full_step: Array
     span: Array
     """How far the polynomials serve, and how far they are followed, shape (n,)."""
     fallen: Array
@@ -44,10 +44,10 @@ class Arcs(NamedTuple):
         """
         which = np.flatnonzero(self.doubt)
         if len(which):
-            whole = self.whole[which]
-            span, fallen = whole, np.full(whole.shape, -1.0)
+            full = self.full_step[which]
+            span, fallen = full, np.full(full.shape, -1.0)
             for number, terms in enumerate(jet.guards):
-                fall = Polynomials(terms[:, which], whole).first_fall()
+                fall = Polynomials(terms[:, which], full).first_fall()
                 earlier = (counts[number, which] != 0.0) & (fall <= span)
                 fallen[earlier], span = number, np.where(earlier, fall, span)
             self.span[which], self.fallen[which] = span, fallen
@@ -62,22 +62,22 @@ def arcs(jet: Jet, step: Array, longest: Array, pauses: Array) -> Arcs:
     `Layout`.
     """
     (size, terms, count), guards = jet.state.shape, len(jet.guards)
-    given = np.concatenate(
+    rows = np.concatenate(
         (jet.state.reshape(-1, count), jet.guards.reshape(-1, count), [step, longest])
     )
-    found = np.empty((size + 7, count + -count % LANES))
-    _code(size, terms - 1, guards)(padded(given), padded(pauses), found)
-    return Arcs(*np.split(found[:, :count], (size, size + 3))[:2], *found[size + 3 :, :count])
+    results = np.empty((size + 7, count + -count % LANES))
+    _code(size, terms - 1, guards)(padded(rows), padded(pauses), results)
+    return Arcs(*np.split(results[:, :count], (size, size + 3))[:2], *results[size + 3 :, :count])
 
 
 @lru_cache(maxsize=16)
 def _code(size: int, order: int, guards: int) -> Callable[..., None]:
     cut = size * (order + 1)
 
-    def rows(given: Sequence[Scalar], pauses: Sequence[Scalar]) -> list[Scalar]:
-        state = [given[k : k + order + 1] for k in range(0, cut, order + 1)]
-        falls = [given[k : k + order] for k in range(cut, cut + guards * order, order)]
-        return arc(Jet(state, falls), given[-2:], pauses, NODES)
+    def rows(numbers: Sequence[Scalar], pauses: Sequence[Scalar]) -> list[Scalar]:
+        state = [numbers[k : k + order + 1] for k in range(0, cut, order + 1)]
+        falls = [numbers[k : k + order] for k in range(cut, cut + guards * order, order)]
+        return arc(Jet(state, falls), numbers[-2:], pauses, NODES)
 
     return compiled(rows, cut + guards * order + 2, guards + 3, effort=0)
 
@@ -85,13 +85,13 @@ def _code(size: int, order: int, guards: int) -> Callable[..., None]:
 def arc(
     jet: Jet, steps: Sequence[Scalar], pauses: Sequence[Scalar], plain: Arithmetic
 ) -> list[Scalar]:
-    """What `arcs` finds of one launch."""
+    """Return the result of `arcs` for one launch."""
     (state, falls), (step, longest) = jet, steps
-    whole = plain.choose(plain.below(0.0, step), step, step_size(state, longest, plain))
-    span, fallen, doubt = whole, 0.0 * whole - 1.0, 0.0 * whole
+    full = plain.choose(plain.below(0.0, step), step, step_size(state, longest, plain))
+    span, fallen, doubt = full, 0.0 * full - 1.0, 0.0 * full
     for number, (terms, count) in enumerate(zip(falls, pauses, strict=False)):
         # Few looks are enough: what they leave in doubt is looked at closer.
-        fall, unsure = first_fall(terms, whole, LOOKS, plain)
+        fall, unsure = first_fall(terms, full, LOOKS, plain)
         earlier = (1.0 - plain.below(span, fall)) * count
         span, fallen = (
             plain.choose(earlier, fall, span),
@@ -102,4 +102,4 @@ def arc(
     floor, ceiling = extremes(state[2], span, plain)
     doubt += met(floor, ceiling, pauses[len(falls) :], plain)
     force = least_value(falls[0], looked_at(falls[0], span, CLOSER_LOOKS), span, plain)
-    return [*after, force, floor, -ceiling, whole, span, fallen, doubt]
+    return [*after, force, floor, -ceiling, full, span, fallen, doubt]

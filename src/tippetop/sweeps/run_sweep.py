@@ -55,14 +55,14 @@ def _carry_out(
 ) -> Progress:
     """Compute tasks of a sweep whose others are done, and keep what they find."""
     before = sweep.cells - sum(sweep.numbers(sweep.region(task)).size for task in tasks)
-    began, told = time.monotonic(), callback or (lambda _: None)
+    began, tell = time.monotonic(), callback or (lambda _: None)
     progress = Progress(sweep.cells, before, before, 0.0)
-    told(progress)
-    for task, found in results(sweep, tasks, workers, scheduler) if tasks else ():
-        keep(task, found)
-        done = progress.done + found["outcome"].size
+    tell(progress)
+    for task, variables in results(sweep, tasks, workers, scheduler) if tasks else ():
+        keep(task, variables)
+        done = progress.done + variables["outcome"].size
         progress = Progress(sweep.cells, before, done, time.monotonic() - began)
-        told(progress)
+        tell(progress)
     return progress
 
 
@@ -99,9 +99,9 @@ def compute(
         name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in CONTENTS.items()
     }
 
-    def keep(task: Task, found: Found) -> None:
+    def keep(task: Task, variables: Found) -> None:
         region = sweep.region(task)
-        for name, values in found.items():
+        for name, values in variables.items():
             arrays[name][region] = values.reshape(arrays[name][region].shape)
 
     _carry_out(sweep, sweep.tasks, keep, workers, scheduler, callback)
@@ -210,8 +210,8 @@ def sweep(
     True
     """
     if (over is None) == (samples is None):
-        given = MISSING if over is None else "both"
-        raise InvalidInput("over, samples", given, "one of them")
+        stated = MISSING if over is None else "both"
+        raise InvalidInput("over, samples", stated, "one of them")
     if samples is not None:
         grid: Product | Draws | LaunchSamples = LaunchSamples.of(samples, n, seed)
     else:

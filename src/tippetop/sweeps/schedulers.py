@@ -144,12 +144,12 @@ def _own_parts(
         The modules to import, and the kinds that a script or a notebook defines, pickled; None
         where these cannot be sent, and this process has to compute alone.
     """
-    known = is_whole(workers) and workers >= 1
-    if not (workers is None or known):
+    is_count = is_whole(workers) and workers >= 1
+    if not (workers is None or is_count):
         raise InvalidInput("workers", workers, "a whole number, at least 1")
-    own = sorted(sweep.problem.foreign_kinds(), key=lambda kind: kind.__qualname__)
-    modules = tuple(sorted({kind.__module__ for kind in own} - {HERE}))
-    unimportable = [kind for kind in own if kind.__module__ == HERE]
+    foreign = sorted(sweep.problem.foreign_kinds(), key=lambda kind: kind.__qualname__)
+    modules = tuple(sorted({kind.__module__ for kind in foreign} - {HERE}))
+    unimportable = [kind for kind in foreign if kind.__module__ == HERE]
     kinds, why = _pickled(unimportable) if unimportable else (b"", "")
     if kinds is None and (scheduler is not None or workers not in (None, 1)):
         raise InvalidInput(
@@ -210,8 +210,8 @@ def _share_with_cluster(
 
 
 def _is_of_cluster(error: Exception) -> bool:
-    """Whether the cluster failed, not a task: the library stumbles over results of workers that are
-    lost.
+    """Return whether the cluster failed, not a task: the library raises errors over results of lost
+    workers.
     """
     *_, (innermost, _) = walk_tb(error.__traceback__)
     where = (type(error).__module__, innermost.f_globals.get("__name__", ""))
@@ -224,7 +224,7 @@ def _first_done(
     client: Any, address: str, running: Mapping[Future[Found], Task]
 ) -> set[Future[Found]]:
     """Wait until one is done, as long as there is somebody to do it."""
-    alone = 0.0
+    lonely_since = 0.0
     while True:
         done, _ = wait(running, timeout=GLANCE, return_when=FIRST_COMPLETED)
         if done:
@@ -233,14 +233,14 @@ def _first_done(
             # Tasks handed out since then are cancelled only when the client gives up reconnecting.
             raise CancelledError
         if _workers(client):
-            alone = 0.0
+            lonely_since = 0.0
             continue
-        if not alone:
-            alone = time.monotonic()
+        if not lonely_since:
+            lonely_since = time.monotonic()
             logging.getLogger(__name__).warning(
                 "the cluster at %s has no workers; the sweep waits for some, %g s", address, LONELY
             )
-        if time.monotonic() - alone >= LONELY:
+        if time.monotonic() - lonely_since >= LONELY:
             raise Unavailable(
                 f"the cluster at {address} has had no workers for {LONELY:g} s; {KEPT}"
             )
@@ -252,7 +252,7 @@ def _workers(client: Any) -> int:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Cluster]:
-    """A running cluster that has workers."""
+    """Return a running cluster that has workers."""
     if find_spec("distributed") is None:
         raise Unavailable(f"a scheduler needs dask.distributed: {install_command('sweep')}")
     from distributed import Client  # noqa: PLC0415 - optional, and slow to import

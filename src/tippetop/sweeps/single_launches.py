@@ -30,8 +30,8 @@ def is_alone(launches: Launches) -> bool:
     several surfaces and of users' rules, and do not see where a law chooses by the numbers.
     """
     example = launches.kind.example
-    known = launches.own is None and not isinstance(example.surface, Hull)
-    return not known or has_choices(example)
+    has_built_in_rules = launches.rules is None and not isinstance(example.surface, Hull)
+    return not has_built_in_rules or has_choices(example)
 
 
 def follow_each(launches: Launches, tolerance: float, settled: float | None = None) -> Ends:
@@ -44,13 +44,13 @@ def follow_each(launches: Launches, tolerance: float, settled: float | None = No
         try:
             automaton, state = launches.automaton(i), single(launches.state, i)
             start, end = automaton.launch(state), float(launches.end[i])
-            found, _ = follow((automaton, state, 0.0), start, end, tolerance, settled)
+            ended, _ = follow((automaton, state, 0.0), start, end, tolerance, settled)
         except (MemoryError, Unavailable):
             raise
         except Exception as error:  # noqa: BLE001 - whatever was raised, the others go on
             note_failure(error)
         else:
-            ends.put(np.array([i]), found)
+            ends.put(np.array([i]), ended)
     return ends
 
 
@@ -94,7 +94,7 @@ def follow(
 def until_settled(
     trajectory: Trajectory, segments: Iterator[Segment], closeness: float
 ) -> Iterator[Segment]:
-    """The segments of a trajectory up to the first step at whose start the tilt is held."""
+    """Yield the segments of a trajectory up to the first step at whose start the tilt is held."""
     for segment in segments:
         knots, terms = segment.solution.knots, segment.solution.terms
         held = is_held(segment.mode.state(terms[:, :, 0].T), segment.mode.top, closeness)

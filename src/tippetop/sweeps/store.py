@@ -1,14 +1,11 @@
-"""Where a sweep is kept: a Zarr store that is always whole, whatever becomes of the program that
-fills it.
+"""Store of a sweep on disk, in Zarr, that stays valid if the program that fills it is killed.
 
-The array `status` alone says what is done. It has every chunk from the beginning: a missing one is
-damage. The chunk of a task that is done is written last, once the others are on disk,
-and every chunk is written beside its place and then moved there. So a program that dies, or a
-machine, even in the middle of a write, loses only the tasks under way. What is lost or damaged
-later is found, and done again.
+The array `status` says which tasks are done. Its chunk of a task is written last, once those of the
+results are on disk, and every chunk is written beside its place and then moved there. A program
+that is killed, even during a write, loses only the tasks under way. Tasks whose chunks were deleted
+are computed again; Zarr reports a damaged chunk when it is read.
 """
 
-import json
 import shutil
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -30,17 +27,20 @@ from tippetop.support.interrupts import deferred
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.store_layout import (
     CONTENTS,
-    DIGEST,
     Status,
-    kept_sweep,
+    altered,
     lay_out,
     may_be_replaced,
-    mend_metadata,
-    read_metadata,
+    refuse_altered,
     refuse_another,
     refuse_existing,
+    resumable_sweep,
+    stored_sweep,
 )
 from tippetop.sweeps.store_lock import bring_to_disk, clear_away, identity, locked
+
+REPAIR = f"{RESUME} computes missing results again; without a coordinate, use {OVERWRITE}"
+"""What to do with a store in which a chunk is missing."""
 
 
 class Store:
@@ -51,16 +51,15 @@ class Store:
 
         self.path, self.sweep = path, sweep
         with in_words(path, "opened"):
-            # What is nowhere but where nothing is known has to be written too, to be seen to be
-            # there.
+            # Chunks of fill values are written too: a missing chunk was deleted.
             with zarr.config.set({"array.write_empty_chunks": True}):
                 self._arrays = dict(zarr.open_group(path, mode="r+").arrays())
             self._identity = identity(path)
-        self._created = False
+        self._is_new = False
 
     @classmethod
     def create(cls, path: Path | str, sweep: Sweep, overwrite: bool = False) -> "Store":
-        """Make an empty store, whole from the moment it is there.
+        """Make a store without results; it appears at its path in one move.
 
         Raises `InvalidInput` if the name ends as that of another kind of file; `FileTrouble` if
         something is there already and `overwrite` is false, or it is no sweep or being filled, or
@@ -73,8 +72,8 @@ class Store:
         # Zarr writes in a thread of its own, which Ctrl-C does not stop.
         with in_words(path, "written"), deferred(), ExitStack() as stack:
             refuse_existing(path, overwrite)
-            there = path.exists()
-            if path.is_symlink() or (there and not may_be_replaced(path)):
+            exists = path.exists()
+            if path.is_symlink() or (exists and not may_be_replaced(path)):
                 raise FileTrouble(
                     f"{path} exists and is no sweep, so it is not overwritten; choose {OTHER_OUT}"
                 )
@@ -82,43 +81,41 @@ class Store:
             beside = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}."))
             stack.callback(shutil.rmtree, beside, ignore_errors=True)
             stack.enter_context(locked(beside))
-            if there:
+            if exists:
                 stack.enter_context(locked(path))
             fresh = beside / path.name
             lay_out(fresh, sweep)
+            cls(fresh, sweep)._write_first_values()
             bring_to_disk([fresh, *fresh.rglob("*")])
-            if there:
+            if exists:
                 path.rename(beside / "replaced")
             fresh.rename(path)
             bring_to_disk([path.parent])
         store = cls(path, sweep)
-        store._created = True
+        store._is_new = True
         return store
 
     @classmethod
     def resume(cls, path: Path | str, sweep: Sweep | None = None) -> "Store":
-        """Open a store to finish it.
+        """Open a store to finish it, with a warning if it was begun on another processor.
 
-        Raises `FileTrouble` if there is no store, or it is of another sweep than `sweep`, or made
-        by another version.
+        Raises `FileTrouble` if there is no store, or it is damaged, or it is of another sweep than
+        `sweep`, or made by another version.
         """
         need_zarr()
         path = path_of(path)
         with in_words(path, "read"):
-            kept = kept_sweep(path)
+            stored = resumable_sweep(path)
         if sweep is not None:
-            refuse_another(path, kept, sweep)
-        store = cls(path, kept)
-        if tuple(store._arrays["status"].chunks) != kept.chunk:
-            raise FileTrouble(
-                f"{path} has other chunks than this version makes; start afresh with {OVERWRITE}"
-            )
+            refuse_another(path, stored, sweep)
+        store = cls(path, stored)
+        with _damage_in_words(path):
+            store._check_coordinates()
         return store
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Keep other processes from filling the store meanwhile, and mend what is around its
-        results.
+        """Keep other processes from filling the store.
 
         Raises `FileTrouble` if another process fills it or has replaced it, or it cannot be
         written. A store that was created by this object and in which nothing could be written yet
@@ -131,10 +128,9 @@ class Store:
                 with in_words(self.path, "written"):
                     for partial in self.path.rglob("*.partial"):
                         partial.unlink(missing_ok=True)
-                    self._mend()
                 yield
             except FileTrouble:
-                if self._created and not self._done(self.status()):
+                if self._is_new and not self._done(self.status()):
                     self._remove()
                 raise
 
@@ -151,51 +147,42 @@ class Store:
                     f"{self.path} was replaced by another sweep meanwhile; that is left as it is"
                 )
 
-    def _mend(self) -> None:
-        """Write again what is missing or damaged of the arrays' own metadata, and of the
-        coordinates.
-        """
-        mend_metadata(self.path)
+    def _write_first_values(self) -> None:
+        """Write the coordinates, and the status of every cell."""
         for name, (_, values) in self.sweep.grid.coordinates().items():
-            if self._lost(name, [(0,)]):
-                self._arrays[name][...] = values
+            self._arrays[name][...] = values
+        self._arrays["status"][...] = Status.PENDING
 
     def status(self) -> NDArray[np.int8]:
-        """Numbers of `Status` over the grid; what cannot be read counts as pending."""
+        """Return numbers of `Status` over the grid; chunks that cannot be read are pending."""
         array = self._arrays["status"]
         if _can_be_read(array, ...):
             return np.asarray(array[...])
-        found = np.full(self.sweep.grid.shape, Status.PENDING, dtype=np.int8)
+        status = np.full(self.sweep.grid.shape, Status.PENDING, dtype=np.int8)
         for region in map(self.sweep.region, self.sweep.tasks):
             if _can_be_read(array, region):
-                found[region] = array[region]
-        return found
+                status[region] = array[region]
+        return status
 
     def remaining(self) -> list[Task]:
-        """The tasks that are not done, or whose results are missing or damaged."""
+        """Return the tasks that are not done, and those of which a chunk was deleted."""
         done = self._done(self.status())
-        lost = {task for name in SWEPT for task in self._lost(name, done)}
-        return [task for task in self.sweep.tasks if task not in done or task in lost]
+        stored = [self._stored(name) for name in SWEPT]
+        done.intersection_update(*stored)
+        return [task for task in self.sweep.tasks if task not in done]
 
     def _done(self, status: NDArray[np.int8]) -> set[Task]:
         sweep = self.sweep
         return {task for task in sweep.tasks if np.all(status[sweep.region(task)] == Status.DONE)}
 
-    def _lost(self, name: str, tasks: Collection[Task]) -> set[Task]:
-        """Those of some tasks whose chunk of an array is missing or damaged."""
-        array = self._arrays[name]
-        lost = {task for task in tasks if not self._chunk(name, task).is_file()}
-        if not _can_be_read(array, ...):
-            for task in tasks:
-                places = zip(task, array.chunks, strict=True)
-                if not _can_be_read(
-                    array, tuple(slice(k * size, (k + 1) * size) for k, size in places)
-                ):
-                    lost.add(task)
-        return lost
+    def _stored(self, name: str) -> set[Task]:
+        """Return the tasks of which an array has a chunk on disk."""
+        folder = self.path / name / "c"
+        places = (file.relative_to(folder).parts for file in folder.rglob("*") if file.is_file())
+        return {tuple(map(int, place)) for place in places if all(map(str.isdigit, place))}
 
     def write(self, task: Task, variables: Mapping[str, NDArray[Any]]) -> None:
-        """Keep what a task found, and, once that is on disk, note that it is done.
+        """Write the results of a task, and its status once they are on disk.
 
         Raises `FileTrouble` if it cannot be written, and then the store stays good; or if it was
         replaced meanwhile.
@@ -218,34 +205,64 @@ class Store:
         bring_to_disk([*chunks, *folders])
 
     def dataset(self) -> xr.Dataset:
-        """The store as a dataset, read when it is used; what is damaged then raises an error of
-        Zarr's.
+        """Return the store as a dataset whose values are read when they are used.
 
-        Raises `FileTrouble` if something is missing.
+        Zarr raises an error of its own for a damaged chunk then.
+
+        Raises `FileTrouble` if a chunk is missing, or the metadata were altered.
         """
         return self._opened(SWEPT)
 
     def load(self, names: Collection[str]) -> xr.Dataset:
-        """Some of the variables, read now.
+        """Return some of the variables, read now.
 
-        Raises `FileTrouble` if they are damaged, or something is missing of them.
+        Raises `FileTrouble` if one of their chunks is damaged or missing, or the metadata were
+        altered.
         """
         with _damage_in_words(self.path):
-            return self._opened(names)[list(names)].load()
+            dataset = self._opened(names)[list(names)]
+            try:
+                return dataset.load()
+            except ZARR_ERRORS:
+                self._name_damaged_chunk(names)
+                raise
 
     def _opened(self, names: Collection[str]) -> xr.Dataset:
         with _damage_in_words(self.path):
-            read_metadata(self.path)
+            refuse_altered(self.path, self.sweep)
+            self._check_coordinates()
             done = self._done(np.asarray(self._arrays["status"][...]))
-            needed = [("status", task) for task in self.sweep.tasks]
-            needed += [(name, task) for name in names if name in SWEPT for task in done]
-            needed += [(name, (0,)) for name in self.sweep.grid.coordinates()]
-            for name, task in needed:
-                if not self._chunk(name, task).is_file():
-                    raise OSError(f"a chunk of {name} is missing")
+            chunks = [("status", task) for task in self.sweep.tasks]
+            chunks += [(name, task) for name in names if name in SWEPT for task in done]
+            self._require_chunks(chunks)
             opened: xr.Dataset = xr.open_zarr(self.path)
-            del opened.attrs[DIGEST]
         return opened
+
+    def _check_coordinates(self) -> None:
+        """Raise an error unless the coordinates are stored and are those of the sweep."""
+        coordinates = self.sweep.grid.coordinates()
+        self._require_chunks([(name, (0,)) for name in coordinates])
+        for name, (_, values) in coordinates.items():
+            # Other processors and libraries may round values that follow from a formula otherwise.
+            if not np.allclose(self._arrays[name][...], values, rtol=1e-12, atol=0.0):
+                raise altered(self.path)
+
+    def _require_chunks(self, chunks: Collection[tuple[str, Task]]) -> None:
+        """Raise `OSError` unless the files of these chunks exist."""
+        for name, task in chunks:
+            if not self._chunk(name, task).is_file():
+                raise OSError(f"a chunk of {name} is missing")
+
+    def _name_damaged_chunk(self, names: Collection[str]) -> None:
+        """Raise `FileTrouble` with the first chunk that cannot be read, if there is one."""
+        for name in names:
+            for task in self._stored(name):
+                if not _can_be_read(self._arrays[name], self.sweep.region(task)):
+                    chunk = self._chunk(name, task).relative_to(self.path)
+                    raise FileTrouble(
+                        f"{self.path} is damaged: its chunk {chunk} cannot be read; delete the"
+                        f" chunk, and {RESUME} computes it again"
+                    )
 
     def _chunk(self, name: str, task: Task) -> Path:
         return self.path.joinpath(name, "c", *map(str, task))
@@ -254,7 +271,9 @@ class Store:
 def read_sweep(
     path: Path | str, names: Collection[str] | None = None, *, decode: bool = True
 ) -> xr.Dataset:
-    """Read a sweep, or some of its variables; flags as words, or as numbers unless `decode`.
+    """Return a stored sweep, or some of its variables.
+
+    Flags are words, or numbers unless `decode`.
 
     Raises
     ------
@@ -274,7 +293,7 @@ def read_sweep(
     need_zarr()
     path = path_of(path)
     with in_words(path, "read"):
-        sweep = Sweep(**json.loads(read_metadata(path)["attributes"]["sweep"]))
+        sweep = stored_sweep(path)
     dataset = Store(path, sweep).load(list(CONTENTS) if names is None else names)
     return decoded(dataset) if decode else dataset
 
@@ -287,22 +306,24 @@ def need_zarr() -> None:
         )
 
 
+ZARR_ERRORS = OSError, ValueError, RuntimeError, KeyError, TypeError
+"""Errors that Zarr and its codecs raise for damaged chunks and metadata."""
+
+
 def _can_be_read(array: Any, region: Any) -> bool:
     try:
         array[region]
-    except Exception:  # noqa: BLE001 - whatever a damaged chunk raises
+    except ZARR_ERRORS:
         return False
     return True
 
 
 @contextmanager
 def _damage_in_words(path: Path) -> Iterator[None]:
-    """Say of whatever reading a damaged store raises that it is damaged."""
+    """Raise `FileTrouble` for errors that a damaged store raises."""
     try:
         yield
     except FileTrouble:
         raise
-    except (OSError, ValueError, RuntimeError, KeyError, TypeError) as error:
-        raise FileTrouble(
-            f"{path} is damaged and cannot be read ({error}); {RESUME} mends it"
-        ) from None
+    except ZARR_ERRORS as error:
+        raise FileTrouble(f"{path} is damaged and cannot be read ({error}); {REPAIR}") from None

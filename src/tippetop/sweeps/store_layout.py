@@ -1,12 +1,10 @@
-"""How a sweep is laid out on disk: a Zarr group that says what it holds, with a checksum over all
-of it.
+"""Layout of a sweep on disk: a Zarr group of arrays over the grid, a chunk of each for every task.
 
-The grid's values are coordinates, every variable is an array over the grid, and a task is one chunk
-of each. Every chunk ends in a checksum, and the group's metadata, in which those of all arrays are
-repeated, hold a digest of themselves: what is damaged is seen when it is read.
+The group's attributes name the sweep, from which all metadata follow: `lay_out` writes them, and
+`refuse_altered` compares those of a store with what `lay_out` makes. Every chunk has a checksum of
+Zarr's.
 """
 
-import hashlib
 import json
 import warnings
 from enum import IntEnum
@@ -14,7 +12,10 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from llvmlite.binding import get_host_cpu_name
+
 from tippetop import __version__
+from tippetop.problem.implausible import warn
 from tippetop.results.catalogue import SWEPT, Variable, meanings
 from tippetop.results.dataset import CONVENTIONS
 from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, short
@@ -22,11 +23,9 @@ from tippetop.support.files import refuse_overwriting
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import Product, field_paths
 
-FORMAT = "tippetop sweep 3"
+FORMAT = "tippetop sweep 4"
 """Name and version of the layout; a store of another is refused."""
 METADATA = "zarr.json"
-DIGEST = "digest"
-"""The attribute of the group that holds the digest of its metadata without it."""
 
 
 class Status(IntEnum):
@@ -40,59 +39,58 @@ CONTENTS = {
     "status": Variable("whether the cell is computed", dtype="int8", flags=meanings(Status)),
     **SWEPT,
 }
-"""What a sweep's dataset has over the grid."""
+"""Variables of a sweep's dataset over the grid."""
 
-_alone = Lock()
-"""Warnings are silenced for all threads at once, which therefore do so one after another."""
+_warnings_lock = Lock()
+"""Held while warnings are silenced, which affects all threads."""
 
 
-def lay_out(path: Path, sweep: Sweep) -> None:
-    """Write a store without results."""
+def lay_out(store: Any, sweep: Sweep) -> Any:
+    """Create the group and the arrays of a sweep, without values; return the `zarr.Group`.
+
+    Parameters
+    ----------
+    store
+        A path, or a store of Zarr's.
+    sweep
+        The sweep that is to be stored.
+    """
     import zarr  # noqa: PLC0415 - optional
     from zarr.codecs import Crc32cCodec, ZstdCodec  # noqa: PLC0415 - optional
 
-    checked = ZstdCodec(level=0), Crc32cCodec()
+    compressors = ZstdCodec(level=0), Crc32cCodec()
     grid = sweep.grid
-    group = zarr.create_group(path, attributes=layout_attributes(sweep), zarr_format=3)
+    group = zarr.create_group(store, attributes=layout_attributes(sweep), zarr_format=3)
     for name, (dimension, values) in grid.coordinates().items():
-        coordinate = group.create_array(
+        group.create_array(
             name,
             shape=values.shape,
             chunks=values.shape,
             dtype=values.dtype.name,
             dimension_names=(dimension,),
             attributes=coordinate_attributes(sweep, name),
-            config={"write_empty_chunks": True},
-            compressors=checked,
+            compressors=compressors,
         )
-        coordinate[...] = values
     for name, kind in CONTENTS.items():
-        array = group.create_array(
+        group.create_array(
             name,
             shape=grid.shape,
             chunks=sweep.chunk,
             dtype=kind.dtype,
             fill_value=Status.PENDING if name == "status" else kind.missing,
             dimension_names=grid.dimensions,
-            attributes=_plain(kind.attributes) | _coordinates(sweep),
-            config={"write_empty_chunks": name == "status"},
-            compressors=checked,
+            attributes=_json_attributes(kind.attributes) | _coordinates(sweep),
+            compressors=compressors,
         )
-        if name == "status":
-            # Every chunk of it is there from the beginning: one that is missing was lost.
-            array[...] = Status.PENDING
-    with _alone, warnings.catch_warnings():
-        # Zarr warns that readers other than Python's may pass over this; they then read every
-        # array's own.
+    with _warnings_lock, warnings.catch_warnings():
+        # Zarr warns that readers other than Python's may ignore consolidated metadata; they then
+        # read every array's metadata.
         warnings.simplefilter("ignore")
-        zarr.consolidate_metadata(path)
-    metadata = json.loads((path / METADATA).read_text(encoding="utf-8"))
-    metadata["attributes"][DIGEST] = _digest(metadata)
-    (path / METADATA).write_text(json.dumps(metadata, indent=2), encoding="utf-8")
+        return zarr.consolidate_metadata(store)
 
 
-def _plain(attributes: dict[str, Any]) -> dict[str, Any]:
-    """Attributes with lists for arrays, as JSON has them."""
+def _json_attributes(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Return attributes with lists in place of arrays, which JSON does not have."""
     return {
         name: value.tolist() if hasattr(value, "tolist") else value
         for name, value in attributes.items()
@@ -100,7 +98,7 @@ def _plain(attributes: dict[str, Any]) -> dict[str, Any]:
 
 
 def layout_attributes(sweep: Sweep) -> dict[str, Any]:
-    """The attributes of a sweep's dataset."""
+    """Return the attributes of a sweep's dataset."""
     return {
         "Conventions": CONVENTIONS,
         "title": "What becomes of many launches of a spinning top",
@@ -110,12 +108,13 @@ def layout_attributes(sweep: Sweep) -> dict[str, Any]:
         "duration": sweep.duration,
         "tolerance": sweep.tolerance,
         "tippetop_version": __version__,
+        "processor": get_host_cpu_name(),
         **({} if isinstance(sweep.grid, Product) else {"seed": sweep.grid.seed}),
     }
 
 
 def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
-    """The attributes of a coordinate by the CF conventions, and the `path` of its field."""
+    """Return the attributes of a coordinate by the CF conventions, and the `path` of its field."""
     path = field_paths(sweep.grid.fields).get(name)
     if path is None:
         return Variable("number of the sample", "1").attributes
@@ -124,21 +123,15 @@ def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
 
 
 def _coordinates(sweep: Sweep) -> dict[str, str]:
-    """Coordinates that are not dimensions are named by the CF attribute."""
+    """Return the CF attribute that names the coordinates that are not dimensions."""
     others = [
         name for name, (dimension, _) in sweep.grid.coordinates().items() if name != dimension
     ]
     return {"coordinates": " ".join(others)} if others else {}
 
 
-def _digest(metadata: dict[str, Any]) -> str:
-    attributes = {name: value for name, value in metadata["attributes"].items() if name != DIGEST}
-    text = json.dumps({**metadata, "attributes": attributes}, sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-def read_metadata(path: Path) -> dict[str, Any]:
-    """The metadata of a store that this version can read.
+def read_attributes(path: Path) -> dict[str, Any]:
+    """Return the attributes of a store that this version can read.
 
     Raises `FileTrouble` if there is no store, or it is of another layout, or damaged.
     """
@@ -149,38 +142,85 @@ def read_metadata(path: Path) -> dict[str, Any]:
             raise FileTrouble(
                 f"{path} cannot be read: {error.strerror}; there is no sweep in it"
             ) from None
-        data = b""
+        raise altered(path) from None
     try:
-        metadata = json.loads(data)
-        layout, whole = metadata["attributes"]["format"], metadata["attributes"].get(DIGEST)
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        attributes: dict[str, Any] = json.loads(data)["attributes"]
+        layout = attributes["format"]
+    except (ValueError, KeyError, TypeError, RecursionError):
         if not _has_every_array(path):
             raise FileTrouble(f"{path} is not a sweep of this program") from None
-        layout, whole, metadata = FORMAT, None, {"attributes": {}}
+        raise altered(path) from None
     if layout != FORMAT:
         raise FileTrouble(
             f"{path} is laid out as {short(layout)}, and this version reads {FORMAT!r}; "
             f"start afresh with {OVERWRITE}"
         )
-    if whole != _digest(metadata):
+    return attributes
+
+
+def altered(path: Path) -> FileTrouble:
+    """Return the error for metadata that are not those of the store's sweep."""
+    return FileTrouble(
+        f"{path} is damaged: its {METADATA} is not as it was written; start afresh with {OVERWRITE}"
+    )
+
+
+def stored_sweep(path: Path) -> Sweep:
+    """Return the sweep that the metadata of a store describe.
+
+    Raises `FileTrouble` as `read_attributes` does, and if they describe none.
+    """
+    attributes = read_attributes(path)
+    try:
+        return Sweep(**json.loads(attributes["sweep"]))
+    except (ValueError, KeyError, TypeError):
+        raise altered(path) from None
+
+
+def refuse_altered(path: Path, sweep: Sweep) -> None:
+    """Raise `FileTrouble` if the metadata of a store do not follow from its sweep.
+
+    Stores that another version made may have other metadata, and are not compared.
+    """
+    import zarr  # noqa: PLC0415 - optional
+
+    if read_attributes(path).get("tippetop_version") != __version__:
+        return
+    try:
+        group = zarr.open_consolidated(path, mode="r")
+        expected = lay_out(zarr.storage.MemoryStore(), sweep).metadata.to_dict()
+        expected["attributes"]["processor"] = group.attrs["processor"]
+        follows = group.metadata.to_dict() == expected
+    except (ValueError, KeyError, TypeError):
+        follows = False
+    if not follows:
+        raise altered(path)
+
+
+def resumable_sweep(path: Path) -> Sweep:
+    """Return the sweep of a store that is to be finished.
+
+    It warns if the store was begun on another kind of processor.
+
+    Raises `FileTrouble` as `stored_sweep` and `refuse_altered` do, and if another version made the
+    store.
+    """
+    attributes = read_attributes(path)
+    version, processor = attributes.get("tippetop_version"), attributes.get("processor")
+    if version != __version__:
         raise FileTrouble(
-            f"{path} is damaged: its {METADATA} is not as it was written; start afresh with"
-            f" {OVERWRITE}"
+            f"{path} was made by version {version} of tippetop, and this is {__version__}, whose"
+            f" results may differ; finish it with that version, or start afresh with {OVERWRITE}"
         )
-    return dict(metadata)
-
-
-def mend_metadata(path: Path) -> None:
-    """Write again what is missing or damaged of the arrays' own metadata in a store."""
-    for name, metadata in read_metadata(path)["consolidated_metadata"]["metadata"].items():
-        file = path / name / METADATA
-        try:
-            whole = json.loads(file.read_text(encoding="utf-8")) == metadata
-        except (OSError, ValueError, RecursionError):
-            whole = False
-        if not whole:
-            file.parent.mkdir(exist_ok=True)
-            file.write_text(json.dumps(metadata), encoding="utf-8")
+    sweep = stored_sweep(path)
+    refuse_altered(path, sweep)
+    if processor != get_host_cpu_name():
+        warn(
+            f"{path} was begun on a processor {processor}, and this one is {get_host_cpu_name()}:"
+            " its cells may differ from those computed here in the last digits",
+            UserWarning,
+        )
+    return sweep
 
 
 def refuse_existing(path: Path, overwrite: bool) -> None:
@@ -190,34 +230,8 @@ def refuse_existing(path: Path, overwrite: bool) -> None:
     refuse_overwriting(path, overwrite, f"finished with {RESUME}, and ")
 
 
-def kept_sweep(path: Path) -> Sweep:
-    """The sweep that a store holds, to go on with it.
-
-    Raises `FileTrouble` as `read_metadata` does, and if it was made by another version, also by one
-    of the same name that had other flags.
-    """
-    metadata = read_metadata(path)
-    attributes, arrays = metadata["attributes"], metadata["consolidated_metadata"]["metadata"]
-    version = attributes["tippetop_version"]
-    if version != __version__:
-        raise FileTrouble(
-            f"{path} was made by version {version} of tippetop, and this is {__version__}, whose"
-            f" results may differ; finish it with that version, or start afresh with {OVERWRITE}"
-        )
-    for name, kind in CONTENTS.items():
-        if arrays.get(name, {}).get("attributes", {}).get("flag_meanings", "") != " ".join(
-            kind.flags
-        ):
-            raise FileTrouble(
-                f"{path} was made by a version that tells {name} by other words than this one,"
-                f" whose results may differ; what is done can still be read: choose {OTHER_OUT}, or"
-                f" start afresh with {OVERWRITE}"
-            )
-    return Sweep(**json.loads(attributes["sweep"]))
-
-
 def may_be_replaced(path: Path) -> bool:
-    """Whether a folder is empty or holds a sweep, of whatever version and however damaged."""
+    """Return whether a folder is empty or holds a sweep, of any version and however damaged."""
     if not path.is_dir() or not any(path.iterdir()):
         return path.is_dir()
     try:
@@ -228,34 +242,32 @@ def may_be_replaced(path: Path) -> bool:
 
 
 def _has_every_array(path: Path) -> bool:
-    """Whether a folder that does not say what it holds is a sweep all the same: it has all that one
-    has.
-    """
+    """Return whether a folder has a folder for every variable of a sweep."""
     return all((path / name).is_dir() for name in CONTENTS)
 
 
-def refuse_another(path: Path, kept: Sweep, sweep: Sweep) -> None:
+def refuse_another(path: Path, stored: Sweep, sweep: Sweep) -> None:
     """Refuse, with `FileTrouble`, to resume a store that holds another sweep."""
-    difference = first_difference(kept.to_fields(), sweep.to_fields())
+    difference = first_difference(stored.to_fields(), sweep.to_fields())
     if difference is not None:
-        name, there, here = difference
+        name, old, new = difference
         raise FileTrouble(
-            f"{path} holds another sweep and cannot be resumed: {name} is {short(there)} in it, and"
-            f" {short(here)} here; choose {OTHER_OUT}, or start afresh with {OVERWRITE}"
+            f"{path} holds another sweep and cannot be resumed: {name} is {short(old)} in it, and"
+            f" {short(new)} here; choose {OTHER_OUT}, or start afresh with {OVERWRITE}"
         )
 
 
-def first_difference(one: Any, other: Any, name: str = "") -> tuple[str, Any, Any] | None:
-    """The name of the first field in which two descriptions differ, and what is there."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        if set(one) == set(other) and list(one) != list(other):
-            return name, list(one), list(other)
-        for key in [*one, *(key for key in other if key not in one)]:
+def first_difference(a: Any, b: Any, name: str = "") -> tuple[str, Any, Any] | None:
+    """Return the name and the two values of the first field in which two descriptions differ."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        if set(a) == set(b) and list(a) != list(b):
+            return name, list(a), list(b)
+        for key in [*a, *(key for key in b if key not in a)]:
             inner = f"{name}.{key}" if name else str(key)
-            found = first_difference(one.get(key), other.get(key), inner)
-            if found is not None:
-                return found
+            difference = first_difference(a.get(key), b.get(key), inner)
+            if difference is not None:
+                return difference
         return None
-    if isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
-        return first_difference(dict(enumerate(one)), dict(enumerate(other)), name)
-    return None if one == other else (name, one, other)
+    if isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        return first_difference(dict(enumerate(a)), dict(enumerate(b)), name)
+    return None if a == b else (name, a, b)

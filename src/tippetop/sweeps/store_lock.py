@@ -16,9 +16,9 @@ SYNCS = 32
 
 
 def identity(path: Path) -> tuple[int, int]:
-    """What tells a folder from another that took its place."""
-    there = path.stat()
-    return there.st_dev, there.st_ino
+    """Return device and inode of a folder, which another folder at its path does not have."""
+    status = path.stat()
+    return status.st_dev, status.st_ino
 
 
 @contextmanager

@@ -67,12 +67,12 @@ class Layout(NamedTuple):
     size: int
     parameters: int
     """Numbers of the motion, and parameters."""
-    left: int
+    remaining: int
     steps: int
     """Rows of the time left, and of the number of steps."""
-    kept: int
+    carried_rows: int
     """How many rows a step brings up to date."""
-    taken: int
+    step_time: int
     pause: int
     """Rows of the time that a step may take, and of whether something may happen in it."""
     least: slice
@@ -94,16 +94,16 @@ class Layout(NamedTuple):
 
     @classmethod
     def of(cls, motion: Motion) -> "Layout":
-        """The layout for a motion."""
+        """Return the layout for a motion."""
         size, guards, parameters = motion.size, len(motion.guards), motion.parameters
-        kept, turns = size + 2, parameters + guards
-        pause, changed, numbers = kept + 1, kept + 5, turns + 3
+        carried, turns = size + 2, parameters + guards
+        pause, changed, numbers = carried + 1, carried + 5, turns + 3
         least, counts, band = (
-            slice(kept + 2, changed),
+            slice(carried + 2, changed),
             slice(parameters, turns),
             slice(turns + 1, numbers),
         )
-        row = (size, size + 1, kept, kept, pause, least, changed, changed + 1)
+        row = (size, size + 1, carried, carried, pause, least, changed, changed + 1)
         names = [guard.name for guard in motion.guards]
         branch = names.index(BRANCH) if BRANCH in names else None
         return cls(size, parameters, *row, counts, turns, band, numbers, branch)
@@ -127,7 +127,7 @@ def expansion(
     numbers: Sequence[Scalar],
     plain: Arithmetic,
 ) -> Jet:
-    """The polynomials of a step: coefficients of the solution and of the guards."""
+    """Return the polynomials of a step: coefficients of the solution and of the guards."""
     parameters = numbers[: motion.parameters]
     y = solved(
         [SharedSeries(unknown, plain) for _ in start], start, lambda y: motion.rates(y, parameters)
@@ -142,41 +142,43 @@ def expansion(
 def stride(
     layout: Layout, jet: Jet, before: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
 ) -> list[Scalar]:
-    """What `Stepper.step` makes of the rows that are kept, by the polynomials from there: all
-    rows.
+    """Return all rows after a step of `Stepper.step`, from the polynomials that start at the
+    carried rows.
     """
-    left, steps = before[layout.size :]
-    counts, wanted = numbers[layout.counts], numbers[layout.turns :]
+    remaining, steps = before[layout.size :]
+    counts, band = numbers[layout.counts], numbers[layout.turns :]
     state, falls = jet
-    whole = step_size(state, left, plain, axis=3)
-    taken, changes, events = later_guards(falls, counts, (whole, layout.branch), plain)
-    floor, ceiling = extremes(state[2], taken, plain)
-    events += met(floor, ceiling, wanted, plain)
-    pressing = looked_at(falls[0], taken, LOOKS)
-    events += may_fall(falls[0], pressing, taken, plain) * counts[0]
-    moves = plain.below(0.0, taken)
+    full = step_size(state, remaining, plain, axis=3)
+    length, changes, events = later_guards(falls, counts, (full, layout.branch), plain)
+    floor, ceiling = extremes(state[2], length, plain)
+    events += met(floor, ceiling, band, plain)
+    pressing = looked_at(falls[0], length, LOOKS)
+    events += may_fall(falls[0], pressing, length, plain) * counts[0]
+    moves = plain.below(0.0, length)
     pause = events * moves
-    after = [*(horner(terms, taken) for terms in state), left - taken, steps + moves]
+    after = [*(horner(terms, length) for terms in state), remaining - length, steps + moves]
     goes = plain.below(pause, moves)
     stays = [plain.choose(goes, new, old) for old, new in zip(before, after, strict=True)]
-    stays[layout.left] = plain.choose(pause, 0.0 * left, after[layout.left])
-    force = least_value(falls[0], pressing, taken, plain)
+    stays[layout.remaining] = plain.choose(pause, 0.0 * remaining, after[layout.remaining])
+    force = least_value(falls[0], pressing, length, plain)
     least = [
         plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)
     ]
-    return [*stays, whole, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
+    return [*stays, full, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
 
 
-def extremes(tip: Sequence[Scalar], taken: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
-    """The least and the largest n_z in a step, given its polynomial."""
-    heights, upside = looked_at(tip, taken, LOOKS), [-term for term in tip]
-    floor = least_value(tip, heights, taken, plain)
-    return floor, -least_value(upside, [-height for height in heights], taken, plain)
+def extremes(tip: Sequence[Scalar], length: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
+    """Return the least and the largest n_z in a step, from its polynomial."""
+    heights, upside = looked_at(tip, length, LOOKS), [-term for term in tip]
+    floor = least_value(tip, heights, length, plain)
+    return floor, -least_value(upside, [-height for height in heights], length, plain)
 
 
-def met(floor: Scalar, ceiling: Scalar, wanted: Sequence[Scalar], plain: Arithmetic) -> Scalar:
-    """Whether n_z passes zero, if the top is yet to turn over, or reaches a band: see `Layout`."""
-    turns, low, high = wanted
+def met(floor: Scalar, ceiling: Scalar, band: Sequence[Scalar], plain: Arithmetic) -> Scalar:
+    """Return whether n_z passes zero, if the top is yet to turn over, or reaches a band: see
+    `Layout`.
+    """
+    turns, low, high = band
     over = plain.below(floor, 0.0) * plain.below(0.0, ceiling) * turns
     return over + (1.0 - plain.below(high, floor)) * (1.0 - plain.below(ceiling, low))
 
@@ -187,37 +189,38 @@ def later_guards(
     step: tuple[Scalar, int | None],
     plain: Arithmetic,
 ) -> tuple[Scalar, Scalar, Scalar]:
-    """What a step is because of all guards but the first, as far as they count.
+    """Return the length of a step as limited by all guards but the first, and whether one of them
+    is undecided.
 
     Of the step that may be taken, and of which guard is of the law's branch, it makes the step that
     is taken, whether that ends where another branch of the law takes over, and whether a guard may
     fall in it. Only where that of the branch comes near zero is it looked at.
     """
-    whole, branch = step
-    none = 0.0 * whole
-    taken, changes, events = whole, none, none
+    full, branch = step
+    none = 0.0 * full
+    length, changes, events = full, none, none
     for number, (terms, count) in enumerate(zip(falls[1:], counts[1:], strict=True), start=1):
-        near = plain.below(lower_bound(terms, whole, plain), TINY)
+        near = plain.below(lower_bound(terms, full, plain), TINY)
         if number != branch:
             events += near * count
             continue
         need, (change, doubt) = (
-            near * plain.below(0.0, whole),
-            first_fall(terms, whole, LOOKS, plain),
+            near * plain.below(0.0, full),
+            first_fall(terms, full, LOOKS, plain),
         )
-        found, usual = (
-            (plain.least(change, whole), plain.below(change, whole), doubt),
-            (whole, none, none),
+        shorter, usual = (
+            (plain.least(change, full), plain.below(change, full), doubt),
+            (full, none, none),
         )
-        taken, changes, doubt = (
-            plain.rarely(need, a, b) for a, b in zip(found, usual, strict=True)
+        length, changes, doubt = (
+            plain.rarely(need, a, b) for a, b in zip(shorter, usual, strict=True)
         )
         events += doubt
-    return taken, changes, events
+    return length, changes, events
 
 
 def step_size(
-    state: Sequence[Sequence[Scalar]], left: Scalar, plain: Arithmetic, axis: int = 0
+    state: Sequence[Sequence[Scalar]], remaining: Scalar, plain: Arithmetic, axis: int = 0
 ) -> Scalar:
     """Step for which the last terms of the polynomials are below the tolerance, or all that is
     left.
@@ -235,20 +238,22 @@ def step_size(
         scale = 1.0 / (plain.total([plain.size(series[k]) for series in state]) + TINY)
         terms = [scale * series[k] for series in state]
         others = square(terms[axis:])
-        left_out = whole / others
+        left_out = size / others
         if axis:
-            own = square(terms[:axis])
-            left_out = plain.least(bounded / own, whole / (own + others))
+            squares = square(terms[:axis])
+            left_out = plain.least(bounded / squares, size / (squares + others))
         return scale * left_out**0.5
 
-    whole = square([series[0] for series in state])
-    bounded = whole
+    size = square([series[0] for series in state])
+    bounded = size
     if axis:
-        most = FAST * FASTER * FASTER / whole
-        bounded = plain.least(plain.least(whole, FAST * FAST), most * most)
+        most = FAST * FASTER * FASTER / size
+        bounded = plain.least(plain.least(size, FAST * FAST), most * most)
     radius = plain.least(*(ratio(k) ** (1.0 / k) for k in (order - 1, order)))
     safety = math.exp(-2.0 - 0.7 / (order - 1))
-    return plain.choose(plain.below(0.0, radius), plain.least(safety * radius, left), 0.0 * left)
+    return plain.choose(
+        plain.below(0.0, radius), plain.least(safety * radius, remaining), 0.0 * remaining
+    )
 
 
 def order_for(tolerance: float) -> int:

@@ -26,7 +26,7 @@ class NumPyArithmetic:
         return sum(terms[1:], terms[0])
 
     def least(self, a: Array, b: Array) -> Array:
-        """The smaller of two."""
+        """Return the smaller of two."""
         return np.where(a < b, a, b)
 
     def size(self, a: Array) -> Array:
@@ -38,7 +38,7 @@ class NumPyArithmetic:
         return np.where(a < b, 1.0, 0.0)
 
     def choose(self, condition: Array, a: Any, b: Any) -> Any:
-        """The first where a condition is not 0, else the second."""
+        """Return the first where a condition is not 0, else the second."""
         return np.where(condition != 0.0, a, b)
 
     rarely = choose
@@ -56,15 +56,15 @@ class Stepper:
 
         The numbers have shape (layout.numbers, n). A launch with no time left stays as it is.
         """
-        self._step(before[: self.layout.kept], numbers, after)
+        self._step(before[: self.layout.carried_rows], numbers, after)
 
     def jet(self, before: Array, numbers: Array) -> Jet:
-        """The polynomials in time of the steps that start from `before`."""
+        """Return the polynomials in time of the steps that start from `before`."""
 
-        def made(start: Array, given: Array, terms: Array) -> None:
-            self._step(start, given, np.empty((self.layout.rows, start.shape[1])), terms)
+        def made(start: Array, numbers: Array, terms: Array) -> None:
+            self._step(start, numbers, np.empty((self.layout.rows, start.shape[1])), terms)
 
-        return _expanded(made, before[: self.layout.kept], numbers, self.motion, self.order)
+        return _expanded(made, before[: self.layout.carried_rows], numbers, self.motion, self.order)
 
     @cached_property
     def _step(self) -> Callable[..., None]:
@@ -74,7 +74,7 @@ class Stepper:
             jet = expansion(motion, order, before[: layout.size], numbers, NODES)
             return [*stride(layout, jet, before, numbers, NODES), *chain(*chain(*jet))]
 
-        return compiled(rows, layout.kept, layout.numbers, _count(motion, order))
+        return compiled(rows, layout.carried_rows, layout.numbers, _count(motion, order))
 
 
 @lru_cache(maxsize=16)
@@ -85,7 +85,9 @@ def stepper(motion: Motion, tolerance: float) -> Stepper:
 
 @lru_cache(maxsize=16)
 def polynomials(motion: Motion, tolerance: float) -> Callable[[Array, Array], Jet]:
-    """What makes the polynomials of a motion, from numbers of shape (size, n) and parameters."""
+    """Return the function that makes the polynomials of a motion, from numbers of shape (size, n)
+    and parameters.
+    """
     order = order_for(tolerance)
 
     def rows(start: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
@@ -96,30 +98,30 @@ def polynomials(motion: Motion, tolerance: float) -> Callable[[Array, Array], Je
 
 
 def compiled(
-    function: Rows, size: int, parameters: int, more: int = 0, **options: int
+    function: Rows, size: int, parameters: int, optional: int = 0, **options: int
 ) -> Callable[..., None]:
-    """A function of so many rows and parameters, compiled for launches abreast; see `record`."""
+    """Compile a function of so many rows and parameters for launches abreast; see `record`."""
     # An interrupted import leaves a module in pieces.
     with deferred():
         from tippetop.integrators.machine_code import machine_code  # noqa: PLC0415 - optional, slow to import
 
-    return machine_code({"made": record(function, size, parameters, more)}, ABREAST, **options)[
+    return machine_code({"made": record(function, size, parameters, optional)}, ABREAST, **options)[
         "made"
     ]
 
 
 def _count(motion: Motion, order: int) -> int:
-    """How many coefficients the polynomials of a motion have."""
+    """Return how many coefficients the polynomials of a motion have."""
     return motion.size * (order + 1) + len(motion.guards) * order
 
 
 def _expanded(
     made: Callable[..., None], start: Array, numbers: Array, motion: Motion, order: int
 ) -> Jet:
-    """The polynomials of a motion that compiled code makes, coefficients one after another."""
-    count, whole = start.shape[1], padded(start)
-    terms = np.empty((_count(motion, order), whole.shape[1]))
-    made(whole, padded(numbers), terms)
+    """Return the polynomials of a motion from compiled code, coefficients one after another."""
+    count, padded_start = start.shape[1], padded(start)
+    terms = np.empty((_count(motion, order), padded_start.shape[1]))
+    made(padded_start, padded(numbers), terms)
     state, guards = np.split(terms[:, :count], [motion.size * (order + 1)])
     return Jet(state.reshape(motion.size, order + 1, count), guards.reshape(-1, order, count))
 

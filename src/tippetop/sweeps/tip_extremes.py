@@ -36,22 +36,23 @@ class TipMotion:
 
     @classmethod
     def of(cls, count: int) -> "TipMotion":
-        """That of launches that wait for no band."""
+        """Return the extremes of launches that wait for no band."""
         return cls(*np.full((4, count), np.nan), *np.full((2, 3, count), np.inf))
 
     @property
     def least(self) -> Array:
         """The least values, shape (3, n)."""
-        found: Array = np.fmin(self.early, self.lately)
-        return found
+        least: Array = np.fmin(self.early, self.lately)
+        return least
 
     def put_aside(self) -> None:
         """Begin anew with what is found lately."""
         self.early = self.least
         self.lately[:] = np.inf
 
-    def wanted(self, launches: Indices) -> Array:
-        """Whether some are yet to turn over, and the band that they are yet to reach, shape (3, n).
+    def pauses(self, launches: Indices) -> Array:
+        """Return whether some are yet to turn over, and the band that they are yet to reach, shape
+        (3, n).
 
         Of no band the least n_z is inf and the largest -inf.
         """
@@ -69,7 +70,7 @@ class TipMotion:
         np.fmin(self.lately, least, out=self.lately)
 
     def put_of(self, launches: Indices, least: Array) -> None:
-        """The same of some launches; nan where there is none, or it is taken in already."""
+        """Put the extremes of some launches; nan where there is none, or it is taken in already."""
         self.lately[:, launches] = np.fmin(self.lately[:, launches], least)
 
     def take(self, which: int, lanes: Indices, polynomials: Polynomials) -> None:
@@ -94,5 +95,5 @@ class TipMotion:
             self.reached[launches[some]] = time[some] + arrival_time(tip.some(some), low, high)
 
     def some(self, which: Indices) -> "TipMotion":
-        """That of some of the launches."""
+        """Return the extremes of some of the launches."""
         return TipMotion(*(getattr(self, field.name)[..., which] for field in fields(self)))

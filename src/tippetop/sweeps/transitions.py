@@ -44,10 +44,10 @@ class Crossings:
     def launch(self, lanes: Indices, state: State) -> None:
         """Sort the launches out that do not simply slide from the start."""
         launches = self.slots.launches
-        alone = launches.unresisted
-        for i in np.flatnonzero(alone).tolist():
-            here = single(state, i)
-            self._follow_alone(int(lanes[i]), 0.0, here, launches.automaton(i).launch(here))
+        singly = launches.unresisted
+        for i in np.flatnonzero(singly).tolist():
+            one = single(state, i)
+            self._follow_alone(int(lanes[i]), 0.0, one, launches.automaton(i).launch(one))
         plain = slips(state, launches.top, far=True) & rolls(state, launches.top)
         plain &= ~np.asarray(lies_flat(launches.top, state.axis))
         if launches.liftoff != "ignore":
@@ -55,20 +55,20 @@ class Crossings:
         if launches.liftoff == "fly":
             plain &= gap(state, launches.top) <= TOUCHING
             plain &= np.abs(gap_rate(state, launches.top)) <= TOUCHING
-        others = np.flatnonzero(~plain & ~alone)
+        others = np.flatnonzero(~plain & ~singly)
         transitions = [launches.automaton(i).launch(single(state, i)) for i in others.tolist()]
         self._enter(lanes[others], np.zeros(len(others)), picked(state, others), transitions)
 
     def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
-        """What follows where guards fall through zero."""
+        """Return what follows where guards fall through zero."""
         names = np.array([guard.name for guard in self.motion.guards])[guards]
-        other, free = names == BRANCH, names == LIFT_OFF
+        on_branch, free = names == BRANCH, names == LIFT_OFF
         if free.any():
-            here = self.slots.whole(lanes)
-            free &= ~presses(here.axis, here.momentum, self.slots.tops(lanes))
-        ending = ~(other | free)
+            states = self.slots.states(lanes)
+            free &= ~presses(states.axis, states.momentum, self.slots.tops(lanes))
+        ending = ~(on_branch | free)
         if ending.any():
-            cells, state = self.slots.cell[lanes[ending]], self.slots.whole(lanes[ending])
+            cells, state = self.slots.cell[lanes[ending]], self.slots.states(lanes[ending])
             launches = self.slots.launches
             ends = [
                 ModeEnd.by_guard(str(name), single(state, i))
@@ -81,14 +81,14 @@ class Crossings:
                 for cell, end, moment in zip(cells, ends, time[ending], strict=True)
             ]
             self._enter(lanes[ending], time[ending], state, transitions)
-        if other.any():
-            self.slots.change_branch(lanes[other])
+        if on_branch.any():
+            self.slots.change_branch(lanes[on_branch])
         self._let_go(lanes[free], time[free])
 
     def _let_go(self, lanes: Indices, time: Array) -> None:
-        """What follows where the normal force falls to zero."""
+        """Return what follows where the normal force falls to zero."""
         slots = self.slots
-        cells, state = slots.cell[lanes], slots.whole(lanes)
+        cells, state = slots.cell[lanes], slots.states(lanes)
         slots.ends.lift_off[cells] = np.fmin(slots.ends.lift_off[cells], time)
         if slots.launches.liftoff == "stop":
             slots.retire(lanes, state, time, Outcome.LIFTED_OFF)
@@ -141,8 +141,8 @@ class Crossings:
         )
         sliding &= slips(after, top, far=True)
         slots.place(lanes[sliding], picked(after, sliding), time[sliding])
-        taken = energy(state, top) - energy(after, top)
-        slots.ends.struck[cells[sliding]] += np.broadcast_to(taken, sliding.shape)[sliding]
+        lost = energy(state, top) - energy(after, top)
+        slots.ends.struck[cells[sliding]] += np.broadcast_to(lost, sliding.shape)[sliding]
         others = np.flatnonzero(~sliding)
         transitions = [
             launches.automaton(int(cells[i])).touchdown(float(time[i]), single(state, i))
@@ -202,13 +202,13 @@ class Crossings:
 
     def follow_alone(self, lanes: Indices) -> None:
         """Follow launches that slide as single launches are, from where they are."""
-        state, time = self.slots.whole(lanes), self.slots.time(lanes)
+        state, time = self.slots.states(lanes), self.slots.time(lanes)
         for i, lane in enumerate(lanes.tolist()):
-            here = single(state, i)
+            one = single(state, i)
             mode = self.slots.launches.automaton(int(self.slots.cell[lane])).mode_for(
-                here, slips=True
+                one, slips=True
             )
-            self._follow_alone(lane, float(time[i]), here, Transition((), mode, here))
+            self._follow_alone(lane, float(time[i]), one, Transition((), mode, one))
 
     def _follow_alone(self, lane: int, time: float, state: State, transition: Transition) -> None:
         """Follow one launch from a transition in a state to its end as a single launch is."""
@@ -220,24 +220,24 @@ class Crossings:
         )
         begin = slots.launches.automaton(int(slots.cell[lane])), state, time
         launched = single(slots.launches.state, int(slots.cell[lane]))
-        found, tally = follow(
+        ended, tally = follow(
             begin, transition, float(slots.end[lane]), self.tolerance, launched=launched
         )
         for name in ("flights", "airborne", "struck", "drilled", "rolled"):
-            getattr(ends, name)[cell] += getattr(found, name)
+            getattr(ends, name)[cell] += getattr(ended, name)
         for name in ("highest_gap", "highest", "up"):
-            getattr(ends, name)[cell] = np.fmax(getattr(ends, name)[cell], getattr(found, name))
+            getattr(ends, name)[cell] = np.fmax(getattr(ends, name)[cell], getattr(ended, name))
         for name in ("lift_off", "least_force", "down"):
-            getattr(ends, name)[cell] = np.fmin(getattr(ends, name)[cell], getattr(found, name))
-        ends.settled[cell], ends.rolls[cell] = found.settled, found.rolls
+            getattr(ends, name)[cell] = np.fmin(getattr(ends, name)[cell], getattr(ended, name))
+        ends.settled[cell], ends.rolls[cell] = ended.settled, ended.rolls
         tip = slots.tip
-        tip.turned[where] = np.fmin(tip.turned[where], found.turned)
-        arrived = tally.arrival(tip.low[where], tip.high[where]) if self.banded else found.arrived
+        tip.turned[where] = np.fmin(tip.turned[where], ended.turned)
+        arrived = tally.arrival(tip.low[where], tip.high[where]) if self.banded else ended.arrived
         tip.reached[where] = np.fmin(tip.reached[where], arrived)
-        slots.rows[slots.layout.steps, where] += found.steps
-        slots.retire(where, found.state, found.time, OUTCOMES[found.outcome])
+        slots.rows[slots.layout.steps, where] += ended.steps
+        slots.retire(where, ended.state, ended.time, OUTCOMES[ended.outcome])
 
 
 def is_plain(mode: Mode) -> bool:
-    """Whether lanes slide as in this mode."""
+    """Return whether lanes slide as in this mode."""
     return isinstance(mode, ContactMode) and mode.slides_freely and not mode.near

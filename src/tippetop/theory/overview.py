@@ -127,7 +127,9 @@ class Outlook:
     flip_time: float | None
     """`mu_flip_time` divided by the problem's mu, s."""
     flip_time_needs: str | None
-    """What kind of launch has these times; None if they are known or friction is not viscous."""
+    """Description of the launches that have these times; None if this one has, or friction is not
+    viscous.
+    """
     conserved: bool
     """Whether Jellett's integral is constant: for an eccentric sphere under friction without
     torque.

@@ -116,14 +116,14 @@ def _follow(path: SlowPath, begin: Nutation, unilateral: bool) -> tuple[float, N
     size = 1.0 / fastest if fastest > 0.0 else 1.0
     for _ in range(MOST_STEPS):
         step = step_from(point, slope, size, path.rates)
-        error = step.doubt(largest) / LOG_TOLERANCE
-        if not (all(math.isfinite(value) for value in step.there) and error <= 1.0):
+        error = step.error_estimate(largest) / LOG_TOLERANCE
+        if not (all(math.isfinite(value) for value in step.end) and error <= 1.0):
             size *= 0.5 if not error > 1.0 else max(0.2, 0.9 * error**POWER)
             continue
         near = _first_near(path, step)
         if math.isfinite(near):
             return passed + near * size, None
-        point, slope, passed = step.there, step.new_slope, passed + size
+        point, slope, passed = step.end, step.new_slope, passed + size
         size *= min(5.0, 0.9 * error**POWER) if error > 0.0 else 5.0
         seen = orbit_of_amplitudes(amplitudes_of(point), point[2], path.jellett, path.numbers)
         if unilateral and least_reaction(seen, path.numbers) < 0.0:
@@ -146,7 +146,7 @@ def _first_near(path: SlowPath, step: RungeKuttaStep) -> float:
     """
 
     def at(part: float) -> Point:
-        return step_to(step.here, step.slopes[0], part * step.size, path.rates)
+        return step_to(step.start, step.slopes[0], part * step.size, path.rates)
 
     def beyond(part: float) -> float:
         return path.beyond(at(part))
@@ -155,7 +155,7 @@ def _first_near(path: SlowPath, step: RungeKuttaStep) -> float:
         point = at(part)
         return point[0] - point[1]
 
-    before, difference = 0.0, step.here[0] - step.here[1]
+    before, difference = 0.0, step.start[0] - step.start[1]
     for count in range(1, PARTS + 1):
         after = count / PARTS
         point = step.between(after)

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from tippetop.translate.refusal import Untranslatable
 
 MODULE_WORDS = ("numbers", "arrays", "numpy", "series", "skip")
-"""What a module may declare.
+"""Declarations of a module.
 
 numbers: operands are numbers, so that JavaScript's operators do.
 arrays: values are numbers and arrays of numbers, and no division by zero is an error.
@@ -29,7 +29,7 @@ by hand in <file>: the module has a counterpart written in JavaScript, in this f
 """
 
 DEFINITION_WORDS = ("skip", "runtime", "drop")
-"""What a definition may declare.
+"""Declarations of a definition.
 
 skip: it is not translated, and a use of it is refused.
 runtime: the JavaScript runtime has a function of this name.

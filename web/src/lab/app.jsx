@@ -16,6 +16,7 @@ import { Own } from "./own.jsx";
 import { Plots, QUANTITIES, USUAL } from "./plots.js";
 import { Speaker } from "./speaker.jsx";
 import { Story, veilOf } from "./story.jsx";
+import { factsAt } from "./words.js";
 
 const PANELS = {
   story: Story,
@@ -152,6 +153,7 @@ function Stage({ lab, dark }) {
       theme: dark ? "dark" : "light",
       words: part("player"),
       open: innerWidth > 1700,
+      facts: (track, time) => factsAt(track, time, lab.state.units),
     });
     lab.player = player;
     if (player.scene) new Flick(player.canvas, player.scene, (spin, tilt) => lab.flick(spin, tilt));

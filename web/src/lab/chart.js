@@ -18,15 +18,15 @@ const MARK = "#ff3d7f";
 export const HIGHEST = 250;
 
 // How many rows and columns a launch of the coarsest grids stands for.
-const REACH = [1, 2, 4];
+const REACH = [1, 2, 4, 8];
 const ROOM = { left: 50, right: 14, top: 8, bottom: 34 };
 // Rows and columns by which keys move the mark.
 const MOVES = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] };
 
 // How fine a grid must be to have a cell: 0 for the coarsest.
 export function fineness({ row, column }) {
-  if (row % 4 === 0 && column % 4 === 0) return 0;
-  return row % 2 === 0 && column % 2 === 0 ? 1 : 2;
+  const coarsest = REACH.findLastIndex((reach) => row % reach === 0 && column % reach === 0);
+  return REACH.length - 1 - coarsest;
 }
 
 function colourOf(tilt) {

@@ -5,7 +5,7 @@ import { encode } from "uqr";
 
 import { t } from "./i18n.js";
 import { launchQuery } from "./link.js";
-import { readResults, resultCode, spinsOf } from "./results.js";
+import { readResults, resultCode, resultLink, spinsOf } from "./results.js";
 import { changed } from "./setup.js";
 import { digits, shown } from "./units.js";
 
@@ -67,27 +67,46 @@ function Count({ name, value, least, most, set }) {
   );
 }
 
-// A code to scan for each group's launch: that which is set, with another spin.
-function Codes({ lab, state: { groups, low, high } }) {
-  const { setup, units } = lab.state;
-  const place = location.href.replace(/[#?].*$/, "");
+// The addresses of the groups' launches: that which is set, each with another spin.
+function addressesOf({ setup }, { groups, low, high }) {
+  return spinsOf(groups, low, high).map((spin) => {
+    const query = launchQuery(changed(setup, { "launch.spin": spin }));
+    query.set("launch.spin", spin);
+    query.set("tab", "class");
+    return { spin, address: `${placeOfPage()}#${query}` };
+  });
+}
+
+const placeOfPage = () => location.href.replace(/[#?].*$/, "");
+
+// A code to scan for each group, and the same as links to send.
+function Codes({ lab, state }) {
+  const { units } = lab.state;
+  const groups = addressesOf(lab.state, state);
   return (
-    <ol class="codes">
-      {spinsOf(groups, low, high).map((spin) => {
-        const query = launchQuery(changed(setup, { "launch.spin": spin }));
-        query.set("launch.spin", spin);
-        query.set("tab", "class");
-        const address = `${place}#${query}`;
-        return (
+    <>
+      <ol class="codes">
+        {groups.map(({ spin, address }) => (
           <li>
             <a href={address}>
               <Code text={address} />
               <span>{shown(spin, "spin", units)}</span>
             </a>
           </li>
-        );
-      })}
-    </ol>
+        ))}
+      </ol>
+      <details>
+        <summary>{t("class.links")}</summary>
+        <textarea
+          class="links"
+          rows={6}
+          readOnly
+          aria-label={t("class.links")}
+          value={groups.map(({ address }) => address).join("\n")}
+          onFocus={({ target }) => target.select()}
+        />
+      </details>
+    </>
   );
 }
 
@@ -102,17 +121,23 @@ function Code({ text }) {
   );
 }
 
-// What a group takes to the teacher: spin and final tilt of the run that is shown.
+// What a group takes to the teacher: spin and final tilt of the run that is shown, as a code or in a link to it.
 function Mine({ lab }) {
   if (!lab.track || lab.isAwaited) return null;
-  const code = resultCode(lab.track.header);
+  const { header } = lab.track;
+  const code = resultCode(header);
+  const copy = (text) => navigator.clipboard?.writeText(text);
+  const link = () => resultLink(placeOfPage(), launchQuery(lab.state.setup), header);
   return (
     <p class="row" role="status">
       <span>
         {t("class.mine")} <b class="mine">{code}</b>
       </span>
-      <button type="button" onClick={() => navigator.clipboard?.writeText(code)}>
-        {t("keep.copy")}
+      <button type="button" onClick={() => copy(code)}>
+        {t("class.copyCode")}
+      </button>
+      <button type="button" onClick={() => copy(link())}>
+        {t("class.copyLink")}
       </button>
     </p>
   );

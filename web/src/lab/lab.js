@@ -7,8 +7,9 @@ import { LANGUAGES, preferred, speak, t } from "./i18n.js";
 import { readLink, writeLink } from "./link.js";
 import { refusal } from "./refusal.js";
 import { changed, LONGEST, same } from "./setup.js";
+import { stepOf } from "./steps.js";
 import { digits, shown } from "./units.js";
-import { tell } from "./words.js";
+import { happened, tell } from "./words.js";
 
 // More turns than these are not computed, times in ms: until a run is said to be under way, and a link is kept.
 const MOST_TURNS = 10_000;
@@ -17,6 +18,10 @@ const SHARE = 300;
 // How long a launch is played whose slider was moved, s.
 const PREVIEW = 1;
 export const MOST_PINS = 3;
+
+function sameMembers(one, other) {
+  return one.length === other.length && one.every((member, k) => member === other[k]);
+}
 
 // Bring the stage into view where it is not.
 function showStage() {
@@ -51,6 +56,7 @@ export class Lab extends EventTarget {
   }
 
   set(changes) {
+    const before = this.companions;
     this.state = { ...this.state, ...changes };
     if (changes.lang) {
       speak(changes.lang);
@@ -58,6 +64,8 @@ export class Lab extends EventTarget {
     }
     this.dispatchEvent(new Event("state"));
     this.share();
+    if (!sameMembers(this.companions, before)) this.raise();
+    if ("tab" in changes) this.say();
   }
 
   // Change fields of the launch; while a slider is dragged, history waits for its end.
@@ -165,8 +173,13 @@ export class Lab extends EventTarget {
     this.say();
   }
 
+  // The headline above the stage: in the story what happened in a step, else the account of the run.
   say() {
-    if (this.track) this.player.say(tell(this.track, this.state.units));
+    if (!this.track) return;
+    const { tab, step, units } = this.state;
+    const { problem, asked: duration } = this.track.header;
+    const isOfStory = tab === "story" && same({ problem, duration }, stepOf(step).setup);
+    this.player.say(isOfStory ? happened(step) : tell(this.track, units));
   }
 
   stop() {
@@ -190,19 +203,24 @@ export class Lab extends EventTarget {
     if (pins.some((one) => same(one, setup))) return;
     this.set({ pins: [...pins, setup].slice(-MOST_PINS) });
     this.keep(true);
-    this.raise();
   }
 
   unpin(setup) {
     this.set({ pins: this.state.pins.filter((one) => one !== setup) });
     this.keep(true);
-    this.raise();
   }
 
-  // Have a ghost for each pinned launch.
+  // The launches whose ghosts are beside the top: those of a step of the story, and the pinned ones.
+  get companions() {
+    const { tab, step, pins } = this.state;
+    const beside = tab === "story" ? stepOf(step).beside : null;
+    return beside ? [...beside, ...pins] : pins;
+  }
+
+  // Have a ghost for each of the companions.
   async raise() {
-    const { pins } = this.state;
-    for (const pin of pins) {
+    const { companions } = this;
+    for (const pin of companions) {
       const key = JSON.stringify(pin);
       if (this.ghosts.has(key)) continue;
       const known =
@@ -211,14 +229,14 @@ export class Lab extends EventTarget {
         pin.duration === this.track.header.asked;
       this.ghosts.set(key, known ? this.track : await this.engine.aside(pin).catch(() => null));
     }
-    if (pins !== this.state.pins) return;
+    if (!sameMembers(companions, this.companions)) return;
     this.player.compare(this.pinned());
     this.dispatchEvent(new Event("run"));
     this.set({});
   }
 
   pinned() {
-    return this.state.pins.map((pin) => this.ghosts.get(JSON.stringify(pin))).filter(Boolean);
+    return this.companions.map((pin) => this.ghosts.get(JSON.stringify(pin))).filter(Boolean);
   }
 
   ghostOf(pin) {

@@ -2,23 +2,41 @@
 
 import { render } from "preact";
 
-import { App } from "./app.jsx";
+import { App, isDark } from "./app.jsx";
+import { preferred, speak } from "./i18n.js";
 import { Lab } from "./lab.js";
 import { printSheet } from "./sheet.js";
+import { TorquePicture } from "./torque.jsx";
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
 
-const lab = new Lab();
-globalThis.tippetopLab = lab;
-document.addEventListener("keydown", (event) => {
-  if (
-    !(event.ctrlKey || event.metaKey) ||
-    event.key !== "z" ||
-    event.target.matches("input[type=text]")
-  )
-    return;
-  event.preventDefault();
-  lab.undo();
-});
-printSheet(lab);
-render(<App lab={lab} />, document.getElementById("lab"));
+const host = document.getElementById("lab");
+const query = new URLSearchParams(location.hash.slice(1));
+if (query.get("picture") === "torque") showPicture(query.get("lang") ?? preferred());
+else showLab();
+
+function showLab() {
+  const lab = new Lab();
+  globalThis.tippetopLab = lab;
+  document.addEventListener("keydown", (event) => {
+    const isUndo = (event.ctrlKey || event.metaKey) && event.key === "z";
+    if (!isUndo || event.target.matches("input[type=text]")) return;
+    event.preventDefault();
+    lab.undo();
+  });
+  printSheet(lab);
+  render(<App lab={lab} />, host);
+}
+
+// The picture of the torque alone, for pages that show it in a frame.
+function showPicture(language) {
+  speak(language);
+  document.documentElement.lang = language;
+  document.documentElement.dataset.theme = isDark("auto") ? "dark" : "light";
+  render(
+    <main class="alone">
+      <TorquePicture />
+    </main>,
+    host,
+  );
+}

@@ -5,7 +5,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { Chart, fineness, HIGHEST } from "./chart.js";
 import { frictionKind } from "./dials.js";
 import { Crew } from "./engine.js";
-import { t } from "./i18n.js";
+import { t, translated } from "./i18n.js";
 import { changed } from "./setup.js";
 import { shown } from "./units.js";
 
@@ -136,7 +136,8 @@ function wordsOf(plan, { row, column, answer }, units) {
     mu: shown(plan.frictions[row], frictionKind(plan.setup), units),
   };
   if (answer.error || !Number.isFinite(answer.tilt)) {
-    const message = answer.error?.message ?? t(`outcomes.${answer.outcome.name}`);
+    const message =
+      (answer.error && translated(answer.error.message)) ?? t(`outcomes.${answer.outcome.name}`);
     return t("map.failed", { ...gaps, message });
   }
   const { tilt, highest, fellBack, flights } = answer;

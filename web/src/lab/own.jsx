@@ -250,7 +250,7 @@ function Grip({ top, onDrag }) {
       cx="0"
       cy={-MM * top.stem}
       r={Math.max(MM * top.knob, 5)}
-      tabIndex={0}
+      tabindex="0"
       role="slider"
       aria-label={t("own.stem")}
       aria-valuemin={shortest * MM}

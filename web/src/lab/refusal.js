@@ -8,7 +8,10 @@ import { digits, shown, unitOf, withUnit } from "./units.js";
 export function refusal(error, { units, setup }) {
   const dial = dialOf(error.field);
   if (!dial) {
-    return { field: null, sentence: t("controls.refusedOther", { message: error.message }) };
+    return {
+      field: null,
+      sentence: t("controls.refusedOther", { message: translated(error.message) }),
+    };
   }
   const { field } = dial;
   const { name } = part(`quantities.${field}`);

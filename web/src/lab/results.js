@@ -1,6 +1,8 @@
-// Results of a class: what became of launches as short codes, a spin in rad/s and the final tilt in degrees.
+// Results of a class: what became of launches as short codes, a spin in rad/s and the final tilt in degrees, or as links.
 
 const DEGREES = 180 / Math.PI;
+// The name that a result code has in a link.
+const RESULT = "result";
 const FIRST_PART = /^\s*(-?\d+(?:[.,]\d+)?)\s*[ ;:/→\t]\s*(\d+(?:[.,]\d+)?)\s*°?\s*$/;
 
 /** The code of a run: "155 179.9". */
@@ -9,13 +11,26 @@ export function resultCode({ problem, metrics }) {
   return `${spin} ${(metrics.final_theta * DEGREES).toFixed(1)}`;
 }
 
-/** Spins and tilts of the codes in a text, one a line, and the numbers of the lines that are none. */
+/** The address under which a run is seen again, with its result code. */
+export function resultLink(place, query, header) {
+  query.set("tab", "launch");
+  query.set(RESULT, resultCode(header));
+  return `${place}#${query}`;
+}
+
+// The result code that a line is, or that the link in a line carries.
+function codeIn(line) {
+  const [, query] = /#(\S+)/.exec(line) ?? [];
+  return query ? (new URLSearchParams(query).get(RESULT) ?? "") : line;
+}
+
+/** Spins and tilts of the codes and links in a text, one a line, and the numbers of the lines that are none. */
 export function readResults(text) {
   const points = [];
   const wrong = [];
   text.split("\n").forEach((line, k) => {
     if (!line.trim()) return;
-    const [, spin, tilt] = FIRST_PART.exec(line) ?? [];
+    const [, spin, tilt] = FIRST_PART.exec(codeIn(line)) ?? [];
     const point = [spin, tilt].map((part) => Number(part?.replace(",", ".")));
     if (point.every(Number.isFinite) && point[1] <= 180)
       points.push([Math.abs(point[0]), point[1]]);

@@ -6,7 +6,7 @@ import { SPAN } from "../player/climax.js";
 import { stillness } from "../player/player.js";
 import { part, t } from "./i18n.js";
 import { PRESETS, preset } from "./presets.js";
-import { changed } from "./setup.js";
+import { STEPS } from "./steps.js";
 import { TorquePicture } from "./torque.jsx";
 
 // How long nothing in particular is watched before the answer is told, and the most of anything, s.
@@ -19,76 +19,6 @@ const MOMENTS = {
   flight: ({ flights: [first] }) => (first?.[0] ?? NaN) + SPAN,
   arrival: ({ metrics: { arrives } }) => arrives ?? NaN,
 };
-
-// Of each step: its launch, what is to be seen in it, the arrows and curves it shows, the preset whose figure in the
-// report shows it too, whether the picture of the torque explains it, and what the visitor may go on to.
-const STEPS = [
-  {
-    from: "turns",
-    picture: true,
-    watch: "flip",
-    setup: preset("turns"),
-    show: ["trace", "glass", "axis"],
-    plots: ["theta", "height", "omega3"],
-  },
-  {
-    setup: changed(preset("slow"), { duration: 8 }),
-    show: ["trace", "glass", "axis"],
-    plots: ["theta", "omega3"],
-  },
-  {
-    from: "half",
-    watch: "arrival",
-    setup: preset("half"),
-    show: ["trace", "glass", "axis"],
-    plots: ["theta", "slip", "phi_dot"],
-  },
-  {
-    from: "turns",
-    watch: "flip",
-    setup: preset("turns"),
-    show: ["trace", "glass", "momentum"],
-    plots: ["theta", "omega3", "energy", "jellett_error"],
-  },
-  {
-    setup: changed(preset("none"), { duration: 8 }),
-    show: ["trace", "glass", "axis"],
-    plots: ["theta", "energy", "slip"],
-  },
-  {
-    from: "much",
-    setup: changed(preset("turns"), { "friction.mu": 3000, duration: 8 }),
-    show: ["trace", "glass", "friction"],
-    plots: ["theta", "slip", "energy"],
-  },
-  {
-    from: "jumps",
-    watch: "flight",
-    setup: changed(preset("jumps"), { duration: 9 }),
-    show: ["trace", "glass", "friction"],
-    plots: ["theta", "normal_force", "height"],
-  },
-  {
-    watch: "flip",
-    setup: preset("stem"),
-    show: ["trace", "glass", "axis"],
-    plots: ["theta", "height", "normal_force"],
-    extra: "thin",
-  },
-  {
-    setup: changed(preset("dry"), { duration: 8 }),
-    show: ["trace", "glass", "friction"],
-    plots: ["theta", "slip", "energy"],
-    extra: "drill",
-  },
-  {
-    watch: "flip",
-    setup: preset("turns"),
-    show: ["trace", "glass"],
-    plots: ["theta", "omega3"],
-    extra: "own",
-  },
-];
 
 export function Story({ lab }) {
   const { step, guess } = lab.state;
@@ -147,7 +77,8 @@ export function Story({ lab }) {
 
 // When the answer of a step is told, s.
 function momentIn(number, track) {
-  const moment = MOMENTS[STEPS[number].watch]?.(track.header);
+  const { watch } = STEPS[number];
+  const moment = MOMENTS[watch]?.(track.header) ?? watch;
   const time = Number.isFinite(moment) ? Math.min(moment, LONGEST_WATCHED) : WATCHED;
   return stillness() ? 0 : Math.min(time, track.duration);
 }
@@ -255,11 +186,12 @@ function showExtra(lab, extra) {
 
 // Put a step's launch on the table, seen as it is best seen.
 function setStep(lab, number, others, play = false) {
-  const { setup, show, plots } = STEPS[number];
+  const { setup, show, plots, distance } = STEPS[number];
   const { player } = lab;
   for (const name of ["axis", "momentum", "friction", "trace", "glass"])
     player.show({ [name]: show.includes(name) });
   player.look("orbit");
+  if (distance) player.scene?.eye.zoom(distance);
   player.slow(!stillness());
   player.toggle(false);
   player.seek(0);

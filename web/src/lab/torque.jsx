@@ -68,7 +68,7 @@ function Drawing({ tilt, momentum, later, torque, onLean }) {
     event.preventDefault();
   };
   return (
-    <svg viewBox="0 0 300 232" role="group" aria-label={t("torque.label")}>
+    <svg viewBox="0 0 300 244" role="group" aria-label={t("torque.label")}>
       <defs>
         <marker
           id="head"
@@ -94,14 +94,14 @@ function Drawing({ tilt, momentum, later, torque, onLean }) {
       <circle cx={contact[0]} cy={contact[1]} r="2.5" class="force point" />
       <Word place={[contact[0] - 40, contact[1] + 22]} text={t("torque.force")} name="force-word" />
       <Word place={[push[0] - 8, push[1] + 16]} text={t("torque.torque")} name="push-word" end />
-      <Word place={[tip[0] + 8, tip[1] + 4]} text="L" name="momentum-word" />
+      <Word place={[tip[0] + 18, tip[1] + 12]} text="L" name="momentum-word" />
       <Word place={[end[0] - 6, end[1] - 4]} text={t("torque.later")} name="later-word" end />
       <circle
         class="grip"
         cx={stem[0]}
         cy={stem[1]}
         r="11"
-        tabIndex={0}
+        tabindex="0"
         role="slider"
         aria-label={t("torque.grip")}
         aria-valuemin={Math.round(LEAST * DEGREES)}

@@ -1,11 +1,13 @@
 // The account of a run in the page's language: a headline, and sentences beside it.
 
 import { decimal, part, t } from "./i18n.js";
-import { digits, shown } from "./units.js";
+import { cleared, digits, shown } from "./units.js";
 
 // Times below the first, s, are written in milliseconds, from the second on in four digits.
 const MILLISECONDS = 0.01;
 const TENS = 10;
+// Slips below it, m/s, are written in mm/s.
+const SLOW = 0.01;
 
 // What happened and where it ends; beside it what is implausible, how it began and what theory says.
 export function tell(track, units) {
@@ -58,6 +60,23 @@ function written(gap, value, units) {
       return `${digits(value, 3)} ${part(`account.units.${gap}`)}`;
   }
   return `${value}`;
+}
+
+/** What happened in a step of the story, as a headline. */
+export function happened(step) {
+  const steps = part("story.steps");
+  return { headline: steps[Math.min(step, steps.length - 1)].happened, details: [] };
+}
+
+/** The spin, the slip and the friction at a time of a run. */
+export function factsAt(track, time, units) {
+  const [across, along] = [0, 1].map((k) => track.value("friction", time, k, 2));
+  const slip = cleared(track.value("slip", time));
+  return t("player.facts", {
+    spin: shown(track.value("omega3", time), "spin", units, 3),
+    slip: slip < SLOW ? `${digits(1e3 * slip, 2)} mm/s` : `${digits(slip, 2)} m/s`,
+    friction: `${digits(1e3 * cleared(Math.hypot(across, along)), 2)} mN`,
+  });
 }
 
 export function heading({ ends, certain }, units) {

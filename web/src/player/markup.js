@@ -36,6 +36,7 @@ export function markup(words) {
   <div class="tt-stage">
     <canvas class="tt-canvas" tabindex="0" role="img" aria-label="${words.canvas}"></canvas>
     <div class="tt-words" aria-live="polite"></div>
+    <div class="tt-facts"></div>
     <div class="tt-mode" hidden></div>
     <div class="tt-scale"></div>
     <p class="tt-trouble" role="alert" hidden></p>

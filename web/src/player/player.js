@@ -22,8 +22,10 @@ const TURNS = {
 };
 
 export class Player extends EventTarget {
-  constructor(host, { theme = "auto", words = english, open = false } = {}) {
+  // `facts` returns what is written on the stage of a track at a time.
+  constructor(host, { theme = "auto", words = english, open = false, facts = null } = {}) {
     super();
+    this.facts = facts;
     this.host = host;
     this.labels = words;
     this.time = 0;
@@ -60,6 +62,7 @@ export class Player extends EventTarget {
     this.strip = this.find(".tt-strip");
     this.range = this.find(".tt-scrub input");
     this.readout = this.find(".tt-time");
+    this.note = this.find(".tt-facts");
     this.playButton = this.find("[data-do=play]");
   }
 
@@ -329,6 +332,7 @@ export class Player extends EventTarget {
     const seconds = (count) => `${time.toFixed(count).replace(".", this.labels.point)} s`;
     this.range.setAttribute("aria-valuetext", seconds(3));
     this.readout.textContent = seconds(this.speed < 0.02 ? 5 : 3);
+    if (this.facts) this.note.textContent = this.facts(track, time);
   }
 
   // Whether the top slides, rolls, flies or stands on its stem.

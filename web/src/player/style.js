@@ -18,7 +18,10 @@ export const STYLE = `
 .tt-scale { position: absolute; right: 12px; bottom: 8px; font-size: 12px; color: var(--tt-muted);
   pointer-events: none; background: color-mix(in srgb, var(--tt-paper) 65%, transparent); padding: 1px 7px;
   border-radius: 5px; }
-.tt-scale:empty { display: none; }
+.tt-facts { position: absolute; left: 12px; bottom: 34px; font-size: 12px; pointer-events: none;
+  font-variant-numeric: tabular-nums; background: color-mix(in srgb, var(--tt-paper) 65%, transparent);
+  padding: 1px 7px; border-radius: 5px; }
+:is(.tt-scale, .tt-facts):empty { display: none; }
 .tt-mode { position: absolute; left: 12px; bottom: 8px; font-size: 12px; font-weight: 600; padding: 2px 9px;
   border-radius: 9px; color: #fff; background: #b34700; pointer-events: none; }
 .tt-mode[hidden] { display: none; }

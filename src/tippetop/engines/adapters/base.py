@@ -67,7 +67,7 @@ class Adapter(Protocol):
 
 
 def is_installed(adapter: Adapter) -> bool:
-    """Whether an adapter's program is installed here."""
+    """Return whether an adapter's program is installed."""
     return adapter.module is None or find_spec(adapter.module) is not None
 
 
@@ -99,6 +99,6 @@ def no_rebound(case: Case) -> str | None:
 
 
 def axis_of(quaternion: Array) -> Array:
-    """Return the body's axis from an orientation, scalar first."""
-    w, x, y, z = quaternion
+    """Return the body's axis from an orientation, scalar first and of any length."""
+    w, x, y, z = quaternion / np.linalg.norm(quaternion)
     return np.array([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])

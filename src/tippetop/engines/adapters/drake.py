@@ -15,11 +15,19 @@ from tippetop.engines.adapters.base import (
 from tippetop.engines.bodies import friction_numbers, launch_state, primitives
 from tippetop.engines.cases import Case
 
-_CONFIG = "Doxygen, MultibodyPlantConfig and Compliant Contact in Drake"
+_APPROXIMATION = "pydrake, DiscreteContactApproximation: How to choose an approximation"
+_TOLERANCE = "MultibodyPlant.set_stiction_tolerance"
+_CONTINUOUS = "pydrake, MultibodyPlant (continuous, time_step 0) and SimulatorConfig"
+
+STIFFNESS = 0.3
+"""Natural frequency of the contact times the step, where stiffness goes with the step."""
+
+TOLERANCE = 5.0
+"""Stiction tolerance over the step where it goes with the step, m/s^2: Runge-Kutta is stable."""
 
 
 class Drake:
-    """Drake's MultibodyPlant in discrete time, spheres and cylinders on a half space."""
+    """Drake's MultibodyPlant: spheres and cylinders on a half space, contact at points."""
 
     name = "Drake"
     package = "drake"
@@ -27,14 +35,14 @@ class Drake:
     settings = (
         Setting(
             "default",
-            "lagged convex approximation, stiffness and dissipation by the plant's defaults",
-            _CONFIG,
-            {"discrete_contact_approximation": "lagged"},
+            "discrete, lagged approximation, stiffness, dissipation and tolerance by default",
+            f"{_APPROXIMATION}: lagged is preferred",
+            {},
         ),
         Setting(
-            "similar, stiff",
-            "similar approximation, 1e6 N/m, stiction tolerance 1e-6 m/s, dissipation 10 s/m",
-            _CONFIG,
+            "similar",
+            "discrete, similar approximation, 1e6 N/m, 10 s/m, stiction tolerance 1e-6 m/s",
+            f"{_APPROXIMATION}: similar where strong transients are to be resolved; {_TOLERANCE}",
             {
                 "discrete_contact_approximation": "similar",
                 "stiction_tolerance": 1e-6,
@@ -43,15 +51,22 @@ class Drake:
             },
         ),
         Setting(
-            "SAP, near rigid",
-            "SAP approximation, 1e6 N/m, relaxation time of a step, near-rigid threshold 0.01",
-            _CONFIG,
+            "SAP",
+            "discrete, SAP, 1e6 N/m, relaxation time of a step, near-rigid threshold 0.01",
+            "MultibodyPlant.set_sap_near_rigid_threshold: small where contact is softer than meant",
             {
                 "discrete_contact_approximation": "sap",
                 "sap_near_rigid_threshold": 0.01,
                 "stiffness": 1e6,
                 "relaxation": True,
             },
+        ),
+        Setting(
+            "RK3",
+            "continuous, runge_kutta3 at fixed steps, stiffness 2 (0.3/step)^2 m, 1 s/m,"
+            " stiction tolerance 5 m/s^2 times the step",
+            f"{_CONTINUOUS}; {_TOLERANCE}",
+            {"scheme": "runge_kutta3", "dissipation": 1.0},
         ),
     )
 
@@ -85,15 +100,24 @@ class DrakeStepper:
             SpatialInertia,
             UnitInertia,
         )
-        from pydrake.systems.analysis import Simulator  # noqa: PLC0415
+        from pydrake.systems.analysis import (  # noqa: PLC0415
+            ResetIntegratorFromFlags,
+            Simulator,
+        )
         from pydrake.systems.framework import DiagramBuilder  # noqa: PLC0415
 
         problem = case.problem
         body, state = problem.body, launch_state(problem)
         stiffness, dissipation = options.pop("stiffness", None), options.pop("dissipation", None)
         relaxation = step if options.pop("relaxation", False) else None
+        scheme = options.pop("scheme", None)
+        if scheme:
+            stiffness = 2.0 * problem.body.mass * (STIFFNESS / step) ** 2  # two springs in a row
+            options["stiction_tolerance"] = TOLERANCE * step
         builder = DiagramBuilder()
-        config = MultibodyPlantConfig(time_step=step, contact_model="point", **options)
+        config = MultibodyPlantConfig(
+            time_step=0.0 if scheme else step, contact_model="point", **options
+        )
         plant, _ = AddMultibodyPlant(config, builder)
         plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -problem.gravity])
         I1, I3 = body.I1 / body.mass, body.I3 / body.mass
@@ -103,12 +127,12 @@ class DrakeStepper:
 
         def material() -> Any:
             properties = ProximityProperties()
-            told = {"friction": CoulombFriction(mu, mu)}
+            numbers = {"friction": CoulombFriction(mu, mu)}
             if stiffness is not None:
-                told["point_stiffness"] = stiffness
+                numbers["point_stiffness"] = stiffness
             if dissipation is not None:
-                told["dissipation"] = dissipation
-            AddContactMaterial(properties=properties, **told)
+                numbers["dissipation"] = dissipation
+            AddContactMaterial(properties=properties, **numbers)
             if relaxation is not None:
                 properties.AddProperty("material", "relaxation_time", relaxation)
             return properties
@@ -126,9 +150,13 @@ class DrakeStepper:
         plant.Finalize()
         diagram = builder.Build()
         self.simulator = Simulator(diagram)
+        if scheme:
+            ResetIntegratorFromFlags(self.simulator, scheme, step).set_fixed_step_mode(True)
         context = self.simulator.get_mutable_context()
         self.context = plant.GetMyMutableContextFromRoot(context)
         self.plant, self.step, self.diagram, self.time = plant, step, diagram, 0
+        # Half a step later a discrete plant has taken the step at that instant, and no other.
+        self.late = 0.0 if scheme else -0.5
         plant.SetPositions(self.context, [*state.quaternion, *state.position])
         plant.SetVelocities(self.context, [*state.omega, *state.velocity])
         self.simulator.Initialize()
@@ -136,8 +164,7 @@ class DrakeStepper:
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
         self.time += steps
-        # Half a step later: the step at that instant is taken, and no other.
-        self.simulator.AdvanceTo((self.time - 0.5) * self.step)
+        self.simulator.AdvanceTo((self.time + self.late) * self.step)
 
     def read(self) -> EngineState:
         """Return the state."""

@@ -15,7 +15,12 @@ from tippetop.engines.adapters.base import (
 from tippetop.engines.bodies import friction_numbers, launch_state, primitives
 from tippetop.engines.cases import Case
 
-_EXAMPLE = "Examples/tippeTop.py; cInterface/GeneralContact; AdvancedTopics, Contact"
+_EXAMPLE = (
+    "Examples/tippeTop.py, by its own words only a demonstration of GeneralContact, whose soft"
+    " contact may need other parameters"
+)
+_SOLVERS = "exudyn.DynamicSolverType: explicit solvers, without constraints"
+_ZONE = "GeneralContact.frictionProportionalZone: 1e-3 by default, oscillations if very small"
 
 
 class Exudyn:
@@ -26,21 +31,21 @@ class Exudyn:
     module = "exudyn"
     settings = (
         Setting(
-            "as its example",
+            "its example",
             "stiffness (316/s)^2 m, damping 1 ms of it, friction zone 1e-5 m/s, explicit Euler",
             _EXAMPLE,
             {"frequency": 316.0, "damping": 1e-3, "solver": "ExplicitEuler"},
         ),
         Setting(
-            "stiff with the step",
+            "stiff",
             "stiffness (0.3/step)^2 m, damping ratio 0.2, zone 1e-5 m/s, explicit midpoint",
-            _EXAMPLE,
+            f"{_SOLVERS}; zone of its example",
             {"per_step": 0.3, "ratio": 0.2, "solver": "ExplicitMidpoint"},
         ),
         Setting(
-            "Runge-Kutta 4",
+            "RK44",
             "stiffness (0.3/step)^2 m, damping ratio 0.2, friction zone 1e-3 m/s, RK44",
-            "SolverType: RK44 for smooth systems",
+            f"{_SOLVERS}; {_ZONE}",
             {"per_step": 0.3, "ratio": 0.2, "solver": "RK44", "zone": 1e-3},
         ),
     )
@@ -151,7 +156,7 @@ class ExudynStepper:
         ]
         system.Assemble()
         settings = exu.SimulationSettings()
-        count = round(self.case.duration / self.step)
+        count = round(float(self.case.times[self.case.compared - 1]) / self.step)
         settings.timeIntegration.numberOfSteps = count
         settings.timeIntegration.endTime = count * self.step
         settings.timeIntegration.verboseMode = 0

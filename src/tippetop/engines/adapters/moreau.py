@@ -24,7 +24,7 @@ ROUNDS = 500
 class Moreau:
     """Moreau's time-stepping as textbooks have it, here."""
 
-    name = "Moreau stepping"
+    name = "Moreau"
     package = None
     module = None
     settings = (

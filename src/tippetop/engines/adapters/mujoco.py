@@ -8,7 +8,14 @@ from tippetop.engines.adapters.base import EngineState, Setting, axis_of, no_reb
 from tippetop.engines.bodies import friction_numbers, mjcf
 from tippetop.engines.cases import Case
 
-_SLIP = "modeling.rst, Solver settings and Preventing slip; XMLreference.rst, option/impratio"
+_FREE_BODY = "Computation, Numerical integration (implicitfast, RK4) and Gyroscopic derivatives"
+_NO_SLIP = (
+    "Modeling, Solver settings: elliptic cones, large impratio, Newton with very small tolerance;"
+    f" if that is not sufficient, the noslip solver. {_FREE_BODY}"
+)
+_STIFF = (
+    "Modeling, Solver parameters: timeconst at least twice the time step, impedance up to 0.9999."
+)
 
 
 class MuJoCo:
@@ -18,29 +25,39 @@ class MuJoCo:
     package = "mujoco"
     module = "mujoco"
     settings = (
-        Setting("default", "as installed, with its elliptic cone", "XMLreference.rst, option", {}),
         Setting(
-            "no slip",
-            "impratio 100, Newton with tolerance 1e-15, 3 rounds of the noslip solver",
-            _SLIP,
-            {"impratio": 100.0, "tolerance": 1e-15, "noslip_iterations": 3},
+            "default",
+            "as installed, with elliptic cones: Euler, solref 0.02 1, solimp 0.9 0.95",
+            "Modeling, Solver settings: elliptic cones are recommended",
+            {},
         ),
         Setting(
-            "implicit, stiff",
-            "as no slip, implicit integrator, solref of 2 steps, dampratio 1, solimp 0.99 0.999",
-            "modeling.rst, Solver parameters: timeconst at least twice the time step",
+            "no slip",
+            "implicitfast, impratio 100, Newton with tolerance 1e-15, 3 rounds of noslip",
+            _NO_SLIP,
             {
                 "impratio": 100.0,
                 "tolerance": 1e-15,
                 "noslip_iterations": 3,
-                "integrator": "implicit",
+                "integrator": "implicitfast",
+            },
+        ),
+        Setting(
+            "stiff",
+            "as no slip, with solref of 2 steps and solimp 0.99 0.999",
+            f"{_STIFF} {_NO_SLIP}",
+            {
+                "impratio": 100.0,
+                "tolerance": 1e-15,
+                "noslip_iterations": 3,
+                "integrator": "implicitfast",
                 "stiff": True,
             },
         ),
         Setting(
-            "Runge-Kutta, stiff",
+            "RK4, stiff",
             "RK4, impratio 100, solref of 2 steps, solimp 0.99 0.999",
-            "computation/index.rst, Numerical integration: RK4 for systems that conserve energy",
+            f"{_STIFF} {_FREE_BODY}: RK4 where energy is to be conserved for long",
             {"impratio": 100.0, "tolerance": 1e-15, "integrator": "RK4", "stiff": True},
         ),
     )
@@ -70,7 +87,7 @@ class MuJoCoStepper:
         model.opt.tolerance = options.get("tolerance", model.opt.tolerance)
         model.opt.noslip_iterations = options.get("noslip_iterations", 0)
         integrators = {
-            "implicit": mujoco.mjtIntegrator.mjINT_IMPLICIT,
+            "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
             "RK4": mujoco.mjtIntegrator.mjINT_RK4,
         }
         model.opt.integrator = integrators.get(options.get("integrator", ""), model.opt.integrator)

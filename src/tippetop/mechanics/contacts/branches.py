@@ -11,17 +11,17 @@ from tippetop.mechanics.vectors import Scalar
 
 
 def is_branched(law: FrictionLaw) -> bool:
-    """Whether a law is made of branches, and knows itself which holds, or is one of them."""
+    """Return whether a law has branches, or is one of them."""
     return hasattr(whole_law(law), "branch")
 
 
 def whole_law(law: FrictionLaw) -> Any:
-    """A law, the whole of it where there is but a branch."""
-    return getattr(law, "whole", law)
+    """Return the whole law of which a law is a branch, or the law itself if it has no branches."""
+    return getattr(law, "whole_law", law)
 
 
 def on_branch(top: Top, slip: Slip) -> Top:
-    """A top with the branch of its law that holds where it slips, or in that direction; of
+    """Return a top with the branch of its law that holds where it slips, or in that direction; of
     floats.
     """
     if not is_branched(top.friction):
@@ -30,28 +30,28 @@ def on_branch(top: Top, slip: Slip) -> Top:
 
 
 def on_numbered_branch(top: Top, slip: Slip) -> Top:
-    """The same where a number tells the branch, for arrays, or for floats that share equations."""
+    """Return the top with the branch as a number beside the law, for arrays or shared equations."""
     if not is_branched(top.friction):
         return top
     return top._replace(friction=whole_law(top.friction).numbered_branch(slip))
 
 
 def on_other_branch(top: Top) -> Top:
-    """A top with the branch of its law, or of its limit surface, that takes over where its own
-    ends.
+    """Return a top with the branch of its law, or of its limit surface, that takes over where its
+    own ends.
     """
     law: Any = top.friction
     return top._replace(friction=law.other_branch())
 
 
 def off_branch(top: Top) -> Top:
-    """A top with the whole of its law, if it has but a branch of it."""
+    """Return the top with its whole law instead of one branch."""
     return top._replace(friction=whole_law(top.friction))
 
 
 def on_limit_branch(top: Top, wrench: Wrench) -> Top:
-    """A top with the branch of its law's limit surface that belongs to what holds it at rest; of
-    floats.
+    """Return a top with the branch of its law's limit surface that belongs to what holds it at
+    rest; of floats.
     """
     if not is_branched(top.friction):
         return top
@@ -61,7 +61,7 @@ def on_limit_branch(top: Top, wrench: Wrench) -> Top:
 
 
 def has_limit_branches(law: FrictionLaw) -> bool:
-    """Whether a law is one of the branches of a limit surface."""
+    """Return whether a law is one of the branches of a limit surface."""
     return hasattr(law, "limit_guard")
 
 

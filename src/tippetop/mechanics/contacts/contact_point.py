@@ -54,7 +54,7 @@ class ContactPoint(NamedTuple):
 
     @classmethod
     def of(cls, axis: Vector, momentum: Vector, top: Top) -> "ContactPoint":
-        """The contact point for this axis and angular momentum (kg m^2/s)."""
+        """Return the contact point for this axis and angular momentum (kg m^2/s)."""
         arm = contact_vector(axis, top.surface)
         turning = angular_velocity(axis, momentum, top)
         excess = (top.transverse_inertia - top.axial_inertia) / top.transverse_inertia

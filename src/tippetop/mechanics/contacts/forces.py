@@ -33,7 +33,7 @@ Slips: TypeAlias = Sequence[Slip | None]
 def forces_and_accelerations(
     point: ContactPoint, slip: Slip | None, rolling: Horizontal | None = None
 ) -> tuple[Wrench, Acceleration]:
-    """What the table does to a body in contact, and how that accelerates.
+    """Return the wrench of the table at the contact, and the acceleration of the contact point.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def sticking_constraints(
         along, across = directions_of(points[0].axis)
         held = [Component(first, along), Component(first, across), Component(second, across)]
         return [Constraint.of(component) for component in held]
-    held = [Component(number, way) for number in numbers for way in (EAST, NORTH)]
+    held = [Component(number, direction) for number in numbers for direction in (EAST, NORTH)]
     if numbers and len(points) == 1 and slip_length(points[0].top.friction) is not None:
         held.append(Component(numbers[0], VERTICAL, turns=True))
     return [Constraint.of(component) for component in held]
@@ -110,8 +110,8 @@ def normal_constraints(
     resistance, couple = points[0].top.rolling_resistance, None
     if resistance is not None and rolling is not None:
         turning = (rolling[0], rolling[1], 0.0)
-        alone = len(points) == 1
-        couple = resistance.couple(turning) if alone else scale(-resistance.length, turning)
+        is_single = len(points) == 1
+        couple = resistance.couple(turning) if is_single else scale(-resistance.length, turning)
     return [
         Constraint(Component(number, VERTICAL), normal_wrench(point, slip, couple))
         for number, (point, slip) in enumerate(zip(points, slips, strict=True))
@@ -125,8 +125,8 @@ def rolling_constraints(points: Sequence[ContactPoint], rolling: Slip | None) ->
     """
     if rolling is not None or not points[0].top.resists_rolling:
         return []
-    ways = [EAST, NORTH] if len(points) == 1 else [directions_of(points[0].axis)[0]]
-    return [Constraint.of(Component(0, way, turns=True)) for way in ways]
+    axes = [EAST, NORTH] if len(points) == 1 else [directions_of(points[0].axis)[0]]
+    return [Constraint.of(Component(0, axis, turns=True)) for axis in axes]
 
 
 def directions_of(axis: Vector) -> tuple[Vector, Vector]:
@@ -162,8 +162,8 @@ def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | 
     if not held:
         return normal.wrench
     driven = rates_added(points, 0, normal.wrench)
-    more = solve_constraints(points, held, driven).wrenches
-    return sum_at(0, [(0, normal.wrench), *more])
+    further = solve_constraints(points, held, driven).wrenches
+    return sum_at(0, [(0, normal.wrench), *further])
 
 
 def pressing_wrench(point: ContactPoint, slip: Slip | None, rolling: Slip | None) -> Wrench:
@@ -172,7 +172,7 @@ def pressing_wrench(point: ContactPoint, slip: Slip | None, rolling: Slip | None
 
 
 def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None = None) -> Wrench:
-    """A unit normal force with the friction that goes with it where the contact slips, and a
+    """Return a unit normal force with the friction that goes with it where the contact slips, and a
     couple.
     """
     force, torque = (0.0, 0.0), NO_TORQUE
@@ -182,7 +182,7 @@ def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None 
 
 
 def slip_wrenches(law: FrictionLaw) -> tuple[Wrench, ...]:
-    """The wrenches that resist slip: two forces, and the drilling torque if the law resists
+    """Return the wrenches that resist slip: two forces, and the drilling torque if the law resists
     that.
     """
     return FORCES[:2] if slip_length(law) is None else (*FORCES[:2], DRILLING)
@@ -214,7 +214,7 @@ def rolling_reserve(point: "ContactPoint", wrench: Wrench, slip: Slip | None) ->
 
 
 def turning_with(point: "ContactPoint", slip: Slip) -> Vector:
-    """The angular velocity as a law takes it, drilling as the slip has it, rad/s."""
+    """Return the angular velocity as a law takes it, drilling as the slip has it, rad/s."""
     w = point.turning[2] if len(slip) == 2 else slip[2] / slip_length(point.top.friction)
     return (point.turning[0], point.turning[1], w)
 
@@ -226,7 +226,7 @@ def velocity_without_slip(axis: Vector, momentum: Vector, top: Top) -> Horizonta
 
 
 def without_drilling(axis: Vector, momentum: Vector, top: Top) -> Vector:
-    """The angular momentum for which the body does not turn about the vertical, kg m^2/s.
+    """Return the angular momentum for which the body does not turn about the vertical, kg m^2/s.
 
     What changes is the angular velocity's vertical component, which becomes zero.
     """
@@ -235,19 +235,19 @@ def without_drilling(axis: Vector, momentum: Vector, top: Top) -> Vector:
 
 
 def without_rolling(axis: Vector, momentum: Vector, top: Top) -> Vector:
-    """The angular momentum for which the body turns about the vertical alone, kg m^2/s."""
+    """Return the angular momentum for which the body turns about the vertical alone, kg m^2/s."""
     turning = angular_velocity(axis, momentum, top)
     return spun_up(axis, momentum, (-turning[0], -turning[1], 0.0), top)
 
 
 def spun_up(axis: Vector, momentum: Vector, change: Vector, top: Top) -> Vector:
-    """The angular momentum after a change of the angular velocity (rad/s), kg m^2/s."""
+    """Return the angular momentum after a change of the angular velocity (rad/s), kg m^2/s."""
     along = (top.axial_inertia - top.transverse_inertia) * dot(axis, change)
     return add(momentum, add(scale(top.transverse_inertia, change), scale(along, axis)))
 
 
 def is_set_valued(law: FrictionLaw) -> bool:
-    """Whether a law lets slip end: it has a `reserve`, and elsewhere depends on slip's direction
-    alone.
+    """Return whether a law lets slip end: it has a `reserve`, and elsewhere depends on slip's
+    direction alone.
     """
     return hasattr(law, "reserve")

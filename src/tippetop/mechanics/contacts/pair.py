@@ -61,7 +61,7 @@ class ContactPair(NamedTuple):
 
     @classmethod
     def of(cls, axis: Vector, momentum: Vector, tops: Tops) -> "ContactPair":
-        """The contact points for this axis and angular momentum (kg m^2/s)."""
+        """Return the contact points for this axis and angular momentum (kg m^2/s)."""
         first, second = (ContactPoint.of(axis, momentum, top) for top in tops)
         return cls(first, second)
 
@@ -90,9 +90,7 @@ def turning_along(pair: ContactPair) -> Scalar:
 
 
 def without_tilting(state: State, top: Top) -> State:
-    """The state with c' = 0 and no sinking: what is taken from the momentum lies across the
-    axis.
-    """
+    """Return the state with c' = 0 and no sinking; the momentum changes across the axis alone."""
     n = state.axis
     rate = axis_rate(n, state.momentum, top)[2]
     part = top.transverse_inertia * rate / (n[0] * n[0] + n[1] * n[1])
@@ -101,14 +99,14 @@ def without_tilting(state: State, top: Top) -> State:
 
 
 def slips_of(pair: ContactPair, xi: Slip) -> tuple[Slip, Slip]:
-    """How both contacts slip, and drill if their law resists that."""
+    """Return the slips of both contacts, with drilling if the law resists it."""
     across = directions_of(pair.first.axis)[1]
-    one, other = (xi[0], xi[1]), (xi[0] + xi[2] * across[0], xi[1] + xi[2] * across[1])
+    first, second = (xi[0], xi[1]), (xi[0] + xi[2] * across[0], xi[1] + xi[2] * across[1])
     reach = slip_length(pair.first.top.friction)
     if reach is None:
-        return one, other
+        return first, second
     drilling = reach * xi[2] / apart(pair)
-    return (*one, drilling), (*other, drilling)
+    return (*first, drilling), (*second, drilling)
 
 
 def at_rest(

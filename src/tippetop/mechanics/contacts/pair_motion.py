@@ -72,7 +72,7 @@ class PairMotion(NamedTuple):
         """
         return slip_reserve(self.pair[number].top, Wrench(self.wrenches[number].force, NO_TORQUE))
 
-    def left(self, number: int) -> Scalar:
+    def sticking_reserve(self, number: int) -> Scalar:
         """mu^2 N_i^2 - T_i^2 where both stick, N^2."""
         force = (self.needed(number), 0.0, self.normal[number])
         return slip_reserve(self.pair[number].top, Wrench(force, NO_TORQUE))
@@ -96,28 +96,30 @@ class PairMotion(NamedTuple):
     def rolling_reserve(self) -> Scalar:
         """Positive while the table can exert the couple that holds rolling, (N m)^2."""
         resistance: Any = self.pair.first.top.rolling_resistance
-        one, other = self.normal
-        return resistance.reserve(one + other, (self.holding, 0.0))
+        first, second = self.normal
+        return resistance.reserve(first + second, (self.holding, 0.0))
 
     @property
     def both_reserve(self) -> Scalar:
         """Positive while the table can exert S, N^2: (sqrt(A_1) + sqrt(A_2))^2 - S^2 for positive
         A_i.
         """
-        one, other, along = self.left(0), self.left(1), self.along
-        product = one * other
-        return one + other + 2.0 * (product * product + TINY) ** 0.25 - along * along
+        first, second, along = self.sticking_reserve(0), self.sticking_reserve(1), self.along
+        product = first * second
+        return first + second + 2.0 * (product * product + TINY) ** 0.25 - along * along
 
     @property
     def is_held(self) -> bool:
         """Whether the table can hold both contacts, without moments of drilling; of floats."""
-        return bool(min(self.left(0), self.left(1), self.both_reserve) >= 0.0)
+        return bool(
+            min(self.sticking_reserve(0), self.sticking_reserve(1), self.both_reserve) >= 0.0
+        )
 
-    def spare(self, way: Slip) -> Scalar:
-        """Power that friction takes at most where xi = `way`, less what holding takes of it, W."""
+    def spare(self, direction: Slip) -> Scalar:
+        """Return the most power of friction where xi = `direction`, less that of holding, W."""
         spare: Any = 0.0
         for point, slip, wrench in zip(
-            self.pair, slips_of(self.pair, way), self.wrenches, strict=True
+            self.pair, slips_of(self.pair, direction), self.wrenches, strict=True
         ):
             turning = turning_with(point, slip)
             force, torque = point.top.friction.traction((slip[0], slip[1]), turning)
@@ -128,7 +130,7 @@ class PairMotion(NamedTuple):
 
 
 def pair_motion(pair: ContactPair, slips: Slips, rolls: float) -> PairMotion:
-    """What the table does to a body whose two contacts stay closed, and how it accelerates.
+    """Return the forces and accelerations of a body whose two contacts stay closed.
 
     Parameters
     ----------

@@ -33,8 +33,7 @@ class Resolution(NamedTuple):
 
 
 def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float) -> Resolution:
-    """How two contacts go on that slip so, of which slip has ended on some; if on one, on the
-    first.
+    """Return how two contacts go on whose slip has ended: on both, on the first, or on none.
 
     What is tried first is to hold rolling, if that is resisted and has ended (rolls = 0), and then
     that it begins, one way or the other.
@@ -50,35 +49,35 @@ def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: flo
     held = _without_rolling(pair, xi, ended)
     if held is not None and held.motion.rolling_reserve >= 0.0:
         return held
-    way = 1.0 if held is None else rolling_way(held.motion)
-    for sign in (way, -way):
-        found = of_slips(pair, xi, ended, sign)
-        if found.motion.rolling_rate * sign >= 0.0:
-            return found
+    direction = 1.0 if held is None else rolling_direction(held.motion)
+    for sign in (direction, -direction):
+        trial = of_slips(pair, xi, ended, sign)
+        if trial.motion.rolling_rate * sign >= 0.0:
+            return trial
     raise Unsolved("nothing can hold the rolling of two contacts, and it can begin neither way")
 
 
 def _without_rolling(pair: ContactPair, xi: Slip, ended: tuple[bool, bool]) -> Resolution | None:
-    """How they go on while rolling is held; None where that is no way to."""
+    """Return the resolution with rolling held; None where rolling cannot be held."""
     try:
         return of_slips(pair, xi, ended, 0.0)
     except ArithmeticError:
         return None
 
 
-def rolling_way(held: PairMotion) -> float:
+def rolling_direction(held: PairMotion) -> float:
     """Sign of omega_e where rolling begins: against the couple that would have held it."""
     return -1.0 if held.holding > 0.0 else 1.0
 
 
 def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float) -> Resolution:
-    """The same where it is known how the body rolls.
+    """Return the resolution for slips, and for a given sense of rolling.
 
     What is tried first is that all stick that can, then that one of them slips, and then both;
     where patches resist drilling, one does not slip alone.
     """
-    one, other = slips_of(pair, xi)
-    slips: Slips = (None if ended[0] else one, None if ended[1] else other)
+    first, second = slips_of(pair, xi)
+    slips: Slips = (None if ended[0] else first, None if ended[1] else second)
     held = pair_motion(pair, slips, rolls)
     if not any(ended):
         return Resolution(held, (False, False), rolls)
@@ -91,14 +90,14 @@ def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float
         return Resolution(held, (True, True), rolls)
     for number in (0, 1):
         for sign in (1.0, -1.0):
-            found = turning_about(pair, number, sign, rolls)
-            if found.motion.rate[2] * sign >= 0.0 and found.motion.reserve(number) >= 0.0:
-                return found
+            trial = turning_about(pair, number, sign, rolls)
+            if trial.motion.rate[2] * sign >= 0.0 and trial.motion.reserve(number) >= 0.0:
+                return trial
     return both_letting_go(pair, rolls)
 
 
 def letting_go(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
-    """The first contact, which alone sticks, begins to slip.
+    """Return the resolution in which the first contact, which alone sticks, begins to slip.
 
     Raises
     ------
@@ -108,15 +107,15 @@ def letting_go(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
     slip = slips_of(pair, xi)[1]
     stiffness = _stiffness(pair)
 
-    def motion(way: Slip | None) -> PairMotion:
-        return pair_motion(pair, (way, slip), rolls)
+    def motion(direction: Slip | None) -> PairMotion:
+        return pair_motion(pair, (direction, slip), rolls)
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
-        found = motion(ways[0])
-        return [Resisted(found.rates.points[0][:2], stiffness * size(found.wrenches[0].force[:2]))]
+        trial = motion(ways[0])
+        return [Resisted(trial.rates.points[0][:2], stiffness * size(trial.wrenches[0].force[:2]))]
 
-    way = directions(response, [scaled(-1.0, motion(None).wrenches[0].force[:2])])[0]
-    return Resolution(motion(way), (False, False), rolls, (*way, 0.0))
+    direction = directions(response, [scaled(-1.0, motion(None).wrenches[0].force[:2])])[0]
+    return Resolution(motion(direction), (False, False), rolls, (*direction, 0.0))
 
 
 def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
@@ -132,23 +131,23 @@ def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
     stiffness = _stiffness(pair) + float(abs(lever * turned))
     drilled = abs(lever * float(rates_added(pair, 0, DRILLING).turning[2]))
 
-    def motion(way: Slip) -> PairMotion:
-        return pair_motion(pair, slips_of(pair, way), rolls)
+    def motion(direction: Slip) -> PairMotion:
+        return pair_motion(pair, slips_of(pair, direction), rolls)
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
-        found = motion(ways[0])
+        trial = motion(ways[0])
         strength = sum(
             stiffness * size(wrench.force[:2]) + drilled * abs(wrench.torque[2])
-            for wrench in found.wrenches
+            for wrench in trial.wrenches
         )
-        return [Resisted(found.rate, strength)]
+        return [Resisted(trial.rate, strength)]
 
-    way = directions(response, [against(pair_motion(pair, (None, None), rolls))])[0]
-    return Resolution(motion(way), (False, False), rolls, way)
+    direction = directions(response, [against(pair_motion(pair, (None, None), rolls))])[0]
+    return Resolution(motion(direction), (False, False), rolls, direction)
 
 
 def _stiffness(pair: ContactPair) -> float:
-    responses = [rates_added(pair, 0, Wrench(way, NO_TORQUE)).points[0] for way in (EAST, NORTH)]
+    responses = [rates_added(pair, 0, Wrench(unit, NO_TORQUE)).points[0] for unit in (EAST, NORTH)]
     return float(abs(responses[0][0]) + abs(responses[1][1]))
 
 
@@ -161,7 +160,7 @@ def against(held: PairMotion) -> Slip:
     ratios = []
     for number in (0, 1):
         across_force = held.needed(number)
-        spare = max(held.left(number), (1e-3 * held.normal[number]) ** 2)
+        spare = max(held.sticking_reserve(number), (1e-3 * held.normal[number]) ** 2)
         ratios.append(across_force / spare**0.5)
     # Forces S_i e + T_i t act against v_e (e + T_i / S_i t), where S_i has the sign of S.
     v = plus(scaled(sign, along[:2]), scaled(-ratios[0], across[:2]))
@@ -212,8 +211,8 @@ def moments_hold(held: PairMotion) -> bool:
 
 
 def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
-    """The |omega_e|, less than there is, at which patches that stick while the body rolls slip; -1
-    for none.
+    """Return the |omega_e|, less than the present one, at which patches that stick begin to slip;
+    -1 for none.
 
     With q = omega_e^2 the needed forces and the normal ones change as a + b q: those that can be
     held fill an interval of q. From q = 0, where they may not, each direction in which slip begins
@@ -226,12 +225,12 @@ def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
 
     q, still = 0.0, at(0.0)
     for _ in range(CUTS):
-        found = patches_letting_go(at(q), rolls)
-        if found is None:
+        trial = patches_letting_go(at(q), rolls)
+        if trial is None:
             break
-        assert found.begins is not None
+        assert trial.begins is not None
         least, most = (
-            pair_motion(one, (None, None), rolls).spare(found.begins) for one in (still, pair)
+            pair_motion(one, (None, None), rolls).spare(trial.begins) for one in (still, pair)
         )
         bound = -least / (most - least)
         if not q < bound < 1.0:
@@ -241,7 +240,9 @@ def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
 
 
 def turning_about(pair: ContactPair, number: int, sign: float, rolls: float) -> Resolution:
-    """The body begins to turn about one of both contacts, and the other slips, xi_3 as signed."""
+    """Return the resolution in which the body turns about one contact, and the other slips along
+    sign.
+    """
     across = scaled(sign if number == 0 else -sign, directions_of(pair.first.axis)[1][:2])
     slips: Slips = (None, across) if number == 0 else (across, None)
     motion = pair_motion(pair, slips, rolls)

@@ -171,17 +171,21 @@ def sweep(
         tuple([moved(place) for place in range(first, first + count)])
         for first, count in motion.velocities
     ]
-    speeds = [inner(velocity, way) for velocity, way in zip(velocities, ways, strict=True)]
+    speeds = [
+        inner(velocity, direction) for velocity, direction in zip(velocities, ways, strict=True)
+    ]
     residuals = [-inner(velocities[number], tangent) for number, tangent in tangents]
     columns = list[list[Scalar]]()
     for point in range(STAGES):
         for slope, (number, tangent) in zip(slopes, tangents, strict=True):
             column = list[Scalar]()
-            for other, across in tangents:
-                first, count = motion.velocities[other]
-                there = [points.spread(rate, point) for rate in slope[first : first + count]]
-                entry = length * ending[point] * inner(across, tuple(there))
-                if other == number:
+            for index, across in tangents:
+                first, count = motion.velocities[index]
+                slope_at_point = [
+                    points.spread(rate, point) for rate in slope[first : first + count]
+                ]
+                entry = length * ending[point] * inner(across, tuple(slope_at_point))
+                if index == number:
                     entry = entry - speeds[number] * inner(across, tangent) * units[point]
                 column.append(entry)
             columns.append(column)
@@ -193,10 +197,10 @@ def sweep(
         length = p[size] * inner(change, change) ** -0.5
     numbers = [moved(place) for place in range(size)]
     directions = list[Scalar]()
-    for number, way in enumerate(ways):
-        turned = way
-        for turn, (other, tangent) in zip(turns, tangents, strict=True):
-            if other == number:
+    for number, direction in enumerate(ways):
+        turned = direction
+        for turn, (index, tangent) in zip(turns, tangents, strict=True):
+            if index == number:
                 turned = plus(turned, scaled(turn, tangent))
         directions += [*scaled(inner(turned, turned) ** -0.5, turned)]
     changes = tuple([new - old for new, old in zip(numbers, y[:size], strict=True)])
@@ -243,15 +247,15 @@ def _directions(
     ways, tangents = list[Slip](), list[tuple[int, Slip]]()
     place, frame = motion.size, motion.size + 1
     for number, (_, count) in enumerate(motion.velocities):
-        way = tuple(y[place : place + count])
-        ways.append(way)
+        direction = tuple(y[place : place + count])
+        ways.append(direction)
         place += count
         if count == 2:
-            tangents.append((number, (-way[1], way[0])))
+            tangents.append((number, (-direction[1], direction[0])))
         if count == 3:
             for first in (frame, frame + 3):
                 fixed = tuple(p[first : first + 3])
-                tangents.append((number, plus(fixed, scaled(-inner(fixed, way), way))))
+                tangents.append((number, plus(fixed, scaled(-inner(fixed, direction), direction))))
             frame += 6
     return ways, tangents
 
@@ -264,7 +268,10 @@ def _slope(
 ) -> Slip:
     """Return the derivative of the rates as one of the directions moves along a tangent."""
     numbers, ways, parameters = at
-    turned = [_line(way, tangent) if other == number else way for other, way in enumerate(ways)]
+    turned = [
+        _line(direction, tangent) if index == number else direction
+        for index, direction in enumerate(ways)
+    ]
     rates, _ = motion.rates(numbers, turned, parameters)
     return tuple([rate[1] if isinstance(rate, Series) else 0.0 for rate in rates])
 
@@ -306,6 +313,6 @@ def _solved(
         right = [entry - factor * pivot for entry, factor in zip(right, factors, strict=True)]
         for later in columns[place + 1 :]:
             pivot = points.spread(later[row], point)
-            for other, factor in enumerate(factors):
-                later[other] = later[other] - factor * pivot
+            for index, factor in enumerate(factors):
+                later[index] = later[index] - factor * pivot
     return [entry / diagonal for entry, diagonal in zip(right, diagonals, strict=True)]

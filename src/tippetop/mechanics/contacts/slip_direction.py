@@ -67,9 +67,9 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
                 if turn + step == 0 and _leads(responses, before):
                     return before
                 break
-        found = _improved(response, ways)
-        if found is not None:
-            return found
+        improved = _improved(response, ways)
+        if improved is not None:
+            return improved
         # Exactly against what drives it, as may be in a plane, a direction stays so: it is turned
         # round.
         rates = [resisted.rate for resisted in response(ways)]
@@ -83,7 +83,7 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
 
 
 def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
-    """The directions by Newton's method from near ones; None if that does not lead to any."""
+    """Return the directions by Newton's method from near ones; None if it fails."""
     last = DIRECTED
     for _ in range(NEWTON):
         try:
@@ -98,49 +98,49 @@ def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
 
 
 def _grow(responses: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
-    """Whether velocities in these directions grow, or stay."""
+    """Return whether velocities in these directions grow, or stay."""
     return all(
         inner(a.rate, e) >= -DIRECTED * a.strength for a, e in zip(responses, ways, strict=True)
     )
 
 
 def _leads(responses: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
-    """Whether directions that do not turn at once are known: slip alone, in a plane, never turns
-    slowly.
-    """
+    """Return whether directions that did not turn are exact: those of slip alone, in a plane."""
     return len(ways) == 1 and len(ways[0]) == 2 and _grow(responses, ways)
 
 
 def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
-    """One step towards directions across which nothing changes."""
+    """Return the directions after one Newton step towards directions that do not turn."""
     bases = [tangents(e) for e in ways]
 
     def across(ways: Sequence[Slip]) -> list[float]:
         responses = response(ways)
-        lefts = [
+        across_rates = [
             plus(resisted.rate, scaled(-inner(resisted.rate, e), e))
             for resisted, e in zip(responses, ways, strict=True)
         ]
-        return [inner(left, b) for left, basis in zip(lefts, bases, strict=True) for b in basis]
+        return [
+            inner(rate, b) for rate, basis in zip(across_rates, bases, strict=True) for b in basis
+        ]
 
     def moved(parts: Sequence[float]) -> list[Slip]:
-        found, used = list[Slip](), 0
+        turned_ways, used = list[Slip](), 0
         for e, basis in zip(ways, bases, strict=True):
             turned = e
             for b in basis:
                 turned = plus(turned, scaled(parts[used], b))
                 used += 1
-            found.append(_unit(turned))
-        return found
+            turned_ways.append(_unit(turned))
+        return turned_ways
 
-    here = across(ways)
-    count = len(here)
+    present = across(ways)
+    count = len(present)
     columns = []
     for j in range(count):
-        there = across(moved([APART if i == j else 0.0 for i in range(count)]))
-        columns.append([(there[i] - here[i]) / APART for i in range(count)])
+        displaced = across(moved([APART if i == j else 0.0 for i in range(count)]))
+        columns.append([(displaced[i] - present[i]) / APART for i in range(count)])
     return moved(
-        solve([[column[i] for column in columns] for i in range(count)], [-x for x in here])
+        solve([[column[i] for column in columns] for i in range(count)], [-x for x in present])
     )
 
 

@@ -66,38 +66,40 @@ class SlipComponent(NamedTuple):
         return not self.slip and not self.held
 
     def recurs(self, top: Top) -> bool:
-        """Whether it may end and begin many times a second: slip under a law that does not resist
-        drilling.
+        """Return whether it may end and begin many times a second: slip under a law that does not
+        resist drilling.
         """
         return self.slip and slip_length(top.friction) is None
 
     def of(self, axis: Vector, momentum: Vector, velocity: Slip, top: Top) -> Slip:
-        """The velocity xi, from axis, angular momentum and horizontal velocity of the centre of
-        mass.
+        """Return the velocity xi, from axis, angular momentum and horizontal velocity of the centre
+        of mass.
         """
         if self.slip:
             return slip_of(axis, momentum, (velocity[0], velocity[1]), top)
         return angular_velocity(axis, momentum, top)[:2]
 
     def rate(self, acceleration: Acceleration, top: Top) -> Slip:
-        """The rate of xi as the contact accelerates."""
+        """Return the rate of xi as the contact accelerates."""
         if self.slip:
             return slip_part(flat(acceleration), slip_length(top.friction))
         return acceleration.turning[:2]
 
     def wrenches(self, top: Top) -> tuple[Wrench, ...]:
-        """The wrenches that resist its components."""
+        """Return the wrenches that resist its components."""
         return slip_wrenches(top.friction) if self.slip else COUPLES
 
     def resisting(self, wrench: Wrench, top: Top) -> Slip:
-        """What of a wrench resists it: of slip's, a drilling torque over the law's length."""
+        """Return the components of a wrench that resist xi; a drilling torque is over the law's
+        length.
+        """
         if not self.slip:
             return wrench.torque[:2]
         reach = slip_length(top.friction)
         return wrench.force[:2] if reach is None else (*wrench.force[:2], wrench.torque[2] / reach)
 
     def shares(self, direction: Slip, top: Top) -> tuple[Scalar, ...]:
-        """How much of each there is per unit normal force when it goes in a direction."""
+        """Return the resisting components per unit normal force for a direction of xi."""
         if not self.slip:
             assert top.rolling_resistance is not None
             return top.rolling_resistance.couple((direction[0], direction[1], 0.0))[:2]
@@ -109,8 +111,8 @@ class SlipComponent(NamedTuple):
     def contact(
         self, point: ContactPoint, xi: Slip | None, slip: Slip | None
     ) -> tuple[Wrench, Acceleration]:
-        """What the table does, and how the contact accelerates, for a direction of xi; None is
-        held.
+        """Return the wrench and the acceleration of the contact for a direction of xi, or xi held
+        (None).
 
         The slip is asked for only where rolling ends or begins and the contact slips meanwhile.
         """
@@ -165,7 +167,7 @@ def rates_in_time(state: SlipEndState, ending: SlipComponent, top: Top) -> SlipE
 
 
 def slip_beside(state: SlipEndState, ending: SlipComponent, top: Top) -> Slip | None:
-    """The slip that goes on while rolling ends; None where there is none."""
+    """Return the slip that goes on while rolling ends; None where there is none."""
     if not ending.moves:
         return None
     return slip_of(state.axis, state.momentum, (state.velocity[0], state.velocity[1]), top)
@@ -216,10 +218,10 @@ def overtaking_guard(state: SlipEndState, ending: SlipComponent, top: Top) -> Sc
     this.
     """
     rates = rates_in_time(state, ending, top)
-    other = SlipComponent(not ending.slip)
-    xi = other.of(state.axis, state.momentum, state.velocity, top)
+    second = SlipComponent(not ending.slip)
+    xi = second.of(state.axis, state.momentum, state.velocity, top)
     ahead = -2.0 * inner(xi, xi) * inner(rates.xi, state.direction)
-    return ahead + state.speed * inner(xi, other.rate(rates.acceleration, top))
+    return ahead + state.speed * inner(xi, second.rate(rates.acceleration, top))
 
 
 def jamming_guard(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar:
@@ -236,20 +238,20 @@ def jamming_guard(state: SlipEndState, ending: SlipComponent, top: Top) -> Scala
 
 
 def landed(state: SlipEndState, ending: SlipComponent, top: Top) -> tuple[SlipEndState, float]:
-    """The state where xi has ended, in one step at the present rates, and an estimate of its error.
+    """Return the state where xi has ended, by one step at the present rates, and an error estimate.
 
     In natural units, of the time and of the velocities.
     """
     rates = rates_in_time(state, ending, top)
     along = inner(rates.xi, state.direction)
-    left = -state.speed / along
+    time_left = -state.speed / along
     across = plus(rates.xi, scaled(-along, state.direction))
-    rest = SlipEndState(
-        add(state.axis, scale(left, rates.axis)),
-        add(state.momentum, scale(left, rates.momentum)),
-        plus(state.velocity, scaled(left, rates.velocity)),
+    end = SlipEndState(
+        add(state.axis, scale(time_left, rates.axis)),
+        add(state.momentum, scale(time_left, rates.momentum)),
+        plus(state.velocity, scaled(time_left, rates.velocity)),
         state.direction,
         0.0,
-        state.time + left,
+        state.time + time_left,
     )
-    return rest, left * size(across) * max(1.0, -1.0 / along)
+    return end, time_left * size(across) * max(1.0, -1.0 / along)

@@ -69,7 +69,9 @@ def find_onset(
         If no such direction is found: more than one contact force may be consistent, or none.
     """
     parts = [
-        SlipComponent(which) for which, wanted in zip((True, False), begins, strict=True) if wanted
+        SlipComponent(which)
+        for which, goes_on in zip((True, False), begins, strict=True)
+        if goes_on
     ]
     stiffness = [_stiffness(part, point) for part in parts]
 
@@ -106,9 +108,9 @@ def find_onset(
         ways = directions(
             response, [scaled(-1.0, part.resisting(against, point.top)) for part in parts]
         )
-    found = motion(ways)
-    along = [inner(part.rate(found[3], point.top), e) for part, e in zip(parts, ways, strict=True)]
-    return Onset(found[0], found[1], tuple(max(rate, 0.0) for rate in along), found[2], found[3])
+    onset = motion(ways)
+    along = [inner(part.rate(onset[3], point.top), e) for part, e in zip(parts, ways, strict=True)]
+    return Onset(onset[0], onset[1], tuple(max(rate, 0.0) for rate in along), onset[2], onset[3])
 
 
 def resolve_onset(
@@ -117,8 +119,7 @@ def resolve_onset(
     rolling: Slip | None,
     moved: Moved = forces_and_accelerations,
 ) -> tuple[Onset, tuple[bool, bool]]:
-    """How a contact goes on whose slip, or rolling, or both, have ended, and which of them begin
-    again.
+    """Return how a contact goes on after slip or rolling has ended, and which of them begin again.
 
     Parameters
     ----------
@@ -139,29 +140,29 @@ def resolve_onset(
         if begins[0] > ended[0] or begins[1] > ended[1]:
             continue
         try:
-            found = find_onset(point, slip, rolling, begins, None, moved)
+            onset = find_onset(point, slip, rolling, begins, None, moved)
         except ArithmeticError:
             continue
-        if _admits(point, found):
-            return found, begins
+        if _admits(point, onset):
+            return onset, begins
     raise Unsolved("nothing can hold the contact, and there is no direction in which it can go on")
 
 
-def _admits(point: ContactPoint, found: Onset) -> bool:
-    """Whether the table can hold what does not go on, and the contact closed if the gap would
-    close.
+def _admits(point: ContactPoint, onset: Onset) -> bool:
+    """Return whether the held components are within friction's limits, and the normal force
+    presses.
     """
-    if found.wrench.force[2] <= 0.0 and presses(point.axis, point.momentum, point.top):
+    if onset.wrench.force[2] <= 0.0 and presses(point.axis, point.momentum, point.top):
         return False
-    if found.slip is None and slip_reserve(point.top, found.wrench) < 0.0:
+    if onset.slip is None and slip_reserve(point.top, onset.wrench) < 0.0:
         return False
-    return found.rolling is not None or bool(
-        rolling_reserve(point, found.wrench, found.slip) >= 0.0
+    return onset.rolling is not None or bool(
+        rolling_reserve(point, onset.wrench, onset.slip) >= 0.0
     )
 
 
 def _stiffness(part: SlipComponent, point: ContactPoint) -> float:
-    """How strongly the contact responds to what resists slip, or rolling, 1/kg or 1/(kg m^2)."""
+    """Return a bound of the response of xi to what resists it, 1/kg or 1/(kg m^2)."""
     responses = [part.rate(point.response(unit), point.top) for unit in part.wrenches(point.top)]
     sizes = [abs(response[i]) for i, response in enumerate(responses)]
     return float(sum(sizes[:2]) + sum(sizes[2:]) * (slip_length(point.top.friction) or 0.0))

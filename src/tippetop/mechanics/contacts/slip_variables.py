@@ -48,7 +48,9 @@ STILL = 0.1
 
 
 def slip_of(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Slip:
-    """The velocity zeta of a body in contact whose centre of mass has this horizontal velocity."""
+    """Return the velocity zeta of a body in contact whose centre of mass has this horizontal
+    velocity.
+    """
     swing, reach = contact_swing(axis, momentum, top), slip_length(top.friction)
     slip = (velocity[0] + swing[0], velocity[1] + swing[1])
     return slip if reach is None else (*slip, reach * angular_velocity(axis, momentum, top)[2])
@@ -61,7 +63,7 @@ def velocity_of(axis: Vector, momentum: Vector, slip: Slip, top: Top) -> Horizon
 
 
 def come_to_rest(state: SlidingState, top: Top, slip: bool, rolling: bool) -> SlidingState:
-    """The state in which slip, or rolling, that has ended is exactly zero."""
+    """Return the state in which slip, or rolling, that has ended is exactly zero."""
     axis, momentum, velocity = state
     if slip and slip_length(top.friction) is not None:
         momentum = without_drilling(axis, momentum, top)
@@ -73,14 +75,15 @@ def come_to_rest(state: SlidingState, top: Top, slip: bool, rolling: bool) -> Sl
 
 
 def is_slipping(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:
-    """Whether the contact slips, or drills where its law resists that, by more than rounding.
+    """Return whether the contact slips, or drills where its law resists that, by more than
+    rounding.
 
     A truth value of floats, or an array of them.
     """
-    found, least = False, least_slip(axis, momentum, velocity, top)
+    slips, least = False, least_slip(axis, momentum, velocity, top)
     for number in slip_of(axis, momentum, velocity, top):
-        found = found | (abs(number) > least)
-    return found
+        slips = slips | (abs(number) > least)
+    return slips
 
 
 def least_slip(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> Scalar:
@@ -90,9 +93,7 @@ def least_slip(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -
 
 
 def is_rolling(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Whether the body turns, by more than rounding, about anything but the vertical; as
-    `is_slipping`.
-    """
+    """Return whether the angular velocity is horizontal in part, by more than rounding."""
     measure = sum(abs(number) for number in momentum) / top.transverse_inertia + STILL
     x, y, _ = angular_velocity(axis, momentum, top)
     return (abs(x) > ROUNDING * measure) | (abs(y) > ROUNDING * measure)
@@ -118,9 +119,7 @@ def parting_guard(state: SlidingState, top: Top) -> Scalar:
 
 
 def is_near(state: SlidingState, top: Top) -> Scalar:
-    """Whether the end of slip is to be guarded from here on; a truth value of floats, or an array
-    of them.
-    """
+    """Return whether slip is near its end, so that its end is guarded; of floats or arrays."""
     slip = slip_of(*state, top)
     return inner(slip, slip) < NEAR * APART
 
@@ -185,7 +184,7 @@ def size(a: Slip) -> float:
 
 
 def scaled(factor: Scalar, a: Slip) -> Slip:
-    """A number times a vector."""
+    """Return a number times a vector."""
     return tuple([factor * x for x in a])
 
 

@@ -33,12 +33,12 @@ class ContactRates(NamedTuple):
     points: tuple[Vector, ...]
     turning: Vector
 
-    def plus(self, factor: Scalar, more: Self) -> "ContactRates":
+    def plus(self, factor: Scalar, rates: Self) -> "ContactRates":
         """Return the sum of these rates and others times a factor."""
         points = tuple(
-            [add(a, scale(factor, b)) for a, b in zip(self.points, more.points, strict=True)]
+            [add(a, scale(factor, b)) for a, b in zip(self.points, rates.points, strict=True)]
         )
-        return ContactRates(points, add(self.turning, scale(factor, more.turning)))
+        return ContactRates(points, add(self.turning, scale(factor, rates.turning)))
 
 
 class Component(NamedTuple):

@@ -13,21 +13,22 @@ class Disc:
     def __init__(self, centre: float, radius: float) -> None:
         self.centre, self.radius = centre, radius
 
-    def __add__(self, other: Any) -> "Disc":
-        if isinstance(other, Disc):
-            return Disc(self.centre + other.centre, self.radius + other.radius)
-        return Disc(self.centre + other, self.radius)
+    def __add__(self, operand: Any) -> "Disc":
+        if isinstance(operand, Disc):
+            return Disc(self.centre + operand.centre, self.radius + operand.radius)
+        return Disc(self.centre + operand, self.radius)
 
-    def __mul__(self, other: Any) -> "Disc":
-        if isinstance(other, Disc):
-            far = abs(other.centre) + other.radius
+    def __mul__(self, operand: Any) -> "Disc":
+        if isinstance(operand, Disc):
+            far = abs(operand.centre) + operand.radius
             return Disc(
-                self.centre * other.centre, abs(self.centre) * other.radius + self.radius * far
+                self.centre * operand.centre, abs(self.centre) * operand.radius + self.radius * far
             )
-        return Disc(self.centre * other, self.radius * abs(other))
+        return Disc(self.centre * operand, self.radius * abs(operand))
 
     def __pow__(self, exponent: float) -> "Disc":
-        """A real power: a natural one by products, others by the mean value theorem.
+        """Return a disc with a real power of all numbers: by products, or by the mean value
+        theorem.
 
         For these the disc must lie right of zero, where they are analytic.
         """
@@ -42,20 +43,20 @@ class Disc:
     def __neg__(self) -> "Disc":
         return self * -1.0
 
-    def __sub__(self, other: Any) -> "Disc":
-        return self.__add__(-other)
+    def __sub__(self, operand: Any) -> "Disc":
+        return self.__add__(-operand)
 
-    def __truediv__(self, other: Any) -> "Disc":
-        return self.__mul__(other**-1.0)
+    def __truediv__(self, operand: Any) -> "Disc":
+        return self.__mul__(operand**-1.0)
 
-    def __radd__(self, other: float) -> "Disc":
-        return self + other
+    def __radd__(self, operand: float) -> "Disc":
+        return self + operand
 
-    def __rsub__(self, other: float) -> "Disc":
-        return -self + other
+    def __rsub__(self, operand: float) -> "Disc":
+        return -self + operand
 
-    def __rmul__(self, other: float) -> "Disc":
-        return self * other
+    def __rmul__(self, operand: float) -> "Disc":
+        return self * operand
 
-    def __rtruediv__(self, other: float) -> "Disc":
-        return self**-1.0 * other
+    def __rtruediv__(self, operand: float) -> "Disc":
+        return self**-1.0 * operand

@@ -17,7 +17,7 @@ SMALL = 1e-100
 
 
 def fly(state: State, elapsed: Scalar, top: Top, functions: Functions) -> State:
-    """The state after a time of free flight.
+    """Return the state after a time of free flight.
 
     Parameters
     ----------

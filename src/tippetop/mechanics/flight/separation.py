@@ -52,7 +52,7 @@ class Tip(NamedTuple):
 
     @classmethod
     def of(cls, state: State, top: Top) -> "Tip":
-        """The tip in a free flight from a state on; of numbers, or arrays of them."""
+        """Return the tip in a free flight from a state on; of numbers, or arrays of them."""
         rate, second = flight_rates(state, top)
         return cls(state.axis[2], rate.axis[2], second.axis[2], precession(state, top) + SMALL)
 
@@ -106,7 +106,7 @@ class Separation(NamedTuple):
 
     @classmethod
     def of(cls, state: State, top: Top) -> "Separation":
-        """The gap of a free flight from a state on."""
+        """Return the gap of a free flight from a state on."""
         return cls(
             Tip.of(state, top), top.surface, (state.height, state.velocity[2], -0.5 * top.gravity)
         )
@@ -163,11 +163,11 @@ class Separation(NamedTuple):
 
 def support_terms(shape: Surface, tip: Sequence[Scalar], plain: Sums) -> list[Scalar]:
     """Coefficients of the support function in powers of time, by those of the tip's height."""
-    found = shape.height(Series(lambda k: tip[k], plain))
-    if isinstance(found, Series):
-        return found.up_to(len(tip) - 1)
+    height = shape.height(Series(lambda k: tip[k], plain))
+    if isinstance(height, Series):
+        return height.up_to(len(tip) - 1)
     # It is the same number at any tilt.
-    return [0.0 * tip[0] + found, *[0.0 * term for term in tip[1:]]]
+    return [0.0 * tip[0] + height, *[0.0 * term for term in tip[1:]]]
 
 
 class Opening(NamedTuple):
@@ -187,7 +187,7 @@ class Opening(NamedTuple):
         return value, rate, 2.0 * half
 
     def jerk_bound(self, time: float) -> float:
-        """A bound on the third derivative up to this time."""
+        """Return a bound on the third derivative up to this time."""
         bound = 0.0
         for j in range(len(self.terms) - 1, 2, -1):
             bound = bound * time + j * (j - 1) * (j - 2) * abs(self.terms[j])

@@ -151,8 +151,8 @@ def touchdown(
 def first_interval(
     tip: Tip, surface: Surface, ballistic: Triple, start: Start
 ) -> tuple[Opening, Triple, float]:
-    """The gap on a first interval, the flight with what vanishes at its start, and how long that
-    is, s.
+    """Return the gap on the first interval, the flight without its vanishing terms, and the
+    interval's length, s.
     """
     disc = analytic_disc(tip, surface, 0.0, 0.0, WIDEST)
     if disc is None:
@@ -165,7 +165,7 @@ def first_interval(
 
 
 def highest_gap(state: State, top: Top, duration: float) -> float:
-    """The highest gap of a free flight that lasts some time, s; floats.
+    """Return the highest gap of a free flight that lasts some time, s; floats.
 
     It is no further from the summit than the axis takes for a turn: a turn nearer the gap is
     larger.
@@ -183,9 +183,11 @@ def highest_gap(state: State, top: Top, duration: float) -> float:
     step = (last - first) / count
     # At the start of a flight the rate may vanish.
     times = [first + step * max(j, 1e-3) for j in range(count + 1)]
-    looks = [gap(time) for time in times]
-    found = max([gap(first)[0], *(here for here, _, _ in looks)])
+    rows = [gap(time) for time in times]
+    highest = max([gap(first)[0], *(height for height, _, _ in rows)])
     for j in range(count):
-        if looks[j][1] > 0.0 > looks[j + 1][1]:
-            found = max(found, gap(crossing(lambda time: gap(time)[1], times[j], times[j + 1]))[0])
-    return found
+        if rows[j][1] > 0.0 > rows[j + 1][1]:
+            highest = max(
+                highest, gap(crossing(lambda time: gap(time)[1], times[j], times[j + 1]))[0]
+            )
+    return highest

@@ -54,7 +54,7 @@ LOOK = 4
 
 
 def is_dry(top: Top) -> bool:
-    """Whether slip or rolling can end under the law of a top."""
+    """Return whether slip or rolling can end under the law of a top."""
     return top.resists_rolling or is_set_valued(top.friction)
 
 
@@ -65,8 +65,8 @@ class DryProcess(SteppedProcess):
     ended: bool = False
     stopped: bool = False
     """Whether slip, and rolling, have ended."""
-    way: Slip | None = None
-    rolling_way: Slip | None = None
+    direction: Slip | None = None
+    rolling_direction: Slip | None = None
     """The direction in which they go on all the same; None if they are held."""
 
     @property
@@ -86,29 +86,29 @@ class DryProcess(SteppedProcess):
         return slip_part(velocity, self.reach), scaled(self.body.lever, velocity[3:5])
 
     def zeros(self, velocity: Slip) -> tuple[bool, bool]:
-        """Whether slip, and rolling, have ended at these velocities, if they can."""
+        """Return whether slip, and rolling, have ended at these velocities, if they can."""
         (slip, rolling), least = self.parts(velocity), ENDED * self.body.speed
         ended = is_set_valued(self.top.friction) and size(slip) <= least
         return ended, self.top.resists_rolling and size(rolling) <= least
 
-    def settled(self, here: Impulse) -> Self:
-        """The impact with what has ended after an impulse, and where that goes on if it cannot stay
-        so.
+    def with_status(self, impulse: Impulse) -> Self:
+        """Return the process with the components that have ended, and the directions in which some
+        go on.
         """
-        velocity = self.body.velocities(here)
+        velocity = self.body.velocities(impulse)
         ended, stopped = self.zeros(velocity)
         if not (ended or stopped):
             return type(self)(self.body) if self.ended or self.stopped else self
         slip, rolling = self.parts(velocity)
         go_on = None if ended else slip, None if stopped else rolling
-        found, _ = resolve_onset(self.body.contact, *go_on, struck_motion)
-        return type(self)(self.body, ended, stopped, found.slip, found.rolling)
+        onset, _ = resolve_onset(self.body.contact, *go_on, struck_motion)
+        return type(self)(self.body, ended, stopped, onset.slip, onset.rolling)
 
     def friction(self, velocity: Slip) -> Slip:
         """Force and torque per unit normal impulse at these velocities, six numbers."""
-        way = self.way if self.ended else slip_part(velocity, self.reach)
+        direction = self.direction if self.ended else slip_part(velocity, self.reach)
         wrench = struck_wrench(
-            self.body.contact, way, self.rolling_way if self.stopped else velocity[3:5]
+            self.body.contact, direction, self.rolling_direction if self.stopped else velocity[3:5]
         )
         return (*wrench.force, *wrench.torque)
 
@@ -124,39 +124,46 @@ class DryProcess(SteppedProcess):
             rate += math.hypot(unit[3], unit[4]) / (self.body.lever**2 * rolling)
         return rate
 
-    def after(self, here: Impulse) -> State:
-        """The state after an impulse, in which slip and rolling that have ended are exactly
+    def after(self, impulse: Impulse) -> State:
+        """Return the state after an impulse, in which slip and rolling that have ended are exactly
         zero.
         """
-        then = self.body.after(here)
-        still = come_to_rest(along_table(then), self.top, *self.zeros(self.body.velocities(here)))
-        return then._replace(momentum=still.momentum, velocity=(*still.velocity, then.velocity[2]))
+        state = self.body.after(impulse)
+        still = come_to_rest(
+            along_table(state), self.top, *self.zeros(self.body.velocities(impulse))
+        )
+        return state._replace(
+            momentum=still.momentum, velocity=(*still.velocity, state.velocity[2])
+        )
 
-    def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
-        """An error in slip and rolling, relative to them or to a millionth of the body's speed."""
-        here, there = self.body.velocities(taken.here), self.body.velocities(taken.there)
-        parts = zip(self.parts(here), self.parts(there), self.parts(off), strict=True)
+    def error_norm(self, made: RungeKuttaStep, off: Slip) -> float:
+        """Return the norm of an error in slip and rolling, relative to them or to a millionth of
+        the speed.
+        """
+        first, last = self.body.velocities(made.start), self.body.velocities(made.end)
+        parts = zip(self.parts(first), self.parts(last), self.parts(off), strict=True)
         least = 1e-6 * self.body.speed
         ratios = [
             size(wrong) / max(size(before), size(after), least) for before, after, wrong in parts
         ]
         return float(max(*ratios, abs(off[2]) / self.speed))
 
-    def straight(
-        self, here: Impulse, goal: Goal, guess: float, taken: int
+    def along_line(
+        self, impulse: Impulse, goal: Goal, guess: float, steps: int
     ) -> tuple[Impulse, bool] | None:
-        """Where a straight line leads, and whether to the goal: slip may end before.
+        """Return the impulse at the end of a straight line, and whether it is the goal: slip may
+        end before.
 
         It is None if slip changes its direction, or begins, or rolling is resisted; or is not
         looked for.
         """
-        if taken % LOOK or self.top.resists_rolling or (self.ended and self.way is not None):
+        if steps % LOOK or self.top.resists_rolling or (self.ended and self.direction is not None):
             return None
-        line = None if goal(here) >= 0.0 else self.line(here)
+        line = None if goal(impulse) >= 0.0 else self.line(impulse)
         if line is None:
             return None
         unit, longest = line
-        along = self.body.straight(here, unit)
+        along = self.body.line_from(impulse, unit)
         if longest < math.inf:
             end = along(longest)
             if goal(end) < 0.0:
@@ -164,11 +171,11 @@ class DryProcess(SteppedProcess):
             guess = longest
         return first_reach(along, goal, guess), True
 
-    def line(self, here: Impulse) -> tuple[Slip, float] | None:
+    def line(self, impulse: Impulse) -> tuple[Slip, float] | None:
         """Force and torque per unit normal impulse on a straight line, and its length until slip
         ends.
         """
-        velocity = self.body.velocities(here)
+        velocity = self.body.velocities(impulse)
         slip, unit = self.parts(velocity)[0], self.friction(velocity)
         if self.ended:
             return unit, math.inf
@@ -176,12 +183,12 @@ class DryProcess(SteppedProcess):
             Wrench((unit[0], unit[1], 1.0), (unit[3], unit[4], unit[5])), self.top
         )
         speed, holds = size(slip), size(grip)
-        way, change = scaled(1.0 / speed, slip), slip_part(self.body.change(unit), self.reach)
+        direction, change = scaled(1.0 / speed, slip), slip_part(self.body.change(unit), self.reach)
         # What changes slip so, and what changes it along itself; their ratio in the metric of
         # kinetic energy.
-        doing, along = self.impulse_for(change), self.impulse_for(way)
-        inertia = inner(way, along)
-        rate = inner(way, doing) / inertia
+        doing, along = self.impulse_for(change), self.impulse_for(direction)
+        inertia = inner(direction, along)
+        rate = inner(direction, doing) / inertia
         # Slip has a direction, and a rate, but for rounding.
         fuzz = FUZZ * self.body.speed / speed
         if abs(rate) * inertia <= fuzz * holds:
@@ -195,8 +202,8 @@ class DryProcess(SteppedProcess):
         return exact, speed / -rate if rate < 0.0 else math.inf
 
     def impulse_for(self, change: Slip) -> Slip:
-        """What changes slip so: impulses of force, and that of a drilling torque over the law's
-        length.
+        """Return the impulses of force, and of drilling torque over the law's length, that change
+        slip so.
         """
         held, lengths = (
             ((0, 1), (1.0, 1.0)) if self.reach is None else ((0, 1, 5), (1.0, 1.0, self.reach))
@@ -210,6 +217,6 @@ class DryProcess(SteppedProcess):
 def struck_motion(
     point: ContactPoint, slip: Slip | None, rolling: Slip | None
 ) -> tuple[Wrench, Acceleration]:
-    """What a unit normal impulse brings with it, and how the velocities change."""
+    """Return the impulses per unit normal impulse, and the changes of the velocities."""
     wrench = struck_wrench(point, slip, rolling)
     return wrench, point.response(wrench)

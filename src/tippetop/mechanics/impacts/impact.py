@@ -61,7 +61,7 @@ class Impact(NamedTuple):
 
 
 def impact(state: State, restitution: float, top: Top, beside: Top | None = None) -> Impact:
-    """What an impact does to a body that touches the table.
+    """Return the impact of a body that touches the table.
 
     Parameters
     ----------
@@ -98,14 +98,14 @@ def impact(state: State, restitution: float, top: Top, beside: Top | None = None
     compression = process.normal(impulse)
     if restitution > 0.0 and compression > 0.0:
         goal = restitution_goal(process, impulse, restitution)
-        impulse, more = process.until(impulse, goal, restitution * compression)
-        steps += more
+        impulse, further_steps = process.until(impulse, goal, restitution * compression)
+        steps += further_steps
     lost = max(0.0, -body.work(impulse))
     return Impact(process.after(impulse), impulse[NORMAL], lost, compression, steps)
 
 
 def process_of(body: StruckBody, beside: Top | None) -> ImpactProcess:
-    """How an impact goes on under the law of a body, alone or with another surface on the table."""
+    """Return the process of an impact for the law of a body, on one surface or two."""
     law = body.contact.top.friction
     if beside is not None:
         return ProcessOnTwo.of(body, StruckBody.of(body.state, beside))

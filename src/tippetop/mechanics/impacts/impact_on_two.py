@@ -63,9 +63,9 @@ class ProcessOnTwo(SteppedProcess):
     """Whether it sinks, as friction has jammed it."""
 
     @classmethod
-    def of(cls, body: StruckBody, other: StruckBody) -> Self:
-        """The impact of a body at what strikes, and at what touches."""
-        return cls(body, add(other.contact.arm, scale(-1.0, body.contact.arm)), other.before)
+    def of(cls, body: StruckBody, beside: StruckBody) -> Self:
+        """Return the process for the striking contact and the touching one."""
+        return cls(body, add(beside.contact.arm, scale(-1.0, body.contact.arm)), beside.before)
 
     @property
     def begin(self) -> Impulse:
@@ -77,9 +77,9 @@ class ProcessOnTwo(SteppedProcess):
         """Speed at which what strikes sinks, m/s."""
         return -float(self.body.before[2])
 
-    def normal(self, here: Impulse) -> float:
+    def normal(self, impulse: Impulse) -> float:
         """Normal impulse of what strikes, N s."""
-        return here[NORMAL] - here[OTHER]
+        return impulse[NORMAL] - impulse[OTHER]
 
     def beside(self, change: Slip) -> Slip:
         """Change of the six velocities of the other contact, by that of what strikes: it keeps
@@ -89,29 +89,32 @@ class ProcessOnTwo(SteppedProcess):
         turned = (turning[0], turning[1], turning[2])
         return (*point_velocity((x, y, z), turned, self.apart), *turned)
 
-    def there(self, here: Impulse) -> Slip:
-        """The six velocities of the other contact after an impulse."""
-        return plus(self.before, self.beside(self.body.change(here)))
+    def velocities_beside(self, impulse: Impulse) -> Slip:
+        """Return the six velocities of the other contact after an impulse."""
+        return plus(self.before, self.beside(self.body.change(impulse)))
 
-    def settled(self, here: Impulse) -> Self:
-        """The impact from some impulses on, whether or not the other contact is closed, or sinks,
-        then.
-        """
-        rise = self.there(here)[2] / self.speed
+    def with_status(self, impulse: Impulse) -> Self:
+        """Return the process after an impulse, with the status of the other contact."""
+        rise = self.velocities_beside(impulse)[2] / self.speed
         pressed, sunk = bool(rise <= OPEN), bool(rise < -(OPEN if self.sunk else SUNK))
         same = pressed == self.pressed and sunk == self.sunk
         return self if same else replace(self, pressed=pressed, sunk=sunk)
 
     def ends(self, goal: Goal) -> list[Goal]:
-        """The goal, and that the other contact closes, or has come back."""
+        """Return the functions whose zeros end a step: the goal, and the closing of the other
+        contact.
+        """
         if self.pressed and not self.sunk:
             return [goal]
-        way = 1.0 if self.sunk else -1.0
-        return [goal, lambda here: way * self.there(here)[2]]
+        sign = 1.0 if self.sunk else -1.0
+        return [goal, lambda impulse: sign * self.velocities_beside(impulse)[2]]
 
-    def slope(self, here: Impulse) -> Impulse:
+    def slope(self, impulse: Impulse) -> Impulse:
         """Rate of the numbers in a clock in which slip that ends decays exponentially."""
-        velocity, resistance = self.body.velocities(here), self.body.contact.top.rolling_resistance
+        velocity, resistance = (
+            self.body.velocities(impulse),
+            self.body.contact.top.rolling_resistance,
+        )
         rate = 1.0 / self.speed
         if resistance is not None:
             rolling = length((velocity[3], velocity[4], 0.0))
@@ -121,61 +124,65 @@ class ProcessOnTwo(SteppedProcess):
         unit, share = self.sliding(velocity), 0.0
         pace = self.pace(velocity, unit)
         if self.pressed:
-            there = self.there(here)
-            x, y, z, *torque = more = self.sliding(there)
+            velocity_beside = self.velocities_beside(impulse)
+            x, y, z, *torque = friction_beside = self.sliding(velocity_beside)
             moment = add((torque[0], torque[1], torque[2]), cross(self.apart, (x, y, z)))
             at_first = (x, y, z, *moment)
             share = self.share(unit, at_first)
             unit = tuple((1.0 - share) * a + share * b for a, b in zip(unit, at_first, strict=True))
-            pace = (1.0 - share) * pace + share * self.pace(there, more)
+            pace = (1.0 - share) * pace + share * self.pace(velocity_beside, friction_beside)
         work = (1.0 - share) * velocity[2]
         return tuple(number / (rate + pace) for number in (*unit, work, share))
 
-    def share(self, unit: Slip, other: Slip) -> float:
+    def share(self, unit: Slip, unit_beside: Slip) -> float:
         """Part of the normal impulses that acts at the other contact, which they keep closed.
 
         Where friction presses it as much as its impulse opens it (Painleve's paradox) it sinks, and
         has all of them until its slip has changed and it is back, as in an impact of its own.
-        Those, with the friction that they cause, are given: `unit` at what strikes, `other` at the
+        `unit` and `unit_beside` are unit impulses, with their friction, at what strikes and at the
         other one.
         """
-        coupling, own = (self.beside(self.body.change(wrench))[2] for wrench in (unit, other))
-        if self.sunk or (coupling < 0.0 and own <= 0.0):
+        coupling, direct = (
+            self.beside(self.body.change(wrench))[2] for wrench in (unit, unit_beside)
+        )
+        if self.sunk or (coupling < 0.0 and direct <= 0.0):
             return 1.0
-        return -coupling / (own - coupling) if coupling < 0.0 else 0.0
+        return -coupling / (direct - coupling) if coupling < 0.0 else 0.0
 
     def sliding(self, velocity: Slip) -> Slip:
-        """The friction at a contact with these velocities; see `friction`."""
+        """Return the friction at a contact with these velocities; see `friction`."""
         slip = length((velocity[0], velocity[1], 0.0))
         if is_set_valued(self.body.contact.top.friction) and slip < OPEN * self.speed:
             raise SlipEndsInImpact("slip ends in an impact on two surfaces")
         return self.friction(velocity)
 
-    def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
-        """What an error counts as: that of the contact where it is the larger.
+    def error_norm(self, made: RungeKuttaStep, off: Slip) -> float:
+        """Return the error norm, the larger of both contacts.
 
         A steep law may hold slip so slow that its force has no digits but those beside it.
         """
-        velocities = [self.there(end) for end in (taken.here, taken.there)]
-        return max(super().wrong(taken, off), slip_error(velocities, self.beside(off), self.speed))
+        velocities = [self.velocities_beside(end) for end in (made.start, made.end)]
+        return max(
+            super().error_norm(made, off), slip_error(velocities, self.beside(off), self.speed)
+        )
 
-    def straight(
-        self, here: Impulse, goal: Goal, guess: float, taken: int
+    def along_line(
+        self, impulse: Impulse, goal: Goal, guess: float, steps: int
     ) -> tuple[Impulse, bool] | None:
-        """The rest if friction has come to hold both slips constant.
+        """Return the end of the process if friction holds both slips constant.
 
         Where they change less along it than a step may err, a steep law would take many steps, and
         no other way.
         """
         if not self.pressed:
             return None
-        rates = self.slope(here)
+        rates = self.slope(impulse)
         if not self.normal(rates) > 0.0:
             return None
         unit = tuple(rate / self.normal(rates) for rate in rates)
         change = self.body.change(unit)
         x, y, rise, *_ = change
-        other = self.beside(change)
-        if not length((x, y, 0.0)) + length((other[0], other[1], 0.0)) < STUCK * rise:
+        moved = self.beside(change)
+        if not length((x, y, 0.0)) + length((moved[0], moved[1], 0.0)) < STUCK * rise:
             return None
-        return first_reach(self.body.straight(here, unit), goal, self.speed / rise), True
+        return first_reach(self.body.line_from(impulse, unit), goal, self.speed / rise), True

@@ -32,8 +32,7 @@ take; and how far it is below zero at least where it is past that, which roundin
 
 
 def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
-    """The state past the normal impulse over which friction comes to press the contact, which it
-    jams.
+    """Return the state past the normal impulse during which friction jams the contact.
 
     There the Delassus number of the slipping contact falls through zero. A little before, it is as
     much above as it is below after twice that impulse, while the contact opens by nothing; next to
@@ -73,8 +72,8 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
         return SlidingState(sliding.axis, add(sliding.momentum, scale(impulse, moment)), (x, y))
 
     before = slip_of(*sliding, top)
-    whole = size(before) / math.dist(slip_of(*after(1.0), top), before)
-    fall = touch.delassus - contact(*after(PROBED * whole), top).delassus
+    stopping_impulse = size(before) / math.dist(slip_of(*after(1.0), top), before)
+    fall = touch.delassus - contact(*after(PROBED * stopping_impulse), top).delassus
     if not fall > 0.0:
         if not abs(touch.free_acceleration) < JAMMED * top.gravity:
             return None
@@ -82,14 +81,14 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
             "it would open there too, and whether it does or is struck rigid bodies do not tell"
         )
     further = touch.delassus + max(touch.delassus, PAST / top.mass)
-    impulse = max(further, 0.0) / fall * PROBED * whole
+    impulse = max(further, 0.0) / fall * PROBED * stopping_impulse
     beyond = on_table(after(impulse), top)
     return beyond, float(impulse), float(energy(state, top) - energy(beyond, top))
 
 
 def stuck_at_once(state: State, top: Top) -> State:
-    """The state after the impulse that ends slip, and drilling if the law resists it, without
-    opening.
+    """Return the state after the impulse that ends slip, and drilling if the law resists it,
+    without opening.
     """
     body, (x, y, *_) = StruckBody.of(state, top), slip_of(*along_table(state), top)
     points, velocities = (body.contact,), ContactRates(((x, y, 0.0),), body.contact.turning)

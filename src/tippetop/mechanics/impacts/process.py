@@ -23,7 +23,7 @@ from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.runge_kutta import (
     POWER,
     RungeKuttaStep,
-    moved,
+    advanced,
     short_step,
     step_from,
     step_to,
@@ -76,18 +76,18 @@ class ImpactProcess(ABC):
         before = self.body.before
         if before[2] != 0.0:
             return bool(before[2] < 0.0)
-        return self.body.approach(self.settled(self.begin).friction(before)) < 0.0
+        return self.body.approach(self.with_status(self.begin).friction(before)) < 0.0
 
-    def normal(self, here: Impulse) -> float:
+    def normal(self, impulse: Impulse) -> float:
         """Normal impulse of what strikes, N s."""
-        return here[NORMAL]
+        return impulse[NORMAL]
 
-    def after(self, here: Impulse) -> State:
-        """The state after an impulse."""
-        return self.body.after(here)
+    def after(self, impulse: Impulse) -> State:
+        """Return the state after an impulse."""
+        return self.body.after(impulse)
 
-    def settled(self, here: Impulse) -> Self:
-        """The impact from an impulse on: as it is, or with what changes there."""
+    def with_status(self, impulse: Impulse) -> Self:
+        """Return the process from an impulse on, with the status that holds from there."""
         return self
 
     def friction(self, velocity: Slip) -> Slip:
@@ -95,9 +95,9 @@ class ImpactProcess(ABC):
         return self.body.friction(velocity)
 
     @abstractmethod
-    def until(self, here: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
-        """The first impulse from a given one on at which the goal is not negative, and the steps to
-        there.
+    def until(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
+        """Return the first impulse at which the goal is not negative, and the number of steps to
+        it.
 
         The guess, positive, is how much the normal impulse may have to grow.
 
@@ -132,8 +132,8 @@ class SteppedProcess(ImpactProcess):
         return 2.0 * LONGEST / float(self.body.response[0][0] + self.body.response[1][1])
 
     def ends(self, goal: Goal) -> list[Goal]:
-        """What a step may reach, the goal first; the impact goes on, as it is settled then, from
-        others.
+        """Return the functions whose zeros end a step, the goal first; at others the process goes
+        on.
         """
         return [goal]
 
@@ -147,26 +147,26 @@ class SteppedProcess(ImpactProcess):
             grip = math.hypot(*self.friction((slip, 0.0, *velocity[2:]))[:2])
         return grip / slip
 
-    def slope(self, here: Impulse) -> Impulse:
+    def slope(self, impulse: Impulse) -> Impulse:
         """Rate of the impulse, and of its normal work, with the clock."""
-        velocity = self.body.velocities(here)
+        velocity = self.body.velocities(impulse)
         unit = self.friction(velocity)
         return scaled(1.0 / (self.pace(velocity, unit) + 1.0 / self.speed), (*unit, velocity[2]))
 
-    def wrong(self, taken: RungeKuttaStep, off: Slip) -> float:
-        """What an error in the six velocities counts as, that is one of a step."""
-        velocities = [self.body.velocities(end) for end in (taken.here, taken.there)]
+    def error_norm(self, made: RungeKuttaStep, off: Slip) -> float:
+        """Return the norm of a step's error in the six velocities."""
+        velocities = [self.body.velocities(end) for end in (made.start, made.end)]
         return slip_error(velocities, off, self.speed)
 
-    def straight(
-        self, here: Impulse, goal: Goal, guess: float, taken: int
+    def along_line(
+        self, impulse: Impulse, goal: Goal, guess: float, steps: int
     ) -> tuple[Impulse, bool] | None:
-        """Where a straight line leads after some steps, and whether to the goal; None if there is
-        none.
+        """Return the impulse at the end of a straight line, and whether it is the goal; None if
+        there is no line.
 
         There is where friction holds the slip constant, if it does so all along.
         """
-        body, velocity = self.body, self.body.velocities(here)
+        body, velocity = self.body, self.body.velocities(impulse)
         unit = self.friction(velocity)
         (a, b, *_), (_, d, *_), *_ = body.response
         x, y, *_ = body.change((0.0, 0.0, *unit[2:]))
@@ -177,53 +177,55 @@ class SteppedProcess(ImpactProcess):
         if not any(unit[:2]):
             # What is held without friction needs none, but for rounding.
             holding = (0.0, 0.0)
-        end = first_reach(body.straight(here, (*holding, *unit[2:])), goal, guess)
+        end = first_reach(body.line_from(impulse, (*holding, *unit[2:])), goal, guess)
         later = self.friction(body.velocities(end))
         return (end, True) if math.dist(later, unit) <= 2.0 * (STUCK + fuzz) else None
 
-    def until(self, here: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
+    def until(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
         """Step by step."""
-        longest, waiting = self.longest, goal(here) >= 0.0
-        step, now = 0.1 * longest, self.settled(here)
-        slope = now.slope(here)
-        for taken in range(MOST):
-            line = now.straight(here, goal, guess, taken)
+        longest, waiting = self.longest, goal(impulse) >= 0.0
+        step, now = 0.1 * longest, self.with_status(impulse)
+        slope = now.slope(impulse)
+        for steps in range(MOST):
+            line = now.along_line(impulse, goal, guess, steps)
             if line is not None:
-                here, ends_there = line
+                impulse, ends_there = line
                 if ends_there:
-                    return here, taken
-                now, waiting = now.settled(here), False
-                slope = now.slope(here)
+                    return impulse, steps
+                now, waiting = now.with_status(impulse), False
+                slope = now.slope(impulse)
                 continue
-            taking, ends = step_from(here, slope, step, now.slope), now.ends(goal)
-            doubt, reached = doubt_of(now, taking), max(end(taking.there) for end in ends) >= 0.0
-            if (doubt > 1.0 and step > SHORTEST * longest) or (reached and waiting):
-                step *= min(0.5, max(0.1, 0.9 * doubt**POWER))
+            taking, ends = step_from(impulse, slope, step, now.slope), now.ends(goal)
+            error, reached = error_ratio(now, taking), max(end(taking.end) for end in ends) >= 0.0
+            if (error > 1.0 and step > SHORTEST * longest) or (reached and waiting):
+                step *= min(0.5, max(0.1, 0.9 * error**POWER))
                 continue
-            here = landing(now, taking, ends) if reached else taking.there
-            if reached and goal(here) >= max(end(here) for end in ends):
-                return here, taken + 1
-            then, waiting = now.settled(here), False
-            slope = then.slope(here) if reached or then is not now else taking.new_slope
-            now, step = then, min(longest, step * min(5.0, 0.9 * max(doubt, 1e-10) ** POWER))
+            impulse = landing(now, taking, ends) if reached else taking.end
+            if reached and goal(impulse) >= max(end(impulse) for end in ends):
+                return impulse, steps + 1
+            later, waiting = now.with_status(impulse), False
+            slope = later.slope(impulse) if reached or later is not now else taking.new_slope
+            now, step = later, min(longest, step * min(5.0, 0.9 * max(error, 1e-10) ** POWER))
         raise Unsolved("an impact does not come to its end")
 
 
 def slip_error(ends: Sequence[Slip], off: Slip, speed: float) -> float:
-    """An error in velocities, known at a step's ends: of slip beside it, and of the normal one by a
+    """Return the norm of an error in velocities: of slip relative to slip, of the normal one to a
     speed.
     """
     slip = max(1e-9 * speed, *[math.hypot(*end[:2]) for end in ends])
     return float(max(math.hypot(*off[:2]) / slip, abs(off[2]) / speed))
 
 
-def doubt_of(now: SteppedProcess, taken: RungeKuttaStep) -> float:
-    """The error of a step over the one allowed."""
-    return taken.doubt(lambda error: now.wrong(taken, now.body.change(error))) / TOLERANCE
+def error_ratio(now: SteppedProcess, made: RungeKuttaStep) -> float:
+    """Return the error of a step over the tolerance."""
+    return (
+        made.error_estimate(lambda error: now.error_norm(made, now.body.change(error))) / TOLERANCE
+    )
 
 
 def landing(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Impulse:
-    """The impulse within a step at which one of some goals is reached.
+    """Return the impulse within a step at which one of some goals is reached.
 
     The cubic through its ends tells about where. From there on it is Newton's method, as a goal is
     linear in the impulse, or the least or largest of some that are.
@@ -233,18 +235,21 @@ def landing(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Im
         return max(end(point) for end in ends)
 
     def along(size: float) -> Impulse:
-        return step_to(taking.here, taking.slopes[0], size, now.slope)
+        return step_to(taking.start, taking.slopes[0], size, now.slope)
 
     last = taking.size
-    here = along(last * crossing(lambda part: missing(taking.between(part)), 0.0, 1.0))
+    impulse = along(last * crossing(lambda part: missing(taking.between(part)), 0.0, 1.0))
     for _ in range(NEWTON):
-        slope, left, nudge = now.slope(here), missing(here), 1e-3 * taking.size
-        rate = (missing(moved(here, nudge, slope)) - left) / nudge
-        more = -left / rate if rate > 0.0 else taking.size
-        if abs(more) < STRAIGHT * taking.size:
-            return moved(here, more, slope)
-        if abs(more) > 0.1 * last:
+        slope, value, nudge = now.slope(impulse), missing(impulse), 1e-3 * taking.size
+        rate = (missing(advanced(impulse, nudge, slope)) - value) / nudge
+        move = -value / rate if rate > 0.0 else taking.size
+        if abs(move) < STRAIGHT * taking.size:
+            return advanced(impulse, move, slope)
+        if abs(move) > 0.1 * last:
             break
-        short = abs(more) < SHORT * taking.size
-        last, here = abs(more), (short_step if short else step_to)(here, slope, more, now.slope)
+        short = abs(move) < SHORT * taking.size
+        last, impulse = (
+            abs(move),
+            (short_step if short else step_to)(impulse, slope, move, now.slope),
+        )
     return along(crossing(lambda size: missing(along(size)), 0.0, taking.size))

@@ -54,7 +54,7 @@ class StruckBody(NamedTuple):
 
     @classmethod
     def of(cls, state: State, top: Top) -> "StruckBody":
-        """The body in this state."""
+        """Return the body in this state."""
         contact = ContactPoint.of(state.axis, state.momentum, top)
         lever = length(contact.arm)
         speed = length(state.velocity) + length(contact.turning) * lever
@@ -65,7 +65,7 @@ class StruckBody(NamedTuple):
         return cls(state, contact, lever, speed, length(point), before, response)
 
     def after(self, impulse: Impulse) -> State:
-        """The state after an impulse."""
+        """Return the state after an impulse."""
         x, y, z, *torque = impulse[:6]
         moment = self.contact.moment(Wrench((x, y, z), (torque[0], torque[1], torque[2])))
         gained = scale(1.0 / self.contact.top.mass, (x, y, z))
@@ -74,11 +74,11 @@ class StruckBody(NamedTuple):
         )
 
     def change(self, impulse: Sequence[float]) -> Slip:
-        """What an impulse adds to the six velocities."""
+        """Return the changes of the six velocities by an impulse."""
         return tuple([sum(map(mul, row, impulse)) for row in self.response])
 
     def velocities(self, impulse: Impulse) -> Slip:
-        """The six velocities after an impulse."""
+        """Return the six velocities after an impulse."""
         return plus(self.before, self.change(impulse))
 
     def approach(self, impulse: Impulse) -> float:
@@ -99,9 +99,9 @@ class StruckBody(NamedTuple):
         """
         return float(0.5 * inner(impulse[:6], plus(self.before, self.velocities(impulse))))
 
-    def straight(self, impulse: Impulse, unit: Slip) -> Callable[[float], Impulse]:
-        """The impulse that grows from a given one by so much per unit normal impulse of what
-        strikes.
+    def line_from(self, impulse: Impulse, unit: Slip) -> Callable[[float], Impulse]:
+        """Return the impulse as a function of the normal one, from an impulse on, at a constant
+        ratio.
         """
         approach, rise = self.approach(impulse), sum(map(mul, self.response[2], unit))
 
@@ -119,16 +119,16 @@ def contact_velocity(state: State, arm: Vector, top: Top) -> Vector:
 
 
 def first_reach(along: Callable[[float], Impulse], goal: Goal, guess: float) -> Impulse:
-    """The impulse at which the goal stops being negative, on a way where it does so once.
+    """Return the impulse on a curve at which the goal stops being negative, which it does once.
 
     Where the goal is zero at the start, it is about to become negative: that start is passed over.
     """
     high = guess
-    there = goal(along(high))
-    while there < 0.0:
+    ahead = goal(along(high))
+    while ahead < 0.0:
         high *= 2.0
-        there = goal(along(high))
-    if there == 0.0:
+        ahead = goal(along(high))
+    if ahead == 0.0:
         return along(high)
     low = 0.0 if goal(along(0.0)) < 0.0 else 0.5 * high
     while goal(along(low)) >= 0.0:

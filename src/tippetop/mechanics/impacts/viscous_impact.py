@@ -48,7 +48,9 @@ class ViscousProcess(ImpactProcess):
 
     @classmethod
     def of(cls, body: StruckBody, law: ViscousLaw) -> "ViscousProcess":
-        """The process of this impact, from the principal directions of its tangential part of M."""
+        """Return the process of this impact, from the principal directions of its tangential part
+        of M.
+        """
         east, north, up = body.response[:3]
         angle = 0.5 * math.atan2(2.0 * east[1], east[0] - north[1])
         cosine, sine = math.cos(angle), math.sin(angle)
@@ -60,14 +62,14 @@ class ViscousProcess(ImpactProcess):
 
         return cls(body, law.mu, (mode(cosine, sine), mode(-sine, cosine)))
 
-    def until(self, here: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
-        """The first impulse from a given one on at which the goal is not negative; without
+    def until(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
+        """Return the first impulse from a given one on at which the goal is not negative; without
         steps.
         """
-        return first_reach(lambda q: self.at(here[NORMAL] + q), goal, guess), 0
+        return first_reach(lambda q: self.at(impulse[NORMAL] + q), goal, guess), 0
 
     def at(self, p: float) -> Impulse:
-        """The impulse when the normal impulse is p."""
+        """Return the impulse when the normal impulse is p."""
         east = north = 0.0
         work = p * (self.body.before[2] + 0.5 * p * self.body.response[2][2])
         for (x, y), stiffness, coupling, slip in self.modes:

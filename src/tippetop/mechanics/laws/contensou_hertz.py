@@ -53,7 +53,7 @@ class HertzPiece(PatchLaw):
         return resisting(self, slip, angular_velocity)
 
     @property
-    def whole(self) -> "HertzLaw":
+    def whole_law(self) -> "HertzLaw":
         """The law of which it is a branch."""
         return HertzLaw(*self)
 
@@ -92,9 +92,7 @@ class HertzDrillingLaw(HertzPiece):
         return law_branch_guard(slip, EDGE)
 
     def other_branch(self) -> "HertzSlidingLaw":
-        """The law where this one does not hold, and whose piece of the limit surface adjoins this
-        one's.
-        """
+        """Return the other branch, whose part of the limit surface adjoins this one's."""
         return HertzSlidingLaw(*self)
 
 
@@ -126,9 +124,9 @@ class HertzSlidingLaw(HertzPiece):
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R
         w.
         """
-        other = drilling * drilling
-        larger = square + BEYOND * other
-        return scaled_shares(self, larger, drilling, sliding_shares(1.0 - other / larger))
+        drilled = drilling * drilling
+        larger = square + BEYOND * drilled
+        return scaled_shares(self, larger, drilling, sliding_shares(1.0 - drilled / larger))
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
         """(mu N F)^2 - T^2 where the limit surface has this drilling torque, N^2.
@@ -151,9 +149,7 @@ class HertzSlidingLaw(HertzPiece):
         return -law_branch_guard(slip, 0.5 * EDGE)
 
     def other_branch(self) -> "HertzDrillingLaw":
-        """The law where this one does not hold, and whose piece of the limit surface adjoins this
-        one's.
-        """
+        """Return the other branch, whose part of the limit surface adjoins this one's."""
         return HertzDrillingLaw(*self)
 
 
@@ -172,7 +168,7 @@ class HertzBranch(NamedTuple):
     """1 where drilling prevails, 0 where slip does."""
 
     @property
-    def whole(self) -> "HertzLaw":
+    def whole_law(self) -> "HertzLaw":
         """The law of which it is a branch."""
         return HertzLaw(self.mu, self.patch_radius)
 
@@ -194,20 +190,20 @@ class HertzBranch(NamedTuple):
         """Force over slip, and torque, per unit normal force, at slip of this square and drilling R
         w.
         """
-        other = drilling * drilling
-        larger = self._either(other + BEYOND * square, square + BEYOND * other)
-        share = self._either(square, other) / larger
+        drilled = drilling * drilling
+        larger = self._either(drilled + BEYOND * square, square + BEYOND * drilled)
+        share = self._either(square, drilled) / larger
         drills, slides = drilling_shares(share), sliding_shares(self._either(1.0, 1.0 - share))
         law = self._either(drills[0], slides[0]), self._either(drills[1], slides[1])
         return scaled_shares(self, larger, drilling, law)
 
     def _either(self, drills: Scalar, slides: Scalar) -> Scalar:
-        """The number that belongs to the branch."""
+        """Return the value of the branch that holds."""
         return self.drills * drills + (1.0 - self.drills) * slides
 
     def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
-        """That of the whole law."""
-        return self.whole.reserve(normal, force, drilling)
+        """Return the reserve of the whole law."""
+        return self.whole_law.reserve(normal, force, drilling)
 
     def branch_guard(self, slip: Vector) -> Scalar:
         """Positive as long as this branch is followed, up to `EDGE` or down to half of it,
@@ -216,7 +212,7 @@ class HertzBranch(NamedTuple):
         return (2.0 * self.drills - 1.0) * law_branch_guard(slip, 0.5 * EDGE * (1.0 + self.drills))
 
     def other_branch(self) -> "HertzBranch":
-        """The law where this one does not hold."""
+        """Return the other branch."""
         return self._replace(drills=1.0 - self.drills)
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
@@ -230,19 +226,21 @@ class HertzLaw(PatchLaw):
     """
 
     def drills(self, slip: Vector) -> Scalar:
-        """Whether drilling prevails here, a truth value of floats, or an array of them."""
+        """Return whether drilling prevails at a slip, of floats or arrays."""
         return law_branch_guard(slip, 0.75 * EDGE) > 0.0
 
     def branch(self, slip: Vector) -> HertzDrillingLaw | HertzSlidingLaw:
-        """The law that holds here; of floats."""
+        """Return the branch of the law that holds at a slip; of floats."""
         return HertzDrillingLaw(*self) if self.drills(slip) else HertzSlidingLaw(*self)
 
     def numbered_branch(self, slip: Vector) -> HertzBranch:
-        """The branch that holds here, in plain operators."""
+        """Return the branch that holds at a slip, in plain operators."""
         return HertzBranch(*self, 1.0 * self.drills(slip))
 
     def limit_branch(self, normal: float, drilling: float) -> HertzDrillingLaw | HertzSlidingLaw:
-        """The law whose piece of the limit surface has this drilling torque, N m; of floats."""
+        """Return the branch whose part of the limit surface has this drilling torque, N m; of
+        floats.
+        """
         # Without drilling no normal force decides: it may be a symbol.
         drills = drilling != 0.0 and limit_branch_guard(self, normal, drilling, EDGE) > 0.0
         return HertzDrillingLaw(*self) if drills else HertzSlidingLaw(*self)

@@ -29,9 +29,7 @@ class FrictionLaw(Protocol):
         """
 
     def coefficients(self, units: Units) -> tuple[Scalar, ...]:
-        """What its class makes the law of, numbers that may carry a length or a time, in these
-        units.
-        """
+        """Return the numbers of the law in these units, as its class takes them."""
 
 
 class ViscousLaw(NamedTuple):

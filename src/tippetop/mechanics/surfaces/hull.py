@@ -17,7 +17,7 @@ class Hull(NamedTuple):
 
     @classmethod
     def of(cls, surfaces: tuple[Surface, ...]) -> "Hull":
-        """The hull of some surfaces; the first is active."""
+        """Return the hull of some surfaces; the first is active."""
         units = tuple(type(surface).from_proportions(surface.proportions) for surface in surfaces)
         return cls(units, tuple(surface.size for surface in surfaces))
 
@@ -64,10 +64,10 @@ class Hull(NamedTuple):
         """Those of every surface, and before them, for all but the first, its size in sizes of the
         first.
         """
-        found: tuple[Scalar, ...] = self.units[0].proportions
+        numbers: tuple[Scalar, ...] = self.units[0].proportions
         for unit, size in zip(self.units[1:], self.sizes[1:], strict=True):
-            found = (*found, size / self.sizes[0], *unit.proportions)
-        return found
+            numbers = (*numbers, size / self.sizes[0], *unit.proportions)
+        return numbers
 
     @classmethod
     def from_proportions(cls, proportions: tuple[Scalar, ...]) -> "Hull":
@@ -105,23 +105,23 @@ class HullKind(NamedTuple):
 
 
 def each_surface(surface: Surface) -> tuple[Surface, ...]:
-    """A surface alone, or a hull with every surface active in turn."""
+    """Return a surface alone, or a hull with every surface active in turn."""
     return surface.each if isinstance(surface, Hull) else (surface,)
 
 
 def sizes(surface: Surface) -> tuple[Scalar, ...]:
-    """The sizes of all surfaces, m."""
+    """Return the sizes of all surfaces, m."""
     return surface.sizes if isinstance(surface, Hull) else (surface.size,)
 
 
 def acting(surface: Surface) -> Surface:
-    """A surface, or, of a hull, the one that is active, in its own size."""
+    """Return a surface, or the active surface of a hull, at its size."""
     return surface.units[surface.active] if isinstance(surface, Hull) else surface
 
 
 def is_edge(surface: Surface) -> bool:
-    """Whether a surface, or the one that is active, is an edge, on whose face the body may lie
-    flat.
+    """Return whether a surface, or the one that is active, is an edge, on whose face the body may
+    lie flat.
     """
     return hasattr(acting(surface), "lies_flat")
 
@@ -132,14 +132,12 @@ def outer_height(surface: Surface, c: Scalar) -> Scalar:
     """
     first, *others = each_surface(surface)
     height = first.height(c)
-    for other in others:
-        here = other.height(c)
-        height = 0.5 * (height + here + abs(height - here))
+    for surface_beside in others:
+        height_beside = surface_beside.height(c)
+        height = 0.5 * (height + height_beside + abs(height - height_beside))
     return height
 
 
 def lowest_surface(surface: Surface, c: float) -> Surface:
-    """The surface that reaches lowest at this c, active; the first of several that do. Of
-    floats.
-    """
+    """Return the surface that reaches lowest at this c, active; the first of several; of floats."""
     return max(each_surface(surface), key=lambda one: float(one.height(c)))

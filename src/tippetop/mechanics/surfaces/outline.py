@@ -23,26 +23,26 @@ TILTS = 61
 """Tilts at which this is looked at."""
 
 OUTLINE = 97
-"""Tilts at which the hull of surfaces is found."""
+"""Tilts at which the hull of surfaces is lines."""
 
 POLE = 1e-4
 """The least of them, where the body does not lie flat yet."""
 
 
 def extent(lines: Sequence[Line]) -> float:
-    """The size of an outline: its largest distance from the axis, or half its height, m."""
+    """Return the size of an outline: its largest distance from the axis, or half its height, m."""
     points = [point for line in lines for point in line]
     across, heights = max([r for r, _ in points]), [z for _, z in points]
     return max(across, (max(heights) - min(heights)) / 2.0)
 
 
 def is_outline(lines: Sequence[Line], surface: Surface) -> bool:
-    """Whether a body with these surfaces has this outline: it reaches as far down, whatever the
-    tilt.
+    """Return whether a body with these surfaces has this outline: it reaches as far down, whatever
+    the tilt.
     """
     points, within = [point for line in lines for point in line], FITS * extent(lines)
-    for look in range(TILTS):
-        tilt = math.pi * look / (TILTS - 1)
+    for number in range(TILTS):
+        tilt = math.pi * number / (TILTS - 1)
         sine, c = math.sin(tilt), math.cos(tilt)
         if abs(max([r * sine - z * c for r, z in points]) - outer_height(surface, c)) > within:
             return False
@@ -61,7 +61,7 @@ def smoothly_joined(edges: Sequence[Line]) -> list[Line]:
 
 
 def _turn(before: Line, after: Line) -> float:
-    """The angle between the end of a line and the beginning of the next."""
+    """Return the angle between the end of a line and the beginning of the next."""
     (a, b), (c, d) = before[-2], before[-1]
     (e, f), (g, h) = after[0], after[1]
     x, y, u, v = c - a, d - b, g - e, h - f
@@ -69,13 +69,14 @@ def _turn(before: Line, after: Line) -> float:
 
 
 def outline(surface: Surface) -> list[Line]:
-    """The hull of a body's surfaces from below, in smooth arcs and the straight lines between them.
+    """Return the hull of a body's surfaces from below, in smooth arcs and the straight lines
+    between them.
 
     Where the body touches the table at evenly spaced tilts, and, on its faces, between.
     """
     arcs, last, corner = list[Line](), surface, 10.0 * POLE * surface.size
-    for look in range(OUTLINE):
-        tilt = min(max(math.pi * look / (OUTLINE - 1), POLE), math.pi - POLE)
+    for number in range(OUTLINE):
+        tilt = min(max(math.pi * number / (OUTLINE - 1), POLE), math.pi - POLE)
         c = math.cos(tilt)
         lowest = lowest_surface(surface, c)
         if not arcs or lowest != last:
@@ -91,7 +92,7 @@ def outline(surface: Surface) -> list[Line]:
         arcs = [[(0.0, begin[1])], *arcs]
     if end[0] != 0.0:
         arcs.append([(0.0, end[1])])
-    found = arcs[:1]
+    lines = arcs[:1]
     for before, arc in pairwise(arcs):
-        found += [[before[-1], arc[0]], arc]
-    return [line for line in found if len(line) > 1]
+        lines += [[before[-1], arc[0]], arc]
+    return [line for line in lines if len(line) > 1]

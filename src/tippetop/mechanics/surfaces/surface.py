@@ -281,8 +281,8 @@ class RingSurface(NamedTuple):
 def support_at(axis: Vector, surface: Surface) -> Support:
     """Return the support function of a surface and its derivatives for an axis, m."""
     if hasattr(surface, "support_at"):
-        found: Support = surface.support_at(axis)
-        return found
+        support: Support = surface.support_at(axis)
+        return support
     c = axis[2]
     return surface.height(c), surface.slope(c), surface.curvature(c)
 

@@ -31,7 +31,7 @@ class Times(NamedTuple):
     flip: Array
     """By the report's definition; nan if a run became singular or did not turn the top over."""
     turning: Array
-    """When the axis first passes the horizontal; nan if it does not."""
+    """Time at which the axis first passes the horizontal; nan if it does not."""
 
 
 def converged_times(spins: Array, mu: Array, window: float = WINDOW) -> Times:

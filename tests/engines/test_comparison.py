@@ -1,0 +1,200 @@
+"""Other programs against the suite: their limits, results that resume, and what is stored."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import tippetop as tt
+from tippetop.cli.commands import app
+from tippetop.engines import comparison, limits
+from tippetop.engines.adapters import ADAPTERS, adapter
+from tippetop.engines.cases import CASES
+from tippetop.engines.reference import case_of, judged_state, reference_state
+
+STEPS = (2e-3, 1e-3, 5e-4)
+
+
+def rows_of(case, states):
+    return [
+        {"case": case.name, "setting": "s", "step": step, "state": list(state)}
+        for step, state in zip(STEPS, states, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
+def test_an_extrapolation_finds_limit_and_order_of_a_geometric_sequence(order):
+    limit, error = np.array([0.3, -0.2, 0.9]), np.array([0.4, 1.0, -0.3])
+    states = [limit + error * step**order for step in STEPS]
+    reached, observed = limits.extrapolation(STEPS, states)
+    assert reached == pytest.approx(limit, abs=1e-14)
+    assert observed == pytest.approx(order, abs=1e-9)
+
+
+def test_results_that_do_not_converge_have_no_limit():
+    case = case_of("coulomb-roll")
+    states = [reference_state(case) + shift for shift in (0.0, 1e-3, -1e-3)]
+    assert limits.limit_of(case, rows_of(case, states)).law == "none"
+
+
+def test_regularized_friction_is_told_from_the_reference_and_its_width_is_measured():
+    case, width = case_of("coulomb-roll"), 2e-3
+    softened = tt.RegularizedCoulombFriction(mu=case.problem.friction.mu, eps=width)
+    problem = case.problem.model_copy(update={"friction": softened})
+    run = tt.simulate(problem, float(case.times[0]), samples=2)
+    state = judged_state(case, run["axis"].values[-1], run["angular_velocity"].values[-1])
+    slope = np.linspace(0.5, 1.0, 6)
+    soft = limits.limit_of(case, rows_of(case, [state + 0.1 * step * slope for step in STEPS]))
+    assert soft.law == "regularized"
+    assert soft.width == pytest.approx(width, rel=0.03)
+    assert soft.step_error == pytest.approx(0.1 * STEPS[-1], rel=1e-6)
+    exact = reference_state(case)
+    hard = limits.limit_of(case, rows_of(case, [exact + 0.1 * step * slope for step in STEPS]))
+    assert (hard.law, hard.model_error < 1e-12) == ("reference", True)
+    shifted = [exact + 0.05 + 0.1 * step * slope for step in STEPS]
+    assert limits.limit_of(case, rows_of(case, shifted)).law == "different"
+
+
+def test_time_stepping_converges_to_the_set_valued_law_at_first_order():
+    task = next(iter(comparison.tasks(["moreau"], ["coulomb-roll"])))
+    short = task.case._replace(compared=1)
+    reference = comparison.exact(short)
+    rows = [
+        comparison.measure(task._replace(case=short), step, reference, drawn=False)
+        for step in STEPS
+    ]
+    errors = [row["error"] for row in rows]
+    assert comparison.order_of(STEPS, errors) == pytest.approx(1.3, abs=0.35)
+    assert errors[-1] < 1e-3
+    assert [row["step"] for row in rows] == pytest.approx(STEPS, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", [name for name in ADAPTERS if name != "moreau"])
+def test_a_program_comes_nearer_to_the_reference_with_shorter_steps(name):
+    made = adapter(name)
+    pytest.importorskip(made.module, reason=f"{made.name} is not installed")
+    case = case_of("coulomb-roll")._replace(compared=1)
+    reference = comparison.exact(case)
+    best = []
+    for step in (2e-3, 2.5e-4):
+        tasks = [comparison.EngineTask(made, case, setting) for setting in made.settings]
+        rows = [comparison.measure(task, step, reference, drawn=False) for task in tasks]
+        best.append(min(row["error"] for row in rows))
+    assert best[1] < 0.5 * best[0]
+    assert best[1] < 0.01
+
+
+def test_interrupted_results_go_on_where_they_ended(tmp_path, monkeypatch):
+    measure, calls = comparison.measure, []
+
+    def interrupted(task, step, *rest):
+        calls.append(step)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return measure(task, step, *rest)
+
+    monkeypatch.setattr(comparison, "measure", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS)
+    begun = json.loads((tmp_path / "moreau.json").read_text())
+    assert [row["asked_step"] for row in begun["rows"]] == [2e-3, 1e-3]
+    results = comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS)
+    assert calls == [2e-3, 1e-3, 5e-4, 5e-4], "what is done is not run again"
+    rows = results["moreau"]["rows"]
+    assert rows[:2] == begun["rows"]
+    assert len(results["moreau"]["limits"]) == 1
+    assert results["moreau"] == json.loads((tmp_path / "moreau.json").read_text())
+    comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS)
+    assert len(calls) == 4
+
+
+def test_results_of_other_options_are_run_again(tmp_path):
+    done = comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS[:1])["moreau"]
+    (setting,) = done["settings"]
+    setting["options"] = {"rounds": 3}
+    done["rows"][0]["error"] = 1.0
+    (tmp_path / "moreau.json").write_text(json.dumps(done))
+    again = comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS[:1])["moreau"]
+    assert [row["error"] < 1.0 for row in again["rows"]] == [True]
+
+
+def test_a_damaged_file_of_results_is_said(tmp_path):
+    (tmp_path / "moreau.json").write_text("{")
+    with pytest.raises(tt.InvalidInput, match="file of results"):
+        comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS)
+
+
+@pytest.mark.parametrize("name", comparison.stored())
+def test_stored_results_are_of_every_case_setting_and_step(name):
+    stored, made = comparison.stored([name])[name], adapter(name)
+    assert stored["suite"] == comparison.SUITE_VERSION
+    assert stored["settings"] == [setting._asdict() for setting in made.settings]
+    refused = {case.name: made.refusal(case) for case in CASES if made.refusal(case)}
+    assert stored["refused"] == refused
+    done = {(row["case"], row["setting"], row["asked_step"]) for row in stored["rows"]}
+    asked = {
+        (case.name, setting.name, step)
+        for case in CASES
+        if case.name not in refused
+        for setting in made.settings
+        for step in comparison.STEPS
+    }
+    assert done == asked
+    assert len(stored["limits"]) == len(asked) / len(comparison.STEPS)
+
+
+def test_a_stored_result_comes_again(tmp_path):
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    stored = comparison.stored()["mujoco"]
+    again = comparison.compare(tmp_path, ["mujoco"], ["painleve"], STEPS)["mujoco"]
+    if again["version"] != stored["version"]:
+        pytest.skip("the stored results are of another version")
+    before = {(row["case"], row["setting"], row["asked_step"]): row for row in stored["rows"]}
+    for row in again["rows"]:
+        earlier = before[row["case"], row["setting"], row["asked_step"]]
+        for name in ("error", "energy_error", "tilt_error"):
+            assert row[name] == pytest.approx(earlier[name], rel=1e-6, abs=1e-12)
+
+
+def test_without_any_program_the_stored_results_are_shown_in_80_columns(monkeypatch):
+    monkeypatch.setattr(comparison, "installed", lambda *_: ["moreau"])
+    monkeypatch.setenv("COLUMNS", "80")
+    shown = CliRunner().invoke(app, ["engines"])
+    assert shown.exit_code == 0
+    assert "None of the programs is installed" in " ".join(shown.output.split())
+    lines = shown.output.splitlines()
+    assert max(map(len, lines)) <= 80
+    for name, stored in comparison.stored().items():
+        title = f"{stored['engine']} {stored['version']} ({stored['date']})"
+        assert title in shown.output, name
+    verdicts = comparison.verdicts(comparison.stored())
+    begun = [
+        line
+        for line in lines
+        if line.split()[:1] and line.split()[0] in {case.name for case in CASES}
+    ]
+    assert len(begun) == len(verdicts), "each case is one line"
+
+
+def test_unknown_programs_and_steps_are_refused(tmp_path):
+    result = CliRunner().invoke(app, ["engines", "--engine", "unreal"])
+    assert isinstance(result.exception, tt.InvalidInput)
+    assert "mujoco" in str(result.exception)
+    for step in (0.0, math.nan, 1.0):
+        with pytest.raises(tt.InvalidInput, match="step"):
+            comparison.compare(tmp_path, ["moreau"], None, [step])
+
+
+def test_figures_of_stored_results_show_every_program():
+    from tippetop.figures.engines import errors_figure, launch_figure  # noqa: PLC0415
+
+    stored = comparison.stored()
+    names = {one["engine"] for one in stored.values()}
+    legend = errors_figure(stored).legends[0]
+    assert {text.get_text() for text in legend.get_texts()} == names
+    (panel,) = launch_figure(stored, "coulomb-roll").axes
+    labels = [line.get_label() for line in panel.lines]
+    assert labels[0] == "exact"
+    assert all(any(label.startswith(name) for label in labels) for name in names)
