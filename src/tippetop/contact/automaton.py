@@ -152,8 +152,8 @@ class Automaton:
         if end.cause in (FACE, WOBBLE):
             contact_mode = mode.reported_mode if isinstance(mode, TransientMode) else mode
             assert isinstance(contact_mode, ContactMode)
-            then = SettlingFlat(mode.top, contact_mode, slaps=end.cause == FACE)
-            return Transition((), then, end.state)
+            settling = SettlingFlat(mode.top, contact_mode, slaps=end.cause == FACE)
+            return Transition((), settling, end.state)
         if isinstance(mode, Flight):
             return automaton._after_flight(end, time, integrator)
         if end.cause == TOUCH:

@@ -247,7 +247,7 @@ class ContactMode(StatedMode):
 
     def wobble(self, y: Row) -> Wobble:
         """Return the wobble of a body on an edge."""
-        _, slip, wrench, acceleration = self.found(y)
+        _, slip, wrench, acceleration = self.contact_forces(y)
         return Wobble.of(along_table(self.state(y)), self.top, wrench, acceleration, slip)
 
     def rolling_reserve(self, y: Row) -> Scalar:

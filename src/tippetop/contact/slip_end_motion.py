@@ -35,7 +35,7 @@ REOPENING, LANDED, TIME, OVERTAKEN, JAMMED = "reopening", "landed", "time", "ove
 OWN = (REOPENING, LANDED, TIME)
 """Guards of the clock itself; the others are of what else may happen."""
 
-LONGEST = 1e4
+CLOCK_LIMIT = 1e4
 """More of the clock than any velocity takes to end, but one that turns for ever."""
 
 SOON = (0.3, 2.0)
@@ -60,7 +60,7 @@ def slip_end_arcs(
 ) -> Iterator[Arc]:
     """Return the end of slip, or of rolling, in its clock, arc by arc."""
     arcs = 0
-    for end in (*[start[0] + part for part in SOON if start[0] + part < LONGEST], LONGEST):
+    for end in (*[start[0] + part for part in SOON if start[0] + part < CLOCK_LIMIT], CLOCK_LIMIT):
         for arc in integrator.integrate(motion, parameters, start, end):
             arcs += 1
             stalled = arc.solution.end - start[0] < STALLED * start[0]

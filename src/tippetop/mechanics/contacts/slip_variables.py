@@ -40,7 +40,7 @@ ROUNDING = 1e-14
 """Slip, relative to the velocities it is made of, that is rounding."""
 
 
-TINY = 1e-200
+SMALLEST_DIVISOR = 1e-200
 """Added to what divides, where a velocity is zero."""
 
 STILL = 0.1
@@ -162,7 +162,7 @@ def time_to_end(velocity: Slip, change: Slip) -> float:
 def _straightness(velocity: Slip, change: Slip) -> Scalar:
     """Return R^2 / (A^2 + s^2): the part of a velocity's change that is along it."""
     square, closing = inner(velocity, velocity), inner(change, velocity)
-    return closing * closing / (square * (inner(change, change) + square) + TINY)
+    return closing * closing / (square * (inner(change, change) + square) + SMALLEST_DIVISOR)
 
 
 def branch_guard(slip: Slip, top: Top) -> Scalar:
