@@ -18,7 +18,6 @@ from hypothesis import HealthCheck, settings
 from browsing import browser, visit
 from children import RUN, end_leftovers, signals_heard
 from tippetop.export import bundle
-from tippetop.integrators import machine_code
 from tippetop.page_engine import HERE
 
 __all__ = ["browser", "visit"]
@@ -60,21 +59,6 @@ def pytest_sessionfinish(session: pytest.Session) -> Iterator[None]:
     if left := end_leftovers(os.environ[RUN]):
         print("\nThese tests left processes running, which were ended:", *left, sep="\n")
         session.exitstatus = pytest.ExitCode.TESTS_FAILED
-
-
-COMPILED_AS_FOR_USERS = ("graph", "integrators", "sweeps")
-"""Folders of the tests of compiled code and of its numbers."""
-
-
-@pytest.fixture(autouse=True, scope="module")
-def _quick_compiler(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Compile with the least effort elsewhere, in less than half the time: the operations and the
-    order in which they are rounded are the same.
-    """
-    with pytest.MonkeyPatch.context() as patch:
-        if request.path.parent.name not in COMPILED_AS_FOR_USERS:
-            patch.setattr(machine_code, "EFFORT", 0)
-        yield
 
 
 @pytest.fixture

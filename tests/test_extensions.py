@@ -549,6 +549,7 @@ import sys
 import tippetop as tt
 from typing import Literal, NamedTuple
 from tippetop.extend import NO_TORQUE, Traction
+import dask.base  # xarray imports it where it is installed, and it needs cloudpickle
 import tippetop.sweeps.definition
 tippetop.sweeps.definition.LEAST_CELLS_A_TASK = 1
 workers, missing = map(int, sys.argv[1].split(",")), sys.argv[2:]

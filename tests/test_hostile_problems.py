@@ -348,15 +348,18 @@ def test_an_end_of_slip_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sampling, "ARC_STEPS", 64)
     slow = list(slip_end_motion.slip_end_arcs(method, turning, [1e-4], start))
     assert slow[-1].failure is None
-    assert [arc.solution.end for arc in slow] == [*slip_end_motion.SOON, slip_end_motion.LONGEST]
+    assert [arc.solution.end for arc in slow] == [
+        *slip_end_motion.SOON,
+        slip_end_motion.CLOCK_LIMIT,
+    ]
     late = list(
         slip_end_motion.slip_end_arcs(
-            method, turning, [1e-4], (slip_end_motion.LONGEST - 1.0, start[1])
+            method, turning, [1e-4], (slip_end_motion.CLOCK_LIMIT - 1.0, start[1])
         )
     )
     assert [arc.solution.end for arc in late] == [
-        slip_end_motion.LONGEST - 1.0 + slip_end_motion.SOON[0],
-        slip_end_motion.LONGEST,
+        slip_end_motion.CLOCK_LIMIT - 1.0 + slip_end_motion.SOON[0],
+        slip_end_motion.CLOCK_LIMIT,
     ]
 
 

@@ -198,15 +198,13 @@ def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
     run = tt.simulate(problem, 0.2, samples=101)
     assert run.attrs["outcome"] == "failed"
     assert "rigid bodies do not tell" in run.attrs["outcome_advice"]
-    last = {
-        name: run[name].values[-1]
-        for name in ("axis", "angular_momentum", "velocity", "normal_force")
-    }
+    last = {name: run[name].values[-1] for name in ("axis", "angular_momentum", "velocity")}
     touch = contact(last["axis"], last["angular_momentum"], last["velocity"][:2], problem.top)
     weight = problem.body.mass * problem.gravity
-    assert abs(touch.delassus) * problem.body.mass < 1e-9
-    assert abs(touch.free_acceleration) < 1e-9 * problem.gravity
-    assert 0.01 * weight < float(last["normal_force"]) < 100.0 * weight
+    # Slip is followed until a part of 1e-8 of it is left; the force at the end itself is 0 / 0.
+    assert abs(touch.delassus) * problem.body.mass < 1e-8
+    assert abs(touch.free_acceleration) < 1e-8 * problem.gravity
+    assert 0.01 * weight < float(run["normal_force"].values[-2]) < 100.0 * weight
 
 
 def heavy_core(
@@ -268,7 +266,7 @@ strike: of launches a few units in the last place beside them, some strike.
 def test_slip_that_has_all_but_ended_where_it_jams_sticks(problem: tt.Problem) -> None:
     """By rounding nothing strikes then, and slip that goes on would jam again, and again."""
     kinds = []
-    for units in (-1.0, 0.0, 1.0):
+    for units in range(-3, 4):
         tilt = problem.launch.tilt * (1.0 + units * np.finfo(float).eps)
         beside = problem.replace({"launch.tilt": tilt})
         run = tt.simulate(beside, 0.05, samples=5, phase_limit=300)

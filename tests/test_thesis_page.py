@@ -93,10 +93,10 @@ def test_the_body_s_force_is_as_large_as_the_table_s(results: dict[str, dict[str
 
 
 def test_the_event_is_in_the_table(results: dict[str, dict[str, Any]]) -> None:
-    run = results["An event of one's own"]["run"]
+    run = results["An event of your own"]["run"]
     events = tt.to_dataframe(run, "events")
     times = events["time"][events["kind"] == "60 degrees"]
-    problem = results["An event of one's own"]["problem"]
+    problem = results["An event of your own"]["problem"]
     again = tt.simulate(problem, 10.0, times=[0.0, *times, 10.0])
     assert len(times) > 0
     np.testing.assert_allclose(again["theta"][1:-1], np.pi / 3, rtol=0, atol=1e-12)
@@ -122,7 +122,7 @@ def test_the_table_is_read_again(results: dict[str, dict[str, Any]]) -> None:
 def test_the_law_is_swept_with_the_numbers_of_single_runs(
     results: dict[str, dict[str, Any]],
 ) -> None:
-    names = results["A friction law of one's own in a sweep"]
+    names = results["A friction law of your own in a sweep"]
     for mu in (0.1, 0.3):
         run = tt.simulate(names["mine"].replace({"friction.mu": mu}), 10.0, tolerance=1e-9)
         assert float(names["swept"]["final_theta"].sel(mu=mu)) == pytest.approx(

@@ -52,7 +52,15 @@ ITERATIONS, RUN_ITERATIONS = 12, 4
 
 @dataclass(frozen=True)
 class ImprovedTop:
-    """A top that meets a goal better, as a body and as what a lathe or a printer makes."""
+    """A top that meets a goal better, as a body and as what a lathe or a printer makes.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> better = tt.improve(tt.presets.FRIEDL)
+    >>> better.goal, sorted(better.sizes)
+    ('lowest spin', ['radius', 'stem', 'tip', 'wall'])
+    """
 
     body: Body
     """Mass, moments of inertia and surfaces of the solid."""
