@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import tippetop as tt
 from campaigns import examples
 from independent_flights import Toy, slide_and_fly
+from tippetop.contact.automaton import Automaton
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.problem.presets import REPORT, report_problem
 
@@ -219,6 +220,10 @@ def test_an_indeterminate_contact_force_is_reported_and_what_follows_can_be_chos
     assert opened.gap.values == pytest.approx(rise, rel=1e-2)
     for run in (struck, opened):
         assert "indeterminate" in run.attrs["outcome_advice"]
+    without_flights = Automaton(paradox.top, "stop", 0.0, "impact")
+    transition = without_flights.resting(0.0, paradox.start())
+    assert transition.then is tt.Outcome.FAILED
+    assert "needs contact.liftoff = fly" in transition.detail
 
 
 def test_a_force_that_friction_makes_inconsistent_is_not_called_indeterminate():

@@ -37,14 +37,14 @@ class Commands(TyperGroup):
     """Group of commands that reports an interruption, on which typer alone ends silently."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse the arguments before the command."""
+        """Parse the arguments before the command; turn errors of typer into sentences."""
         try:
             return super().parse_args(ctx, args)
         except UsageError as error:
             raise _in_a_sentence(error) from None
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command."""
+        """Run the command; report an interruption, and turn errors of typer into sentences."""
         try:
             let_raise()
             return super().invoke(ctx)

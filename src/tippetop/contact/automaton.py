@@ -395,7 +395,8 @@ class Automaton:
         With a Delassus number A <= 0 friction presses the contact as it is pressed (Painleve's
         paradox). If the contact would close without a force, no force is consistent, and an impact
         without approach takes as much slip away as it needs to: Darboux's and Keller's way out. If
-        it would open, the case is indeterminate: the contact may open, too.
+        it would open, the case is indeterminate: the contact may open, too, and the normal force
+        -b / A is consistent as well, but the least disturbance grows without bound under it.
         """
         if lies_flat(self.top, state.axis):
             return Transition(events, Outcome.LYING_FLAT, state)
@@ -475,6 +476,8 @@ class Automaton:
         if self.liftoff == "fly" and struck <= 1:
             return self._collide(time, state, events, 0.0)
         detail = "no contact force is consistent with the friction"
+        if any(event.kind is EventKind.INDETERMINATE for event in events):
+            detail = "the impact that contact.indeterminate names needs contact.liftoff = fly"
         return Transition(events, Outcome.FAILED, state, detail)
 
     def _collide(

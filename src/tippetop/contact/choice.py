@@ -1,4 +1,4 @@
-"""Which automaton follows a top, and what is told of one that ends as it begins."""
+"""The automaton of a problem, and the mode that is reported of a launch that ends as it begins."""
 
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import ContactMode
@@ -33,8 +33,7 @@ def initial_mode(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
     sliding, numbers = ContactMode(lowest, pulls=True), along_table(state).pack()
     try:
         presses = sliding.reaction(numbers).force[2] > 0.0
-    except (
-        ZeroDivisionError
-    ):  # Without slip dry friction says nothing, and the table lets go at once.
+    except ZeroDivisionError:
+        # At zero slip dry friction has no direction, and the table lets go at once.
         presses = False
     return (sliding, numbers) if presses else (Flight(top), state.pack())

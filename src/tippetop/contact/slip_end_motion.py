@@ -77,7 +77,7 @@ def slip_end_arcs(
 
 @lru_cache
 def slip_end_motion(kind: Kind, ending: SlipComponent, guarded: bool) -> Motion:
-    """Equations of motion in the clock of `ending` where a velocity is about to end; time is the
+    """Equations of motion in the clock of `slip_end` where a velocity is about to end; time is the
     last number.
 
     The last parameters are when the run ends, and how long before its end the velocity is left to

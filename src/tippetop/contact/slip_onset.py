@@ -163,8 +163,8 @@ class SlipOnset(TransientMode):
 def solution_of(
     phase: SlipPhase, start: Sequence[float], times: tuple[float, float]
 ) -> DenseSolution:
-    """Return the solution of a phase from its numbers at the start, which begins at a time and ends
-    with the run at the latest.
+    """Return the polynomials of a phase, moved to the times of its beginning and, at the latest, of
+    the end of the run. The numbers at the start give a velocity of zero its direction.
     """
     time, end = times
     last = phase.knots[-1]

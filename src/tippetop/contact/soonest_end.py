@@ -11,7 +11,7 @@ from tippetop.mechanics.top import Top
 
 
 def rolls_freely(top: Top, state: State) -> bool:
-    """Return whether nothing holds rolling."""
+    """Return whether rolling is not held: it is not resisted, or the body rolls already."""
     return not top.resists_rolling or bool(is_rolling(state.axis, state.momentum, top))
 
 

@@ -32,10 +32,10 @@ def other_touching(top: Top, state: State) -> list[Top]:
 
 
 def stays_closed(top: Top, beside: Top, state: State) -> bool:
-    """Return whether another touching surface stays, or comes back at once.
+    """Return whether another touching surface stays closed.
 
-    It also stays where it does not come out of the table, in which it is by no more than what is
-    taken for touching.
+    It does if its gap rate is below the limit of rebounds, or too small to lift it out of the
+    table, into which it reaches by at most the tolerance of touching.
     """
     back, depth = 1.0, max(0.0, float(gap(state, top) - gap(state, beside)))
     if _both_slip(top, beside, state):

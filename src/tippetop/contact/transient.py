@@ -44,7 +44,7 @@ class TransientMode(Mode):
     """A moment between two modes; a result reports the one of them in which something moves."""
 
     ending: SlipComponent
-    """Which velocity ends or begins, and whether the other is held."""
+    """The velocity xi that ends or begins, and whether the other is held."""
     pulls: bool = False
     """Whether the table may pull."""
 

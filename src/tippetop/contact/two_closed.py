@@ -85,7 +85,11 @@ class TwoClosed:
         rolls: float,
         ended: tuple[bool, bool] | None = None,
     ) -> "TwoClosed":
-        """Return the contacts in a state, without slip and tilting that are rounding."""
+        """Return the contacts in a state, with slip and tilting that have ended set to zero.
+
+        Where a velocity ends, the impulse that ends it is applied. A contact that sticks comes
+        first if only one does.
+        """
         tops = off_branch(tops[0]), off_branch(tops[1])
         # What sticks does not slip because tilting has ended: that is held, too.
         ended = ended_slips(state, tops) if ended is None else ended
@@ -120,8 +124,8 @@ class TwoClosed:
     def consistent(self, resolved: Resolution) -> list[str]:
         """Return the sets of contacts that may stay closed; exactly one is expected.
 
-        Where rolling is held, what one contact may do alone both may; else that which is pressed
-        the more.
+        With rolling held, two contacts can hold whatever one of them can: both stay if both normal
+        forces are positive, else the one with the larger normal force.
         """
         normal, free = resolved.motion.normal, free_rates(self.pair).points
         candidates = [BOTH] if normal[0] > 0.0 and normal[1] > 0.0 else []
@@ -137,7 +141,7 @@ class TwoClosed:
         return candidates + ([NEITHER] if min(free[0][2], free[1][2]) >= 0.0 else [])
 
     def _beside_pressed(self, number: int) -> str:
-        """Return what the other contact does where this one alone is pressed: a status."""
+        """Return whether this contact can carry the body alone, and what the other does then."""
         point = self.pair[number]
         if point.free.point[2] >= 0.0:
             return CLOSES

@@ -15,8 +15,8 @@ SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
 NEGATIVE, LESS, SELECT, RARELY = "negative", "less", "select", "rarely"
 SIZE, ROOT, POWER, SINE, COSINE = "abs", "sqrt", "pow", "sin", "cos"
 SPREAD, TOTAL = "spread", "total"
-"""What makes nodes; where they have several values, the last two are one of them for all, and their
-sum.
+"""Names of the operations of nodes. Where a node has a value for each of several lanes, `SPREAD`
+gives every lane the value of one of them, and `TOTAL` gives every lane their sum.
 """
 
 LARGEST_POWER = 16
@@ -32,7 +32,7 @@ class NotRecordable(TypeError):
 
 @dataclass(eq=False, repr=False, slots=True)
 class Node:
-    """A number that is to be computed, or given."""
+    """Node of the expression graph: input, constant or operation."""
 
     graph: "Graph"
     """Where it belongs."""

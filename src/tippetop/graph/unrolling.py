@@ -7,14 +7,14 @@ from tippetop.graph.recording import Recorded, needed
 
 
 class NodeValues:
-    """What is done with the values of nodes that have several."""
+    """Operations between the lanes of nodes that have a value for each."""
 
     def spread(self, a: Any, lane: int) -> Any:
-        """Return one of a node's values, for all."""
+        """Return a node that has the value of one lane in every lane."""
         return a.graph.node(SPREAD, (a,), lane) if isinstance(a, Node) else a
 
     def total(self, a: Any) -> Any:
-        """Return the sum of a node's values, for all."""
+        """Return a node that has the sum over the lanes in every lane."""
         return a.graph.node(TOTAL, (a,))
 
 

@@ -23,12 +23,14 @@ NEWTON = 6
 """Improvements of a time at which a component has some value."""
 
 EXACT = 3e-9
-"""Such an improvement, as part of a step, after which the next one, of the order of its square, is
-none.
+"""Improvement of a time by Newton's method, as part of a step, at which the method stops: the next
+one, of the order of its square, would be rounding.
 """
 
 SHORTEST = 1e-8
-"""The last of the steps that such a component's values make, relatively."""
+"""Distance to the end, relative to the end, within which a knot is left out, so that the last step
+is not tiny.
+"""
 
 ALONE = 2**17
 """Multiplications of a product of matrices that one thread does: several wait for each other, and

@@ -19,8 +19,8 @@ Value = Callable[[float], float]
 """A guard as a function of time."""
 
 AT_ONCE = 1e-3
-"""Part of a step: a guard that falls as early, where the solution is wrong by more than the guard,
-and is positive in the end was zero but for that error. To end there would bring the motion nowhere.
+"""Part of a step. A fall within it does not count if the guard is positive at the end of the step:
+there the guard is zero but for errors, and a motion that stopped there would stop again and again.
 """
 
 INEXACT = 0.05
@@ -100,7 +100,7 @@ def _fall_along(
 
 
 def _along(guard: GuardValue, solution: Dense) -> Value:
-    """Return a guard along a solution as a function of time."""
+    """Return a guard along a solution, as a function of time; infinite at a pole of the guard."""
     return lambda time: _value_of(guard, solution(time))
 
 
@@ -120,7 +120,7 @@ def brackets(
     """
     last, least = len(probes) - 1, min(values)
     if least > 0.0 and 2.0 * least >= max(values):
-        return  # what is told of dips below is true of none
+        return  # The values vary too little for a dip to reach zero.
     if max(values[:2]) <= 0.0:
         early = _early_bracket(probes[0], probes[last], value)
         if early is not None:

@@ -14,10 +14,10 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.vectors import Scalar
 
 Iteration: TypeAlias = Callable[[Any, Any, Any, float, int], int]
-"""A function of the rooms of unknowns, parameters and results, a tolerance and the most turns.
+"""A function of buffers of unknowns, parameters and results, a tolerance and a limit of iterations.
 
-It improves the unknowns until the last result is less than the tolerance or is not a number, and
-returns the number of turns.
+It improves the unknowns in place until the last result is less than the tolerance or is not a
+number, and returns the number of iterations.
 """
 
 Improvement: TypeAlias = Callable[[Sequence[Scalar], Sequence[Scalar], Any], Sequence[Scalar]]

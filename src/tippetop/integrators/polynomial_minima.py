@@ -56,7 +56,7 @@ def lowest(values: Sequence[Scalar], plain: Arithmetic) -> Scalar:
 def may_fall(
     terms: Sequence[Scalar], values: Sequence[Scalar], length: Scalar, plain: Arithmetic
 ) -> Scalar:
-    """Return whether a guard may fall through zero in a step, from its values at the looks."""
+    """Return whether a guard may fall through zero in a step, from its values at the probes."""
     return plain.below(lowest(values, plain) - slack(terms, length, len(values) - 1, plain), TINY)
 
 
@@ -66,8 +66,8 @@ def first_fall(
     """Return the time in a step at which a polynomial first falls through zero, and whether that is
     undecided.
 
-    It is inf where no look is below zero. It is not told where the polynomial begins there, or may
-    dip between looks before it falls, or where its zero is not found in a few improvements.
+    The time is inf if no probe is negative. It is undecided if the polynomial begins at or below
+    zero, if it may dip between probes first, or if the iteration for its root does not converge.
     """
     values, part = looked_at(terms, length, count), length * (1.0 / count)
     falls = high = late = 0.0 * length

@@ -103,7 +103,7 @@ def _reads(*rows: Array) -> list[str]:
 
 
 def _read(stage: int, i: str) -> str:
-    """Return the read of a number's rate at a stage into a name: `SLOPE` for the i of a loop."""
+    """Return a line of source that reads the rate of number i at a stage into a name."""
     return f"k{stage}_{i} = k[{stage}, {i}]"
 
 

@@ -32,8 +32,8 @@ sticks without rolling resistance; and on a thin disk without rolling resistance
 an arm that falls with s.
 
 T is wrong by as much as the motion departs from that form: relatively by s, and by the size of a
-nutation, which is the tilt's rate beside -2 s / T, and its acceleration. Where the contact slips,
-the departure is taken to be 1.
+nutation: the difference of the tilt's rate from -2 s / T, and its acceleration. Where the contact
+slips, the departure is taken to be 1.
 """
 
 from typing import NamedTuple

@@ -119,8 +119,10 @@ const readersOfTops = new WeakMap();
 const codesOf = cached(() => new Map());
 
 /**
- * What makes readings of a mode with so many numbers: `reader(mode, size)(of, count)` is a function (y, other)
- * that returns the `count` values of `of(mode, y, other)`, in an array that its next call overwrites.
+ * Compile functions that read quantities off the numbers of a mode, of which there are `size`.
+ *
+ * `reader(mode, size)(of, count)` returns a function (y, other), which returns the `count` values of
+ * `of(mode, y, other)` in an array that its next call overwrites.
  */
 export function reader(mode, size) {
   const [top, second] = mode.tops;

@@ -1,4 +1,4 @@
-// Smooth curves that are no circles, which the page does not read: the least polynomial is a linear programme.
+// The page refuses smooth curves that are no circles: to fit them takes a solver of linear programmes.
 import { Described, InvalidInput } from "./mechanics.js";
 
 export function polynomial_support() {

@@ -186,7 +186,7 @@ class Padded(NamedTuple):
 
 
 def _placed(place: int, value: Any, of: Callable[[Any], Any]) -> Any:
-    """Return a function of a value of a list; its refusals name the value's place."""
+    """Apply a function to an item of a list; refusals name the index of the item."""
     try:
         return of(value)
     except InvalidInput as error:

@@ -98,11 +98,12 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
 
 
 def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
-    """Call launches inaccurate that are off what every motion keeps where they end.
+    """Mark launches as inaccurate whose conserved quantities differ at the end from those at
+    launch.
 
-    What goes off stays off, so that the end tells of all before. Of the work of friction nothing is
-    known but the energy that is gone: the axis is what goes off first, by steps that keep their
-    balance to rounding.
+    Only the end is checked, since an error of a conserved quantity stays. The energy that is lost
+    counts as the work of friction, so that its balance shows no error; the length of the axis shows
+    errors first.
     """
     top, end = launches.top, ends.state
     monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)

@@ -83,8 +83,8 @@ def fly_all(
     """Fly until the table is touched, for the `horizon` at most: all of shape (n,).
 
     The tops are told by their dimensionless numbers, shape (kind.numbers, n); of gap, gap rate and
-    gap acceleration so many are `vanishing` at the start. Given is also what follows the tip of the
-    axis, under which numbers, and the times at the start.
+    gap acceleration so many are `vanishing` at the start. `seen` is what follows the tip of the
+    axis, the numbers of the launches there, and the times at the start.
     """
     tip, launches, begins = seen
     time, highest = np.zeros_like(horizon), np.zeros_like(horizon)

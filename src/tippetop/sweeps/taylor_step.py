@@ -189,12 +189,12 @@ def later_guards(
     step: tuple[Scalar, int | None],
     plain: Arithmetic,
 ) -> tuple[Scalar, Scalar, Scalar]:
-    """Return the length of a step as limited by all guards but the first, and whether one of them
-    is undecided.
+    """Limit the length of a step by all guards but the first.
 
-    Of the step that may be taken, and of which guard is of the law's branch, it makes the step that
-    is taken, whether that ends where another branch of the law takes over, and whether a guard may
-    fall in it. Only where that of the branch comes near zero is it looked at.
+    `step` is the longest length that is allowed, and the index of the guard of the law's branch, or
+    None. Return the length that is taken, whether it ends at a change of the law's branch (1 or 0),
+    and a number that is positive if another guard may fall in the step or is undecided. The guard
+    of the branch is searched only where it comes near zero.
     """
     full, branch = step
     none = 0.0 * full

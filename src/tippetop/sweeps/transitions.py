@@ -42,7 +42,7 @@ class Crossings:
         self.motion = sliding_motion(slots.launches.kind, guarded=True)
 
     def launch(self, lanes: Indices, state: State) -> None:
-        """Sort the launches out that do not simply slide from the start."""
+        """Let the launches begin: those that do not simply slide are followed apart."""
         launches = self.slots.launches
         singly = launches.unresisted
         for i in np.flatnonzero(singly).tolist():
@@ -60,7 +60,7 @@ class Crossings:
         self._enter(lanes[others], np.zeros(len(others)), picked(state, others), transitions)
 
     def fall(self, lanes: Indices, time: Array, guards: Indices) -> None:
-        """Return what follows where guards fall through zero."""
+        """Put lanes of which a guard fell into the mode that follows, or end them."""
         names = np.array([guard.name for guard in self.motion.guards])[guards]
         on_branch, free = names == BRANCH, names == LIFT_OFF
         if free.any():
@@ -86,7 +86,7 @@ class Crossings:
         self._let_go(lanes[free], time[free])
 
     def _let_go(self, lanes: Indices, time: Array) -> None:
-        """Return what follows where the normal force falls to zero."""
+        """Let lanes fly, or stop, whose normal force fell to zero."""
         slots = self.slots
         cells, state = slots.cell[lanes], slots.states(lanes)
         slots.ends.lift_off[cells] = np.fmin(slots.ends.lift_off[cells], time)

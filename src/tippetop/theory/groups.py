@@ -186,7 +186,9 @@ def fold(top: Top) -> Fold | None:
 
 
 def coexistence(top: Top) -> tuple[float, float] | None:
-    """Return the sizes of Jellett's integral between which two steady states are stable, or None.
+    """Return the sizes of Jellett's integral between which two steady states are stable.
+
+    In natural units; None for groups in which that is never so.
 
     Raises `InvalidInput` if the top does not conserve Jellett's integral.
     """

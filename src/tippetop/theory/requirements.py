@@ -45,7 +45,7 @@ def require_jellett(top: Top) -> None:
 
 
 def require_creep(top: Top) -> None:
-    """Raise `InvalidInput` unless friction is proportional to small slip about a vertical spin.
+    """Raise `InvalidInput` unless a top with a vertical axis creeps: friction is linear in slip.
 
     Otherwise there is no linear motion: a point on dry friction sticks and then rolls for ever, and
     rolling resistance holds an axis that hardly moves. A patch on dry friction does creep, by

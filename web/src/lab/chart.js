@@ -17,13 +17,13 @@ const MARK = "#ff3d7f";
 // The highest spin of a map, rad/s.
 export const HIGHEST = 250;
 
-// How many rows and columns a launch of the coarsest grids stands for.
+// Rows and columns that a cell stands for, grid by grid: the finest first.
 const REACH = [1, 2, 4, 8];
 const ROOM = { left: 50, right: 14, top: 8, bottom: 34 };
 // Rows and columns by which keys move the mark.
 const MOVES = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] };
 
-// How fine a grid must be to have a cell: 0 for the coarsest.
+// Number of the grid at which a cell is computed: 0 for the coarsest.
 export function fineness({ row, column }) {
   const coarsest = REACH.findLastIndex((reach) => row % reach === 0 && column % reach === 0);
   return REACH.length - 1 - coarsest;

@@ -217,7 +217,7 @@ export class Lab extends EventTarget {
     return beside ? [...beside, ...pins] : pins;
   }
 
-  // Have a ghost for each of the companions.
+  // Compute the ghosts of the companions that are missing, then show them.
   async raise() {
     const { companions } = this;
     for (const pin of companions) {

@@ -51,7 +51,7 @@ function setField(problem, field, value) {
   table[last] = value;
 }
 
-// A copy with texts such as "2200 rpm" as numbers in SI. What is none stays, and is refused when it is to be followed.
+// A copy with texts such as "2200 rpm" as numbers in SI. Texts that are no numbers stay: the engine refuses them.
 export function inSi({ problem, duration }) {
   return { problem: partInSi(problem, "Problem"), duration: numberOf(duration, "s") };
 }

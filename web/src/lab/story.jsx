@@ -203,7 +203,7 @@ function spin(lab, number, answer) {
   setStep(lab, number, { guess: { step: number, answer, seen: false } }, true);
 }
 
-// What is not to be seen yet: all that happens while it is still to be guessed, then what has not been watched.
+// CSS class that hides what would tell the answer: "veiled" before the guess, "watched" while it plays, "" after.
 export function veilOf({ tab, step, guess }) {
   if (tab !== "story") return "";
   if (guess?.step !== step) return "veiled";

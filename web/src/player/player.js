@@ -306,7 +306,7 @@ export class Player extends EventTarget {
     this.tone?.sound(this.track.value("omega3", this.time), this.speed, this.playing);
   }
 
-  // What a use of the canvas gives, drawn with so many pixels for each of the screen's.
+  // Draw with `quality` pixels for each pixel of the screen, call `use`, draw as before, and return its result.
   finely(quality, use) {
     const { scene } = this;
     const usual = scene.quality;

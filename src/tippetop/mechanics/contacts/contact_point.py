@@ -48,7 +48,9 @@ class ContactPoint(NamedTuple):
     free: Acceleration
     """Acceleration without contact force."""
     carried: Vector
-    """Acceleration of the point if the body went on turning as it does, gamma above, m/s^2."""
+    """Acceleration of the point if the body went on turning as it does, gamma = -g z + omega x a',
+    m/s^2.
+    """
     top: Top
     """The body."""
 

@@ -1,6 +1,6 @@
 """Steps of implicit collocation for slip, or rolling, that begins or ends under dry friction.
 
-In the words of `ending`, a velocity xi = s e changes at a rate xi' = A(z, e) that depends on its
+In the words of `slip_end`, a velocity xi = s e changes at a rate xi' = A(z, e) that depends on its
 direction e but not on its speed s. Near s = 0 the direction relaxes at the rate 1/s towards the one
 along which A drives it, so an explicit method needs ever shorter steps. Collocation at Gauss's
 points takes the directions as unknowns instead. With z for all numbers of the motion, xi among
@@ -15,8 +15,8 @@ may begin at once, each with a direction of its own.
 Two solutions are smooth at s = 0, and collocation follows them there to rounding: the one on which
 slip begins at s = 0 (xi ~ t or t^2), and its continuation to the end of that same slip. Slip that
 comes from elsewhere ends with a term s^kappa in its direction, kappa not an integer, which no
-polynomial in time resolves: that end belongs to the clock of `ending`, unless the term has decayed
-below rounding, as it has on a small patch (see `from_end` in `sweep`).
+polynomial in time resolves: that end belongs to the clock of `slip_end`, unless the term has
+decayed below rounding, as it has on a small patch (see `from_end` in `sweep`).
 """
 
 from collections.abc import Callable, Sequence
@@ -69,7 +69,7 @@ class StepRows(NamedTuple):
     directions: int
     """How many numbers the motion has, and how many components its directions have together."""
     frames: int
-    """How many numbers the frames of directions in space have: see `tangents_in`."""
+    """How many numbers the frames of directions in space have: see `frame_of`."""
     velocities: int
     margins: int
 
@@ -230,8 +230,8 @@ def step_terms(y: Sequence[Scalar], p: Sequence[Scalar], points: LaneValues) -> 
 
 
 def frame_of(direction: Slip) -> list[Scalar]:
-    """Return the numbers of a step from which `sweep` makes tangents of a direction near this one:
-    none in a plane; of floats.
+    """Return the numbers of two tangents of a direction in space, one after the other; none of one
+    in a plane, whose tangent follows from it. Floats.
     """
     return (
         [number for tangent in unit_tangents(direction) for number in tangent]

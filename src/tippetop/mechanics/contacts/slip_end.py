@@ -1,10 +1,10 @@
 """How slip, or rolling, ends: the velocities that dry friction can bring to zero, and their last
 moments.
 
-What ends is a velocity xi: the slip zeta (see `stick_slip`), or rolling, which is the horizontal
-angular velocity w_t under rolling resistance. Away from xi = 0 the table's wrench depends on the
-direction e = xi / s alone, s = |xi|, and on numbers that do not end with it: with y = (n, L), and u
-where the contact slips,
+What ends is a velocity xi: the slip zeta (see `slip_variables`), or rolling, which is the
+horizontal angular velocity w_t under rolling resistance. Away from xi = 0 the table's wrench
+depends on the direction e = xi / s alone, s = |xi|, and on numbers that do not end with it: with y
+= (n, L), and u where the contact slips,
 
     y' = Y(y, e),        xi' = A(y, e) = R e + V,        s' = R,        s e' = V,        V.e = 0.
 
@@ -46,9 +46,9 @@ QUICK = 1e5
 """How many times its own velocities change in a natural unit of time where they change fast."""
 
 JAMMING = 1e-8
-"""Delassus number of the slipping contact, over that without friction, that is next to nothing: the
-time that is left falls as its square, and is rounding then. Of what the impact after it takes, a
-part as small is the friction's before.
+"""Delassus number of the slipping contact, over that without friction, at which the contact jams:
+the time that is left falls as its square, and is rounding then. The slip that friction still takes
+before the jam is as small a fraction of what the impact takes.
 """
 
 

@@ -48,7 +48,7 @@ def find_onset(
     held: Wrench | None = None,
     moved: Moved = forces_and_accelerations,
 ) -> Onset:
-    """Directions in which slip, or rolling, or both, begin.
+    """Return the directions in which slip, or rolling, or both, begin, and the forces.
 
     Parameters
     ----------

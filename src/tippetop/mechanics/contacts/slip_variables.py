@@ -6,7 +6,7 @@ alone, s = |zeta|, and so do all accelerations: with y = (n, L),
 
     y' = Y(y, e),        zeta' = A(y, e) = R e + V,        s' = R,        s e' = V,        V.e = 0.
 
-How it comes to zero is said in `ending`. At zeta = 0 the wrench that keeps it zero decides: the
+How it comes to zero is said in `slip_end`. At zeta = 0 the wrench that keeps it zero decides: the
 body sticks if the limit surface admits it. Otherwise slip goes on in a direction in which it can, A
 = R e with R > 0 (see `find_onset`).
 """

@@ -5,9 +5,9 @@ alone, since F = -m (gamma + omega' x a), gamma = -g z + omega x a':
 
     (1/J + m a^2 - m a a) omega' = (1/J) k omega3 n' - m a x gamma + t,
 
-and with e the horizontal part of n, which that of a is -h' times, the matrix takes a horizontal
-rate w and omega_z' to alpha w + (beta (e.w) + kappa omega_z') e and kappa (e.w) + delta omega_z',
-where
+Let e = (n_x, n_y), no unit vector here: the horizontal part of a is -h' e. The matrix maps a
+horizontal rate w and omega_z' to alpha w + (beta (e.w) + kappa omega_z') e and kappa (e.w) + delta
+omega_z', where
 
     alpha = I1 + m h^2 + m h'^2 e^2,          beta = I3 - I1 - m h'^2,
     delta = I1 + (I3 - I1) c^2 + m h'^2 e^2,  kappa = (I3 - I1) c - m h h'.

@@ -1,10 +1,10 @@
 """Dry friction in an impact: slip, sticking, drilling and rolling with the normal impulse as time.
 
-While the normal impulse p grows, slip zeta (see `stick_slip`) changes by d zeta / dp = A(e), which
-depends on its direction e alone, as the configuration is fixed. Slip that ends stays ended if the
-limit surface admits the impulse that keeps it so; else it goes on along a direction with A = R e, R
-> 0, which then is constant: as in contact (see `find_onset`), with unit normal impulses for forces
-that weight calls for.
+While the normal impulse p grows, slip zeta (see `slip_variables`) changes by d zeta / dp = A(e),
+which depends on its direction e alone, as the configuration is fixed. Slip that ends stays ended if
+the limit surface admits the impulse that keeps it so; else it goes on along a direction with A = R
+e, R > 0, which then is constant: as in contact (see `find_onset`), with unit normal impulses for
+forces that weight calls for.
 
 A direction along which A(e) = R e stays so: all impulses then grow in a straight line, until slip
 has ended if R < 0. Slip comes to such a direction much faster than it ends where one component of

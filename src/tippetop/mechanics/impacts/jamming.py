@@ -34,9 +34,10 @@ take; and how far it is below zero at least where it is past that, which roundin
 def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     """Return the state past the normal impulse during which friction jams the contact.
 
-    There the Delassus number of the slipping contact falls through zero. A little before, it is as
-    much above as it is below after twice that impulse, while the contact opens by nothing; next to
-    nothing before, what it closes by is of the square of `PAST`.
+    There the Delassus number A of the slipping contact falls through zero, linearly with the
+    impulse: from A0 > 0 the impulse 2 A0 / |dA/dp| leads to -A0, and the normal velocity of its two
+    halves cancels. Where A0 is nearly zero, a step to -`PAST` leaves a normal velocity of the order
+    of `PAST` squared.
 
     Parameters
     ----------

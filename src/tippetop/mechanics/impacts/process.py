@@ -32,9 +32,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.unsolved import Unsolved
 
 LONGEST = 5.0
-"""Step at most, in the time in which slip falls by a factor of e: so many times it are still
-stable.
-"""
+"""Longest step, in the impulse over which slip falls by a factor of e; longer ones are unstable."""
 
 TOLERANCE = 1e-9
 """Error of the slip in a step of the integration, relative to the slip."""
@@ -128,7 +126,7 @@ class SteppedProcess(ImpactProcess):
 
     @property
     def longest(self) -> float:
-        """Longest step of the clock, and a tenth of it is the first."""
+        """Longest step of the clock, kg; the first step is a tenth of it."""
         return 2.0 * LONGEST / float(self.body.response[0][0] + self.body.response[1][1])
 
     def ends(self, goal: Goal) -> list[Goal]:
