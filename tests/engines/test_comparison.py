@@ -126,7 +126,7 @@ def test_a_damaged_file_of_results_is_said(tmp_path):
         comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS)
 
 
-@pytest.mark.parametrize("name", comparison.stored())
+@pytest.mark.parametrize("name", ADAPTERS)
 def test_stored_results_are_of_every_case_setting_and_step(name):
     stored, made = comparison.stored([name])[name], adapter(name)
     assert stored["suite"] == comparison.SUITE_VERSION
@@ -194,7 +194,8 @@ def test_figures_of_stored_results_show_every_program():
     names = {one["engine"] for one in stored.values()}
     legend = errors_figure(stored).legends[0]
     assert {text.get_text() for text in legend.get_texts()} == names
-    (panel,) = launch_figure(stored, "coulomb-roll").axes
+    panel, apart = launch_figure(stored, "coulomb-roll").axes
     labels = [line.get_label() for line in panel.lines]
     assert labels[0] == "exact"
     assert all(any(label.startswith(name) for label in labels) for name in names)
+    assert len(apart.lines) == len(labels) - 1

@@ -1,17 +1,23 @@
 """Figures of other programs against the exact runs."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter, NullLocator
 
 import tippetop as tt
 from tippetop.engines.cases import Case
 from tippetop.engines.comparison import verdicts
 from tippetop.engines.reference import case_of
+
+TILT_DIGIT = 1e-4
+"""The last digit of stored tilts, rad: errors below it are drawn there."""
 
 
 def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
@@ -33,6 +39,9 @@ def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
             if drawn:
                 steps, errors = zip(*sorted(drawn), strict=True)
                 panel.loglog(1e3 * np.array(steps), errors, "o-", ms=3, color=f"C{number}")
+        if panel.lines:
+            _whole_decades(panel)
+            _ticks_at_steps(panel)
         panel.set_title(case, fontsize="small")
     for panel in axes.flat[len(cases) :]:
         panel.set_visible(False)
@@ -46,12 +55,33 @@ def errors_figure(results: Mapping[str, Mapping[str, Any]]) -> Figure:
     return figure
 
 
+def _whole_decades(panel: Axes) -> None:
+    """Let the vertical axis go from a power of ten to another, and have its labels there."""
+    errors = np.concatenate([line.get_ydata() for line in panel.lines])
+    low, high = math.floor(math.log10(errors.min())), math.ceil(math.log10(errors.max()))
+    panel.set_ylim(10.0**low, 10.0**high)
+    panel.yaxis.set_minor_formatter(NullFormatter())
+
+
+def _ticks_at_steps(panel: Axes) -> None:
+    """Label every other of the steps that are drawn."""
+    steps = max((np.array(line.get_xdata(), float) for line in panel.lines), key=len)
+    panel.set_xticks(steps[::2], [f"{step:.2g}" for step in steps[::2]])
+    panel.xaxis.set_minor_locator(NullLocator())
+
+
 def launch_figure(results: Mapping[str, Mapping[str, Any]], name: str) -> Figure:
-    """Draw the tilt of one launch in all programs, defaults thin and best settings thick."""
+    """Draw the tilt of one launch in all programs and its largest error up to each time.
+
+    Defaults are thin, best settings thick.
+    """
     case: Case = case_of(name)
     best = {one.engine: one.setting for one in verdicts(results) if one.case == name}
-    figure, panel = plt.subplots(figsize=(7.2, 3.6), layout="constrained")
-    run = tt.simulate(case.problem, case.duration, samples=1001)
+    figure, (panel, apart) = plt.subplots(
+        2, 1, figsize=(7.2, 5.0), sharex=True, layout="constrained"
+    )
+    end = float(case.times[case.compared - 1])
+    run = tt.simulate(case.problem, end, samples=1001)
     panel.plot(run["time"], run["theta"], color="black", lw=2.0, label="exact", zorder=9)
     for number, result in enumerate(results.values()):
         first = result["settings"][0]["name"]
@@ -61,10 +91,14 @@ def launch_figure(results: Mapping[str, Mapping[str, Any]], name: str) -> Figure
             is_best = row["setting"] == best.get(result["engine"])
             if not (is_best or row["setting"] == first):
                 continue
-            time = np.linspace(0.0, case.duration, len(row["tilt"]))
+            time = np.linspace(0.0, end, len(row["tilt"]))
             label = f"{result['engine']}, {row['setting']}, {1e3 * row['step']:.3g} ms"
             style = {"lw": 1.3} if is_best else {"lw": 0.7, "ls": "--"}
             panel.plot(time, row["tilt"], color=f"C{number}", label=label, **style)
-    panel.set(xlabel="time (s)", ylabel=r"tilt $\theta$ (rad)")
-    panel.legend(fontsize="x-small", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+            error = np.abs(row["tilt"] - np.interp(time, run["time"], run["theta"]))
+            largest = np.maximum.accumulate(np.maximum(error, TILT_DIGIT))
+            apart.semilogy(time, largest, color=f"C{number}", **style)
+    panel.set_ylabel(r"tilt $\theta$ (rad)")
+    apart.set(xlabel="time (s)", ylabel="largest error so far (rad)")
+    figure.legend(fontsize="x-small", frameon=False, loc="outside right upper")
     return figure

@@ -160,9 +160,9 @@ class ExudynStepper:
         settings.timeIntegration.numberOfSteps = count
         settings.timeIntegration.endTime = count * self.step
         settings.timeIntegration.verboseMode = 0
-        settings.solutionSettings.writeSolutionToFile = False
-        settings.solutionSettings.sensorsWritePeriod = every * self.step * (1.0 - 1e-9)
-        settings.displayComputationTime = False
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = every * self.step * (1.0 - 1e-9)
+        settings.show.computationTime = False
         solver = getattr(exu.DynamicSolverType, options["solver"])
         system.SolveDynamic(settings, solverType=solver, showHints=False)
         parts = [np.array(system.GetSensorStoredData(sensor))[:, 1:] for sensor in sensors]
