@@ -7,8 +7,11 @@ import launches
 import tippetop as tt
 from campaigns import seeds
 from tippetop.fit.dual import Dual, duals, parts_of
+from tippetop.fit.variational import followed
 from tippetop.graph.derivatives import derivatives
 from tippetop.graph.recording import record
+from tippetop.integrators import make_integrator
+from tippetop.integrators.base import Motion
 from tippetop.problem.problem import get
 
 CLOSED = 1e-9
@@ -167,6 +170,11 @@ def random_case(seed):
 def richardson(problem, times, field, kinds):
     """Return derivatives by differences extrapolated twice, and an estimate of their error; None
     where the runs have other events.
+
+    The estimate is what the last extrapolation changes, and what rounding of a variable to double
+    precision makes of the differences: eps / (2 part step) of its size, times the weights of the
+    extrapolation (1.42 of the last, 0.44 and 0.02), 3.3 eps / step in all. Derivatives that are
+    zero are known to that only.
     """
     value, step = float(get(problem, field)), 1e-5 * abs(float(get(problem, field)))
     rows = []
@@ -186,11 +194,12 @@ def richardson(problem, times, field, kinds):
         if len({row[name].shape for row in rows}) == 1:
             first, second = ((4.0 * rows[k + 1][name] - rows[k][name]) / 3.0 for k in (0, 1))
             best = (16.0 * second - first) / 15.0
-            found[name] = best, np.max(np.abs(second - first), initial=0.0)
+            rounding = 3.3 * np.finfo(float).eps * np.max(np.abs(run[name].values), initial=0.0)
+            found[name] = best, np.max(np.abs(second - first), initial=0.0) + rounding / step
     return found
 
 
-@pytest.mark.parametrize("seed", seeds(check=24, sample=60, claim=600))
+@pytest.mark.parametrize("seed", seeds(check=24, sample=60, claim=600, always=[164, 233]))
 @pytest.mark.filterwarnings("ignore::tippetop.Implausible")
 def test_random_problems_agree_with_differences(seed):
     case = random_case(seed)
@@ -213,6 +222,15 @@ def test_random_problems_agree_with_differences(seed):
             off / largest,
             error / largest,
         )
+
+
+def test_motion_that_ends_where_it_begins_keeps_its_derivatives():
+    oscillator = Motion(lambda y, p: (y[1], -p[0] * y[0]), 2, 1)
+    parameters, start = np.array([[1.0], [0.5]]), np.array([[0.3, 0.1], [2.0, -1.0]])
+    solved = followed(oscillator, parameters, (0.7, start), 0.7, make_integrator(None))
+    assert solved is not None
+    assert solved[0].knots.tolist() == [0.7]
+    np.testing.assert_array_equal(solved[1], start)
 
 
 def test_rules_of_the_graph_are_those_of_dual_numbers():

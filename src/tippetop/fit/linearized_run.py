@@ -67,7 +67,9 @@ beside it go through the same events.
 """
 
 GRAZING = 1e-9
-"""Rate of a guard, in natural units, below which it has no derivative of its time."""
+"""Sine of the angle between the motion and the surface where a guard is zero, below which the time
+at which it falls has no derivative.
+"""
 
 FOUR = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0))
 """Rule of fourth order for a first derivative: places and weights."""
@@ -130,8 +132,8 @@ class IntegratedLeg:
     """StartNumbers at its end."""
     changes: Array
     """Total derivatives of them, shape (directions, size)."""
-    guard: tuple[Guard, float] | None = None
-    """The guard that ends it, and its rate there."""
+    guard: tuple[Guard, Array] | None = None
+    """The guard that ends it, and its gradient there, over the square of that."""
     along: dict[int, tuple[Array, Array]] = field(default_factory=dict)
     """Derivatives along it, once they are asked for, by direction."""
 
@@ -146,7 +148,7 @@ class IntegratedLeg:
         terms[:, :, :-1] += solution.terms[:, : len(self.last)]
         ends = solution.knots + change * moved
         ends[-1] = end
-        last = mode.state(terms[-1].sum(axis=1).tolist()) if len(terms) else self.visit.state
+        last = mode.state((self.last + change * self.changes[direction]).tolist())
         mode_end = self.visit.end
         steps = sum(segment.steps for segment in self.visit.segments)
         return Segment(mode, DenseSolution(ends, terms), last, mode_end, steps)
@@ -403,23 +405,27 @@ class LinearizedRun:
 
     def _guard_times(
         self, visit: Visit, at: tuple[Array, Array, Array], carried: tuple[Array, Array]
-    ) -> tuple[tuple[Guard, float] | None, Array]:
-        """Return the guard that ends a visit with its rate, and the derivatives of its time."""
+    ) -> tuple[tuple[Guard, Array] | None, Array]:
+        """Return the guard that ends a visit, with its gradient over the square of that, and the
+        derivatives of its time.
+        """
         (last, tangents, slopes), (parameters, rates) = at, carried
-        count = len(tangents)
+        count, size = tangents.shape
         mode: Any = visit.mode
         guard = guard_of(mode.motion.guards, visit.end)
         if guard is None:
             return None, np.array([self._end_rate(one) for one in self.directions])
-        y = duals(last, np.vstack([tangents, slopes]))
-        p = duals(parameters, np.vstack([rates, np.zeros(len(parameters))]))
-        parts = parts_of(guard.value(y, p), count + 1)
-        slope = float(parts[-1])
-        if not abs(slope) > GRAZING:
+        y = duals(last, np.vstack([tangents, np.eye(size)]))
+        p = duals(parameters, np.vstack([rates, np.zeros((size, len(parameters)))]))
+        changes, gradient = np.split(parts_of(guard.value(y, p), count + size), [count])
+        slope, steepest = float(gradient @ slopes), float(np.linalg.norm(gradient))
+        times = np.zeros(count)
+        if abs(slope) > GRAZING * steepest * np.linalg.norm(slopes):
+            times = -changes / slope
+        else:
             for direction in range(count):
                 self.fail(direction, visit.end_time, GRAZES)
-            return (guard, slope), np.zeros(count)
-        return (guard, slope), -parts[:-1] / slope
+        return (guard, gradient / steepest**2), times
 
     def _end_rate(self, direction: StartNumbers) -> float:
         """Return the derivative of the natural time at which the run ends."""
@@ -546,12 +552,10 @@ class LinearizedRun:
         y = leg.last + change * leg.changes[direction]
         time = leg.visit.end_time + change * float(leg.times[1][direction])
         if leg.guard is not None:
-            # The guard is zero to first order: Newton's method makes it zero.
-            guard, slope = leg.guard
-            parameters = tuple(mode.parameters)
-            late = float(guard.value(y.tolist(), parameters)) / slope
-            y = y - late * np.array(mode.motion.rates(y.tolist(), parameters))
-            time -= late
+            # The guard is zero to first order, and the nearest place where it is zero is sought. A
+            # step along the motion to there would be long where the guard falls slowly.
+            guard, towards = leg.guard
+            y = y - float(guard.value(y.tolist(), tuple(mode.parameters))) * towards
         how = replace(leg.visit.end, state=mode.state(y.tolist()))
         return time, automaton.follow(mode, how, time, self.integrator)
 
@@ -586,7 +590,7 @@ class LinearizedRun:
                 segments += [segment for some in passed.segments for segment in some]
                 time, state = passed.time, passed.state
                 continue
-            if leg.visit.time >= failing or not len(leg.solutions[direction // TOGETHER].terms):
+            if leg.visit.time >= failing:
                 break
             completes = leg.visit.end is None or leg.visit.end.cause == COMPLETED
             until = leg.visit.end_time + change * float(leg.times[1][direction])

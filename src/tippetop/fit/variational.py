@@ -93,4 +93,5 @@ def followed(
         last = arc.end_state
     if not np.all(np.isfinite(last)):
         return None
-    return DenseSolution.joined(parts), last.reshape(numbers.shape)
+    solution = DenseSolution.joined(parts) if parts else DenseSolution.empty(time, len(last))
+    return solution, last.reshape(numbers.shape)
