@@ -9,7 +9,15 @@ from typing import Annotated, Any
 import typer
 
 import tippetop as tt
-from tippetop.cli.options import DRAWINGS, NUMBER, Force, Json, number_of, write_figure
+from tippetop.cli.options import (
+    DRAWINGS,
+    NUMBER,
+    Force,
+    Json,
+    number_of,
+    number_option,
+    write_figure,
+)
 from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 from tippetop.support.errors import Described, InvalidInput
@@ -53,9 +61,10 @@ def body(
     ] = None,
     tolerance: Annotated[
         float | None,
-        typer.Option(
-            help="Largest distance of the body from points that arcs are fitted to, in sizes of it;"
-            " 0.0001 by default, 0 to fit none."
+        number_option(
+            float,
+            "Largest distance of the body from points that arcs are fitted to, in sizes of it;"
+            " 0.0001 by default, 0 to fit none.",
         ),
     ] = None,
     whole: Annotated[

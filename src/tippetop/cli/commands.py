@@ -5,7 +5,6 @@ import warnings
 from typing import Annotated, Any, TextIO
 
 import typer
-from pydantic import ValidationError
 from typer.core import TyperGroup
 
 from tippetop import __version__
@@ -19,8 +18,7 @@ from tippetop.cli.reference import reference
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
-from tippetop.support.accepted_values import refusal_of
-from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, TippetopError
+from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, InvalidInput, TippetopError
 from tippetop.support.interrupts import INTERRUPTED, is_interrupted, let_end, let_raise
 
 MISUSE = 2
@@ -64,11 +62,8 @@ class Commands(TyperGroup):
 def _in_a_sentence(error: Any) -> Exception:
     """Return typer's error as one of the package's; help texts stay as they are."""
     cause = error.__cause__
-    if isinstance(cause, ValidationError):
-        detail, option = cause.errors()[0], error.param
-        bounds = {"ge": getattr(option, "min", None), "le": getattr(option, "max", None)}
-        detail["ctx"] = {limit: value for limit, value in bounds.items() if value is not None}
-        return refusal_of(detail, {}).within(option.opts[0])
+    if isinstance(cause, InvalidInput):
+        return cause.within(error.param.opts[0])
     message: str = error.format_message()
     if message:
         return TippetopError(message[0].lower() + message[1:].removesuffix("."))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import DRAWINGS, Force, Json, write_figure
+from tippetop.cli.options import DRAWINGS, Force, Json, number_option, write_figure
 from tippetop.cli.terminal import listing, progress_bar, show, show_json
 from tippetop.support.files import place_for, require_ending
 
@@ -25,7 +25,7 @@ def engines(
         typer.Option(help="Only this program: moreau, mujoco, pybullet, drake or exudyn."),
     ] = None,
     case: Annotated[list[str] | None, typer.Option(help="Only this case of the suite.")] = None,
-    step: Annotated[list[float] | None, typer.Option(help="Only this step, s.")] = None,
+    step: Annotated[list[float] | None, number_option(float, "Only this step, s.")] = None,
     stored: Annotated[
         bool, typer.Option("--stored", help="Run nothing: show the results of the package.")
     ] = False,

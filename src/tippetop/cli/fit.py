@@ -13,6 +13,7 @@ from tippetop.cli.options import (
     Force,
     Json,
     number_of,
+    number_option,
     of_a_problem,
     write_figure,
 )
@@ -47,7 +48,7 @@ def fit(
     scale: Annotated[
         str | None, typer.Option(metavar=NUMBER, help="Metres a pixel, or as in '0.2 mm'.")
     ] = None,
-    frame_rate: Annotated[float | None, typer.Option(help="Pictures a second.")] = None,
+    frame_rate: Annotated[float | None, number_option(float, "Pictures a second.")] = None,
     start: Annotated[
         str, typer.Option(metavar=NUMBER, help="Time of the launch in the data, s.")
     ] = "0",
@@ -55,7 +56,9 @@ def fit(
         bool, typer.Option("--y-down", help="y grows downwards in pictures.")
     ] = False,
     track: Annotated[str | None, typer.Option(help="Track, of several in a file.")] = None,
-    starts: Annotated[int, typer.Option(help="Number of points from which the search begins.")] = 1,
+    starts: Annotated[
+        int, number_option(int, "Number of points from which the search begins.")
+    ] = 1,
     plot: Annotated[
         Path | None, typer.Option(help="Draw data and fit as .png, .svg or .pdf.")
     ] = None,

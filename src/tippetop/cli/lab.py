@@ -5,7 +5,11 @@ from typing import Annotated
 
 import typer
 
-from tippetop.cli.options import Force
+from tippetop.cli.options import Force, number_option
+from tippetop.support.errors import InvalidInput
+
+LAST_PORT = 65535
+"""Largest number of a port of TCP."""
 
 
 def lab(
@@ -13,9 +17,7 @@ def lab(
         str | None,
         typer.Option(help="Serve the page at this address; 0.0.0.0 lets other devices in."),
     ] = None,
-    port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Port to serve it at; 0 for a free one.")
-    ] = 8421,
+    port: Annotated[int, number_option(int, "Port to serve it at; 0 for a free one.")] = 8421,
     out: Annotated[Path | None, typer.Option(help="Write the page into this file instead.")] = None,
     browser: Annotated[
         bool,
@@ -26,6 +28,8 @@ def lab(
     """Open a page in the browser on which anyone can launch the top and see why it turns over."""
     from tippetop.lab.serve import page_path, serve  # noqa: PLC0415 - slow to import
 
+    if not 0 <= port <= LAST_PORT:
+        raise InvalidInput("--port", port, f"a number at least 0 and at most {LAST_PORT}")
     if out is not None:
         _write(out, force)
     elif host is not None:

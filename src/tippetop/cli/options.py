@@ -12,7 +12,7 @@ import typer
 import tippetop as tt
 from tippetop.support.errors import InvalidInput, is_number, short
 from tippetop.support.files import written_beside
-from tippetop.support.units import number_in
+from tippetop.support.units import number_hint, number_in
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -172,6 +172,26 @@ def _value(text: str) -> Any:
         return json.loads(text)
     except (ValueError, RecursionError):
         return text
+
+
+def number_option(kind: type[int] | type[float], text: str) -> Any:
+    """Return an option that takes a number of a kind, with its help text.
+
+    The package reads the number itself: what typer says of a wrong one differs by its version.
+    """
+
+    def number(word: str) -> int | float:
+        try:
+            return kind(word)
+        except ValueError:
+            if kind is int:
+                refusal = InvalidInput("", word, "a whole number")
+            else:
+                refusal = InvalidInput("", word, "a finite number", hint=number_hint(word))
+            raise typer.BadParameter(str(refusal)) from refusal
+
+    metavar = "INTEGER" if kind is int else NUMBER
+    return typer.Option(parser=number, metavar=metavar, help=text)
 
 
 def number_of(option: str, text: str | None, units: str) -> float | None:

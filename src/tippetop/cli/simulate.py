@@ -16,6 +16,7 @@ from tippetop.cli.options import (
     Force,
     Json,
     number_of,
+    number_option,
     of_a_problem,
     write_figure,
 )
@@ -84,7 +85,7 @@ def simulate(
     ] = "20",
     samples: Annotated[
         int | None,
-        typer.Option(help="Number of samples; by default 2001, or as many as a film needs."),
+        number_option(int, "Number of samples; by default 2001, or as many as a film needs."),
     ] = None,
     integrator: Annotated[
         str | None,
@@ -95,7 +96,7 @@ def simulate(
             )
         ),
     ] = None,
-    tolerance: Annotated[float | None, typer.Option(help="Relative error per step.")] = None,
+    tolerance: Annotated[float | None, number_option(float, "Relative error per step.")] = None,
     step: Annotated[
         str | None, typer.Option(metavar=NUMBER, help="Step of rk4, s, or as in '1 ms'.")
     ] = None,

@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import tippetop as tt
-from tippetop.cli.options import NUMBER, Choice, Force, Json, number_of, of_a_problem, write_figure
+from tippetop.cli.options import (
+    NUMBER,
+    Choice,
+    Force,
+    Json,
+    number_of,
+    number_option,
+    of_a_problem,
+    write_figure,
+)
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
 from tippetop.support.errors import MISSING, Described, FileTrouble, InvalidInput
 from tippetop.support.files import in_words, place_for, read_text, require_ending
@@ -47,13 +56,15 @@ Ranges = Annotated[
         metavar="FIELD=LOW:HIGH", help="Draw a field at random instead; append :log for its log."
     ),
 ]
-Count = Annotated[int | None, typer.Option(help="Number of draws.")]
-Seed = Annotated[int | None, typer.Option(help="Seed of the random numbers; 0 by default.")]
+Count = Annotated[int | None, number_option(int, "Number of draws.")]
+Seed = Annotated[int | None, number_option(int, "Seed of the random numbers; 0 by default.")]
 Duration = Annotated[
     str | None,
     typer.Option(metavar=NUMBER, help="Length of every run, s, or as in '2 min'; 20 by default."),
 ]
-Tolerance = Annotated[float | None, typer.Option(help="Relative error per step; 1e-9 by default.")]
+Tolerance = Annotated[
+    float | None, number_option(float, "Relative error per step; 1e-9 by default.")
+]
 Settled = Annotated[
     str | None,
     typer.Option(
@@ -62,7 +73,7 @@ Settled = Annotated[
     ),
 ]
 Processes = Annotated[
-    int | None, typer.Option(help="Number of processes; by default all processors.")
+    int | None, number_option(int, "Number of processes; by default all processors.")
 ]
 Scheduler = Annotated[
     str | None,
