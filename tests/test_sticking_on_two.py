@@ -126,7 +126,7 @@ def test_sticking_contacts_do_not_slip_and_stay_within_the_friction_cone(seed: i
             ]
             stuck = slips if all(mode.sticks) else slips[:1]
             assert np.abs(stuck).max() < 1e-12
-            assert abs(gap_rate(state, mode.other)) < 1e-12
+            assert abs(gap_rate(state, mode.second_top)) < 1e-12
             pair = ContactPair.of(state.axis, state.momentum, mode.tops)
             force = mode.reaction(y).force
             if all(mode.sticks):
@@ -219,7 +219,7 @@ def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
     knots = begin.solution.knots
     early, late = (knots[0] + part * (knots[-1] - knots[0]) for part in (0.3, 0.9))
     mode, (first, last) = begin.mode, begin.solution(np.array([early, late])).tolist()
-    slides = TwoContactMode(mode.top, mode.other, rolls=mode.rolls)
+    slides = TwoContactMode(mode.top, mode.second_top, rolls=mode.rolls)
     start = early, np.array(slides.numbers(mode.state(first)))
     (arc,) = make_integrator("collocation").integrate(slides.motion, slides.parameters, start, late)
     assert arc.end_state == pytest.approx(slides.numbers(mode.state(last)), abs=1e-11)

@@ -247,7 +247,7 @@ class Automaton:
         if end.cause == BRANCHING:
             tops = list(mode.tops)
             tops[end.contact] = on_other_branch(tops[end.contact])
-            return Transition((), replace(mode, top=tops[0], other=tops[1]), state)
+            return Transition((), replace(mode, top=tops[0], second_top=tops[1]), state)
         if end.cause == SLIP:
             return self.slip_on_two(time, state, mode, end.contact)
         if end.cause == ROLLING_STOPPING:

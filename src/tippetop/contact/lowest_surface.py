@@ -13,7 +13,7 @@ LEVEL = 1e-9
 counts.
 """
 
-PROBES = 65
+PROBED_TILTS = 65
 """Tilts at which the height of the centre of mass is looked at."""
 
 
@@ -42,7 +42,7 @@ def highest_between(surface: Surface, low: Scalar, high: Scalar) -> Scalar:
     A sphere's is linear in n_z: there it is at one of the ends.
     """
     low, high = np.maximum(low, -1.0), np.minimum(high, 1.0)
-    highest, last = outer_height(surface, low), 1 if surface.spherical else PROBES - 1
+    highest, last = outer_height(surface, low), 1 if surface.spherical else PROBED_TILTS - 1
     for probe in range(1, last + 1):
         highest = np.maximum(highest, outer_height(surface, low + probe / last * (high - low)))
     return highest

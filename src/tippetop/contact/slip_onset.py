@@ -25,7 +25,7 @@ PART = 0.25
 planar motion that velocity passes through zero, where friction jumps.
 """
 
-TINY = 1e-100
+FIRST_SPEED = 1e-100
 """Speed of the first instant, in natural units, which gives a velocity of zero its direction."""
 
 BEGUN, ENDED = "begun", "slip ended"
@@ -106,7 +106,7 @@ class SlipOnset(TransientMode):
             yield failed_segment(self.reported_mode, time, state, UNSEEN)
             return
         last = mode.state([*phase.last[: len(numbers)], 0.0, 0.0] if phase.ended else phase.last)
-        first = [TINY * number for direction in directions for number in direction]
+        first = [FIRST_SPEED * number for direction in directions for number in direction]
         solution = solution_of(phase, [*numbers, *first], (time, end))
         cause = COMPLETED if solution.end >= end else BEGUN
         how = ModeEnd(ENDED if phase.ended else cause, last)

@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from tippetop.contact.contact_mode import split
 from tippetop.contact.mode import COMPLETED, ModeEnd, Segment
-from tippetop.contact.slip_onset import BEGUN, TINY, UNSEEN, failed_segment, solution_of
+from tippetop.contact.slip_onset import BEGUN, FIRST_SPEED, UNSEEN, failed_segment, solution_of
 from tippetop.contact.slip_phase import follow_slip
 from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators.base import Integrator
@@ -77,7 +77,7 @@ class SlipOnsetOnTwo(TwoContactMode):
         self, time: float, state: State, end: float, integrator: Integrator
     ) -> Iterator[Segment]:
         """Follow what begins for a step."""
-        kinds = self.top.kind, self.other.kind
+        kinds = self.top.kind, self.second_top.kind
         phase = follow_slip(
             onset_motion_on_two(self.without_tops(), kinds),
             self.top,
@@ -88,7 +88,7 @@ class SlipOnsetOnTwo(TwoContactMode):
         if not phase.rows:
             yield failed_segment(self, time, state, UNSEEN)
             return
-        first = scaled(TINY, self.direction)
+        first = scaled(FIRST_SPEED, self.direction)
         start = [*self.begin[:6], *first, *self.begin[6 + len(first) :]]
         solution = solution_of(phase, start, (time, end))
         last = self.state(phase.last)

@@ -48,7 +48,7 @@ failed; and the ratio where a margin falls.
 SAFETY = 0.9
 """Ratio of a step to the one that the error allows."""
 
-TINY = 1e-300
+LEAST_ERROR = 1e-300
 """Added to an error that may be zero."""
 
 
@@ -127,7 +127,9 @@ def follow_slip(
         solved = step.solve(now, directions, length)
         changes = step.changes
         accuracy = ACCURACY + ROUNDING * inner(tuple(changes), tuple(changes))
-        factor = SAFETY * (accuracy / (step.error + TINY)) ** (0.5 / STAGES) if solved else 0.0
+        factor = (
+            SAFETY * (accuracy / (step.error + LEAST_ERROR)) ** (0.5 / STAGES) if solved else 0.0
+        )
         after, part = [a + b for a, b in zip(now, changes, strict=True)], float(PARTS)
         last, speeds = step.last_direction, step.speeds
         lasts = step.least_speed > 0.0 and inner(velocity(after), last) > 0.0

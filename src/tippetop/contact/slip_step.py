@@ -44,7 +44,7 @@ SETTLED, MOST = 1e-28, 50
 """Sum of the squares of changes, in natural units, that is rounding; and sweeps of a step at most.
 """
 
-PROBES = 16
+PROBE_INTERVALS = 16
 """Intervals of a step at whose ends a margin's polynomial, of degree 15, is searched for a fall."""
 
 
@@ -189,7 +189,7 @@ class SlipStep:
             if 2.0 * min(values) > max(values):
                 continue
             value = interpolated(values)
-            probes = [probe / PROBES for probe in range(PROBES + 1)]
+            probes = [probe / PROBE_INTERVALS for probe in range(PROBE_INTERVALS + 1)]
             probed = [value(probe) for probe in probes]
             if min(values) <= 0.0 or next(brackets(probes, probed, value, value), None) is not None:
                 return True

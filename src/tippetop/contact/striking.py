@@ -23,7 +23,7 @@ from tippetop.mechanics.vectors import Scalar, add, cross, scale
 
 SINKING = "sinking"
 
-LONGEST = 1e3
+MOST_IMPULSE = 1e3
 """Normal impulse at most, in units of that which stops a point mass."""
 
 MOST_PIECES = 50
@@ -46,7 +46,7 @@ def impact_of_patch(state: State, top: Top, integrator: Integrator | None) -> Im
         return None
     top = on_branch(top, slip_of(*along_table(state), top))
     impulse, moving, steps = 0.0, as_array((*state.momentum, *state.velocity)), 0
-    longest = LONGEST * top.mass * body.striking
+    longest = MOST_IMPULSE * top.mass * body.striking
     for _ in range(MOST_PIECES):
         motion = impact_motion(top.kind, ending=True)
         parameters = (*top.numbers, *state.axis)

@@ -13,7 +13,7 @@ from tippetop.support.errors import InvalidInput, is_number, is_whole
 PHASE_LIMIT = 100_000
 """How many modes a run goes through at most unless told otherwise."""
 
-LONGEST = 1e300
+LONGEST_RUN = 1e300
 """Seconds, and natural units of time, that a run may last at most, so that it is a number in both.
 """
 
@@ -110,7 +110,7 @@ def require_limits(
     """Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of
     time.
     """
-    longest = LONGEST * min(1.0, unit)
+    longest = LONGEST_RUN * min(1.0, unit)
     if not (is_number(duration) and 0.0 < duration <= longest):
         most = f", at most {longest:.3g}" if is_number(duration) and duration > longest else ""
         raise InvalidInput("duration", duration, f"a number of seconds greater than 0{most}")

@@ -51,7 +51,7 @@ class TwoContactMode(StatedMode):
     along t of `tippetop.mechanics.contacts.pair`.
     """
 
-    other: Top
+    second_top: Top
     """The top with the second surface active."""
     sticks: tuple[bool, bool] = (False, False)
     """Whether each of the contacts sticks; else it slips."""
@@ -92,7 +92,7 @@ class TwoContactMode(StatedMode):
     def label(self) -> str:
         """Its status, and the numbers of the surfaces."""
         rolling = "_without_rolling" if self.stopped else ""
-        first, second = number_of(self.top), number_of(self.other)
+        first, second = number_of(self.top), number_of(self.second_top)
         if self.is_mixed:
             return f"{STICKS}{rolling}_on_{first}_{SLIPS}_on_{second}"
         return f"{self.status}{rolling}_on_{min(first, second)}_and_{max(first, second)}"
@@ -117,12 +117,12 @@ class TwoContactMode(StatedMode):
     @property
     def tops(self) -> Tops:
         """The top with either surface active: the branches of their laws may differ."""
-        return self.top, self.other
+        return self.top, self.second_top
 
     @property
     def parameters(self) -> tuple[Scalar, ...]:
         """The numbers of the top on either surface, and what the status needs beside them."""
-        numbers = (*self.top.numbers, *self.other.numbers)
+        numbers = (*self.top.numbers, *self.second_top.numbers)
         if not any(self.sticks):
             return numbers
         return (*numbers, self.sense if self.is_mixed else self.slowest_rolling)
@@ -130,11 +130,11 @@ class TwoContactMode(StatedMode):
     def without_tops(self) -> Self:
         """Return the mode without its tops and parameters."""
         no_top: Any = None
-        return replace(super().without_tops(), other=no_top, sense=1.0, slowest_rolling=0.0)
+        return replace(super().without_tops(), second_top=no_top, sense=1.0, slowest_rolling=0.0)
 
     def with_tops(self, tops: Sequence[Top], further: Sequence[Scalar]) -> Self:
         """Return the mode with both tops, and with further parameters."""
-        mode = replace(self, top=tops[0], other=tops[1])
+        mode = replace(self, top=tops[0], second_top=tops[1])
         if not any(self.sticks):
             return mode
         return (

@@ -135,11 +135,11 @@ class FitResult:
         standardised = np.full(len(model.data), np.nan)
         standardised[search.measured] = residuals / np.sqrt(variance) if variance else residuals
         ends = np.cumsum([one.values.size for one in model.measurements])[:-1]
-        pieces = np.split(standardised, ends)
+        parts = np.split(standardised, ends)
         deviations = np.split(search.deviations * np.sqrt(variance), ends)
         shaped = tuple(
-            piece.reshape(one.values.shape)
-            for piece, one in zip(pieces, model.measurements, strict=True)
+            part.reshape(one.values.shape)
+            for part, one in zip(parts, model.measurements, strict=True)
         )
         log_likelihood, parameters = _log_likelihood(search, best.cost, count)
         parameters += fitted

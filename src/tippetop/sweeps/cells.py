@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.choice import automaton_of
-from tippetop.contact.trajectory import LONGEST
+from tippetop.contact.trajectory import LONGEST_RUN
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, contact
 from tippetop.mechanics.state import State
@@ -58,7 +58,7 @@ class Cells:
             self.top.kind,
             np.array(numbers),
             State.unpack([number[which] for number in self.start.pack()]),
-            np.minimum(duration / spread(self.units.time, count), LONGEST)[which],
+            np.minimum(duration / spread(self.units.time, count), LONGEST_RUN)[which],
             contact_rule.liftoff,
             spread(contact_rule.restitution, count)[which],
             contact_rule.indeterminate,

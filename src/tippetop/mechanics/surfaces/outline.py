@@ -25,7 +25,7 @@ TILTS = 61
 OUTLINE = 97
 """Tilts at which the hull of surfaces is lines."""
 
-POLE = 1e-4
+POLE_TILT = 1e-4
 """The least of them, where the body does not lie flat yet."""
 
 
@@ -74,9 +74,9 @@ def outline(surface: Surface) -> list[Line]:
 
     Where the body touches the table at evenly spaced tilts, and, on its faces, between.
     """
-    arcs, last, corner = list[Line](), surface, 10.0 * POLE * surface.size
+    arcs, last, corner = list[Line](), surface, 10.0 * POLE_TILT * surface.size
     for number in range(OUTLINE):
-        tilt = min(max(math.pi * number / (OUTLINE - 1), POLE), math.pi - POLE)
+        tilt = min(max(math.pi * number / (OUTLINE - 1), POLE_TILT), math.pi - POLE_TILT)
         c = math.cos(tilt)
         lowest = lowest_surface(surface, c)
         if not arcs or lowest != last:
