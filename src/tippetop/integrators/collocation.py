@@ -9,7 +9,7 @@ motion is smooth, and say how good a solution it is.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cache
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -69,19 +69,19 @@ class Points(NamedTuple):
     """
 
 
-@lru_cache
-def radau_points(stages: int = STAGES) -> Points:
-    """Radau's points in (0, 1]."""
-    inner = roots_jacobi(stages - 1, 1.0, 0.0)[0]
+@cache
+def radau_points() -> Points:
+    """Return Radau's points in (0, 1], `STAGES` of them."""
+    inner = roots_jacobi(STAGES - 1, 1.0, 0.0)[0]
     points = np.append(0.5 + 0.5 * inner, 1.0)
     legendre = np.polynomial.legendre
-    values = legendre.legvander(2.0 * points - 1.0, stages - 1)
+    values = legendre.legvander(2.0 * points - 1.0, STAGES - 1)
     sums = [
-        legendre.legval(2.0 * points - 1.0, legendre.legint(row, lbnd=-1)) for row in np.eye(stages)
+        legendre.legval(2.0 * points - 1.0, legendre.legint(row, lbnd=-1)) for row in np.eye(STAGES)
     ]
     integrals = np.asarray(0.5 * np.array(sums).T @ np.linalg.inv(values), dtype=float)
     places = np.append(0.0, points)
-    transform = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * places - 1.0, stages))
+    transform = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * places - 1.0, STAGES))
     return Points(places, integrals, np.asarray(transform, dtype=float))
 
 

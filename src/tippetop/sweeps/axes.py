@@ -153,15 +153,14 @@ class Spaced(Axis):
             raise InvalidInput(
                 "", Described(ends), "", "gives one value many times", "write ends that differ"
             )
-        if self.spacing == "geometric" and not (
-            self.first > 0 < self.last or self.first < 0 > self.last
-        ):
-            raise InvalidInput(
-                "", Described(ends), "ends of one sign, neither 0", "cannot be in equal ratios"
-            )
-        apart = self.last - self.first
         if self.spacing == "geometric":
+            if not (self.first > 0 < self.last or self.first < 0 > self.last):
+                raise InvalidInput(
+                    "", Described(ends), "ends of one sign, neither 0", "cannot be in equal ratios"
+                )
             apart = max(self.last / self.first, self.first / self.last)
+        else:
+            apart = self.last - self.first
         if not math.isfinite(apart):
             raise InvalidInput(
                 "", Described(ends), "ends that are closer", "reaches too far for numbers"
