@@ -12,10 +12,10 @@ from tippetop.mechanics.roots import crossing, dip
 Dense = Callable[[float], Array]
 """The solution within a step as a function of time."""
 
-GuardValue = Callable[[Array], float]
+StateFunction = Callable[[Array], float]
 """A guard as a function of the state."""
 
-Value = Callable[[float], float]
+TimeFunction = Callable[[float], float]
 """A guard as a function of time."""
 
 AT_ONCE = 1e-3
@@ -30,7 +30,7 @@ about it.
 
 
 def first_fall(
-    guards: Sequence[GuardValue],
+    guards: Sequence[StateFunction],
     dense: Dense,
     advance: Dense,
     step: tuple[float, float],
@@ -70,7 +70,7 @@ def first_fall(
 
 
 def _fall_along(
-    guards: Sequence[GuardValue],
+    guards: Sequence[StateFunction],
     dense: Dense,
     advance: Dense,
     step: tuple[float, float],
@@ -99,12 +99,12 @@ def _fall_along(
     return first
 
 
-def _along(guard: GuardValue, solution: Dense) -> Value:
+def _along(guard: StateFunction, solution: Dense) -> TimeFunction:
     """Return a guard along a solution, as a function of time; infinite at a pole of the guard."""
     return lambda time: _value_of(guard, solution(time))
 
 
-def _value_of(guard: GuardValue, state: Array) -> float:
+def _value_of(guard: StateFunction, state: Array) -> float:
     """Return the value of a guard; infinite at a pole, before which another guard may fall."""
     try:
         return guard(state)
@@ -113,8 +113,8 @@ def _value_of(guard: GuardValue, state: Array) -> float:
 
 
 def brackets(
-    probes: Sequence[float], values: Sequence[float], value: Value, exact: Value
-) -> Iterator[tuple[float, float, Value]]:
+    probes: Sequence[float], values: Sequence[float], value: TimeFunction, exact: TimeFunction
+) -> Iterator[tuple[float, float, TimeFunction]]:
     """Yield the intervals over which the guard falls from positive to not positive, and the
     solution in which it does, in turn.
     """
@@ -143,7 +143,9 @@ def brackets(
             yield probes[i], probes[after], value
 
 
-def _early_bracket(start: float, end: float, value: Value) -> tuple[float, float, Value] | None:
+def _early_bracket(
+    start: float, end: float, value: TimeFunction
+) -> tuple[float, float, TimeFunction] | None:
     """Return the interval before the first probe over which a guard falls that starts at zero and
     rises.
     """
@@ -157,7 +159,7 @@ def _early_bracket(start: float, end: float, value: Value) -> tuple[float, float
 
 
 def _polished(
-    guard: GuardValue, advance: Dense, step: tuple[float, float], guess: float
+    guard: StateFunction, advance: Dense, step: tuple[float, float], guess: float
 ) -> tuple[float, Array] | None:
     """Improve the time of a guard's zero with solutions that really end there.
 
