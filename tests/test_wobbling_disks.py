@@ -176,3 +176,24 @@ def test_a_thin_disk_under_viscous_friction_wobbles_on() -> None:
     run = tt.simulate(problem, 5.0, samples=2)
     assert run.attrs["outcome"] == "completed"
     assert 1e-3 < float(run["final_theta"]) < 0.3
+
+
+def test_a_ring_whose_slip_ends_with_its_rate_sticks() -> None:
+    """It swings to and fro near its face, nothing lost: slip that is rounding, as its rate is, ends."""
+    ring = tt.Ring(radius=0.01565891365093795, tube=0.00313178273018759)
+    problem = tt.Problem(
+        body=tt.Body(
+            mass=0.004468335593083395,
+            shape=ring,
+            I1=4.711383500378491e-07,
+            I3=6.734569111020975e-07,
+        ),
+        friction=tt.CoulombFriction(mu=0.387944595046632),
+        launch=tt.Launch(
+            tilt=0.056001556722740944, spin=-2.0664179971447316, azimuth=0.20951869617563634
+        ),
+        contact=tt.Contact(liftoff="fly", restitution=0.0),
+    )
+    run = tt.simulate(problem, 0.12, samples=3, phase_limit=200)
+    assert run.attrs["outcome"] == "completed"
+    assert float(run["energy_error"]) < 1e-12
