@@ -31,7 +31,8 @@ def compiled(motion, order=ORDER):
     room, out = jet.room(), np.zeros(jet.coefficients)
 
     def expand(state, parameters):
-        jet(np.array(state), np.array([*parameters, 0.0]), room, out)
+        arrays = np.array(state, dtype=float), np.array([*parameters, 0.0]), room, out
+        jet.expand(*[numbers.ctypes.data for numbers in arrays])
         parts = np.split(out, [motion.size * (order + 1)])
         return parts[0].reshape(-1, order + 1).copy(), parts[1].reshape(-1, order).copy()
 

@@ -116,16 +116,17 @@ class SlipOnset(TransientMode):
         """Return how long a step may be: a part of the time in which the velocity beside this one
         could end, at its present rate; infinity where nothing can.
         """
-        if self.with_rolling:
+        moves, slip = self.ending.moves, None
+        can_end = is_set_valued(self.top.friction) if moves else self.top.resists_rolling
+        if self.with_rolling or not can_end:
             return math.inf
         axis, momentum, velocity, _ = self._parts(numbers)
         point = ContactPoint.of(axis, momentum, self.top)
-        slip, can_end = None, self.top.resists_rolling
         beside: Slip = () if self.ending.held else point.turning[:2]
-        if self.ending.moves:
+        if moves:
             slip = slip_of(axis, momentum, (velocity[0], velocity[1]), self.top)
-            beside, can_end = slip, is_set_valued(self.top.friction)
-        if not can_end or not beside or size(beside) == 0.0:
+            beside = slip
+        if not beside or size(beside) == 0.0:
             return math.inf
         acceleration = self.ending.contact(point, direction, slip)[1]
         change = SlipComponent(not self.ending.slip).rate(acceleration, self.top)

@@ -144,7 +144,7 @@ class SlipStep:
     @property
     def length(self) -> float:
         """Length of the step."""
-        return row_of(self.results, self.layout.length)[0]
+        return float(self.results[self.layout.length * STAGES])
 
     @property
     def error(self) -> float:
@@ -166,13 +166,13 @@ class SlipStep:
     def last_direction(self) -> Slip:
         """Direction of the first velocity at the last point."""
         first, count = self.layout.size, self.motion.velocities[0][1]
-        return tuple([row_of(self.unknowns, first + i)[STAGES - 1] for i in range(count)])
+        return tuple([self.unknowns[(first + i + 1) * STAGES - 1] for i in range(count)])
 
     @property
     def changes(self) -> list[float]:
         """Changes of the numbers over the step."""
         size = self.layout.size
-        return [row_of(self.rows, row)[0] for row in range(PARTS * size, (PARTS + 1) * size)]
+        return [self.rows[row * STAGES] for row in range(PARTS * size, (PARTS + 1) * size)]
 
     @property
     def axes(self) -> list[list[float]]:
