@@ -179,7 +179,7 @@ def test_a_thin_disk_under_viscous_friction_wobbles_on() -> None:
 
 
 def test_a_ring_whose_slip_ends_with_its_rate_sticks() -> None:
-    """It swings to and fro near its face without loss: slip ends where it and its rate are rounding."""
+    """It swings near its face without loss: slip ends where it and its rate are rounding."""
     ring = tt.Ring(radius=0.01565891365093795, tube=0.00313178273018759)
     problem = tt.Problem(
         body=tt.Body(

@@ -136,8 +136,8 @@ def test_page_opens_with_what_is_wrong_and_what_is_right(fig13: Path) -> None:
     assert wrong < right < rest
     assert "0\\neq\\theta\\neq\\pi" in text[wrong:right]
     assert 'href="#claim-fig13-upright"' in text[right:rest]
-    assert "(what is left of it" not in text[wrong:right]
-    assert "(what is left of it" in text[rest:]
+    assert "(its residual for a top" not in text[wrong:right]
+    assert "(its residual for a top" in text[rest:]
 
 
 def test_claim_and_figure_and_experiment_link_to_each_other(fig13: Path) -> None:
