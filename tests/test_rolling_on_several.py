@@ -309,7 +309,7 @@ def test_time_stepping_converges_to_our_runs_at_first_order(seed: int, duration:
     spheres = [(shape.surface.radius, shape.surface.center) for shape in body.shapes]
     numbers = (body.mass, body.I1, body.I3, problem.gravity), spheres, problem.friction.mu  # type: ignore[attr-defined]
     errors = []
-    for step in (4e-4, 2e-4):
+    for step in (2e-4, 1e-4):
         other = moreau.OnSpheres(
             *numbers, problem.rolling_resistance, rotation, turning, np.array(start.velocity)
         )
@@ -318,7 +318,7 @@ def test_time_stepping_converges_to_our_runs_at_first_order(seed: int, duration:
         momentum = other.rotation.apply(other.inertia @ other.turning)
         errors.append(momentum - run["angular_momentum"].values[-1])
     sizes = [np.linalg.norm(error) / np.linalg.norm(start.momentum) for error in errors]
-    assert sizes[0] < 1.2e-2
+    assert sizes[0] < 3e-3
     assert sizes[0] / sizes[1] == pytest.approx(2.0, rel=0.1)
 
 
