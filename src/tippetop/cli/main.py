@@ -23,7 +23,7 @@ def main() -> None:
     if sys.argv[1:2] != ["sweep"]:
         for name in UNUSED:
             sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # as if it were not installed
-    from tippetop.cli.commands import run  # noqa: PLC0415 - slow to import, with Ctrl-C handled meanwhile
+    from tippetop.cli.commands import run  # noqa: PLC0415 - slow; Ctrl-C is heard meanwhile
 
     try:
         run()

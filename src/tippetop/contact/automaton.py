@@ -38,7 +38,7 @@ from tippetop.contact.mode import (
 from tippetop.contact.settling_flat import FLAT, SettlingFlat, settling_flat
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.contact.slip_end_motion import JAMMED, LANDED, OVERTAKEN, REOPENING
-from tippetop.contact.slip_onset import BEGUN, ENDED, UNSEEN, SlipOnset
+from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
 from tippetop.contact.slip_onset_on_two import (
     SlipOnsetOnTwo,
 )
@@ -238,7 +238,7 @@ class Automaton:
     def _after_two(self, mode: TwoContactMode, end: ModeEnd, time: float) -> Transition:
         """Return what follows on two contacts."""
         state, rolls = end.state, mode.rolls
-        if isinstance(mode, SlipOnsetOnTwo) and end.cause == BEGUN:
+        if isinstance(mode, SlipOnsetOnTwo) and end.cause == ONSET_OVER:
             return Transition((), on_two(state, mode.tops, rolls), state)
         if end.cause == OPENING:
             opens, stays = (mode.tops, mode.tops[::-1])[end.contact]

@@ -28,8 +28,8 @@ planar motion that velocity passes through zero, where friction jumps.
 FIRST_SPEED = 1e-100
 """Speed of the first instant, in natural units, which gives a velocity of zero its direction."""
 
-BEGUN, ENDED = "begun", "slip ended"
-"""Causes of the end of such a mode: what begins is followed like anything else from here on, or
+ONSET_OVER, ENDED = "begun", "slip ended"
+"""Causes of the end of such a mode: its onset is over, and an ordinary mode follows the motion; or
 slip has ended.
 """
 
@@ -108,7 +108,7 @@ class SlipOnset(TransientMode):
         last = mode.state([*phase.last[: len(numbers)], 0.0, 0.0] if phase.ended else phase.last)
         first = [FIRST_SPEED * number for direction in directions for number in direction]
         solution = solution_of(phase, [*numbers, *first], (time, end))
-        cause = COMPLETED if solution.end >= end else BEGUN
+        cause = COMPLETED if solution.end >= end else ONSET_OVER
         how = ModeEnd(ENDED if phase.ended else cause, last)
         yield Segment(mode, solution, last, how, len(phase.knots) - 1, phase.sweeps)
 

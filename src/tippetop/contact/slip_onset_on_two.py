@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from tippetop.contact.contact_mode import split
 from tippetop.contact.mode import COMPLETED, ModeEnd, Segment
-from tippetop.contact.slip_onset import BEGUN, FIRST_SPEED, UNSEEN, failed_segment, solution_of
+from tippetop.contact.slip_onset import FIRST_SPEED, ONSET_OVER, UNSEEN, failed_segment, solution_of
 from tippetop.contact.slip_phase import follow_slip
 from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators.base import Integrator
@@ -92,7 +92,7 @@ class SlipOnsetOnTwo(TwoContactMode):
         start = [*self.begin[:6], *first, *self.begin[6 + len(first) :]]
         solution = solution_of(phase, start, (time, end))
         last = self.state(phase.last)
-        how = ModeEnd(COMPLETED if solution.end >= end else BEGUN, last)
+        how = ModeEnd(COMPLETED if solution.end >= end else ONSET_OVER, last)
         yield Segment(self, solution, last, how, len(phase.knots) - 1, phase.sweeps)
 
 

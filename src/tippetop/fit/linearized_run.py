@@ -31,7 +31,7 @@ from tippetop.contact.mode import (
     Segment,
     Transition,
 )
-from tippetop.contact.slip_onset import BEGUN
+from tippetop.contact.slip_onset import ONSET_OVER
 from tippetop.contact.trajectory import Trajectory
 from tippetop.fit.dual import duals, parts_of
 from tippetop.fit.problem_numbers import Direction, StartNumbers
@@ -494,13 +494,13 @@ class LinearizedRun:
         time, transition = start
         mode: Any = transition.then
         # The end of what begins is no event: it is followed for as long as in the run.
-        begins = visit.end is not None and visit.end.cause == BEGUN
+        begins = visit.end is not None and visit.end.cause == ONSET_OVER
         until = min(time + (visit.end_time - visit.time), end) if begins else end
         some = list(mode.segments(time, transition.state, until, self.integrator))
         if not begins:
             return some, some[-1].mode_end
         some += self._caught_up(mode, automaton, some[-1], until)
-        return some, ModeEnd(BEGUN, some[-1].end_state)
+        return some, ModeEnd(ONSET_OVER, some[-1].end_state)
 
     def _beside(self, direction: int, change: float, *, at_launch: bool) -> StartNumbers:
         """Return the numbers of a run beside the run, which are linear in the change.
@@ -531,7 +531,7 @@ class LinearizedRun:
         assert last.mode_end is not None
         if last.mode_end.cause == COMPLETED:
             return []
-        if last.mode_end.cause != BEGUN:
+        if last.mode_end.cause != ONSET_OVER:
             raise Differs(OTHER_EVENTS)
         onwards = automaton.follow(mode, last.mode_end, last.end_time, self.integrator)
         mode_after: Any = onwards.then
