@@ -7,7 +7,7 @@ import pytest
 
 import tippetop as tt
 from campaigns import seeds
-from tippetop.contact.choice import automaton_of
+from tippetop.contact.natural_launch import automaton_of
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.flight.free_motion import gap, gap_rate

@@ -12,7 +12,7 @@ import xarray as xr
 import tippetop as tt
 from campaigns import among
 from lying import lying
-from tippetop.contact.choice import automaton_of
+from tippetop.contact.natural_launch import automaton_of
 from tippetop.contact.slip_onset_on_two import SlipOnsetOnTwo
 from tippetop.contact.trajectory import Trajectory
 from tippetop.contact.two_contact_mode import TwoContactMode

@@ -8,24 +8,24 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from tippetop import __version__
-from tippetop.contact.choice import automaton_of
 from tippetop.contact.mode import Event, Outcome, Segment, ambiguity_of
+from tippetop.contact.natural_launch import NaturalLaunch
 from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
 from tippetop.graph.own_parts import require_recordable
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.integrators.base import NOT_FINITE
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.results.dataset import assemble
+from tippetop.results.derived import variables_of
 from tippetop.results.event_functions import EventSearch, FunctionEvent, Value
 from tippetop.results.metrics import metrics
 from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import RunMetrics
-from tippetop.results.run_solution import NaturalLaunch, RunSolution
+from tippetop.results.run_solution import RunSolution
 from tippetop.results.sample_times import sample_times
 from tippetop.results.samples import event_in_si
 from tippetop.support.errors import InvalidInput, require
@@ -163,24 +163,20 @@ def simulate(
     require_problem(problem)
     require_callback("callback", callback)
     require("dense", dense, bool, "True or False")
-    units = natural_units(problem.top)
+    require_recordable(problem.top)
+    start = NaturalLaunch.of(problem)
+    units = start.units
     duration = number_in("duration", duration, "s")
     require_limits(duration, units.time, phase_limit, step_limit)
     duration = float(duration)
     grid = sample_times(duration, samples, times)
-    top = natural(problem.top)
     search = EventSearch(events, until, units)
-    require_recordable(problem.top)
     method = integrator_of(integrator, tolerance, step, units)
     warn_if_implausible(problem)
-    state = natural_state(problem.start(), units)
-    automaton = automaton_of(problem.contact, top, units)
-    launch = automaton.launch(state)
-    trajectory = Trajectory(
-        automaton, launch, duration / units.time, method, phase_limit, step_limit
-    )
-    start = NaturalLaunch(top, units, state, problem.launch.azimuth, launch.energy_lost)
-    recorder, run_metrics = start.recorder(grid / units.time), RunMetrics(top, state)
+    end = duration / units.time
+    trajectory = Trajectory(start.automaton, start.first, end, method, phase_limit, step_limit)
+    recorder = Recorder.of(start, grid / units.time)
+    run_metrics = RunMetrics(start.top, start.state)
     segments = list[Segment]()
     for block in search.blocks_of(trajectory):
         recorder.take(block)
@@ -266,7 +262,7 @@ def read_off(
     times = np.append(grid, end_time)[: len(sampled.times)]
     if early:
         times[-1] = end_time
-    variables, modes = start.variables(sampled), (sampled.mode, recorder.modes)
+    variables, modes = variables_of(start, sampled), (sampled.mode, recorder.modes)
     return assemble(times, variables, modes, scalars, lists, attributes or {})
 
 

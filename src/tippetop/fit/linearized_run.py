@@ -19,7 +19,6 @@ import xarray as xr
 
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.block import Block
-from tippetop.contact.choice import automaton_of
 from tippetop.contact.contact_mode import StatedMode
 from tippetop.contact.mode import (
     COMPLETED,
@@ -31,6 +30,7 @@ from tippetop.contact.mode import (
     Segment,
     Transition,
 )
+from tippetop.contact.natural_launch import NaturalLaunch, automaton_of
 from tippetop.contact.slip_onset import ONSET_OVER
 from tippetop.contact.trajectory import Trajectory
 from tippetop.fit.dual import duals, parts_of
@@ -44,8 +44,8 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import SAMPLED
+from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import RunMetrics
-from tippetop.results.run_solution import NaturalLaunch
 from tippetop.run import read_off
 from tippetop.support.errors import InvalidInput
 
@@ -600,12 +600,10 @@ class LinearizedRun:
             time, state = segment.end_time, segment.end_state
         if launch is None:
             return self.read()
-        trajectory = Trajectory(self._automaton(numbers), launch, end, self.integrator)
+        start = self._launch(numbers, launch)
+        trajectory = Trajectory(start.automaton, launch, end, self.integrator)
         trajectory.end_at(time, state, self.outcome, self.trajectory.detail)
         trajectory.events = events
-        start = NaturalLaunch(
-            numbers.top_of(self.kind), units, numbers.start, numbers.azimuth, launch.energy_lost
-        )
         problem = self._problem_beside(direction, change) or self.problem
         run = self._dataset(problem, start, segments, trajectory)
         return with_event_states(run, states, units)
@@ -613,19 +611,23 @@ class LinearizedRun:
     @np.errstate(all="ignore")
     def read(self) -> xr.Dataset:
         """Return the dataset of the run itself."""
-        numbers = self.numbers
-        start = NaturalLaunch(
-            numbers.top_of(self.kind),
-            numbers.natural_units,
-            numbers.start,
-            numbers.azimuth,
-            self.launch.energy_lost,
-        )
+        start = self._launch(self.numbers, self.launch)
         segments = [segment for visit in self.visits for segment in visit.segments]
         run = self._dataset(self.problem, start, segments, self.trajectory)
         transitions = [self.launch, *(v.transition for v in self.visits if v.transition)]
         states = [one.state for one in transitions for _ in one.events]
         return with_event_states(run, states, start.units)
+
+    def _launch(self, numbers: StartNumbers, first: Transition) -> NaturalLaunch:
+        """Return the launch of the run, or of one beside it."""
+        return NaturalLaunch(
+            numbers.natural_units,
+            numbers.top_of(self.kind),
+            numbers.start,
+            numbers.azimuth,
+            self._automaton(numbers),
+            first,
+        )
 
     def _dataset(
         self,
@@ -635,7 +637,7 @@ class LinearizedRun:
         trajectory: Trajectory,
     ) -> xr.Dataset:
         """Return the dataset of segments, of the run or beside it."""
-        recorder = start.recorder(self.grid / start.units.time)
+        recorder = Recorder.of(start, self.grid / start.units.time)
         run_metrics = RunMetrics(start.top, start.state)
         block = Block(segments)
         recorder.take(block)

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tippetop.contact.natural_launch import NaturalLaunch
 from tippetop.integrators.base import Array
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Kind, Top, natural_state, natural_units
+from tippetop.mechanics.top import Kind, Top, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.problem.problem import Problem, get
 from tippetop.support.errors import InvalidInput, is_number
@@ -50,14 +51,12 @@ class StartNumbers:
     @classmethod
     def of(cls, problem: Problem) -> "StartNumbers":
         """Return the numbers of a problem."""
-        top = problem.top
-        units = natural_units(top)
-        state = natural_state(problem.start(), units)
+        launch = NaturalLaunch.of(problem)
         return cls(
-            np.array(top.numbers, dtype=float),
-            np.array(state.pack(), dtype=float),
-            np.array(units, dtype=float),
-            float(problem.launch.azimuth),
+            np.array(launch.top.numbers, dtype=float),
+            np.array(launch.state.pack(), dtype=float),
+            np.array(launch.units, dtype=float),
+            launch.azimuth,
             float(problem.contact.restitution),
         )
 

@@ -21,7 +21,7 @@ from tippetop.translate.program import Program
 from tippetop.translate.refusal import Untranslatable
 
 ROOTS = (
-    "tippetop.contact.choice",
+    "tippetop.contact.natural_launch",
     "tippetop.contact.trajectory",
     "tippetop.problem.problem",
     "tippetop.problem.plausibility",

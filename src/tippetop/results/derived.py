@@ -1,13 +1,24 @@
-"""Derived variables over time: parts of the energy, and vectors in the body frame."""
+"""All variables over time, and those that derive from others: parts of the energy, and vectors in
+the body frame.
+"""
 
 import numpy as np
 
+from tippetop.contact.natural_launch import NaturalLaunch
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Vector, cross, dot, scale
-from tippetop.results.samples import Samples
+from tippetop.results.samples import Samples, continuous, observe
+
+
+def variables_of(launch: NaturalLaunch, samples: Samples) -> dict[str, Array]:
+    """Return every variable over time in SI, by name, from the samples of a launch."""
+    variables = observe(samples, launch.top, launch.units)
+    orientation = continuous(variables["orientation"])
+    variables["orientation"] = orientation
+    return variables | derive(samples, orientation, launch.top, launch.units)
 
 
 def derive(samples: Samples, orientation: Array, top: Top, units: Units) -> dict[str, Array]:

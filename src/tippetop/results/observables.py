@@ -1,12 +1,14 @@
 """Recording of a run: samples, integrals along it, and the check of conserved quantities."""
 
+from typing import Self
+
 import numpy as np
 
 from tippetop.contact.block import NODES, WEIGHTS, Block
-from tippetop.contact.choice import initial_mode
 from tippetop.contact.contact_mode import SLIPS
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Mode, Outcome
+from tippetop.contact.natural_launch import NaturalLaunch, initial_mode
 from tippetop.contact.readings import TOLD, Instants, instants, read
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.base import Array
@@ -66,6 +68,11 @@ class Recorder:
         self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._resisted)
         self._struck = lost
         self.monitor = Monitor(top, start)
+
+    @classmethod
+    def of(cls, launch: NaturalLaunch, times: Array) -> Self:
+        """Return the recorder of a launch; times increase, in natural units, shape (k,)."""
+        return cls(launch.top, launch.state, launch.azimuth, times, launch.first.energy_lost)
 
     def take(self, block: Block) -> None:
         """Take the samples in a block."""

@@ -1,56 +1,28 @@
 """Dense solution of a run: its state, and all its variables, at any time."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from tippetop.contact.block import Block
-from tippetop.contact.choice import initial_mode
 from tippetop.contact.mode import Segment
+from tippetop.contact.natural_launch import NaturalLaunch, initial_mode
 from tippetop.contact.readings import Instants, instants, read
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import parts_of
 from tippetop.mechanics.motion import angular_velocity
-from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import outer_height
-from tippetop.mechanics.top import Top
-from tippetop.mechanics.units import Units
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import LISTED, METRICS, MONITORS
 from tippetop.results.dataset import assemble
-from tippetop.results.derived import derive
+from tippetop.results.derived import variables_of
 from tippetop.results.motion_state import MotionState, states_in
 from tippetop.results.observables import Recorder
 from tippetop.results.sample_times import sample_times
-from tippetop.results.samples import Samples, continuous, observe
 from tippetop.support.errors import InvalidInput
-
-
-class NaturalLaunch(NamedTuple):
-    """Launch of a run in natural units, with these units."""
-
-    top: Top
-    units: Units
-    state: State
-    azimuth: float
-    """Direction into which the axis leans, rad."""
-    lost: float
-    """Energy lost in an impact at launch."""
-
-    def recorder(self, times: Array) -> Recorder:
-        """Return a recorder of samples at increasing times of shape (k,)."""
-        return Recorder(self.top, self.state, self.azimuth, times, self.lost)
-
-    def variables(self, samples: Samples) -> dict[str, Array]:
-        """Return every variable over time in SI, by name."""
-        variables = observe(samples, self.top, self.units)
-        orientation = continuous(variables["orientation"])
-        variables["orientation"] = orientation
-        return variables | derive(samples, orientation, self.top, self.units)
 
 
 class RunSolution:
@@ -164,13 +136,13 @@ class RunSolution:
         seconds = sample_times(self.end_time, 2, np.atleast_1d(times))
         begin, block = self._begin, self._block
         end = block.ends[-1] if len(block.starts) else 0.0
-        recorder = begin.recorder(np.minimum(seconds / begin.units.time, end))
+        recorder = Recorder.of(begin, np.minimum(seconds / begin.units.time, end))
         recorder.take(block)
         samples = recorder.finish(end, begin.state, early=False)
         run = self.run
         return assemble(
             seconds,
-            begin.variables(samples),
+            variables_of(begin, samples),
             (samples.mode, recorder.modes),
             {name: run[name].values for name in (*METRICS, *MONITORS)},
             {name: run[name].values for name in LISTED},

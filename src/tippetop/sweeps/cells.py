@@ -13,7 +13,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.contact.choice import automaton_of
+from tippetop.contact.natural_launch import automaton_of
 from tippetop.contact.trajectory import LONGEST_RUN
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, contact

@@ -8,12 +8,13 @@ import numpy as np
 import xarray as xr
 
 from tippetop.contact.contact_mode import sliding_motion
+from tippetop.contact.natural_launch import NaturalLaunch
 from tippetop.integrators.classical import classical_step
 from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.contacts.forces import velocity_without_slip
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.mechanics.top import natural, natural_units
 from tippetop.problem import presets
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.frictions import CoulombFriction, RegularizedCoulombFriction
@@ -124,12 +125,13 @@ def stepped(problem: Problem, step: float, duration: float) -> SlidingState:
     The method goes on sliding when slip ends. The state is in natural units, with numbers of shape
     (steps + 1,).
     """
-    units, top = natural_units(problem.top), natural(problem.top)
-    rates = RightHandSide(replace(sliding_motion(top.kind, False), guards=()), top.numbers)
-    y = np.array(along_table(natural_state(problem.start(), units)).pack(), dtype=float)
+    launch = NaturalLaunch.of(problem)
+    motion = replace(sliding_motion(launch.top.kind, False), guards=())
+    rates = RightHandSide(motion, launch.top.numbers)
+    y = np.array(along_table(launch.state).pack(), dtype=float)
     rows = [y]
     for _ in range(round(duration / step)):
-        y = classical_step(rates, y, step / units.time)
+        y = classical_step(rates, y, step / launch.units.time)
         rows.append(y)
     return SlidingState.unpack(np.array(rows).T)
 

@@ -1,16 +1,47 @@
-"""The automaton of a problem, and the mode that is reported of a launch that ends as it begins."""
+"""A launch in natural units, with the rules of its contact: what every run starts from.
+
+Problems come in SI units. They enter natural units here, and results return to SI in
+`tippetop.results`.
+"""
+
+from typing import NamedTuple, Self
 
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.flight import Flight
-from tippetop.contact.mode import Mode
+from tippetop.contact.mode import Mode, Transition
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import lowest_surface
-from tippetop.mechanics.top import Top
+from tippetop.mechanics.top import Top, natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.contact_rules import Contact
+from tippetop.problem.problem import Problem
+
+
+# translate: skip
+class NaturalLaunch(NamedTuple):
+    """Launch of a run in natural units, with these units."""
+
+    units: Units
+    top: Top
+    state: State
+    azimuth: float
+    """Direction into which the axis leans, rad."""
+    automaton: Automaton
+    """The rules of what follows each mode."""
+    first: Transition
+    """What follows at once: the first mode, perhaps after an impact."""
+
+    @classmethod
+    def of(cls, problem: Problem) -> Self:
+        """Return the launch of a problem."""
+        units = natural_units(problem.top)
+        top, state = natural(problem.top), natural_state(problem.start(), units)
+        automaton = automaton_of(problem.contact, top, units)
+        azimuth = float(problem.launch.azimuth)
+        return cls(units, top, state, azimuth, automaton, automaton.launch(state))
 
 
 # translate: skip
