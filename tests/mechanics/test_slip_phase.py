@@ -9,15 +9,15 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import launched
-from tippetop.contact import slip_step
+from tippetop.contact import slip_phase, slip_step
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import STICKS
 from tippetop.contact.mode import EventKind
-from tippetop.contact.slip_onset import SlipOnset
-from tippetop.contact.slip_phase import change_over, dips, parts_left
+from tippetop.contact.slip_onset import ENDED, SlipOnset
+from tippetop.contact.slip_phase import LEAST, change_over, dips, parts_left
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import iteration, make_integrator
-from tippetop.mechanics.contacts.gauss_points import STAGES, gauss_points
+from tippetop.mechanics.contacts.gauss_points import PARTS, STAGES, gauss_points
 from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.laws.coulomb import CoulombLaw
 from tippetop.mechanics.motion import on_table, sliding_rates
@@ -87,6 +87,19 @@ def test_a_first_step_and_the_clock_tell_the_same_of_it(name, monkeypatch):
     others, seconds = told(followed(name, 30.0)[1])
     assert kinds == others
     assert times == pytest.approx(seconds, abs=1e-11)
+
+
+def test_slip_is_followed_to_its_end_however_near_a_step_ends_before_it(monkeypatch):
+    shortest = math.inf
+    for length in np.linspace(0.4, 0.7, 31):
+        monkeypatch.setattr(slip_phase, "FIRST", length)
+        segments, _ = followed("sphere", 10.0)
+        phases = [one for one in segments if isinstance(one.mode, SlipOnset)]
+        assert len(phases) > 2
+        assert {one.mode_end.cause for one in phases[:-1]} == {ENDED}
+        for knots in [one.solution.knots for one in phases[:-1]]:
+            shortest = min(shortest, knots[-1] - knots[-1 - PARTS])
+    assert shortest < LEAST, "the last step is a short one at times"
 
 
 def test_a_share_of_a_piece_is_the_same_polynomial():

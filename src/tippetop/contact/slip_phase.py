@@ -15,11 +15,12 @@ from tippetop.mechanics.contacts.slip_variables import APART, inner, scaled, siz
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.top import Top
 
-FIRST, LEAST, LEAST_PART, LEAST_FIRST = 0.5, 0.005, 0.05, 1e-13
-"""Length of the first step that is tried, in natural units of time; the shortest one, below which
-slip does not follow what drives it and other methods are quicker, and the same over the length of
-the first one, where all of the motion is fast; and the shortest first one, below which rounding of
-the numbers hides what begins.
+FIRST, LEAST, LEAST_PART, LEAST_FIRST = 0.7, 0.005, 0.05, 1e-13
+"""Length of the first step that is tried, in natural units of time, about as long as the error
+allows where slip recurs: a shorter one costs steps, a longer one fails; the shortest one, below
+which slip does not follow what drives it and other methods are quicker, and the same over the
+length of the first one, where all of the motion is fast; and the shortest one at the beginning or
+the end of slip, below which rounding of the numbers hides what begins.
 """
 
 ACCURACY = 1e-22
@@ -114,12 +115,8 @@ def follow_slip(
     def velocity(numbers: Sequence[float]) -> Slip:
         return tuple(numbers[first : first + count])
 
-    least = LEAST_FIRST
-    while (
-        knots[-1] < longest
-        and not ended
-        and (not rows or (to_end and length >= least and size(velocity(now)) < APART))
-    ):
+    least, goes_on = LEAST_FIRST, longest > 0.0
+    while goes_on:
         begin, finished, before = knots[-1], len(knots), now
         length = min(length, longest - begin)
         if longest_step is not None:
@@ -147,7 +144,7 @@ def follow_slip(
             continue
         if not rows:
             least = min(LEAST, LEAST_PART * length)
-        ended = not lasts
+        ended, goes_on = not lasts, False
         pieces = step.pieces(part)
         ends = [min(part, number + 1.0) / PARTS for number in range(PARTS) if part > number]
         knots += [begin + length * end for end in ends]
@@ -163,8 +160,13 @@ def follow_slip(
             if to_end:
                 speed = step.speed(PARTS - 1, 0.0, last)
                 speed[0] = inner(velocity(after), last) - sum(speed)
-                longer, remaining_parts = min(factor, LONGER), parts_left(speed)
-                length = min(length * longer, BEYOND * length / PARTS * remaining_parts)
+                remaining = length / PARTS * parts_left(speed)
+                allowed = length * min(factor, LONGER)
+                # The end of slip may be nearer than the shortest step that the error asks for.
+                length = min(allowed, BEYOND * remaining)
+                slow = size(velocity(now)) < APART
+                goes_on = slow and allowed >= least and length >= LEAST_FIRST
+                goes_on = goes_on and knots[-1] < longest
         rows.append(pieces)
     return SlipPhase(knots, rows, now, ended, step.sweeps)
 

@@ -4,7 +4,7 @@ import { DenseSolution, earliest } from "./dense.js";
 import * as m from "./mechanics.js";
 import { inUnits } from "./part.js";
 import { plain } from "./runtime.js";
-import { CATALOGUE, GAUSS } from "./tables.js";
+import { CATALOGUE, FORCE_DEGREE, GAUSS } from "./tables.js";
 
 // A search for a root or a least value in a step first looks at the ends of this many intervals.
 const PROBES_PER_STEP = 16;
@@ -14,10 +14,6 @@ const PROBES = Array.from({ length: PROBES_PER_STEP + 1 }, (_, probe) => probe /
 const BETWEEN_PROBES = 0.1;
 // The same of the normal force between and beyond the nodes of Gauss's rule, which are fewer.
 const BETWEEN_NODES = 0.5;
-
-// At the very ends of a step slip may be zero, where the direction of friction is undefined: parts of a step
-// that are read keep this distance from 0 and 1.
-const END_DISTANCE = 1e-8;
 
 // Numbers of a solution: n_z, and in flight the height of the centre of mass.
 const AXIS_Z = 2;
@@ -161,15 +157,17 @@ class Run {
   includeForce(segment, step) {
     const { lowestForce, highestForce } = this;
     const bound = lowestForce - BETWEEN_NODES * (highestForce - lowestForce);
-    this.leastForce.include(lowestForce, bound, segment, step, FORCE);
+    this.leastForce.include(lowestForce, bound, segment.solution, step, () => segment.force(step));
   }
 
   /** Take in the range of n_z in a step, and when it first falls to zero. */
   includeAxis(solution, step) {
     const start = solution.value(step, AXIS_Z, 0);
     const [low, high] = solution.bounds(step, AXIS_Z);
-    this.leastAxisZ.include(start, low, solution, step, AXIS_Z);
-    this.mostAxisZ.include(-start, -high, solution, step, AXIS_Z, -1);
+    this.leastAxisZ.include(start, low, solution, step, () => reading(solution, step, AXIS_Z));
+    this.mostAxisZ.include(-start, -high, solution, step, () =>
+      reading(solution, step, AXIS_Z, -1),
+    );
     if (low <= 0 && high >= 0 && Number.isNaN(this.firstHorizontal)) {
       const part = firstFall(reading(solution, step, AXIS_Z), true);
       this.firstHorizontal = solution.time(step, part);
@@ -180,7 +178,9 @@ class Run {
   includeHeight(solution, step) {
     const start = solution.value(step, HEIGHT, 0);
     const [, high] = solution.bounds(step, HEIGHT);
-    this.mostHeight.include(-start, -high, solution, step, HEIGHT, -1);
+    this.mostHeight.include(-start, -high, solution, step, () =>
+      reading(solution, step, HEIGHT, -1),
+    );
   }
 
   /** Put together what is asked of a run that has ended, in SI. */
@@ -367,10 +367,13 @@ class SegmentReader {
     return this.readRates(this.numbersAt(step, part), pole);
   }
 
-  /** One of `Rates` at a part of a step, as `DenseSolution.value` is one of its numbers. */
-  value(step, number, part) {
-    const inside = Math.min(Math.max(part, END_DISTANCE), 1 - END_DISTANCE);
-    return this.ratesAt(step, inside, 1)[number];
+  /**
+   * The normal force in a step, as a polynomial of the part that has passed. The force is not read at the very
+   * ends: where slip is zero but for rounding, the direction of friction is undefined.
+   */
+  force(step) {
+    const force = (part) => [this.ratesAt(step, part, 1)[FORCE]];
+    return reading(DenseSolution.fitted(force, [0, 1], FORCE_DEGREE), 0, 0);
   }
 
   /** `Instants` at a part of a step. */
@@ -393,21 +396,22 @@ class LeastValue {
     this.value = least;
   }
 
-  /** Take in a value in a step, and the step itself if the quantity may be less there, down to a bound. */
-  include(value, bound, source, step, number, sign) {
+  /**
+   * Take in a value in a step of a source, and the step itself if the quantity may be less there, down to a bound;
+   * `makeValues` makes the quantity as a function of the part that has passed.
+   */
+  include(value, bound, source, step, makeValues) {
     this.includeValue(value, { source, step, part: 0 });
-    if (bound < this.value) {
-      this.candidates.push({ bound, source, step, values: reading(source, step, number, sign) });
-    }
+    if (bound < this.value) this.candidates.push({ bound, source, step, makeValues });
   }
 
   /** The least value, searched for in the steps where it may be. */
   refined() {
     const candidates = this.candidates.filter(({ bound }) => bound < this.value);
     candidates.sort((a, b) => a.bound - b.bound);
-    for (const { bound, source, step, values } of candidates) {
+    for (const { bound, source, step, makeValues } of candidates) {
       if (bound >= this.value) break;
-      const { part, value } = leastInStep(values, this.value);
+      const { part, value } = leastInStep(makeValues(), this.value);
       this.includeValue(value, { source, step, part });
     }
     return this.value;
