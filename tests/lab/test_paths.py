@@ -59,9 +59,13 @@ def test_a_pupil_guesses_watches_and_reads(lab: Lab, screen: str, language: str)
     visitor.wait("() => tippetopLab.player.playing && tippetopLab.player.scene.ghosts.length === 1")
     assert is_seen(visitor, ".tt-canvas"), "the stage is in view when the top spins"
     assert not page.locator(".tt-words").is_visible(), "nothing is told before it is seen"
+    assert page.locator(".question label.chosen .yours").inner_text() == words["yours"]
     look(visitor)
     page.get_by_role("button", name=str(words["tell"]), exact=True).click()
     page.get_by_text(str(words["right"]), exact=True).wait_for()
+    asked = page.locator(".answer .asked")
+    assert steps[5]["answers"][2] in asked.text_content()
+    assert asked.is_visible() == ("phone" in screen), "what was asked is told again on phones"
     assert page.locator(".tt-words strong").inner_text() == steps[5]["happened"]
     assert "155 rad/s" in page.locator(".tt-facts").inner_text()
     look(visitor)

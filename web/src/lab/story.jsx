@@ -109,6 +109,16 @@ function Watching({ onTell }) {
   );
 }
 
+// The question and one's own guess again: on a small screen the form is out of sight by now.
+function Asked({ words, guess }) {
+  return (
+    <p class="asked">
+      {words.question}{" "}
+      {guess.answer !== null && t("story.guessed", { answer: words.answers[guess.answer] })}
+    </p>
+  );
+}
+
 function Question({ words, guess, onGuess }) {
   const answer = (event) => {
     event.preventDefault();
@@ -120,7 +130,11 @@ function Question({ words, guess, onGuess }) {
       <fieldset disabled={Boolean(guess)}>
         <legend>{words.question}</legend>
         {words.answers.map((text, k) => (
-          <label class={guess?.seen && k === words.right ? "right" : ""}>
+          <label
+            class={[guess?.seen && k === words.right && "right", guess?.answer === k && "chosen"]
+              .filter(Boolean)
+              .join(" ")}
+          >
             <input
               type="radio"
               name="guess"
@@ -129,6 +143,7 @@ function Question({ words, guess, onGuess }) {
               checked={guess?.answer === k || undefined}
             />{" "}
             {text}
+            {guess?.answer === k && <span class="yours">{t("story.yours")}</span>}
           </label>
         ))}
       </fieldset>
@@ -152,6 +167,7 @@ function Why({ lab, number, words, guess }) {
   const element = useFocus();
   return (
     <div class="answer" ref={element} tabIndex={-1} role="status">
+      <Asked words={words} guess={guess} />
       {guess.answer !== null && (
         <p class={`verdict ${guess.answer === words.right ? "right" : ""}`}>
           {t(guess.answer === words.right ? "story.right" : "story.wrong")}

@@ -68,7 +68,7 @@ function Drawing({ tilt, momentum, later, torque, onLean }) {
     event.preventDefault();
   };
   return (
-    <svg viewBox="0 0 300 244" role="group" aria-label={t("torque.label")}>
+    <svg viewBox="-34 0 334 244" role="group" aria-label={t("torque.label")}>
       <defs>
         <marker
           id="head"
