@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tippetop.contact.contact_mode import ContactMode, sliding_motion
+from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_motion
 from tippetop.contact.slip_end_motion import slip_end_motion
-from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.slip_end import SlipComponent
@@ -79,7 +78,7 @@ def sliding_motions(top):
             }
         for way in (0.0, -1.0)[: 1 + rolls]:
             for told, sticks in statuses.items():
-                mode = TwoContactMode(top, other, sticks, way, sense=-1.0)
+                mode = mode_on_two((top, other), way, sticks, sense=-1.0)
                 yield f"two {way}{told}", mode.motion, mode.parameters
 
 
@@ -87,7 +86,7 @@ def sticking_motions(top):
     """Every motion of a top in which it sticks."""
     kind, numbers, rolls = top.kind, top.numbers, top.resists_rolling
     for held in (False, True)[: 1 + rolls]:
-        mode = ContactMode(top, sticks=True, holds_rolling=held)
+        mode = ContactMode(top, sticks=(True,), holds_rolling=held)
         yield mode.status, mode.motion, numbers
     if rolls:
         yield (

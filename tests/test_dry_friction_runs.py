@@ -11,7 +11,8 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.contact_mode import STOPPING, ContactMode
+from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.guards import STOPPING
 from tippetop.contact.mode import ModeEnd
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.integrators import make_integrator

@@ -24,8 +24,8 @@ from test_sticking_on_two import (
 )
 from tippetop.contact.two_closed import rolling_of
 from tippetop.mechanics.contacts import pair_resolver
-from tippetop.mechanics.contacts.pair import ContactPair
-from tippetop.mechanics.contacts.pair_motion import pair_motion
+from tippetop.mechanics.contacts.contact_forces import forces_on_two
+from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points
 from tippetop.mechanics.contacts.pair_resolver import moments_hold, patches_letting_go
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw
 from tippetop.mechanics.top import natural, natural_state, natural_units
@@ -225,11 +225,11 @@ def test_patches_slip_when_rolling_has_become_too_slow_for_what_holds_them() -> 
     assert float(run["energy_error"]) < 1e-11
 
 
-def resting_pair(problem: tt.Problem) -> tuple[ContactPair, float]:
+def resting_pair(problem: tt.Problem) -> tuple[tuple[ContactPoint, ...], float]:
     """Both contacts at launch, in natural units, and which way the body rolls."""
     top = natural(problem.top)
     state = natural_state(problem.start(), natural_units(problem.top))
-    return ContactPair.of(state.axis, state.momentum, top.each), rolling_of(state, top)
+    return contact_points(state.axis, state.momentum, top.each), rolling_of(state, top)
 
 
 @pytest.mark.parametrize(
@@ -241,7 +241,7 @@ def test_what_moments_of_drilling_can_hold_follows_from_virtual_power(
     """Against the least of the same function, found in other coordinates by another method."""
     problem = rolling(turning, arm)
     pair, rolls = resting_pair(problem)
-    held = pair_motion(pair, (None, None), rolls)
+    held = forces_on_two(pair, (None, None), rolls)
     assert moments_hold(held) is (spared(problem, turning) > 0.0)
 
 

@@ -12,13 +12,13 @@ import tippetop as tt
 from campaigns import among
 from lying import R, lying, resisted
 from tippetop.contact import contact_mode as closed
-from tippetop.contact import touching, two_closed
-from tippetop.contact import two_contact_mode as double
+from tippetop.contact import guards, touching, two_closed
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
-from tippetop.mechanics.contacts.pair import ContactPair, turning_along
-from tippetop.mechanics.contacts.pair_motion import pair_motion
+from tippetop.mechanics.contacts.contact_forces import forces_on_two
+from tippetop.mechanics.contacts.contact_point import contact_points
+from tippetop.mechanics.contacts.pair import turning_along
 from tippetop.mechanics.laws.friction import Traction
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.top import natural, natural_state, natural_units
@@ -115,8 +115,8 @@ def test_what_rolls_straight_on_two_surfaces_slows_down_evenly_and_rests(shape: 
     assert float(run["y"][-1]) == pytest.approx(-BALL * spin * rests / 2, rel=1e-12)
     assert losses(run) == pytest.approx([0.0, 0.0, kinetic], rel=1e-12, abs=1e-13 * kinetic)
     start = problem.start()
-    found = pair_motion(
-        ContactPair.of(start.axis, start.momentum, problem.top.each), (None, None), 1.0
+    found = forces_on_two(
+        contact_points(start.axis, start.momentum, problem.top.each), (None, None), 1.0
     )
     couples = [wrench.torque[0] for wrench in found.wrenches]
     assert couples == pytest.approx([-ARM * MASS * G / 3, -ARM * MASS * G * 2 / 3], rel=1e-12)
@@ -189,7 +189,7 @@ def test_rolling_that_slip_held_up_begins_when_that_ends(monkeypatch: pytest.Mon
     }
     found = []
     for slowest in (1e-9, 1e-6):
-        for module in (double, two_closed, touching):
+        for module in (guards, two_closed, touching):
             monkeypatch.setattr(module, "SLOWEST_SLIP", slowest)
         closed.motion_of.cache_clear()
         run = followed(body.replace(launch), 0.004)
@@ -276,7 +276,7 @@ def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(
     assert held.any()
     np.testing.assert_allclose(np.abs(couple[~held]), limit[~held], rtol=1e-9)
     for n, spin in zip(axis[held], momentum[held], strict=True):
-        pair = ContactPair.of(tuple(n), tuple(spin), problem.top.each)
+        pair = contact_points(tuple(n), tuple(spin), problem.top.each)
         assert abs(turning_along(pair)) < 1e-11 * (G / R) ** 0.5
 
 

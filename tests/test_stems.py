@@ -9,11 +9,11 @@ import xarray as xr
 import tippetop as tt
 from tippetop.contact import automaton, collision, touching
 from tippetop.contact.automaton import Automaton
+from tippetop.contact.contact_mode import sliding_on_two
 from tippetop.contact.mode import EventKind, Mode
 from tippetop.contact.transient import Resting
-from tippetop.contact.two_contact_mode import TwoContactMode, on_two
+from tippetop.mechanics.contacts.contact_point import contact_points
 from tippetop.mechanics.contacts.forces import normal_wrench
-from tippetop.mechanics.contacts.pair import ContactPair
 from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.contacts.system import rates_added
 from tippetop.mechanics.motion import on_table
@@ -145,7 +145,7 @@ def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
     axis, momentum, velocity = vectors
     state = SlidingState(axis, momentum, velocity[:2])
     tops = LEINE_GLOCKER.top.each
-    pair = ContactPair.of(axis, momentum, tops)
+    pair = contact_points(axis, momentum, tops)
     slips = [slip_of(*state, top) for top in tops]
     units = [normal_wrench(point, slip) for point, slip in zip(pair, slips, strict=True)]
     added = [rates_added(pair, number, unit).points for number, unit in enumerate(units)]
@@ -182,7 +182,7 @@ def test_two_patches_which_each_drill_or_slide_move_a_body_as_newton_and_euler_s
     velocity = slips[0] - np.cross(turning, arms[0])
     sliding = SlidingState(*(tuple(v.tolist()) for v in (axis, momentum, velocity[:2])))
 
-    mode = on_two(on_table(sliding, tops[0]), tops, 0.0)
+    mode = sliding_on_two(on_table(sliding, tops[0]), tops, 0.0)
     rates = np.array(mode.motion.rates(sliding.pack(), mode.parameters))
 
     tractions = [
@@ -333,7 +333,7 @@ def test_what_hardly_slips_on_two_surfaces_rests(velocity: float) -> None:
 
 def test_what_slips_on_two_surfaces_goes_on() -> None:
     automaton, state = lying("coulomb", (-0.02, 0.02), 1e-8)
-    assert isinstance(automaton.resting(0.0, state).then, TwoContactMode)
+    assert len(automaton.resting(0.0, state).then.tops) == 2
 
 
 def test_the_farther_of_two_surfaces_beside_the_centre_of_mass_opens_and_is_named() -> None:

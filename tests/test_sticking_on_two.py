@@ -12,13 +12,14 @@ import xarray as xr
 import tippetop as tt
 from campaigns import among
 from lying import lying
+from tippetop.contact.contact_mode import ContactMode, mode_on_two
 from tippetop.contact.natural_launch import automaton_of
 from tippetop.contact.slip_onset_on_two import SlipOnsetOnTwo
 from tippetop.contact.trajectory import Trajectory
-from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators import make_integrator
-from tippetop.mechanics.contacts.pair import ContactPair, slip_apart
-from tippetop.mechanics.contacts.pair_motion import pair_motion
+from tippetop.mechanics.contacts.contact_forces import forces_on_two
+from tippetop.mechanics.contacts.contact_point import contact_points
+from tippetop.mechanics.contacts.pair import slip_apart
 from tippetop.mechanics.contacts.wrench import Wrench
 from tippetop.mechanics.flight.free_motion import gap_rate
 from tippetop.mechanics.laws.friction import NO_TORQUE
@@ -115,7 +116,7 @@ def test_sticking_contacts_do_not_slip_and_stay_within_the_friction_cone(seed: i
     seen = set()
     for segment in followed(seed):
         mode = segment.mode
-        if not (isinstance(mode, TwoContactMode) and any(mode.sticks)):
+        if not (isinstance(mode, ContactMode) and len(mode.tops) == 2 and any(mode.sticks)):
             continue
         seen.add((mode.sticks, mode.sense))
         for y, state in states(segment):
@@ -126,11 +127,11 @@ def test_sticking_contacts_do_not_slip_and_stay_within_the_friction_cone(seed: i
             ]
             stuck = slips if all(mode.sticks) else slips[:1]
             assert np.abs(stuck).max() < 1e-12
-            assert abs(gap_rate(state, mode.second_top)) < 1e-12
-            pair = ContactPair.of(state.axis, state.momentum, mode.tops)
+            assert abs(gap_rate(state, mode.beside[0])) < 1e-12
+            pair = contact_points(state.axis, state.momentum, mode.tops)
             force = mode.reaction(y).force
             if all(mode.sticks):
-                found = pair_motion(pair, (None, None), 0.0)
+                found = forces_on_two(pair, (None, None), 0.0)
                 assert min(found.normal) > 0.0
                 assert (
                     min(found.sticking_reserve(0), found.sticking_reserve(1), found.both_reserve)
@@ -138,7 +139,7 @@ def test_sticking_contacts_do_not_slip_and_stay_within_the_friction_cone(seed: i
                 )
             else:
                 across = mode.sense * np.array([-state.axis[1], state.axis[0]])
-                found = pair_motion(pair, (None, tuple(across)), 0.0)
+                found = forces_on_two(pair, (None, tuple(across)), 0.0)
                 assert min(found.normal) > 0.0
                 assert found.reserve(0) >= -1e-12
                 assert mode.sense * slip_apart(pair) >= -1e-12
@@ -150,8 +151,8 @@ def test_force_across_the_line_reduces_the_reserve_along_it() -> None:
     """Against many ways to share the force out between both contacts."""
     segment = next(s for s in followed(ONE_THEN_BOTH) if s.mode.label == "sticking_on_0_and_1")
     (_, state), *_ = states(segment)
-    held = pair_motion(
-        ContactPair.of(state.axis, state.momentum, segment.mode.tops), (None, None), 0.0
+    held = forces_on_two(
+        contact_points(state.axis, state.momentum, segment.mode.tops), (None, None), 0.0
     )
     limits = segment.mode.top.friction.mu * np.array(held.normal)
     e = np.array([*state.axis[:2], 0.0]) / np.hypot(*state.axis[:2])
@@ -219,7 +220,7 @@ def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
     knots = begin.solution.knots
     early, late = (knots[0] + part * (knots[-1] - knots[0]) for part in (0.3, 0.9))
     mode, (first, last) = begin.mode, begin.solution(np.array([early, late])).tolist()
-    slides = TwoContactMode(mode.top, mode.second_top, rolls=mode.rolls)
+    slides = mode_on_two(mode.tops, mode.rolls)
     start = early, np.array(slides.numbers(mode.state(first)))
     (arc,) = make_integrator("collocation").integrate(slides.motion, slides.parameters, start, late)
     assert arc.end_state == pytest.approx(slides.numbers(mode.state(last)), abs=1e-11)

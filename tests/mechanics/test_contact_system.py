@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from tippetop.mechanics.contacts.contact_point import ContactPoint
+from tippetop.mechanics.contacts.contact_forces import forces_on_two
+from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points
 from tippetop.mechanics.contacts.forces import (
     constraints_of,
     directions_of,
     forces_and_accelerations,
     sum_at,
 )
-from tippetop.mechanics.contacts.pair import ContactPair, slips_of
-from tippetop.mechanics.contacts.pair_motion import pair_motion
+from tippetop.mechanics.contacts.pair import slips_of
 from tippetop.mechanics.contacts.slip_variables import velocity_of
 from tippetop.mechanics.contacts.sticking import sticking_forces
 from tippetop.mechanics.contacts.system import free_rates, solve_constraints
@@ -157,7 +157,7 @@ def test_two_contacts(law, resists, seed):
     axis, momentum = state(seed, lowest=0.4)
     hull = Hull.of((SphereSurface(1.0, 0.3), SphereSurface(0.2, 1.5)))
     tops = top_of(hull, LAWS[law], resists).each
-    pair = ContactPair.of(axis, momentum, tops)
+    pair = contact_points(axis, momentum, tops)
     one, other = (slip[:2] for slip in slips_of(pair, (0.3, -0.2, 0.4)))
     cases = [(one, other)]
     if law in SET_VALUED:
@@ -169,7 +169,7 @@ def test_two_contacts(law, resists, seed):
         for rolls in (1.0, -1.0, 0.0)[: 1 + 2 * resists]:
             rolling = None if resists and not rolls else (rolls * along[0], rolls * along[1])
             held = constraints_of(pair, slips, rolling)
-            found = pair_motion(pair, slips, rolls)
+            found = forces_on_two(pair, slips, rolls)
             acting = total(pair, list(enumerate(found.wrenches)))
             np.testing.assert_allclose(
                 acting, by_centre_of_mass(pair, held), rtol=0, atol=1e-7 * np.abs(acting).max()

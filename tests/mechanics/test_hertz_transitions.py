@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun
-from tippetop.contact.contact_mode import split
+from tippetop.contact.mode import split
 from tippetop.contact.slip_end_motion import slip_end_state
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.contacts.contact_point import ContactPoint

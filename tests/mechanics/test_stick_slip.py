@@ -11,8 +11,9 @@ from scipy.integrate import solve_ivp
 from creeping import creep_rates, direction_of_slip
 from dry_runs import DryRun, launched
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.contact_mode import SLIP, ContactMode, split
-from tippetop.contact.mode import EventKind
+from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.guards import SLIP
+from tippetop.contact.mode import EventKind, split
 from tippetop.contact.onset_motion import SLIP_AND_ROLLING, onset_motion
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.contact.slip_onset import SlipOnset
@@ -205,7 +206,9 @@ def swinging(top):
 
 def stuck_reserve(axis, momentum, top):
     """Positive while the table can hold the contact, and the body rolls as it does."""
-    [slip] = [guard for guard in ContactMode(top, sticks=True).motion.guards if guard.name == SLIP]
+    [slip] = [
+        guard for guard in ContactMode(top, sticks=(True,)).motion.guards if guard.name == SLIP
+    ]
     return slip.value((*axis, *momentum), top.numbers)
 
 

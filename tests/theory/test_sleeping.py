@@ -36,7 +36,7 @@ def top_of(surface, inertias):
 def rolling_growth(kind, top, spin):
     """Largest growth rate of the mode that sticks, about its vertical spin, by its own rates."""
     pole = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
-    mode = ContactMode(top, sticks=True)
+    mode = ContactMode(top, sticks=(True,))
     start = (0.0, 0.0, pole, 0.0, 0.0, pole * top.axial_inertia * spin)
     matrix = jacobian(mode.rates, [np.array([number]) for number in start])[0]
     horizontal = [0, 1, 3, 4]

@@ -10,19 +10,20 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 from tippetop.contact.collision import collision
-from tippetop.contact.contact_mode import (
+from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
+from tippetop.contact.flight import TOUCHING, Flight
+from tippetop.contact.guards import (
     BRANCH,
     LIFT_OFF,
     LIMIT_BRANCH,
     NEARING,
+    OPENING,
     PARTING,
     ROLLING,
     ROLLING_STOPPING,
     SLIP,
     STOPPING,
-    ContactMode,
 )
-from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.mode import (
     COMPLETED,
     FAILURE,
@@ -53,7 +54,6 @@ from tippetop.contact.touching import (
 )
 from tippetop.contact.transient import Resting, TransientMode
 from tippetop.contact.two_closed import BOTH, SECOND, Before, TwoClosed, rolling_of, time_to_end
-from tippetop.contact.two_contact_mode import BRANCHING, OPENING, TwoContactMode, on_two
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contacts.branches import off_branch, on_branch, on_other_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -164,10 +164,10 @@ class Automaton:
             return automaton._after_onset(mode, end, time)
         if isinstance(mode, SlipEnd):
             return automaton._after_clock(mode, end, time)
-        if isinstance(mode, TwoContactMode):
-            return automaton._after_two(mode, end, time)
         assert isinstance(mode, ContactMode), f"nothing follows {mode.name}"
-        return automaton._after_one(mode, end, time)
+        if mode.is_single:
+            return automaton._after_one(mode, end, time)
+        return automaton._after_two(mode, end, time)
 
     def _after_flight(self, end: ModeEnd, time: float, integrator: Integrator | None) -> Transition:
         """Return what follows where a surface lands."""
@@ -177,7 +177,7 @@ class Automaton:
 
     def _after_one(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
         """Return what follows on one contact that slips or sticks."""
-        state, slips = end.state, not mode.sticks
+        state, slips = end.state, not mode.sticks[0]
         if end.cause == FAILURE:
             # Friction that turns may have jammed the contact: no step is short enough then.
             failure = Transition((), Outcome.FAILED, state, end.detail)
@@ -191,11 +191,11 @@ class Automaton:
         if end.cause in (BRANCH, LIMIT_BRANCH):
             return Transition((), replace(mode, top=on_other_branch(mode.top)), state)
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
-        wrench = mode.contact_forces(mode.numbers(state))[2]
+        wrench = mode.contact_forces(mode.numbers(state))[0].wrenches[0]
         if wrench.force[2] <= 0.0 and not self.pulls:
             return self.lift_off(time, state)
         begins = SlipComponent(
-            end.cause == SLIP, held=mode.holds_rolling if end.cause == SLIP else mode.sticks
+            end.cause == SLIP, held=mode.holds_rolling if end.cause == SLIP else mode.sticks[0]
         )
         return self._begin(time, state, begins, wrench)
 
@@ -235,11 +235,11 @@ class Automaton:
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
         return self._begin(time, state, SlipComponent(slip=end.cause == SLIP))
 
-    def _after_two(self, mode: TwoContactMode, end: ModeEnd, time: float) -> Transition:
+    def _after_two(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
         """Return what follows on two contacts."""
         state, rolls = end.state, mode.rolls
         if isinstance(mode, SlipOnsetOnTwo) and end.cause == ONSET_OVER:
-            return Transition((), on_two(state, mode.tops, rolls), state)
+            return Transition((), sliding_on_two(state, mode.tops, rolls), state)
         if end.cause == OPENING:
             opens, stays = (mode.tops, mode.tops[::-1])[end.contact]
             event = Event(EventKind.OPENING, time, surface=number_of(opens))
@@ -247,10 +247,10 @@ class Automaton:
             slips = not mode.sticks[1 - end.contact]
             after = self.on(number_of(stays)).mode_for(state, slips=slips)
             return Transition((event,), after, state)
-        if end.cause == BRANCHING:
+        if end.cause == BRANCH:
             tops = list(mode.tops)
             tops[end.contact] = on_other_branch(tops[end.contact])
-            return Transition((), replace(mode, top=tops[0], second_top=tops[1]), state)
+            return Transition((), mode.with_tops(tops, mode.further), state)
         if end.cause == SLIP:
             return self.slip_on_two(time, state, mode, end.contact)
         if end.cause == ROLLING_STOPPING:
@@ -269,7 +269,7 @@ class Automaton:
         top = on_present_branch(self.top, state, slips)
         rolls = rolls_freely(self.top, state)
         near = slips and is_set_valued(top.friction) and bool(is_near(along_table(state), top))
-        mode = ContactMode(top, not slips, not rolls, near, self.pulls and slips)
+        mode = ContactMode(top, (not slips,), not rolls, near, self.pulls and slips)
         settling = settling_flat(mode, state) if is_edge(top.surface) else None
         if settling is not None:
             return settling
@@ -585,13 +585,12 @@ class Automaton:
         events = (*events, Event(EventKind.OPENING, time, surface=opens))
         return self.on(stays).resting_alone(time, contacts.state, events)
 
-    def slip_on_two(
-        self, time: float, state: State, mode: TwoContactMode, contact: int
-    ) -> Transition:
+    def slip_on_two(self, time: float, state: State, mode: ContactMode, contact: int) -> Transition:
         """Return the mode in which a contact of two begins to slip at the limit of what the table
         can, or both do (-1).
         """
-        contacts = TwoClosed.of(state, mode.tops, mode.rolls, mode.sticks)
+        first, second = mode.sticks
+        contacts = TwoClosed.of(state, mode.tops, mode.rolls, (first, second))
         try:
             resolved = contacts.slipping(None if contact < 0 else contact)
         except ArithmeticError as error:
@@ -608,14 +607,11 @@ class Automaton:
             return self._slip_begins(contacts, resolved)
         if not any(resolved.sticks):
             return Transition(
-                (), on_two(contacts.state, contacts.tops, contacts.rolls), contacts.state
+                (), sliding_on_two(contacts.state, contacts.tops, contacts.rolls), contacts.state
             )
         if all(resolved.sticks):
-            first, second = contacts.tops
             slowest = contacts.slowest_rolling
-            mode = TwoContactMode(
-                first, second, (True, True), contacts.rolls, slowest_rolling=slowest
-            )
+            mode = mode_on_two(contacts.tops, contacts.rolls, (True, True), slowest_rolling=slowest)
             still = rests(contacts.state, *resolved.motion.rates.turning)
             return Transition(
                 (), Resting(contacts.tops[0], mode) if still else mode, contacts.state
@@ -624,10 +620,10 @@ class Automaton:
             (), self._turning(contacts.tops, contacts.xi[2], contacts.rolls), contacts.state
         )
 
-    def _turning(self, tops: Tops, zeta: float, rolls: float) -> TwoContactMode:
+    def _turning(self, tops: Tops, zeta: float, rolls: float) -> ContactMode:
         """Return the mode in which the first contact sticks, and the second slips so."""
         sense = 1.0 if zeta >= 0.0 else -1.0
-        return TwoContactMode(tops[0], tops[1], (True, False), rolls, sense)
+        return mode_on_two(tops, rolls, (True, False), sense=sense)
 
     def _slip_begins(self, contacts: TwoClosed, resolved: Resolution) -> Transition:
         """Return the mode in which slip begins on two contacts."""
@@ -642,7 +638,15 @@ class Automaton:
             on_branch(top, slip) for top, slip in zip(contacts.tops, slips, strict=True)
         )
         direction = begins if all(contacts.ended) else begins[:2]
-        mode = SlipOnsetOnTwo(first, second, rolls=contacts.rolls, begin=begin, direction=direction)
+        mode = SlipOnsetOnTwo(
+            first,
+            (False, False),
+            contacts.stopped,
+            beside=(second,),
+            rolls=contacts.rolls,
+            begin=begin,
+            direction=direction,
+        )
         return Transition((), mode, mode.state(begin))
 
 

@@ -1,105 +1,242 @@
-"""The mode of one closed contact, by its status, and what all stated modes have in common."""
+"""The mode of closed contacts, one or two, by the status of each, and its equations of motion."""
 
-from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, ClassVar, Self, TypeAlias
+from typing import Any, ClassVar, Self
 
-from tippetop.contact.mode import IntegratedMode, Reaction
-from tippetop.contact.surfaces import WOBBLE, SurfaceGuard, surface_guards
+from tippetop.contact.guards import GuardValue, guards_on_one, guards_on_two
+from tippetop.contact.mode import IntegratedMode, Reaction, split
+from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Guard, Motion
-from tippetop.mechanics.contacts.branches import has_limit_branches, limit_guard
-from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint, flat
+from tippetop.mechanics.contacts.branches import is_branched, on_numbered_branch
+from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_one, forces_on_two
+from tippetop.mechanics.contacts.contact_point import contact_points, flat
 from tippetop.mechanics.contacts.forces import (
-    forces_and_accelerations,
-    is_set_valued,
-    rolling_reserve,
+    Slips,
+    directions_of,
     slip_length,
-    slip_reserve,
     velocity_without_slip,
+    without_drilling,
     without_rolling,
 )
-from tippetop.mechanics.contacts.slip_variables import (
-    branch_guard,
-    nearing_guard,
-    parting_guard,
-    remaining,
-    rolling_stopping_guard,
-    scaled,
-    slip_of,
-    slip_part,
-)
-from tippetop.mechanics.contacts.wrench import Slip, Wrench
-from tippetop.mechanics.lying_down import LEFT_OUT, Wobble
+from tippetop.mechanics.contacts.pair import Tops, slip_apart, slips_of
+from tippetop.mechanics.contacts.pair_resolver import rolling_direction
+from tippetop.mechanics.contacts.slip_variables import remaining, scaled, slip_of, slip_part
+from tippetop.mechanics.lying_down import Wobble
 from tippetop.mechanics.motion import along_table, axis_rate, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
-
-LIFT_OFF, STOPPING, SLIP, BRANCH, LIMIT_BRANCH = (
-    "lift-off",
-    "stopping",
-    "slip",
-    "branch",
-    "limit branch",
-)
-ROLLING, ROLLING_STOPPING = "rolling", "rolling stopping"
-NEARING, PARTING = "nearing", "parting"
 
 SLIPS, STICKS = "sliding", "sticking"
 """Status of a contact in the names of modes."""
 
-GuardValue: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
-"""Name of a guard, and its value from a mode and the numbers of that."""
-
 
 @dataclass(frozen=True)
-class StatedMode(IntegratedMode):
-    """A mode that states its rates and guards for its own tops: others of their kinds have them
-    too.
+class ContactMode(IntegratedMode):
+    """One or two contacts are closed: each slips or sticks, and rolling goes on or is held.
+
+    Of two contacts of which one sticks, the first does, and the second slips across the axis, along
+    t of `tippetop.mechanics.contacts.pair`.
     """
 
-    size: ClassVar[int] = 8
-    """How many numbers the mode has, unless `count` says otherwise."""
+    sticks: tuple[bool, ...] = (False,)
+    """Whether each contact sticks, and does not drill where the law resists that; else it slips."""
+    holds_rolling: bool = False
+    """Whether rolling resistance holds the top, which turns about the vertical, or not at all."""
+    near: bool = False
+    """Whether slip on one contact is so small that it may be about to end, which then is guarded.
+    """
+    pulls: bool = False
+    """Whether the table may pull; else slip on one contact ends where it would have to."""
+    beside: tuple[Top, ...] = ()
+    """The top with the second surface active, where two contacts are closed."""
+    rolls: float = 0.0
+    """On two contacts, the sign of omega_e (see `tippetop.mechanics.contacts.pair`); 0 where
+    rolling is held, or not resisted.
+    """
+    sense: float = 1.0
+    """Where the first of two contacts sticks alone: the sign of the slip of the second along t."""
+    slowest_rolling: float = -1.0
+    """Where two contacts stick: the |omega_e| at which patches slip that stick while the body
+    rolls.
+    """
+
+    name: ClassVar[str] = "contact"
 
     @property
-    def count(self) -> int:
-        """How many numbers the mode has."""
-        return self.size
+    def is_single(self) -> bool:
+        """Whether one contact is closed."""
+        return len(self.sticks) == 1
 
     @property
-    def further_count(self) -> int:
-        """How many parameters there are beside the numbers of the tops."""
-        return 0
+    def is_mixed(self) -> bool:
+        """Whether the first of two contacts sticks, and the second slips."""
+        return any(self.sticks) and not all(self.sticks)
+
+    @property
+    def slides_freely(self) -> bool:
+        """Whether one contact is closed and slips, and nothing holds rolling."""
+        return self.is_single and not self.sticks[0] and not self.holds_rolling
+
+    @property
+    def status(self) -> str:
+        """Name of the motion in a result, without the surfaces that touch."""
+        rolling = "_without_rolling" if self.holds_rolling else ""
+        if self.is_mixed:
+            return f"{STICKS}_and_{SLIPS}{rolling}"
+        return (STICKS if self.sticks[0] else SLIPS) + rolling
+
+    @property
+    def form(self) -> str:
+        """Modes of the same form and tops read the same from their numbers."""
+        return f"{self.status} {self.rolls:g} {self.sense:g}"
+
+    @property
+    def label(self) -> str:
+        """Its status, and the numbers of the surfaces if the body has several."""
+        if not self.is_mixed:
+            return self.status + self._place
+        rolling = "_without_rolling" if self.holds_rolling else ""
+        first, second = (number_of(top) for top in self.tops)
+        return f"{STICKS}{rolling}_on_{first}_{SLIPS}_on_{second}"
+
+    @property
+    def stuck(self) -> tuple[int, ...]:
+        """Numbers of the surfaces that stick."""
+        pairs = zip(self.tops, self.sticks, strict=True)
+        return tuple([number_of(top) for top, sticks in pairs if sticks])
 
     @property
     def lasting(self) -> bool:
-        """No run stays in it for long, where a mode does not say otherwise."""
-        return False
+        """Whether runs may spend most of their steps in it."""
+        return self.slides_freely and not self.near
+
+    # The tops are parameters of the equations, as are numbers of the status.
+
+    @property
+    def tops(self) -> tuple[Top, ...]:
+        """The top with each surface active that touches: the branches of their laws may differ."""
+        return (self.top, *self.beside)
+
+    @property
+    def further(self) -> tuple[Scalar, ...]:
+        """What the status needs beside the numbers of the tops."""
+        if self.is_single or not any(self.sticks):
+            return ()
+        return (self.sense,) if self.is_mixed else (self.slowest_rolling,)
+
+    @property
+    def parameters(self) -> tuple[Scalar, ...]:
+        """The numbers of the tops, and what the status needs beside them."""
+        return (*[number for top in self.tops for number in top.numbers], *self.further)
+
+    def without_tops(self) -> Self:
+        """Return the mode without its tops and parameters."""
+        return replace(super().without_tops(), beside=(), sense=1.0, slowest_rolling=0.0)
+
+    def with_tops(self, tops: Sequence[Top], further: Sequence[Scalar]) -> Self:
+        """Return the mode with tops, and with further parameters."""
+        mode = replace(self, top=tops[0], beside=tuple(tops[1:]))
+        if not self.further:
+            return mode
+        return (
+            replace(mode, sense=further[0])
+            if self.is_mixed
+            else replace(mode, slowest_rolling=further[0])
+        )
 
     @property
     def motion(self) -> Motion:
         """Equations of motion and guards."""
-        return motion_of(self.without_tops(), tuple(top.kind for top in self.tops))
+        return motion_of(self.without_tops(), tuple([top.kind for top in self.tops]))
+
+    # Numbers and states.
 
     @property
-    def parameters(self) -> tuple[Scalar, ...]:
-        """The numbers of its tops."""
-        return tuple(number for top in self.tops for number in top.numbers)
+    def count(self) -> int:
+        """How many numbers the mode has: axis, angular momentum, and velocity if nothing sticks."""
+        return 6 if any(self.sticks) else 8
 
-    def with_tops(self, tops: Sequence[Top], further: Sequence[Scalar]) -> Self:
-        """Return the mode with tops, and with further parameters."""
-        return replace(self, top=tops[0])
+    def numbers(self, state: State) -> tuple[Scalar, ...]:
+        """Axis, angular momentum, and velocity if nothing sticks."""
+        return along_table(state).pack()[: self.count]
 
-    @abstractmethod
+    def state(self, y: Row) -> State:
+        """Return the state, with its height and sinking; what is held is zero."""
+        axis, momentum = split(y)
+        if not self.is_single and all(self.sticks):
+            momentum = without_drilling(axis, momentum, self.top)
+        momentum = self.stilled(axis, momentum)
+        slides = not any(self.sticks)
+        velocity = (y[6], y[7]) if slides else velocity_without_slip(axis, momentum, self.top)
+        return on_table(SlidingState(axis, momentum, velocity), self.top)
+
+    def stilled(self, axis: Vector, momentum: Vector) -> Vector:
+        """Return the angular momentum, without rolling where that is held."""
+        return without_rolling(axis, momentum, self.top) if self.holds_rolling else momentum
+
+    # Forces and rates.
+
+    def contact_forces(self, y: Row) -> tuple[ContactForces, Slips]:
+        """Return the forces and accelerations, and the slip of each contact, from the numbers.
+
+        The slip of one contact that sticks is None, and that of two is zero.
+        """
+        points = contact_points(*split(y), self.tops)
+        if self.is_single:
+            slip = None if self.sticks[0] else slip_of(*split(y), (y[6], y[7]), self.top)[:2]
+            rolling = None if self.holds_rolling else points[0].turning[:2]
+            return forces_on_one(points[0], slip, rolling), (slip,)
+        if self.is_mixed:
+            zeta = slip_apart(points)
+            direction = scaled(self.sense, directions_of(points[0].axis)[1][:2])
+            slips = slips_of(points, (0.0 * zeta, 0.0 * zeta, zeta))
+            return forces_on_two(points, (None, direction), self.rolls), slips
+        if self.sticks[0]:
+            return forces_on_two(points, (None, None), self.rolls), ((0.0, 0.0), (0.0, 0.0))
+        first, second = (slip_of(*SlidingState.unpack(y), top) for top in self.tops)
+        return forces_on_two(points, (first, second), self.rolls), (first, second)
+
     def rates(self, y: Row) -> tuple[Scalar, ...]:
-        """Time derivatives of the numbers."""
+        """Rates of axis and angular momentum, and of the velocity if nothing sticks."""
+        if self.slides_freely:
+            return sliding_rates(SlidingState.unpack(y), self.top).pack()
+        forces = self.contact_forces(y)[0]
+        drawn = () if any(self.sticks) else scaled(1.0 / self.top.mass, forces.force[:2])
+        return (*axis_rate(*split(y), self.top), *forces.moment, *drawn)
 
-    @abstractmethod
+    def reaction(self, y: Row) -> Reaction:
+        """Force of all contacts, and their torque about the first contact point."""
+        forces, slips = self.contact_forces(y)
+        power = dot(forces.couple, forces.points[0].turning)
+        for slip, wrench in zip(slips, forces.wrenches, strict=True):
+            if slip is not None:
+                power = power + (wrench.force[0] * slip[0] + wrench.force[1] * slip[1])
+        return Reaction(forces.force, forces.torque, power, forces.couple)
+
+    def slip_left(self, y: Row) -> Scalar:
+        """Positive while slip on one contact goes on for a while."""
+        acceleration = self.contact_forces(y)[0].acceleration(0)
+        change = slip_part(flat(acceleration), slip_length(self.top.friction))
+        return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
+
+    def wobble(self, y: Row) -> Wobble:
+        """Return the wobble of a body on an edge."""
+        forces, slips = self.contact_forces(y)
+        sliding, acceleration = along_table(self.state(y)), forces.acceleration(0)
+        return Wobble.of(sliding, self.top, forces.wrenches[0], acceleration, slips[0])
+
+    def rolling_direction(self, state: State) -> float:
+        """Return the sign of omega_e with which rolling begins on two contacts that can be held no
+        longer.
+        """
+        return rolling_direction(self.contact_forces(self.numbers(state))[0])
+
     def guard_values(self) -> list[GuardValue]:
         """Return the guards."""
+        return guards_on_one(self) if self.is_single else guards_on_two(self)
 
 
 @lru_cache
@@ -120,148 +257,10 @@ def motion_of(form: Any, kinds: tuple[Kind, ...]) -> Motion:
         values: tuple[Scalar, ...] = mode(numbers).rates(y)
         return values
 
-    example = form.with_tops([kind.example for kind in kinds], (0.0,) * form.further_count)
+    example = form.with_tops([kind.example for kind in kinds], form.further)
     guards = tuple(guard(name, value) for name, value in example.guard_values())
-    count = sum(kind.numbers for kind in kinds) + form.further_count
+    count = sum(kind.numbers for kind in kinds) + len(form.further)
     return Motion(rates, form.count, count, guards, form.lasting)
-
-
-@dataclass(frozen=True)
-class ContactMode(StatedMode):
-    """One contact is closed: it slips or sticks, and rolling goes on or is held."""
-
-    sticks: bool = False
-    """Whether it sticks, and does not drill where the law resists that; else it slips."""
-    holds_rolling: bool = False
-    """Whether rolling resistance holds the top, which turns about the vertical, or not at all."""
-    near: bool = False
-    """Whether slip is so small that it may be about to end, which then is guarded."""
-    pulls: bool = False
-    """Whether the table may pull; else slip ends where it would have to."""
-
-    name: ClassVar[str] = "contact"
-
-    @property
-    def status(self) -> str:
-        """Name of the motion in a result, without the surfaces that touch."""
-        return (STICKS if self.sticks else SLIPS) + ("_without_rolling" * self.holds_rolling)
-
-    @property
-    def slides_freely(self) -> bool:
-        """Whether it slips, and nothing holds rolling."""
-        return not self.sticks and not self.holds_rolling
-
-    @property
-    def lasting(self) -> bool:
-        """Whether runs may spend most of their steps in it."""
-        return self.slides_freely and not self.near
-
-    @property
-    def count(self) -> int:
-        """How many numbers the mode has: axis, angular momentum, and velocity if it slips."""
-        return 6 if self.sticks else 8
-
-    def contact_forces(self, y: Row) -> tuple[ContactPoint, Slip | None, Wrench, Acceleration]:
-        """Return the contact point, its slip, the wrench of the table, and the acceleration."""
-        point = ContactPoint.of(*split(y), self.top)
-        slip = None if self.sticks else slip_of(*split(y), (y[6], y[7]), self.top)[:2]
-        rolling = None if self.holds_rolling else point.turning[:2]
-        return point, slip, *forces_and_accelerations(point, slip, rolling)
-
-    def numbers(self, state: State) -> tuple[Scalar, ...]:
-        """Axis, angular momentum, and velocity if it slips."""
-        return along_table(state).pack()[: self.count]
-
-    def state(self, y: Row) -> State:
-        """Return the state, with its height and sinking; what is held is zero."""
-        axis, momentum = split(y)
-        if self.holds_rolling:
-            momentum = without_rolling(axis, momentum, self.top)
-        velocity = velocity_without_slip(axis, momentum, self.top) if self.sticks else (y[6], y[7])
-        return on_table(SlidingState(axis, momentum, velocity), self.top)
-
-    def rates(self, y: Row) -> tuple[Scalar, ...]:
-        """Rates of axis and angular momentum, and of the velocity if it slips."""
-        if self.slides_freely:
-            return sliding_rates(SlidingState.unpack(y), self.top).pack()
-        point, slip, wrench, _ = self.contact_forces(y)
-        drawn = () if slip is None else scaled(1.0 / self.top.mass, wrench.force[:2])
-        return (*axis_rate(*split(y), self.top), *point.moment(wrench), *drawn)
-
-    def reaction(self, y: Row) -> Reaction:
-        """Return the contact force and torque."""
-        point, slip, wrench, _ = self.contact_forces(y)
-        power = dot(wrench.torque, point.turning)
-        if slip is not None:
-            power = wrench.force[0] * slip[0] + wrench.force[1] * slip[1] + power
-        return Reaction(wrench.force, wrench.torque, power)
-
-    def guard_values(self) -> list[GuardValue]:
-        """Return the guards of what holds the contact, or of slip; of rolling; and of the body's
-        shape.
-        """
-        guards = self._sticking_guards() if self.sticks else self._slip_guards()
-        if self.holds_rolling:
-            guards.append((ROLLING, lambda mode, y: mode.rolling_reserve(y)))
-        elif self.top.resists_rolling:
-            guards.append((ROLLING_STOPPING, lambda mode, y: mode.rolling_left(y)))
-        if is_edge(self.top.surface):
-            guards.append((WOBBLE, lambda mode, y: mode.wobble(y).reserve(LEFT_OUT)))
-        return guards + [(name, _of_top(value)) for name, value in surface_guards(self.top)]
-
-    def _sticking_guards(self) -> list[GuardValue]:
-        guards: list[GuardValue] = [
-            (SLIP, lambda mode, y: slip_reserve(mode.top, mode.contact_forces(y)[2]))
-        ]
-        if has_limit_branches(self.top.friction):
-            guards.append(
-                (LIMIT_BRANCH, lambda mode, y: limit_guard(mode.top, mode.contact_forces(y)[2]))
-            )
-        return guards
-
-    def _slip_guards(self) -> list[GuardValue]:
-        law, guards = self.top.friction, list[GuardValue]()
-        if not self.pulls:
-            guards.append((LIFT_OFF, lambda mode, y: mode.contact_forces(y)[2].force[2]))
-        if is_set_valued(law) and self.near:
-            guards.append((STOPPING, lambda mode, y: mode.slip_left(y)))
-            guards.append(
-                (PARTING, lambda mode, y: parting_guard(SlidingState.unpack(y), mode.top))
-            )
-        elif is_set_valued(law):
-            guards.append(
-                (NEARING, lambda mode, y: nearing_guard(SlidingState.unpack(y), mode.top))
-            )
-        if hasattr(law, "branch_guard"):
-            guards.append((BRANCH, lambda mode, y: mode.on_branch(y)))
-        return guards
-
-    def on_branch(self, y: Row) -> Scalar:
-        """Positive as long as the branch of the law holds."""
-        return branch_guard(slip_of(*SlidingState.unpack(y), self.top), self.top)
-
-    def slip_left(self, y: Row) -> Scalar:
-        """Positive while slip goes on for a while."""
-        change = slip_part(flat(self.contact_forces(y)[3]), slip_length(self.top.friction))
-        return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
-
-    def wobble(self, y: Row) -> Wobble:
-        """Return the wobble of a body on an edge."""
-        _, slip, wrench, acceleration = self.contact_forces(y)
-        return Wobble.of(along_table(self.state(y)), self.top, wrench, acceleration, slip)
-
-    def rolling_reserve(self, y: Row) -> Scalar:
-        """Positive while the table can exert the couple that holds rolling."""
-        point, slip, wrench, _ = self.contact_forces(y)
-        return rolling_reserve(point, wrench, slip)
-
-    def rolling_left(self, y: Row) -> Scalar:
-        """Positive while rolling goes on for a while."""
-        if self.slides_freely:
-            rates = SlidingState.unpack(self.rates(y))
-            return rolling_stopping_guard(SlidingState.unpack(y), rates, self.top)
-        point, _, _, acceleration = self.contact_forces(y)
-        return remaining(point.turning[:2], acceleration.turning[:2])
 
 
 def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
@@ -274,10 +273,31 @@ def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
     return motion_of(ContactMode(no_top, holds_rolling=held, pulls=not guarded), (kind,))
 
 
-def _of_top(value: SurfaceGuard) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: value(mode.top, *split(y))
+def mode_on_two(
+    tops: Tops,
+    rolls: float,
+    sticks: tuple[bool, bool] = (False, False),
+    *,
+    sense: float = 1.0,
+    slowest_rolling: float = -1.0,
+) -> ContactMode:
+    """Return the mode of two contacts; the arguments are the attributes of `ContactMode`."""
+    top, *beside = tops
+    held = top.resists_rolling and not rolls
+    return ContactMode(
+        top,
+        sticks,
+        held,
+        beside=tuple(beside),
+        rolls=rolls,
+        sense=sense,
+        slowest_rolling=slowest_rolling,
+    )
 
 
-def split(y: Row) -> tuple[Vector, Vector]:
-    """Axis and angular momentum, the first numbers of every mode in contact."""
-    return (y[0], y[1], y[2]), (y[3], y[4], y[5])
+def sliding_on_two(state: State, tops: Tops, rolls: float) -> ContactMode:
+    """Return the mode of a body that slides on two surfaces, each on its branch of the law."""
+    first, second = tops
+    if is_branched(second.friction):
+        first, second = (on_numbered_branch(top, slip_of(*along_table(state), top)) for top in tops)
+    return mode_on_two((first, second), rolls)

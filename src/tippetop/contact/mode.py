@@ -186,6 +186,11 @@ def failed(
     return Transition(events, Outcome.FAILED, state, explanation(what, error))
 
 
+def split(y: Row) -> tuple[Vector, Vector]:
+    """Return axis and angular momentum, the first numbers of every mode in contact."""
+    return (y[0], y[1], y[2]), (y[3], y[4], y[5])
+
+
 class Reaction(NamedTuple):
     """What the table does to the top at an instant."""
 
@@ -285,10 +290,15 @@ class Mode(ABC):
     @property
     def label(self) -> str:
         """Its name, with the numbers of the surfaces that touch if the body has several."""
+        return self.status + self._place
+
+    @property
+    def _place(self) -> str:
+        """The end of the label: the surfaces that touch, if the body has several."""
         if not self.touching or not isinstance(self.top.surface, Hull):
-            return self.status
+            return ""
         touching = sorted(getattr(top.surface, "active", 0) for top in self.tops)
-        return f"{self.status}_on_{'_and_'.join(map(str, touching))}"
+        return f"_on_{'_and_'.join(map(str, touching))}"
 
     @abstractmethod
     def segments(

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
-from tippetop.contact.contact_mode import split
+from tippetop.contact.mode import split
 from tippetop.contact.surfaces import surface_guards
 from tippetop.mechanics.contacts.branches import has_limit_branches, limit_guard
 from tippetop.mechanics.contacts.contact_point import ContactPoint

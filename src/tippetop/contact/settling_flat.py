@@ -75,7 +75,7 @@ class SettlingFlat(Mode):
         """
         mode, part = self.reported_mode, 1.0 - (1.0 - REMAINS) * elapsed / duration
         if not self.slaps:
-            sliding = scaled_wobble(along_table(state), part, mode.sticks, self.top)
+            sliding = scaled_wobble(along_table(state), part, mode.sticks[0], self.top)
             return sliding.pack()[: mode.count]
         numbers = mode.numbers(state)
         moved = [a + elapsed * b for a, b in zip(numbers, mode.rates(numbers), strict=True)]

@@ -5,7 +5,8 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from tippetop.contact.contact_mode import BRANCH, LIFT_OFF, LIMIT_BRANCH, ROLLING, SLIP, split
+from tippetop.contact.guards import BRANCH, LIFT_OFF, LIMIT_BRANCH, ROLLING, SLIP
+from tippetop.contact.mode import split
 from tippetop.contact.surfaces import WOBBLE, SurfaceGuard, surface_guards
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.mechanics.contacts.branches import has_limit_branches, limit_guard

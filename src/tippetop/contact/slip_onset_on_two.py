@@ -5,15 +5,16 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Self
 
-from tippetop.contact.contact_mode import split
-from tippetop.contact.mode import COMPLETED, ModeEnd, Segment
+from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.mode import COMPLETED, ModeEnd, Segment, split
 from tippetop.contact.slip_onset import FIRST_SPEED, ONSET_OVER, UNSEEN, failed_segment, solution_of
 from tippetop.contact.slip_phase import follow_slip
-from tippetop.contact.two_contact_mode import TwoContactMode
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contacts.branches import is_branched
-from tippetop.mechanics.contacts.pair import ContactPair, slips_of
-from tippetop.mechanics.contacts.pair_motion import PairMotion, pair_motion
+from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_two
+from tippetop.mechanics.contacts.contact_point import contact_points
+from tippetop.mechanics.contacts.forces import Slips
+from tippetop.mechanics.contacts.pair import slips_of
 from tippetop.mechanics.contacts.slip_collocation import SlipMotion
 from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled, velocity_of
 from tippetop.mechanics.contacts.wrench import Slip
@@ -27,7 +28,7 @@ NUMBERS = 9
 
 
 @dataclass(frozen=True)
-class SlipOnsetOnTwo(TwoContactMode):
+class SlipOnsetOnTwo(ContactMode):
     """The first moments of slip at one of two contacts, or at both.
 
     Its numbers are axis, angular momentum and xi (see `tippetop.mechanics.contacts.pair`).
@@ -45,11 +46,11 @@ class SlipOnsetOnTwo(TwoContactMode):
         velocity = velocity_of(axis, momentum, (y[6], y[7]), self.top)
         return on_table(SlidingState(axis, momentum, velocity), self.top)
 
-    def contact_forces(self, y: Row) -> tuple[PairMotion, tuple[Slip, Slip]]:
+    def contact_forces(self, y: Row) -> tuple[ContactForces, Slips]:
         """Return the forces and accelerations, and the slips of both contacts."""
-        pair = ContactPair.of(*split(y), self.tops)
+        pair = contact_points(*split(y), self.tops)
         slips = slips_of(pair, (y[6], y[7], y[8]))
-        return pair_motion(pair, slips, self.rolls), slips
+        return forces_on_two(pair, slips, self.rolls), slips
 
     def without_tops(self) -> Self:
         """Without the numbers of one state, too."""
@@ -59,13 +60,13 @@ class SlipOnsetOnTwo(TwoContactMode):
     def onset_rates(self, y: Row, direction: Slip) -> tuple[Row, Row]:
         """Return the rates of the numbers, and margins, where what begins has a direction."""
         axis, momentum = split(y)
-        pair = ContactPair.of(axis, momentum, self.tops)
+        pair = contact_points(axis, momentum, self.tops)
         slips = slips_of(pair, direction if len(direction) == 3 else (y[6], y[7], y[8]))
         if len(direction) == 2:
             slips = direction, slips[1]
-        now = pair_motion(pair, slips, self.rolls)
+        now = forces_on_two(pair, slips, self.rolls)
         margins = [*now.normal]
-        if self.stopped:
+        if self.holds_rolling:
             margins.append(now.rolling_reserve)
         elif self.top.resists_rolling:
             margins.append(self.rolls * now.rolling)
@@ -77,7 +78,7 @@ class SlipOnsetOnTwo(TwoContactMode):
         self, time: float, state: State, end: float, integrator: Integrator
     ) -> Iterator[Segment]:
         """Follow what begins for a step."""
-        kinds = self.top.kind, self.second_top.kind
+        kinds = tuple([top.kind for top in self.tops])
         phase = follow_slip(
             onset_motion_on_two(self.without_tops(), kinds),
             self.top,
@@ -97,7 +98,7 @@ class SlipOnsetOnTwo(TwoContactMode):
 
 
 @lru_cache
-def onset_motion_on_two(form: Any, kinds: tuple[Kind, Kind]) -> SlipMotion:
+def onset_motion_on_two(form: Any, kinds: tuple[Kind, ...]) -> SlipMotion:
     """Return the equations of motion of a mode without tops, for tops of these kinds."""
     first_kind, second_kind = kinds
 

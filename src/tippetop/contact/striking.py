@@ -7,7 +7,7 @@ executors of motions, of one launch and of many, follow it too, unless slip ends
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 
-from tippetop.contact.contact_mode import BRANCH, NEARING
+from tippetop.contact.guards import BRANCH, NEARING
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.integrators.dense import as_array
 from tippetop.mechanics.contacts.branches import is_branched, on_branch, on_other_branch

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 from tippetop.contact.flight import TOUCHING
-from tippetop.contact.two_contact_mode import SLOWEST_SLIP
+from tippetop.contact.guards import SLOWEST_SLIP
+from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points
 from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
-from tippetop.mechanics.contacts.pair import ContactPair, Tops
+from tippetop.mechanics.contacts.pair import Tops
 from tippetop.mechanics.contacts.slip_variables import size, slip_of
 from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.contacts.wrench import Wrench
@@ -39,7 +40,7 @@ def stays_closed(top: Top, beside: Top, state: State) -> bool:
     """
     back, depth = 1.0, max(0.0, float(gap(state, top) - gap(state, beside)))
     if _both_slip(top, beside, state):
-        point = ContactPair.of(state.axis, state.momentum, (top, beside)).first
+        point = ContactPoint.of(state.axis, state.momentum, top)
         slip = slip_of(*along_table(state), top)
         wrench = forces_and_accelerations(point, slip, point.turning[:2])[0]
         back = float(abs(gap_acceleration(top, beside, state, wrench)))
@@ -49,7 +50,7 @@ def stays_closed(top: Top, beside: Top, state: State) -> bool:
 
 def gap_acceleration(top: Top, beside: Top, state: State, wrench: Wrench) -> float:
     """Return the acceleration of another surface's gap under a wrench at the active one."""
-    pair = ContactPair.of(state.axis, state.momentum, (top, beside))
+    pair = contact_points(state.axis, state.momentum, (top, beside))
     return float(rates_under(pair, [(0, wrench)], free_rates(pair)).points[1][2])
 
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from tippetop.contact.contact_mode import ContactMode, split
-from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment
+from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment, split
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.contacts.forces import velocity_without_slip, without_rolling
@@ -54,7 +54,7 @@ class TransientMode(Mode):
     def reported_mode(self) -> ContactMode:
         """The mode that a result reports for it."""
         slip, held = self.ending
-        return ContactMode(self.top, not slip and held, slip and held)
+        return ContactMode(self.top, (not slip and held,), slip and held)
 
     @property
     def label(self) -> str:

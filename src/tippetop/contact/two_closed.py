@@ -3,10 +3,13 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.guards import SLOWEST_SLIP
 from tippetop.contact.mode import Event, EventKind
 from tippetop.contact.surfaces import number_of
-from tippetop.contact.two_contact_mode import SLOWEST_SLIP, TwoContactMode
 from tippetop.mechanics.contacts.branches import off_branch
+from tippetop.mechanics.contacts.contact_forces import forces_on_two
+from tippetop.mechanics.contacts.contact_point import contact_points
 from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
 from tippetop.mechanics.contacts.pair import (
     ContactPair,
@@ -16,7 +19,6 @@ from tippetop.mechanics.contacts.pair import (
     turning_along,
     without_tilting,
 )
-from tippetop.mechanics.contacts.pair_motion import pair_motion
 from tippetop.mechanics.contacts.pair_resolver import (
     Resolution,
     both_letting_go,
@@ -57,7 +59,7 @@ class Before(NamedTuple):
     """Whether the body rolled, if that is resisted."""
 
     @classmethod
-    def of(cls, mode: TwoContactMode) -> "Before":
+    def of(cls, mode: ContactMode) -> "Before":
         """Return what they did in a mode."""
         return cls(mode.stuck, bool(mode.rolls))
 
@@ -96,12 +98,12 @@ class TwoClosed:
         state = without_tilting(state, tops[0])
         if ended == (False, True):
             tops, ended = tops[::-1], ended[::-1]
-        pair = ContactPair.of(state.axis, state.momentum, tops)
+        pair = contact_points(state.axis, state.momentum, tops)
         stopped = tops[0].resists_rolling and not rolls
         if any(ended) or stopped:
             momentum, velocity = at_rest(pair, state.velocity, ended, stopped=stopped)
             state = state._replace(momentum=momentum, velocity=velocity)
-            pair = ContactPair.of(state.axis, state.momentum, tops)
+            pair = contact_points(state.axis, state.momentum, tops)
         return cls(tops, state, ended, rolls, pair)
 
     @property
@@ -168,7 +170,7 @@ class TwoClosed:
             return both_letting_go(self.pair, self.rolls)
         if not all(self.ended):
             return letting_go(self.pair, self.xi, self.rolls)
-        needed = pair_motion(self.pair, (None, None), self.rolls).needed(contact)
+        needed = forces_on_two(self.pair, (None, None), self.rolls).needed(contact)
         sign = 1.0 if (needed > 0.0) == (contact == 0) else -1.0
         return turning_about(self.pair, 1 - contact, sign, self.rolls)
 
@@ -208,8 +210,8 @@ def time_to_end(state: State, contacts: TwoClosed) -> float:
     slip, speed = slips[number], size(slips[number])
     if not 0.0 < speed <= TOGETHER * SLOWEST_SLIP or not size(slips[1 - number]):
         return 0.0
-    pair = ContactPair.of(state.axis, state.momentum, tops)
-    motion = pair_motion(pair, (slips[0], slips[1]), contacts.rolls)
+    pair = contact_points(state.axis, state.momentum, tops)
+    motion = forces_on_two(pair, (slips[0], slips[1]), contacts.rolls)
     change: Slip = motion.rates.points[number][:2]
     if slip_length(tops[0].friction) is not None:
         slip, change = (slips[0][0], slips[0][1], slip_apart(pair)), motion.rate
@@ -222,7 +224,7 @@ def rolling_of(state: State, top: Top) -> float:
     if not top.resists_rolling or not is_rolling(state.axis, state.momentum, top):
         return 0.0
     return (
-        1.0 if turning_along(ContactPair.of(state.axis, state.momentum, (top, top))) > 0.0 else -1.0
+        1.0 if turning_along(contact_points(state.axis, state.momentum, (top, top))) > 0.0 else -1.0
     )
 
 

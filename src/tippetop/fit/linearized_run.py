@@ -19,7 +19,7 @@ import xarray as xr
 
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.block import Block
-from tippetop.contact.contact_mode import StatedMode
+from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.mode import (
     COMPLETED,
     FAILURE,
@@ -391,7 +391,7 @@ class LinearizedRun:
     def _mode(self, mode: Mode, direction: StartNumbers, change: float) -> Any:
         """Return a mode with the tops of a run beside."""
         tops = [self._top(top, direction, change) for top in mode.tops]
-        if isinstance(mode, StatedMode):
+        if isinstance(mode, ContactMode):
             count = sum(top.kind.numbers for top in mode.tops)
             return mode.with_tops(tops, mode.parameters[count:])
         return replace(mode, top=tops[0])

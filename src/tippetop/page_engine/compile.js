@@ -141,8 +141,8 @@ function readerOf(mode, size) {
   const parameters = Float64Array.of(...numbers, 0);
   const last = numbers.length;
   const values = (of) => (y, p) => {
-    const [top, second_top] = topsOf(kinds, p);
-    return [...of(replace(mode, second_top ? { top, second_top } : { top }), y, p[last])];
+    const [top, ...beside] = topsOf(kinds, p);
+    return [...of(replace(mode, beside.length ? { top, beside } : { top }), y, p[last])];
   };
   return (of, count) => {
     if (!codes.has(of)) codes.set(of, compiled(values(of), size, parameters.length));

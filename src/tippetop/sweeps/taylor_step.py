@@ -19,7 +19,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from tippetop.contact.contact_mode import BRANCH
+from tippetop.contact.guards import BRANCH
 from tippetop.graph.taylor_coefficients import SharedSeries
 from tippetop.integrators.base import Motion
 from tippetop.integrators.polynomial_minima import (

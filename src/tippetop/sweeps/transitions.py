@@ -8,8 +8,9 @@ to its end.
 
 import numpy as np
 
-from tippetop.contact.contact_mode import BRANCH, LIFT_OFF, ContactMode, sliding_motion
+from tippetop.contact.contact_mode import ContactMode, sliding_motion
 from tippetop.contact.flight import TOUCHING, Flight
+from tippetop.contact.guards import BRANCH, LIFT_OFF
 from tippetop.contact.mode import EventKind, Mode, ModeEnd, Outcome, Transition
 from tippetop.contact.surfaces import lands_flat, lies_flat
 from tippetop.integrators.base import Array

@@ -11,6 +11,7 @@ does not enter: axis and angular momentum determine all. The response to F and t
 positive definite (Delassus).
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tippetop.mechanics.contacts.wrench import Wrench
@@ -80,6 +81,13 @@ class ContactPoint(NamedTuple):
     def moment(self, wrench: Wrench) -> Vector:
         """Moment of a wrench about the centre of mass, N m."""
         return add(cross(self.arm, wrench.force), wrench.torque)
+
+
+def contact_points(axis: Vector, momentum: Vector, tops: Sequence[Top]) -> tuple[ContactPoint, ...]:
+    """Return the contact points for this axis and angular momentum (kg m^2/s), one for each of some
+    tops with another active surface.
+    """
+    return tuple([ContactPoint.of(axis, momentum, top) for top in tops])
 
 
 def arm_rate(axis: Vector, tilting: Vector, top: Top) -> Vector:

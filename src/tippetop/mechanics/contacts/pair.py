@@ -25,8 +25,7 @@ e. Where omega_e = 0 it is any up to that, along e: across e the normal forces h
 already.
 """
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TypeAlias
 
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import (
@@ -36,57 +35,40 @@ from tippetop.mechanics.contacts.forces import (
     sticking_constraints,
 )
 from tippetop.mechanics.contacts.system import (
-    At,
     Component,
     Constraint,
     ContactRates,
+    moment_of,
     solve_constraints,
 )
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.laws.friction import NO_TORQUE
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, add, cross, dot, scale
 
-Tops = tuple[Top, Top]
+Tops: TypeAlias = tuple[Top, ...]
 """A top with one, and with the other, of two of its surfaces active."""
 
 
-class ContactPair(NamedTuple):
-    """The contact points of a body that touches the table with two surfaces."""
-
-    first: ContactPoint
-    second: ContactPoint
-
-    @classmethod
-    def of(cls, axis: Vector, momentum: Vector, tops: Tops) -> "ContactPair":
-        """Return the contact points for this axis and angular momentum (kg m^2/s)."""
-        first, second = (ContactPoint.of(axis, momentum, top) for top in tops)
-        return cls(first, second)
-
-    def moment(self, wrenches: Sequence[At]) -> Vector:
-        """Moment of some wrenches about the centre of mass, N m."""
-        total = NO_TORQUE
-        for number, wrench in wrenches:
-            total = add(total, self[number].moment(wrench))
-        return total
+ContactPair: TypeAlias = tuple[ContactPoint, ...]
+"""Both contact points, the first one first."""
 
 
 def apart(pair: ContactPair) -> Scalar:
     """D, how far the second contact is from the first along e, m."""
-    e = directions_of(pair.first.axis)[0]
-    return dot(pair.second.arm, e) - dot(pair.first.arm, e)
+    e = directions_of(pair[0].axis)[0]
+    return dot(pair[1].arm, e) - dot(pair[0].arm, e)
 
 
 def slip_apart(pair: ContactPair) -> Scalar:
     """D omega_z, m/s."""
-    return apart(pair) * pair.first.turning[2]
+    return apart(pair) * pair[0].turning[2]
 
 
 def turning_along(pair: ContactPair) -> Scalar:
     """omega_e, rad/s."""
-    return dot(pair.first.turning, directions_of(pair.first.axis)[0])
+    return dot(pair[0].turning, directions_of(pair[0].axis)[0])
 
 
 def without_tilting(state: State, top: Top) -> State:
@@ -100,9 +82,9 @@ def without_tilting(state: State, top: Top) -> State:
 
 def slips_of(pair: ContactPair, xi: Slip) -> tuple[Slip, Slip]:
     """Return the slips of both contacts, with drilling if the law resists it."""
-    across = directions_of(pair.first.axis)[1]
+    across = directions_of(pair[0].axis)[1]
     first, second = (xi[0], xi[1]), (xi[0] + xi[2] * across[0], xi[1] + xi[2] * across[1])
-    reach = slip_length(pair.first.top.friction)
+    reach = slip_length(pair[0].top.friction)
     if reach is None:
         return first, second
     drilling = reach * xi[2] / apart(pair)
@@ -118,7 +100,7 @@ def at_rest(
     They act at the contacts, and keep the normal velocities: what little slip is left goes as
     friction takes it.
     """
-    omega = pair.first.turning
+    omega = pair[0].turning
     velocities = ContactRates(
         tuple([add(velocity, cross(omega, point.arm)) for point in pair]), omega
     )
@@ -128,7 +110,7 @@ def at_rest(
         *(rolling_constraints(pair, None) if stopped else []),
     ]
     impulses = solve_constraints(pair, held, velocities).wrenches
-    momentum = add(pair.first.momentum, pair.moment(impulses))
+    momentum = add(pair[0].momentum, moment_of(pair, impulses))
     for _, impulse in impulses:
-        velocity = add(velocity, scale(1.0 / pair.first.top.mass, impulse.force))
+        velocity = add(velocity, scale(1.0 / pair[0].top.mass, impulse.force))
     return momentum, velocity

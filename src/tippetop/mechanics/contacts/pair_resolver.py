@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_two
+from tippetop.mechanics.contacts.contact_point import contact_points
 from tippetop.mechanics.contacts.forces import Slips, directions_of, slip_length
 from tippetop.mechanics.contacts.pair import ContactPair, apart, slips_of, turning_along
-from tippetop.mechanics.contacts.pair_motion import PairMotion, pair_motion
 from tippetop.mechanics.contacts.slip_direction import Resisted, directions
 from tippetop.mechanics.contacts.slip_variables import plus, scaled, size
 from tippetop.mechanics.contacts.system import rates_added
@@ -22,7 +23,7 @@ CUTS = 50
 class Resolution(NamedTuple):
     """How two contacts go on."""
 
-    motion: PairMotion
+    motion: ContactForces
     """What the table does, and how the contacts accelerate."""
     sticks: tuple[bool, bool]
     """Which of them stick."""
@@ -44,7 +45,7 @@ def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: flo
         If nothing can hold them, and there is no direction, or more than one, in which they can go
         on.
     """
-    if rolls or not pair.first.top.resists_rolling:
+    if rolls or not pair[0].top.resists_rolling:
         return of_slips(pair, xi, ended, rolls)
     held = _without_rolling(pair, xi, ended)
     if held is not None and held.motion.rolling_reserve >= 0.0:
@@ -65,7 +66,7 @@ def _without_rolling(pair: ContactPair, xi: Slip, ended: tuple[bool, bool]) -> R
         return None
 
 
-def rolling_direction(held: PairMotion) -> float:
+def rolling_direction(held: ContactForces) -> float:
     """Sign of omega_e where rolling begins: against the couple that would have held it."""
     return -1.0 if held.holding > 0.0 else 1.0
 
@@ -78,13 +79,13 @@ def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float
     """
     first, second = slips_of(pair, xi)
     slips: Slips = (None if ended[0] else first, None if ended[1] else second)
-    held = pair_motion(pair, slips, rolls)
+    held = forces_on_two(pair, slips, rolls)
     if not any(ended):
         return Resolution(held, (False, False), rolls)
     if not all(ended):
         sticks = held.reserve(0) >= 0.0
         return Resolution(held, (True, False), rolls) if sticks else letting_go(pair, xi, rolls)
-    if slip_length(pair.first.top.friction) is not None:
+    if slip_length(pair[0].top.friction) is not None:
         return patches_letting_go(pair, rolls) or Resolution(held, (True, True), rolls)
     if held.is_held:
         return Resolution(held, (True, True), rolls)
@@ -107,8 +108,8 @@ def letting_go(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
     slip = slips_of(pair, xi)[1]
     stiffness = _stiffness(pair)
 
-    def motion(direction: Slip | None) -> PairMotion:
-        return pair_motion(pair, (direction, slip), rolls)
+    def motion(direction: Slip | None) -> ContactForces:
+        return forces_on_two(pair, (direction, slip), rolls)
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         trial = motion(ways[0])
@@ -126,13 +127,13 @@ def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
     ArithmeticError
         If there is no direction of xi for it, or more than one.
     """
-    across, lever = directions_of(pair.first.axis)[1], float(apart(pair))
+    across, lever = directions_of(pair[0].axis)[1], float(apart(pair))
     turned = rates_added(pair, 1, Wrench(across, NO_TORQUE)).turning[2]
     stiffness = _stiffness(pair) + float(abs(lever * turned))
     drilled = abs(lever * float(rates_added(pair, 0, DRILLING).turning[2]))
 
-    def motion(direction: Slip) -> PairMotion:
-        return pair_motion(pair, slips_of(pair, direction), rolls)
+    def motion(direction: Slip) -> ContactForces:
+        return forces_on_two(pair, slips_of(pair, direction), rolls)
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         trial = motion(ways[0])
@@ -142,7 +143,7 @@ def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
         )
         return [Resisted(trial.rate, strength)]
 
-    direction = directions(response, [against(pair_motion(pair, (None, None), rolls))])[0]
+    direction = directions(response, [against(forces_on_two(pair, (None, None), rolls))])[0]
     return Resolution(motion(direction), (False, False), rolls, direction)
 
 
@@ -151,11 +152,11 @@ def _stiffness(pair: ContactPair) -> float:
     return float(abs(responses[0][0]) + abs(responses[1][1]))
 
 
-def against(held: PairMotion) -> Slip:
+def against(held: ContactForces) -> Slip:
     """Direction of xi against which friction exerts all it can along e, and what is needed across
     it.
     """
-    along, across = directions_of(held.pair.first.axis)
+    along, across = directions_of(held.points[0].axis)
     sign = -1.0 if held.along >= 0.0 else 1.0
     ratios = []
     for number in (0, 1):
@@ -178,7 +179,7 @@ def patches_letting_go(pair: ContactPair, rolls: float) -> Resolution | None:
     ArithmeticError
         If nothing can hold them, and the search for such a direction fails.
     """
-    held = pair_motion(pair, (None, None), rolls)
+    held = forces_on_two(pair, (None, None), rolls)
     if held.is_held:
         return None
     try:
@@ -189,12 +190,13 @@ def patches_letting_go(pair: ContactPair, rolls: float) -> Resolution | None:
         raise Unsolved("nothing holds two patches, and no direction is found") from None
 
 
-def moments_hold(held: PairMotion) -> bool:
+def moments_hold(held: ContactForces) -> bool:
     """Return whether the table can hold two patches, with moments of drilling too; of floats.
 
     By the principle of virtual power it can if friction can take, in every direction xi of slip, at
-    least the power of the forces that hold them. What it can take beyond that (`PairMotion.spare`)
-    is convex in xi and grows with its size: on every face of a cube it has one least value.
+    least the power of the forces that hold them. What it can take beyond that
+    (`ContactForces.spare`) is convex in xi and grows with its size: on every face of a cube it has
+    one least value.
     """
 
     def least_on(face: int, side: float) -> float:
@@ -218,10 +220,10 @@ def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
     held fill an interval of q. From q = 0, where they may not, each direction in which slip begins
     bounds it from below.
     """
-    axis, momentum, tops = pair.first.axis, pair.first.momentum, (pair.first.top, pair.second.top)
+    axis, momentum, tops = pair[0].axis, pair[0].momentum, [point.top for point in pair]
 
     def at(q: float) -> ContactPair:
-        return ContactPair.of(axis, scale(q**0.5, momentum), tops)
+        return contact_points(axis, scale(q**0.5, momentum), tops)
 
     q, still = 0.0, at(0.0)
     for _ in range(CUTS):
@@ -230,7 +232,7 @@ def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
             break
         assert trial.begins is not None
         least, most = (
-            pair_motion(one, (None, None), rolls).spare(trial.begins) for one in (still, pair)
+            forces_on_two(one, (None, None), rolls).spare(trial.begins) for one in (still, pair)
         )
         bound = -least / (most - least)
         if not q < bound < 1.0:
@@ -243,7 +245,7 @@ def turning_about(pair: ContactPair, number: int, sign: float, rolls: float) -> 
     """Return the resolution in which the body turns about one contact, and the other slips along
     sign.
     """
-    across = scaled(sign if number == 0 else -sign, directions_of(pair.first.axis)[1][:2])
+    across = scaled(sign if number == 0 else -sign, directions_of(pair[0].axis)[1][:2])
     slips: Slips = (None, across) if number == 0 else (across, None)
-    motion = pair_motion(pair, slips, rolls)
+    motion = forces_on_two(pair, slips, rolls)
     return Resolution(motion, (number == 0, number == 1), rolls, (0.0, 0.0, sign))

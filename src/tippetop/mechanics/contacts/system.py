@@ -103,6 +103,14 @@ def rates_added(points: Sequence[ContactPoint], contact: int, wrench: Wrench) ->
     return ContactRates(tuple(moved), turning)
 
 
+def moment_of(points: Sequence[ContactPoint], wrenches: Sequence[At]) -> Vector:
+    """Moment of some wrenches at contacts about the centre of mass, N m."""
+    total = NO_TORQUE
+    for number, wrench in wrenches:
+        total = add(total, points[number].moment(wrench))
+    return total
+
+
 def solve_constraints(
     points: Sequence[ContactPoint], constraints: Sequence[Constraint], rates: ContactRates
 ) -> ConstraintSolution:
