@@ -2,6 +2,7 @@
 
 import doctest
 import importlib
+import itertools
 import os
 import re
 import shlex
@@ -100,6 +101,28 @@ def test_the_blocks_of_a_page_run(page):
                 assert told.exit_code == 0, (line, told.output)
         else:
             exec(compile(code, str(page), "exec"), names)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_what_the_blocks_of_a_page_import_exists(page):
+    """Notebooks run elsewhere: here a name that is gone is noticed, of the package and of `tt`."""
+    text = page.read_text(encoding="utf-8")
+    blocks = [OPTIONS.sub("", block["code"], count=1) for block in BLOCK.finditer(text)]
+    code = "\n".join(
+        line.strip() for block in blocks for line in block.splitlines() if "import " in line
+    )
+    for origin, names in re.findall(r"^from (tippetop[\w.]*) import ([\w, ]+)$", code, re.M):
+        module = importlib.import_module(origin)
+        assert [name for name in names.split(", ") if not hasattr(module, name.split()[0])] == []
+    used = {name for block in blocks for name in re.findall(r"\btt\.(\w+)", block)}
+    assert {name for name in used if not hasattr(tt, name)} == set()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_no_heading_of_a_page_skips_a_level(page):
+    text = re.sub(r"^(`{3,}).*?^\1$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    levels = [len(marks) for marks in re.findall(r"^(#+) ", text, re.M)]
+    assert [b for a, b in itertools.pairwise(levels) if b > a + 1] == []
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
