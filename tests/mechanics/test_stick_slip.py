@@ -29,13 +29,20 @@ from tippetop.mechanics.contacts.forces import (
     without_drilling,
 )
 from tippetop.mechanics.contacts.gauss_points import PARTS, STAGES
-from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_end import (
+    SlipComponent,
+    SlipEndState,
+    rates_in_time,
+    reopening_guard,
+)
 from tippetop.mechanics.contacts.slip_onset import find_onset
 from tippetop.mechanics.contacts.slip_variables import (
+    HORIZON,
     plus,
     scaled,
     size,
     slip_of,
+    time_to_end,
     velocity_of,
 )
 from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS, EllipsoidalLaw
@@ -386,6 +393,36 @@ def test_the_table_pulls_from_the_first_instant_on_as_it_does_where_slip_begins(
     for i in range(3):
         assert np.broadcast_to(found.force[i], 4) == pytest.approx(true.force[i], abs=1e-7)
         assert np.broadcast_to(found.torque[i], 4) == pytest.approx(true.torque[i], abs=1e-7)
+
+
+def test_the_clock_of_slips_end_is_left_where_slip_outlasts_twice_what_it_begins_at():
+    """And slip that is rounding is not left to a state, which has no direction of it."""
+    random, top, ending = (
+        np.random.default_rng(3),
+        report(CoulombLaw(0.3)),
+        SlipComponent(slip=True),
+    )
+    counts = {"begins": 0, "leaves": 0, "rounding": 0}
+    for _ in range(2000):
+        angle, speed = random.uniform(0.0, 2.0 * np.pi), 10.0 ** random.uniform(-17.0, -1.0)
+        tilt, momentum = random.uniform(0.1, 3.0), tuple(random.normal(size=3))
+        axis, direction = (
+            (math.sin(tilt), 0.0, math.cos(tilt)),
+            (math.cos(angle), math.sin(angle)),
+        )
+        now = SlipEndState(axis, momentum, (), direction, speed, 0.0)
+        left = time_to_end(scaled(speed, direction), rates_in_time(now, ending, top).xi)
+        guard = reopening_guard(now, ending, top)
+        if left < HORIZON:
+            counts["begins"] += 1
+            assert guard > 0.0
+        if speed < 1e-12:
+            counts["rounding"] += 1
+            assert guard > 0.0
+        if left > 2.0 * HORIZON and speed > 1e-4:
+            counts["leaves"] += 1
+            assert guard < 0.0
+    assert min(counts.values()) > 100
 
 
 def test_slip_starts_against_the_force_that_held_it():

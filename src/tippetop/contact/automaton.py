@@ -222,9 +222,6 @@ class Automaton:
             return self.lift_off(time, state)
         if end.cause == REOPENING:
             stuck = not ending.slip and ending.held
-            if ending.slip and not is_slipping(*along_table(state), self.top):
-                # Its rate was rounding, too: else the clock would begin anew without end.
-                return self.resting(time, state)
             return Transition((), self.mode_for(state, slips=not stuck), state)
         if end.cause == OVERTAKEN:
             second = replace(mode, ending=SlipComponent(not ending.slip), begin=())

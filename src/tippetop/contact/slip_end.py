@@ -30,9 +30,6 @@ LANDING = (3e-8, 1e-16)
 time: if its direction has come to rest by then, and in any case.
 """
 
-SLOWEST = 1e-12
-"""A velocity, in natural units, that has ended where it cannot be followed further."""
-
 ALMOST = 1e-6
 """Part of the time to the end that is left at the last look at what else may happen: slip has a
 direction.
@@ -78,9 +75,6 @@ class SlipEnd(TransientMode):
         arcs, last_state, arrival = self._followed(begin, end - time, integrator)
         now = slip_end_state(arcs[-1].end_state.tolist() if arcs else begin, self.ending)
         arc, until = arcs[-1] if arcs and arrival is None else None, float(now.time)
-        if arc is not None and arc.failure is not None and now.speed < SLOWEST:
-            # It passes zero by so little that no step is short enough to see it turn round.
-            last_state, arc = now._replace(speed=0.0), None
         if arrival is None:
             last, onwards = (
                 self.state(pack_moment(last_state)),

@@ -27,6 +27,7 @@ from tippetop.mechanics.contacts.slip_variables import (
     HORIZON,
     inner,
     plus,
+    remaining,
     scaled,
     size,
     slip_of,
@@ -37,10 +38,8 @@ from tippetop.mechanics.motion import angular_velocity, axis_rate
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, dot, scale
 
-DIGITS, SLOW = 1e-11, 1e-9
-"""Error of a velocity that is not followed by itself, in natural units, and one that is slow beside
-it.
-"""
+DIGITS = 1e-11
+"""Error of a velocity that is not followed by itself, relative to those of which it is made."""
 
 QUICK = 1e5
 """How many times its own velocities change in a natural unit of time where they change fast."""
@@ -188,13 +187,19 @@ def slip_end_rates(state: SlipEndState, ending: SlipComponent, top: Top) -> Slip
 
 
 def reopening_guard(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar:
-    """Falls through zero where the end is twice as far as `HORIZON` again: -(s + 2 HORIZON R).
+    """Falls through zero where xi outlasts twice the `HORIZON` of `remaining`, by more than what
+    rounding of its direction in a state makes of it.
 
-    A slow velocity must grow, by more than what rounding of its direction makes of R.
+    A state has xi to `DIGITS` of the velocities it is made of, and so the rate R to that part of
+    |A| / s: a velocity that is not more than rounding stays in the clock until it ends or grows.
     """
-    rate = rates_in_time(state, ending, top).xi
-    doubt = inner(rate, rate) ** 0.5 * DIGITS / (state.speed + SLOW)
-    return -2.0 * HORIZON * (inner(rate, state.direction) - doubt) - state.speed
+    rate, turning = (
+        rates_in_time(state, ending, top).xi,
+        angular_velocity(state.axis, state.momentum, top),
+    )
+    doubt = DIGITS * ((1.0 + dot(turning, turning)) * inner(rate, rate)) ** 0.5
+    horizon = 2.0 * HORIZON
+    return horizon * doubt - remaining(scaled(state.speed, state.direction), rate, horizon)
 
 
 def landing_guard(state: SlipEndState, ending: SlipComponent, top: Top, horizon: Scalar) -> Scalar:

@@ -142,27 +142,29 @@ def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top) ->
     return remaining(turning[:2], (change[0], change[1]))
 
 
-def remaining(velocity: Slip, change: Slip) -> Scalar:
-    """Positive while a velocity outlasts `HORIZON`: s (s + HORIZON R R^2 / (A^2 + s^2)).
+def remaining(velocity: Slip, change: Slip, horizon: float = HORIZON) -> Scalar:
+    """Positive while a velocity outlasts a horizon: s (s + horizon R R^2 / (A^2 + s^2)).
 
     At its present rate of change A = R e + V it ends after the time s / -R. Where its direction
     turns faster than it ends, as that of a disk that wobbles down, it counts as farther from its
     end: there the clock of `slip_end`, whose unit is the time s / |A|, is no better than time.
     """
-    square, closing = inner(velocity, velocity), inner(change, velocity)
-    return square + HORIZON * closing * _straightness(velocity, change)
+    return inner(velocity, velocity) + horizon * _closing(velocity, change)
 
 
 def time_to_end(velocity: Slip, change: Slip) -> float:
-    """Return the time that `remaining` compares with `HORIZON`; infinity where it grows."""
-    closing = inner(change, velocity) * _straightness(velocity, change)
+    """Return the horizon at which `remaining` is zero; infinity where the velocity grows."""
+    closing = _closing(velocity, change)
     return inner(velocity, velocity) / -closing if closing < 0.0 else math.inf
 
 
-def _straightness(velocity: Slip, change: Slip) -> Scalar:
-    """Return R^2 / (A^2 + s^2): the part of a velocity's change that is along it."""
+def _closing(velocity: Slip, change: Slip) -> Scalar:
+    """Return s R R^2 / (A^2 + s^2): half the rate of s^2, times the part of a velocity's change
+    that is along it.
+    """
     square, closing = inner(velocity, velocity), inner(change, velocity)
-    return closing * closing / (square * (inner(change, change) + square) + SMALLEST_DIVISOR)
+    along = closing * closing / (square * (inner(change, change) + square) + SMALLEST_DIVISOR)
+    return closing * along
 
 
 def branch_guard(slip: Slip, top: Top) -> Scalar:
