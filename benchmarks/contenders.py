@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from tippetop.mechanics.euler import published_rates
-from tippetop.mechanics.motion import contact, sliding_rates
+from tippetop.mechanics.motion import sliding_contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.problem.presets import report_problem
 from tippetop.problem.problem import Problem
@@ -97,7 +97,7 @@ def _batch_integrator(kind: Any, tolerance: float) -> Any:
     top = kind.top(tuple(hy.par[i] for i in range(kind.numbers)))
     state = sliding_state(y)
     rates = [hy.expression(rate) for rate in eight(sliding_rates(state, top))]
-    force = contact(state.axis, state.momentum, state.velocity, top).normal_force
+    force = sliding_contact(state.axis, state.momentum, state.velocity, top).normal_force
     return hy.taylor_adaptive_batch(
         list(zip(y, rates, strict=True)),
         np.zeros((8, lanes)),

@@ -6,7 +6,7 @@ from hypothesis import assume, reject
 from hypothesis import strategies as st
 
 from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
-from tippetop.mechanics.motion import contact
+from tippetop.mechanics.motion import sliding_contact
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
@@ -68,7 +68,7 @@ def sliding_states(draw, top):
     spin = 10.0 * top.axial_inertia * speed / top.surface.size
     momentum = tuple(spin * draw(numbers(-1.0, 1.0)) for _ in range(3))
     velocity = tuple(speed * draw(numbers(-1.0, 1.0)) for _ in range(2))
-    assume(top.mass * contact(axis, momentum, velocity, top).delassus > 0.05)
+    assume(top.mass * sliding_contact(axis, momentum, velocity, top).delassus > 0.05)
     return SlidingState(axis, momentum, velocity)
 
 

@@ -146,8 +146,7 @@ def test_what_touches_within_rounding_does_not_sink_in(back: float) -> None:
     state = on_table(along_table(state), first)
     assert gap_rate(state, second) == pytest.approx(3e-7, rel=1e-6)
     automaton = automaton_of(problem.contact, first, units)
-    run = Trajectory(
-        automaton, automaton.resting(0.0, state), 0.1, make_integrator("dop853", 3e-14)
-    )
+    start = automaton.resting(automaton.top, 0.0, state)
+    run = Trajectory(automaton, start, 0.1, make_integrator("dop853", 3e-14))
     for segment in run.segments():
         assert min(gap(segment.end_state, one) for one in top.each) > -1e-12

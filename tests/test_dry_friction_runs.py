@@ -23,7 +23,7 @@ from tippetop.mechanics.contacts.forces import (
     velocity_without_slip,
 )
 from tippetop.mechanics.laws.coulomb import CoulombLaw
-from tippetop.mechanics.motion import along_table, contact, on_table, presses
+from tippetop.mechanics.motion import along_table, on_table, presses, sliding_contact
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_state, natural_units
@@ -253,9 +253,9 @@ def test_what_could_be_held_by_a_pull_only_slips():
         state = on_table(
             SlidingState(axis, momentum, velocity_without_slip(axis, momentum, top)), top
         )
-        mode = Automaton(top, "fly", 0.0).resting(0.0, state).then
+        mode = Automaton(top, "fly", 0.0).resting(top, 0.0, state).then
         segment = next(mode.segments(0.0, state, 1e-3, make_integrator("dop853")))
-        touch = contact(*along_table(segment.end_state), top)
+        touch = sliding_contact(*along_table(segment.end_state), top)
         assert touch.normal_force > 0.0
         assert np.hypot(*touch.slip) > 0.0
         count += 1

@@ -12,7 +12,7 @@ import tippetop as tt
 from campaigns import examples
 from independent_flights import Toy, slide_and_fly
 from tippetop.contact.automaton import Automaton
-from tippetop.mechanics.motion import along_table, contact
+from tippetop.mechanics.motion import along_table, sliding_contact
 from tippetop.problem.presets import REPORT, report_problem
 
 FIRST_LIFT_OFF = {175.0: 5.361332, 170.0: 5.85182}
@@ -209,7 +209,7 @@ def test_an_indeterminate_contact_force_is_reported_and_what_follows_can_be_chos
     paradox = report_problem(100.0, tilt=1.5, mu=100.0).replace(
         {"launch.slip": (10.0, 0.0), "launch.precession": 60.0}
     )
-    touch = contact(*along_table(paradox.start()), paradox.top)
+    touch = sliding_contact(*along_table(paradox.start()), paradox.top)
     assert touch.delassus < 0.0 < touch.free_acceleration
     struck = tt.simulate(paradox, 1e-4)
     assert struck.event_kind[:2].values.tolist() == ["indeterminate force", "impact"]
@@ -228,7 +228,7 @@ def test_an_indeterminate_contact_force_is_reported_and_what_follows_can_be_chos
 
 def test_a_force_that_friction_makes_inconsistent_is_not_called_indeterminate():
     paradox = report_problem(0.0, tilt=1.5, mu=100.0).replace({"launch.slip": (10.0, 0.0)})
-    touch = contact(*along_table(paradox.start()), paradox.top)
+    touch = sliding_contact(*along_table(paradox.start()), paradox.top)
     assert touch.delassus < 0.0
     assert touch.free_acceleration < 0.0
     for choice in ("impact", "lift_off"):

@@ -15,7 +15,7 @@ import tippetop as tt
 from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import along_table, contact, contact_swing, on_table
+from tippetop.mechanics.motion import along_table, contact_swing, on_table, sliding_contact
 from tippetop.mechanics.state import SlidingState
 
 M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
@@ -45,19 +45,19 @@ def on_springs(slip: float, stiffness: float, jams: float, eps: float = 1e-6) ->
     """
     start = jamming(slip=slip).start()
 
-    def contact(y: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    def sliding_contact(y: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         arm = OFF * y[:3] - np.array([0.0, 0.0, R])
         return arm, y[6:9] + np.cross(y[3:6] / INERTIA, arm), -(y[9] + arm[2])
 
     def rates(_: float, y: np.ndarray) -> np.ndarray:
-        arm, slip, depth = contact(y)
+        arm, slip, depth = sliding_contact(y)
         normal = stiffness * max(depth, 0.0)
         force = np.array([*(-MU * normal * slip[:2] / np.hypot(eps, np.hypot(*slip[:2]))), normal])
         turned = np.cross(y[3:6] / INERTIA, y[:3])
         return np.array([*turned, *np.cross(arm, force), *(force / M - [0.0, 0.0, G]), y[8]])
 
     def rebounding(_: float, y: np.ndarray) -> float:
-        return float(contact(y)[1][2])
+        return float(sliding_contact(y)[1][2])
 
     rebounding.direction = 1.0  # type: ignore[attr-defined]
     pressed = float(tt.simulate(jamming(slip=slip), 1e-6, samples=2)["normal_force"][0]) / stiffness
@@ -123,7 +123,7 @@ def test_past_jamming_no_rounding_decides_whether_friction_presses_the_contact(l
         )
 
     def number(angle: float) -> float:
-        return float(contact(*slipping(angle), top).delassus * top.mass) - left
+        return float(sliding_contact(*slipping(angle), top).delassus * top.mass) - left
 
     # What slips the way it leans is pressed onto the table, and what slips back is drawn off it.
     jams = brentq(number, 0.0, np.pi, xtol=1e-15)
@@ -133,7 +133,7 @@ def test_past_jamming_no_rounding_decides_whether_friction_presses_the_contact(l
     state, impulse, lost = found
     assert (impulse > 0.0) == (left > -1e-7)
     assert (lost > 0.0) == (left > -1e-7)
-    after = float(contact(*along_table(state), top).delassus * top.mass)
+    after = float(sliding_contact(*along_table(state), top).delassus * top.mass)
     # As much below as it was above, but for what rounding could turn round.
     assert -1.1 * max(abs(left), 1e-6) < after < -0.9 * max(abs(left), 1e-8)
 
@@ -199,7 +199,9 @@ def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
     assert run.attrs["outcome"] == "failed"
     assert "rigid bodies do not tell" in run.attrs["outcome_advice"]
     last = {name: run[name].values[-1] for name in ("axis", "angular_momentum", "velocity")}
-    touch = contact(last["axis"], last["angular_momentum"], last["velocity"][:2], problem.top)
+    touch = sliding_contact(
+        last["axis"], last["angular_momentum"], last["velocity"][:2], problem.top
+    )
     weight = problem.body.mass * problem.gravity
     # Slip is followed until a part of 1e-8 of it is left; the force at the end itself is 0 / 0.
     assert abs(touch.delassus) * problem.body.mass < 1e-8

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import tippetop as tt
 from tippetop.contact import readings
-from tippetop.mechanics.motion import along_table, angular_velocity, contact, sliding_rates
+from tippetop.mechanics.motion import along_table, angular_velocity, sliding_contact, sliding_rates
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.state import SlidingState
 from tippetop.problem.presets import report_problem
@@ -83,7 +83,7 @@ def test_place_orientation_and_work_of_a_run_are_those_of_an_integration_beside_
     def rates(_, y):
         state = SlidingState.unpack(y[:8].tolist())
         omega = angular_velocity(state.axis, state.momentum, top)
-        power = contact(state.axis, state.momentum, state.velocity, top).power
+        power = sliding_contact(state.axis, state.momentum, state.velocity, top).power
         return [*sliding_rates(state, top).pack(), *state.velocity, power, *np.cross(omega, y[11:])]
 
     start = along_table(problem.start())

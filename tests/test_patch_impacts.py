@@ -130,7 +130,7 @@ def test_a_touchdown_takes_this_way_where_nothing_is_given_back():
     state, top = struck_top(HertzLaw(0.3, 0.1), np.random.default_rng(9))
     for restitution in (0.0, 0.5):
         automaton = Automaton(top, "fly", restitution)
-        ours, theirs = (automaton.touchdown(1.0, state, way) for way in (TAYLOR, None))
+        ours, theirs = (automaton.touchdown(top, 1.0, state, way) for way in (TAYLOR, None))
         assert [event.kind for event in ours.events] == [event.kind for event in theirs.events]
         assert type(ours.then) is type(theirs.then)
         assert ours.state.pack() == pytest.approx(theirs.state.pack(), abs=1e-7)

@@ -17,7 +17,7 @@ from pydantic import BaseModel
 from strategies import problems
 from tippetop import presets
 from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
-from tippetop.mechanics.motion import angular_velocity, contact, point_velocity
+from tippetop.mechanics.motion import angular_velocity, point_velocity, sliding_contact
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface, contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import length
@@ -853,7 +853,7 @@ class TestValues:
         if launch.velocity is not None:
             assert start.velocity == launch.velocity
             return
-        touch = contact(start.axis, start.momentum, start.velocity[:2], original.top)
+        touch = sliding_contact(start.axis, start.momentum, start.velocity[:2], original.top)
         leaning = complex(math.cos(launch.azimuth), math.sin(launch.azimuth))
         size = 10.0 * body.shape.surface.size
         error = abs(complex(*touch.slip) - complex(*launch.slip) * leaning)

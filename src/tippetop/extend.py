@@ -31,8 +31,13 @@ from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Guard, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.laws.friction import NO_TORQUE, FrictionLaw, Traction
-from tippetop.mechanics.motion import SlidingContact, axis_rate, on_table, sliding_rates
-from tippetop.mechanics.motion import contact as sliding_contact
+from tippetop.mechanics.motion import (
+    SlidingContact,
+    axis_rate,
+    on_table,
+    sliding_contact,
+    sliding_rates,
+)
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.surface import Surface
 from tippetop.mechanics.top import Kind, Top

@@ -21,7 +21,7 @@ from tippetop.mechanics.laws.contensou import EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzSlidingLaw
 from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
-from tippetop.mechanics.motion import axis_rate, contact, sliding_rates
+from tippetop.mechanics.motion import axis_rate, sliding_contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.surfaces.surface import RingSurface, SphereSurface, SpheroidSurface
@@ -136,7 +136,7 @@ def test_the_fast_paths_of_one_contact(surface, law, seed):
     point, slip = ContactPoint.of(axis, momentum, top), (0.3, -0.2)
     slides = SlidingState(axis, momentum, velocity_of(axis, momentum, slip, top))
     wrench, _ = forces_and_accelerations(point, slip)
-    assert contact(*slides, top).normal_force == pytest.approx(wrench.force[2], rel=1e-11)
+    assert sliding_contact(*slides, top).normal_force == pytest.approx(wrench.force[2], rel=1e-11)
     rates = sliding_rates(slides, top)
     np.testing.assert_allclose(rates.momentum, point.moment(wrench), rtol=1e-10, atol=1e-11)
     np.testing.assert_allclose(rates.velocity, wrench.force[:2], rtol=1e-10, atol=1e-11)

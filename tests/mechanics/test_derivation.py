@@ -18,7 +18,7 @@ from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
 
 from tippetop.mechanics.euler import published_normal_force, published_rates
 from tippetop.mechanics.laws.friction import ViscousLaw
-from tippetop.mechanics.motion import contact, sliding_rates
+from tippetop.mechanics.motion import sliding_contact, sliding_rates
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.view import Angles, state_from_angles
@@ -171,7 +171,10 @@ def random_motions(count: int):
             )
         )
         state = state_from_angles(as_angles(motion), top, math)
-        if top.mass * contact(state.axis, state.momentum, state.velocity, top).delassus > 0.1:
+        if (
+            top.mass * sliding_contact(state.axis, state.momentum, state.velocity, top).delassus
+            > 0.1
+        ):
             count -= 1
             yield top, motion
 
@@ -216,7 +219,7 @@ def test_normal_force_keeps_the_sphere_on_the_table():
     for top, motion in MOTIONS:
         expected, *_ = solve(top, motion)
         state = state_from_angles(as_angles(motion), top, math)
-        touch = contact(state.axis, state.momentum, state.velocity, top)
+        touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
         scale = abs(expected) + top.mass * top.gravity
         assert abs(touch.normal_force - expected) < 1e-11 * scale
         assert abs(published_normal_force(motion, top, math) - expected) < 1e-11 * scale

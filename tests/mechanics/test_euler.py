@@ -15,7 +15,7 @@ from strategies import angles, numbers, spheres, tops
 from tippetop.mechanics.euler import published_energy, published_normal_force, published_rates
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
-from tippetop.mechanics.motion import contact, on_table, sliding_rates
+from tippetop.mechanics.motion import on_table, sliding_contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
@@ -108,7 +108,7 @@ def sliding_run(spin):
 
     def rates(_, y):
         state = SlidingState.unpack(y.tolist())
-        power = contact(state.axis, state.momentum, state.velocity, TIPPE_TOP).power
+        power = sliding_contact(state.axis, state.momentum, state.velocity, TIPPE_TOP).power
         return (*sliding_rates(state, TIPPE_TOP).pack(), power)
 
     run = solve_ivp(

@@ -14,7 +14,13 @@ import sympy as sp
 
 from tippetop.mechanics import euler, invariants, quadratures, view
 from tippetop.mechanics.laws.friction import NO_TORQUE, RegularizedCoulombLaw, Traction, ViscousLaw
-from tippetop.mechanics.motion import along_table, axial_spin, contact, on_table, sliding_rates
+from tippetop.mechanics.motion import (
+    along_table,
+    axial_spin,
+    on_table,
+    sliding_contact,
+    sliding_rates,
+)
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top, natural_units
@@ -33,7 +39,7 @@ PUBLISHED_TOP = Top(0.02, 3.0e-6, 3.2e-6, SHAPES["eccentric sphere"], FRICTION_L
 def mechanics_outputs(y, top):
     """Everything the package computes from the 8 numbers of a sliding state."""
     state = SlidingState.unpack(y)
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     whole = on_table(state, top)
     return (
         *touch.arm,
@@ -281,7 +287,7 @@ def test_jelletts_integral_is_constant_under_any_friction_force_without_torque()
 
 def test_a_torque_changes_jelletts_integral_by_its_component_along_the_contact_vector():
     top = symbolic_top(SPHERE, ArbitraryFriction(FORCE, TORQUE))
-    touch = contact(SYMBOLS.axis, SYMBOLS.momentum, SYMBOLS.velocity, top)
+    touch = sliding_contact(SYMBOLS.axis, SYMBOLS.momentum, SYMBOLS.velocity, top)
     change = along_motion(invariants.jellett(on_table(SYMBOLS, top), top), top)
     assert vanishes_identically(change + touch.normal_force * dot(TORQUE, touch.arm))
     assert not vanishes_identically(change)
@@ -323,7 +329,7 @@ def test_jelletts_integral_of_a_spheroid_is_not_constant():
 def test_energy_changes_by_the_power_of_friction_whatever_the_shape_and_the_friction():
     top = symbolic_top(ANY_SHAPE, ArbitraryFriction(FORCE, TORQUE))
     change = along_motion(invariants.energy(on_table(SYMBOLS, top), top), top)
-    power = contact(SYMBOLS.axis, SYMBOLS.momentum, SYMBOLS.velocity, top).power
+    power = sliding_contact(SYMBOLS.axis, SYMBOLS.momentum, SYMBOLS.velocity, top).power
     assert vanishes_identically((change - power).doit())
     assert not vanishes_identically(power)
 
@@ -340,7 +346,7 @@ def test_the_contact_point_stays_on_the_table():
     """
     top = symbolic_top(ANY_SHAPE, ArbitraryFriction(FORCE))
     whole = on_table(SYMBOLS, top)
-    touch = contact(SYMBOLS.axis, SYMBOLS.momentum, SYMBOLS.velocity, top)
+    touch = sliding_contact(SYMBOLS.axis, SYMBOLS.momentum, SYMBOLS.velocity, top)
     point = cross(angular_velocity_by_definition(), touch.arm)[2] + whole.velocity[2]
     assert vanishes_identically(point.doit())
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from strategies import slides, spheres, tops
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.laws.friction import NO_TORQUE, Traction, ViscousLaw
-from tippetop.mechanics.motion import angular_velocity, contact, on_table, sliding_rates
+from tippetop.mechanics.motion import angular_velocity, on_table, sliding_contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
@@ -31,14 +31,14 @@ def rate_along_motion(quantity, state, top):
 
 
 def normal_force(state, top):
-    return contact(state.axis, state.momentum, state.velocity, top).normal_force
+    return sliding_contact(state.axis, state.momentum, state.velocity, top).normal_force
 
 
 @given(slides())
 def test_friction_takes_energy_while_the_table_pushes_and_gives_it_while_the_table_pulls(slide):
     """A bilateral contact that is let pull turns friction into a source of energy."""
     top, state = slide
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     assert touch.power <= 0.0 if touch.normal_force >= 0.0 else touch.power >= 0.0
 
 
@@ -48,7 +48,7 @@ def test_the_power_is_that_of_the_contact_force_and_the_change_of_energy(slide):
     contact.
     """
     top, state = slide
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     unit = abs(touch.normal_force) * (
         length((*touch.slip, 0.0)) + top.surface.size * length(touch.spin)
     )
@@ -64,7 +64,7 @@ def test_a_fast_tilted_spin_would_have_to_be_pulled_down():
     top = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
     state = state_from_angles(Angles(math.pi / 4, 0.0, 0.0, 100.0, 300.0, (0.0, 0.1)), top, math)
     assert normal_force(state, top) < 0.0
-    assert contact(state.axis, state.momentum, state.velocity, top).power > 0.0
+    assert sliding_contact(state.axis, state.momentum, state.velocity, top).power > 0.0
 
 
 @given(slides())

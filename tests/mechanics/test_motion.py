@@ -12,9 +12,9 @@ from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,
     axis_rate,
-    contact,
     on_table,
     point_velocity,
+    sliding_contact,
     sliding_rates,
 )
 from tippetop.mechanics.state import SlidingState
@@ -24,7 +24,7 @@ AT_REST = (0.0, 0.0)
 
 
 def normal_force(state, top):
-    return contact(state.axis, state.momentum, state.velocity, top).normal_force
+    return sliding_contact(state.axis, state.momentum, state.velocity, top).normal_force
 
 
 def force_unit(state, top):
@@ -61,7 +61,7 @@ def test_a_vertical_spin_in_place_lasts(case):
     top, state = case
     still = state._replace(velocity=AT_REST)
     assert sliding_rates(still, top).pack() == (0.0,) * 8
-    touch = contact(still.axis, still.momentum, still.velocity, top)
+    touch = sliding_contact(still.axis, still.momentum, still.velocity, top)
     assert touch.power == 0.0
     assert touch.spin == pytest.approx((0.0, 0.0, state.momentum[2] / top.axial_inertia), rel=1e-14)
 
@@ -85,7 +85,7 @@ def test_without_friction_nothing_pushes_the_centre_of_mass_sideways(slide):
     top, state = slide
     top = frictionless(top)
     assert sliding_rates(state, top).velocity == (0.0, 0.0)
-    assert contact(state.axis, state.momentum, state.velocity, top).power == 0.0
+    assert sliding_contact(state.axis, state.momentum, state.velocity, top).power == 0.0
 
 
 @given(slides())
@@ -93,7 +93,7 @@ def test_the_contact_point_does_not_leave_or_enter_the_table(slide):
     """Its velocity is the slip: horizontal."""
     top, state = slide
     whole = on_table(state, top)
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     omega = angular_velocity(state.axis, state.momentum, top)
     velocity = point_velocity(whole.velocity, omega, touch.arm)
     fastest = length(whole.velocity) + length(omega) * length(touch.arm)
@@ -161,7 +161,7 @@ def test_motion_does_not_know_left_from_right(slide):
 
 def assert_same_rates(actual, expected, state, top):
     """Equal to rounding of the largest forces and velocities in them."""
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     rubbing = length((*touch.traction.force, 0.0))
     force = force_unit(state, top) + abs(touch.normal_force) * (1.0 + rubbing)
     omega = length(angular_velocity(state.axis, state.momentum, top))

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from strategies import numbers, slides, unit_vectors
 from tippetop.mechanics.laws.friction import ViscousLaw
-from tippetop.mechanics.motion import angular_velocity, contact, on_table, sliding_rates
+from tippetop.mechanics.motion import angular_velocity, on_table, sliding_contact, sliding_rates
 from tippetop.mechanics.quadratures import orientation, quadrature_rates, turn_rate
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
@@ -122,7 +122,7 @@ def test_both_charts_follow_a_marker_that_moves_with_the_body(top, motion):
     def rates(_, y):
         state = SlidingState.unpack(y[:8].tolist())
         omega = angular_velocity(state.axis, state.momentum, top)
-        power = contact(state.axis, state.momentum, state.velocity, top).power
+        power = sliding_contact(state.axis, state.momentum, state.velocity, top).power
         x, y_, _, work = quadrature_rates(on_table(state, top), power, 1.0, top)
         assert (x, y_, work) == (*state.velocity, power)
         turns = [turn_rate(state.axis, state.momentum, pole, top) for pole in poles]

@@ -27,7 +27,13 @@ from tippetop.mechanics.laws.contensou import EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzDrillingLaw
 from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.laws.friction import ViscousLaw
-from tippetop.mechanics.motion import angular_velocity, axis_rate, contact, on_table, sliding_rates
+from tippetop.mechanics.motion import (
+    angular_velocity,
+    axis_rate,
+    on_table,
+    sliding_contact,
+    sliding_rates,
+)
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SphereSurface, contact_vector
 from tippetop.mechanics.top import Top
@@ -92,7 +98,7 @@ def test_what_is_held_stays(slide, mode):
 @given(slides())
 def test_sliding_has_the_normal_force_of_the_equations_of_sliding(slide):
     top, state = slide
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     point = ContactPoint.of(state.axis, state.momentum, top)
     wrench = forces_and_accelerations(point, touch.slip)[0]
     size = top.mass * scale_of(top, point)
@@ -129,7 +135,7 @@ def test_velocities_without_slip_and_momenta_without_drilling(slide):
     assert point.turning[:2] == pytest.approx(before.turning[:2], abs=1e-13 * speed)
     assert point.turning[2] == pytest.approx(0.0, abs=1e-13 * speed)
     velocity = velocity_without_slip(state.axis, state.momentum, top)
-    slip = contact(state.axis, state.momentum, velocity, top).slip
+    slip = sliding_contact(state.axis, state.momentum, velocity, top).slip
     assert slip == pytest.approx((0.0, 0.0), abs=1e-13 * speed * top.surface.size)
 
 

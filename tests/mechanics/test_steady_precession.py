@@ -13,7 +13,7 @@ from strategies import numbers, spheres, tops
 from tippetop.mechanics.euler import published_rates
 from tippetop.mechanics.invariants import jellett
 from tippetop.mechanics.laws.friction import ViscousLaw
-from tippetop.mechanics.motion import contact, on_table, sliding_rates
+from tippetop.mechanics.motion import on_table, sliding_contact, sliding_rates
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import cross, length
@@ -75,7 +75,7 @@ def test_steady_precession_only_turns_about_the_vertical(case):
     assert state.velocity == pytest.approx(
         ORIGIN, abs=1e-13 * abs(motion.precession) * top.surface.radius
     )
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     assert touch.normal_force == pytest.approx(weight, rel=1e-11)
     assert rates.axis == pytest.approx(
         cross(turning, state.axis), abs=1e-13 * abs(motion.precession)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from strategies import angles, numbers, slides, tops
 from tippetop.mechanics.invariants import energy, jellett
-from tippetop.mechanics.motion import contact, on_table, sliding_rates
+from tippetop.mechanics.motion import on_table, sliding_contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import natural, natural_units
 from tippetop.mechanics.units import Units
@@ -68,7 +68,8 @@ def test_a_top_moves_the_same_in_its_natural_units(slide):
     for actual, there in zip(rates, expected, strict=True):
         assert actual == pytest.approx(there, rel=1e-10, abs=1e-10)
     touch, touch_there = (
-        contact(s.axis, s.momentum, s.velocity, t) for s, t in ((scaled, small), (state, top))
+        sliding_contact(s.axis, s.momentum, s.velocity, t)
+        for s, t in ((scaled, small), (state, top))
     )
     weight = units.energy / units.length
     assert touch.normal_force == pytest.approx(
@@ -117,7 +118,7 @@ def test_a_larger_top_under_other_gravity_moves_alike_in_slower_time(launch, lar
         slip=tuple(v * larger / slower for v in motion.slip),
     )
     near_touch, far_touch = (
-        contact(s.axis, s.momentum, s.velocity, t)
+        sliding_contact(s.axis, s.momentum, s.velocity, t)
         for s, t in (
             (state_from_angles(motion, top, math), top),
             (state_from_angles(far, giant, math), giant),

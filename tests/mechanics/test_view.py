@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from strategies import angles, numbers, slides, tops, unit_vectors
 from tippetop.mechanics import view
 from tippetop.mechanics.laws.friction import ViscousLaw
-from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate, contact
+from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate, sliding_contact
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import cross, dot, length
@@ -28,7 +28,7 @@ def angles_of(state, top):
         azimuth=math.atan2(axis[1], axis[0]),
         precession=view.precession_rate(axis, momentum, top),
         spin=axial_spin(axis, momentum, top),
-        slip=view.slip_along_tilt(axis, contact(axis, momentum, state.velocity, top).slip),
+        slip=view.slip_along_tilt(axis, sliding_contact(axis, momentum, state.velocity, top).slip),
     )
 
 
@@ -113,7 +113,7 @@ def test_angles_are_what_they_say(launch):
     assert dot(omega, state.axis) == pytest.approx(given_angles.spin, abs=1e-13 * fastest)
     inclined = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
     slip = given_angles.slip[0] * inclined + given_angles.slip[1] * around
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     reach = 2.0 * max(map(top.surface.height, (-1.0, 0.0, 1.0)))
     assert touch.slip == pytest.approx(
         slip[:2], abs=1e-13 * (reach * fastest + math.hypot(*given_angles.slip))

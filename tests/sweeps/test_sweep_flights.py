@@ -16,7 +16,7 @@ from tippetop.mechanics.impacts.impact import impact
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw
 from tippetop.mechanics.laws.friction import ViscousLaw
-from tippetop.mechanics.motion import along_table, contact, on_table
+from tippetop.mechanics.motion import along_table, on_table, sliding_contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top, natural_state, natural_units
@@ -178,7 +178,7 @@ def test_flights_and_impacts_keep_what_must_be_kept(slide):
     before = jellett(found.state, top)[0]
     assert jellett(after, top)[0] == pytest.approx(before, abs=1e-10 * (1 + abs(before)))
     assert gap_rate(after, top)[0] == pytest.approx(0.0, abs=1e-9 * size)
-    touch = contact(
+    touch = sliding_contact(
         tuple(n[0] for n in after.axis),
         tuple(n[0] for n in after.momentum),
         [n[0] for n in after.velocity[:2]],

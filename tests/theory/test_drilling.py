@@ -19,7 +19,7 @@ from tippetop.cli.commands import app
 from tippetop.mechanics.invariants import jellett
 from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.laws.friction import ViscousLaw
-from tippetop.mechanics.motion import along_table, angular_velocity, contact
+from tippetop.mechanics.motion import along_table, angular_velocity, sliding_contact
 from tippetop.mechanics.state import State
 from tippetop.theory.apparent import critical_spin_from_spectrum
 from tippetop.theory.drilling import spin_rate, standing_time, time_to_stand
@@ -125,7 +125,7 @@ def test_a_steady_state_loses_jelletts_integral_at_one_rate_per_height(pressure)
             expected = -math.copysign(torque * height, integral)
             axis, momentum, velocity = state_of(steady, top)
             turning = angular_velocity(axis, momentum, top)[2]
-            touch = contact(axis, momentum, velocity, drilling(top, np.array([turning])))
+            touch = sliding_contact(axis, momentum, velocity, drilling(top, np.array([turning])))
             assert -touch.torque[2] * touch.arm[2] == pytest.approx(expected, rel=1e-12)
 
 

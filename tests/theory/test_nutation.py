@@ -12,7 +12,7 @@ from hypothesis import assume, given
 from strategies import numbers
 from tippetop import presets
 from tippetop.mechanics.laws.friction import ViscousLaw
-from tippetop.mechanics.motion import contact, sliding_rates
+from tippetop.mechanics.motion import sliding_contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SpheroidSurface
 from tippetop.mechanics.top import natural_units
@@ -93,7 +93,9 @@ def test_friction_takes_from_a_nutation_what_the_mechanics_says_on_average(probl
 
     def taken_by(point):
         rough = top._replace(friction=ViscousLaw(point[0]))
-        return dot(sliding_rates(state, rough).momentum, state.axis), contact(*state, rough).power
+        return dot(sliding_rates(state, rough).momentum, state.axis), sliding_contact(
+            *state, rough
+        ).power
 
     torque, power = jacobian(taken_by, [zero])[..., 0].T
     units = natural_units(top)

@@ -11,7 +11,7 @@ from hypothesis import assume, given
 from strategies import numbers, spheroids, tops
 from tippetop import presets
 from tippetop.mechanics.invariants import energy, jellett
-from tippetop.mechanics.motion import contact, on_table, sliding_rates
+from tippetop.mechanics.motion import on_table, sliding_contact, sliding_rates
 from tippetop.mechanics.vectors import cross, length
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.theory.derivatives import derivative
@@ -32,7 +32,7 @@ def assert_steady(steady, top):
     """The state only turns about the vertical, without slip, and the table bears the weight."""
     state = state_of(steady, top)
     rates = sliding_rates(state, top)
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     weight = top.mass * top.gravity
     turning = (0.0, 0.0, steady.precession)
     unit = abs(steady.precession) + abs(steady.spin) + math.sqrt(top.gravity / top.surface.size)

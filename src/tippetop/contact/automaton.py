@@ -7,7 +7,6 @@ contact (`Automaton.resolve`) or of two (`Automaton.resolve_two`).
 """
 
 from dataclasses import dataclass, replace
-from typing import Self
 
 from tippetop.contact.collision import collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
@@ -44,7 +43,7 @@ from tippetop.contact.slip_onset_on_two import (
     SlipOnsetOnTwo,
 )
 from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
-from tippetop.contact.surfaces import FACE, TOUCH, WOBBLE, lands_flat, lies_flat, number_of
+from tippetop.contact.surfaces import FACE, TOUCH, WOBBLE, lands_flat, lies_flat
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
     gap_acceleration,
@@ -75,9 +74,9 @@ from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.flight.touchdown import Start
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import along_table, contact, on_table, presses
+from tippetop.mechanics.motion import along_table, on_table, presses, sliding_contact
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull, is_edge, lowest_surface
+from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Scalar
@@ -91,10 +90,13 @@ MOST_IN_TURNS = 200
 
 @dataclass(frozen=True)
 class Automaton:
-    """The rules of what follows each mode, for a body and a treatment of lift-off."""
+    """The rules of what follows each mode, for a body and a treatment of lift-off.
+
+    A contact is the body with the surface active that touches (see `tippetop.mechanics.top.Top`).
+    """
 
     top: Top
-    """The top in natural units; of several surfaces one is active."""
+    """The body in natural units, with any of its surfaces active."""
     liftoff: str
     """Where the table would have to pull: "ignore" (it pulls), "stop" (the run ends) or "fly"."""
     restitution: float
@@ -107,35 +109,21 @@ class Automaton:
         """Whether the table may pull, so that contact does not end."""
         return self.liftoff == "ignore"
 
-    def on(self, surface: int) -> Self:
-        """Return the automaton of the top with another of its surfaces active."""
-        return self._of(self.top.each[surface])
-
-    def _of(self, top: Top) -> Self:
-        return replace(self, top=top)
-
-    def event(self, kind: EventKind, time: float, impulse: float = 0.0, lost: float = 0.0) -> Event:
-        """Return an event of the surface that is active."""
-        return Event(kind, time, impulse, lost, number_of(self.top))
-
     # Launch, and the one decision of what follows a mode.
 
     def launch(self, state: State) -> Transition:
         """Return the first mode: flight, what follows an impact, or contact."""
-        automaton = self
-        if isinstance(self.top.surface, Hull):
-            lowest = lowest_surface(self.top.surface, state.axis[2])
-            automaton = self._of(self.top._replace(surface=lowest))
+        lowest = self.top.lowest_at(state.axis[2])
         if self.liftoff != "fly":
-            return automaton.resting(0.0, state)
-        if gap(state, automaton.top) > TOUCHING:
-            return Transition((), automaton._flight(Start.AIRBORNE), state)
-        rate = gap_rate(state, automaton.top)
+            return self.resting(lowest, 0.0, state)
+        if gap(state, lowest) > TOUCHING:
+            return Transition((), Flight(lowest, Start.AIRBORNE), state)
+        rate = gap_rate(state, lowest)
         if rate > TOUCHING:
-            return Transition((), automaton._flight(Start.REBOUND), state)
+            return Transition((), Flight(lowest, Start.REBOUND), state)
         if rate < -TOUCHING:
-            return automaton.touchdown(0.0, state)
-        return automaton.resting(0.0, state)
+            return self.touchdown(lowest, 0.0, state)
+        return self.resting(lowest, 0.0, state)
 
     def follow(
         self, mode: Mode, end: ModeEnd, time: float, integrator: Integrator | None = None
@@ -143,8 +131,7 @@ class Automaton:
         """Return what follows the end of a mode; the integrator may follow an impact, too."""
         if end.cause == COMPLETED:
             return Transition((), Outcome.COMPLETED, end.state)
-        top = off_branch(mode.top)
-        automaton = self if top == self.top else self._of(top)
+        contact = off_branch(mode.top)
         if end.cause == FAILURE and not _may_jam(mode):
             return Transition((), Outcome.FAILED, end.state, end.detail)
         if end.cause == FLAT:
@@ -155,74 +142,77 @@ class Automaton:
             settling = SettlingFlat(mode.top, contact_mode, slaps=end.cause == FACE)
             return Transition((), settling, end.state)
         if isinstance(mode, Flight):
-            return automaton._after_flight(end, time, integrator)
+            return self._after_flight(contact, end, time, integrator)
         if end.cause == TOUCH:
-            return automaton.touch(end.contact, time, end.state)
+            return self.touch(contact, end.contact, time, end.state)
         if isinstance(mode, Resting):
             return Transition((), Outcome.AT_REST, end.state)
         if isinstance(mode, SlipOnset):
-            return automaton._after_onset(mode, end, time)
+            return self._after_onset(contact, mode, end, time)
         if isinstance(mode, SlipEnd):
-            return automaton._after_clock(mode, end, time)
+            return self._after_clock(contact, mode, end, time)
         assert isinstance(mode, ContactMode), f"nothing follows {mode.name}"
         if mode.is_single:
-            return automaton._after_one(mode, end, time)
-        return automaton._after_two(mode, end, time)
+            return self._after_one(contact, mode, end, time)
+        return self._after_two(mode, end, time)
 
-    def _after_flight(self, end: ModeEnd, time: float, integrator: Integrator | None) -> Transition:
+    def _after_flight(
+        self, contact: Top, end: ModeEnd, time: float, integrator: Integrator | None
+    ) -> Transition:
         """Return what follows where a surface lands."""
-        if end.contact == number_of(self.top):
-            return self.touchdown(time, end.state, integrator)
-        return self.touch(end.contact, time, end.state, integrator)
+        if end.contact == contact.active:
+            return self.touchdown(contact, time, end.state, integrator)
+        return self.touch(contact, end.contact, time, end.state, integrator)
 
-    def _after_one(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
+    def _after_one(self, contact: Top, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
         """Return what follows on one contact that slips or sticks."""
         state, slips = end.state, not mode.sticks[0]
         if end.cause == FAILURE:
             # Friction that turns may have jammed the contact: no step is short enough then.
             failure = Transition((), Outcome.FAILED, state, end.detail)
-            return self.jammed(time, state) or failure
+            return self.jammed(contact, time, state) or failure
         if end.cause == LIFT_OFF:
-            return self.lift_off(time, state)
+            return self.lift_off(contact, time, state)
         if end.cause in (NEARING, PARTING):
-            return Transition((), self.mode_for(state, slips=True), state)
+            return Transition((), self.mode_for(contact, state, slips=True), state)
         if end.cause in (STOPPING, ROLLING_STOPPING):
-            return self._follow_to_end(state, slips=slips)
+            return self._follow_to_end(contact, state, slips=slips)
         if end.cause in (BRANCH, LIMIT_BRANCH):
             return Transition((), replace(mode, top=on_other_branch(mode.top)), state)
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
         wrench = mode.contact_forces(mode.numbers(state))[0].wrenches[0]
         if wrench.force[2] <= 0.0 and not self.pulls:
-            return self.lift_off(time, state)
+            return self.lift_off(contact, time, state)
         begins = SlipComponent(
             end.cause == SLIP, held=mode.holds_rolling if end.cause == SLIP else mode.sticks[0]
         )
-        return self._begin(time, state, begins, wrench)
+        return self._begin(contact, time, state, begins, wrench)
 
-    def _after_onset(self, mode: SlipOnset, end: ModeEnd, time: float) -> Transition:
+    def _after_onset(self, contact: Top, mode: SlipOnset, end: ModeEnd, time: float) -> Transition:
         """Return what follows the first moments of slip, or of rolling, or slip that has ended."""
         if end.cause == ENDED:
-            resolved = self.resolve(time, end.state, new=(True, False))
-            return self._with_other_surfaces(time, resolved)
+            resolved = self.resolve(contact, time, end.state, new=(True, False))
+            return self._with_other_surfaces(contact, time, resolved)
+        state = end.state
         try:
-            return Transition((), self.mode_for(end.state, slips=not mode.stuck), end.state)
+            return Transition((), self.mode_for(contact, state, slips=not mode.stuck), state)
         except ArithmeticError:
-            return Transition((), Outcome.FAILED, end.state, UNSEEN)
+            return Transition((), Outcome.FAILED, state, UNSEEN)
 
-    def _after_clock(self, mode: SlipEnd, end: ModeEnd, time: float) -> Transition:
+    def _after_clock(self, contact: Top, mode: SlipEnd, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a velocity has ended, or is no longer about to."""
         state, ending = end.state, mode.ending
         if end.cause == LANDED:
             new = ending.slip, not ending.slip
-            resolved = self.resolve(time, state, new, held=ending.held)
-            return self._with_other_surfaces(time, resolved)
+            resolved = self.resolve(contact, time, state, new, held=ending.held)
+            return self._with_other_surfaces(contact, time, resolved)
         if end.cause == JAMMED:
-            return self.jammed(time, state) or self.inconsistent(time, state, ())
+            return self.jammed(contact, time, state) or self.inconsistent(contact, time, state, ())
         if end.cause == LIFT_OFF:
-            return self.lift_off(time, state)
+            return self.lift_off(contact, time, state)
         if end.cause == REOPENING:
             stuck = not ending.slip and ending.held
-            return Transition((), self.mode_for(state, slips=not stuck), state)
+            return Transition((), self.mode_for(contact, state, slips=not stuck), state)
         if end.cause == OVERTAKEN:
             second = replace(mode, ending=SlipComponent(not ending.slip), begin=())
             return Transition((), second, state)
@@ -230,7 +220,7 @@ class Automaton:
             top, begin = on_other_branch(mode.top), (*end.numbers[:-1], 0.0)
             return Transition((), replace(mode, top=top, begin=begin), state)
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
-        return self._begin(time, state, SlipComponent(slip=end.cause == SLIP))
+        return self._begin(contact, time, state, SlipComponent(slip=end.cause == SLIP))
 
     def _after_two(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
         """Return what follows on two contacts."""
@@ -239,10 +229,10 @@ class Automaton:
             return Transition((), sliding_on_two(state, mode.tops, rolls), state)
         if end.cause == OPENING:
             opens, stays = (mode.tops, mode.tops[::-1])[end.contact]
-            event = Event(EventKind.OPENING, time, surface=number_of(opens))
+            event = Event(EventKind.OPENING, time, surface=opens.active)
             state = state._replace(momentum=mode.stilled(state.axis, state.momentum))
             slips = not mode.sticks[1 - end.contact]
-            after = self.on(number_of(stays)).mode_for(state, slips=slips)
+            after = self.mode_for(off_branch(stays), state, slips=slips)
             return Transition((event,), after, state)
         if end.cause == BRANCH:
             tops = list(mode.tops)
@@ -258,42 +248,49 @@ class Automaton:
 
     # One contact.
 
-    def mode_for(self, state: State, *, slips: bool) -> Mode:
+    def mode_for(self, contact: Top, state: State, *, slips: bool) -> Mode:
         """Return the mode of one contact that slips or sticks.
 
         Where the end of slip, or of rolling, is near already, that is followed in its clock.
         """
-        top = on_present_branch(self.top, state, slips)
-        rolls = rolls_freely(self.top, state)
+        top = on_present_branch(contact, state, slips)
+        rolls = rolls_freely(contact, state)
         near = slips and is_set_valued(top.friction) and bool(is_near(along_table(state), top))
         mode = ContactMode(top, (not slips,), not rolls, near, self.pulls and slips)
         settling = settling_flat(mode, state) if is_edge(top.surface) else None
         if settling is not None:
             return settling
-        ending, time_left = soonest_end(self.top, state, slips)
+        ending, time_left = soonest_end(contact, state, slips)
         if ending is not None and time_left <= HORIZON:
             return SlipEnd(top, ending, self.pulls)
         return mode
 
-    def _follow_to_end(self, state: State, *, slips: bool) -> Transition:
+    def _follow_to_end(self, contact: Top, state: State, *, slips: bool) -> Transition:
         """Return the clock of what ends first; where a guard was touched by rounding, nothing
         does.
         """
-        ending, _ = soonest_end(self.top, state, slips)
+        ending, _ = soonest_end(contact, state, slips)
         if ending is None:
-            return Transition((), self.mode_for(state, slips=slips), state)
-        top = on_present_branch(self.top, state, slips)
+            return Transition((), self.mode_for(contact, state, slips=slips), state)
+        top = on_present_branch(contact, state, slips)
         return Transition((), SlipEnd(top, ending, self.pulls), state)
 
     def _begin(
-        self, time: float, state: State, begins: SlipComponent, wrench: Wrench | None = None
+        self,
+        contact: Top,
+        time: float,
+        state: State,
+        begins: SlipComponent,
+        wrench: Wrench | None = None,
     ) -> Transition:
         """Return the mode in which slip, or rolling, begins from the limit of what can be held."""
-        event = self.event(EventKind.SLIP if begins.slip else EventKind.ROLL, time)
-        return Transition((event,), SlipOnset(self.top, begins, self.pulls, wrench), state)
+        kind = EventKind.SLIP if begins.slip else EventKind.ROLL
+        event = Event(kind, time, surface=contact.active)
+        return Transition((event,), SlipOnset(contact, begins, self.pulls, wrench), state)
 
     def resolve(
         self,
+        contact: Top,
         time: float,
         state: State,
         new: tuple[bool, bool],
@@ -307,19 +304,20 @@ class Automaton:
         What is tried first is to hold everything, then to let slip begin, rolling, and both.
         """
         ended = (new[0] or (held and new[1]), new[1] or (held and new[0]))
-        state = on_table(come_to_rest(along_table(state), self.top, *ended), self.top)
-        point = ContactPoint.of(state.axis, state.momentum, self.top)
-        slip = None if ended[0] else slip_of(*along_table(state), self.top)
+        state = on_table(come_to_rest(along_table(state), contact, *ended), contact)
+        point = ContactPoint.of(state.axis, state.momentum, contact)
+        slip = None if ended[0] else slip_of(*along_table(state), contact)
         rolling = None if ended[1] else point.turning[:2]
         try:
             resolved, begins = resolve_onset(point, slip, rolling)
         except ArithmeticError as error:
             return failed("The force that holds the contact", error, state, events)
-        events = (*events, *self._changes(time, new, begins))
-        return self._after_resolving(time, state, resolved, begins, ended, events)
+        events = (*events, *self._changes(contact, time, new, begins))
+        return self._after_resolving(contact, time, state, resolved, begins, ended, events)
 
     def _after_resolving(
         self,
+        contact: Top,
         time: float,
         state: State,
         resolved: Onset,
@@ -329,22 +327,22 @@ class Automaton:
     ) -> Transition:
         """Return the mode of a contact of which is resolved what is held and what begins."""
         if resolved.wrench.force[2] <= 0.0 and not self.pulls:
-            return self._release(time, state, events)
+            return self._release(contact, time, state, events)
         if any(begins):
             both = all(begins)
             held = not both and (ended[1] if begins[0] else ended[0])
             onset = SlipOnset(
-                self.top, SlipComponent(begins[0], held), self.pulls, with_rolling=both
+                contact, SlipComponent(begins[0], held), self.pulls, with_rolling=both
             )
             return Transition(events, onset, state)
-        mode = self.mode_for(state, slips=not ended[0])
+        mode = self.mode_for(contact, state, slips=not ended[0])
         at, turning = resolved.acceleration
         if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
-            return Transition(events, Resting(self.top, mode), state)
+            return Transition(events, Resting(contact, mode), state)
         return Transition(events, mode, state)
 
     def _changes(
-        self, time: float, new: tuple[bool, bool], begins: tuple[bool, bool]
+        self, contact: Top, time: float, new: tuple[bool, bool], begins: tuple[bool, bool]
     ) -> tuple[Event, ...]:
         """Return the events of slip, or rolling, that has newly ended and is held, or begins."""
         events = []
@@ -356,18 +354,20 @@ class Automaton:
             strict=True,
         ):
             if ended and not starts:
-                events.append(self.event(stop, time))
+                events.append(Event(stop, time, surface=contact.active))
             elif starts and not ended:
-                events.append(self.event(start, time))
+                events.append(Event(start, time, surface=contact.active))
         return tuple(events)
 
-    def resting(self, time: float, state: State, events: tuple[Event, ...] = ()) -> Transition:
+    def resting(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...] = ()
+    ) -> Transition:
         """Go on from contact without normal velocity, on one surface or on all that stay closed.
 
         Where another surface stays, the tilt does, and all do that touch: the body rests on the
         outermost two. One that sinks faster than rocking that has ended strikes.
         """
-        beside = other_touching(self.top, state)
+        beside = other_touching(contact, state)
         closed, reported = False, events
         if any(lands_flat(neighbour, state.axis) for neighbour in beside):
             return Transition(events, Outcome.LYING_FLAT, state)
@@ -376,20 +376,21 @@ class Automaton:
                 if sum(event.kind is EventKind.IMPACT for event in events) >= MOST_IN_TURNS:
                     detail = "surfaces strike in turns for ever"
                     return Transition(events, Outcome.FAILED, state, detail)
-                return self._of(neighbour)._collide(time, state, reported, 0.0)
-            if stays_closed(self.top, neighbour, state):
+                return self._collide(neighbour, time, state, reported, 0.0)
+            if stays_closed(contact, neighbour, state):
                 closed = True
             else:
-                reported = (*reported, Event(EventKind.OPENING, time, surface=number_of(neighbour)))
+                reported = (*reported, Event(EventKind.OPENING, time, surface=neighbour.active))
         if not closed:
-            return self.resting_alone(time, state, reported)
-        tops = outermost((self.top, *beside), state.axis)
-        before = Before((), bool(rolling_of(state, self.top)))
-        rolls = rolling_of(without_tilting(state, self.top), self.top)
-        automaton = self._of(tops[0])
-        return automaton.resolve_two(time, state, tops, before, rolls, events, arrived=True)
+            return self.resting_alone(contact, time, state, reported)
+        tops = outermost((contact, *beside), state.axis)
+        before = Before((), bool(rolling_of(state, contact)))
+        rolls = rolling_of(without_tilting(state, contact), contact)
+        return self.resolve_two(time, state, tops, before, rolls, events, arrived=True)
 
-    def resting_alone(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+    def resting_alone(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
         """Go on on the active surface, whatever else touches: slide, stick, leave or lie flat.
 
         With a Delassus number A <= 0 friction presses the contact as it is pressed (Painleve's
@@ -398,83 +399,91 @@ class Automaton:
         it would open, the case is indeterminate: the contact may open, too, and the normal force
         -b / A is consistent as well, but the least disturbance grows without bound under it.
         """
-        if lies_flat(self.top, state.axis):
+        if lies_flat(contact, state.axis):
             return Transition(events, Outcome.LYING_FLAT, state)
         sliding = along_table(state)
-        stuck = is_set_valued(self.top.friction) and not is_slipping(*sliding, self.top)
-        held = not rolls_freely(self.top, state)
+        stuck = is_set_valued(contact.friction) and not is_slipping(*sliding, contact)
+        held = not rolls_freely(contact, state)
         if stuck or held:
-            return self.resolve(time, state, (stuck, held), events=events)
-        touch = contact(sliding.axis, sliding.momentum, sliding.velocity, self.top)
+            return self.resolve(contact, time, state, (stuck, held), events=events)
+        touch = sliding_contact(sliding.axis, sliding.momentum, sliding.velocity, contact)
         if touch.delassus <= 0 and not self.pulls:
             if touch.free_acceleration > 0:
-                events = (*events, self.event(EventKind.INDETERMINATE, time))
+                event = Event(EventKind.INDETERMINATE, time, surface=contact.active)
+                events = (*events, event)
                 if self.indeterminate == "lift_off":
-                    return self._release(time, state, events)
-            return self.inconsistent(time, state, events)
+                    return self._release(contact, time, state, events)
+            return self.inconsistent(contact, time, state, events)
         if touch.free_acceleration < 0 or self.pulls:
-            return Transition(events, self.mode_for(state, slips=True), state)
-        return self._release(time, state, events)
+            return Transition(events, self.mode_for(contact, state, slips=True), state)
+        return self._release(contact, time, state, events)
 
     # Leaving the table, and impacts.
 
-    def lift_off(self, time: float, state: State) -> Transition:
+    def lift_off(self, contact: Top, time: float, state: State) -> Transition:
         """Leave the table, unless the normal force changed its sign by way of infinity.
 
         Then it is decided anew how contact goes on: Painleve's paradox begins, or the motion is so
         stiff that errors of an explicit method look like that.
         """
-        if presses(state.axis, state.momentum, self.top):
-            return self.resting(time, state)
-        return self._leave(time, state, (), Start.LIFT_OFF)
+        if presses(state.axis, state.momentum, contact):
+            return self.resting(contact, time, state)
+        return self._leave(contact, time, state, (), Start.LIFT_OFF)
 
-    def _release(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+    def _release(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
         """Leave a table that would have to pull from now on, not from zero force."""
-        return self._leave(time, state, events, Start.RELEASE)
+        return self._leave(contact, time, state, events, Start.RELEASE)
 
     def _leave(
-        self, time: float, state: State, events: tuple[Event, ...], start: Start
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...], start: Start
     ) -> Transition:
         """End the run, or fly."""
-        following = self._flight(start) if self.liftoff == "fly" else Outcome.LIFTED_OFF
-        return Transition((*events, self.event(EventKind.LIFT_OFF, time)), following, state)
-
-    def _flight(self, start: Start) -> Flight:
-        return Flight(self.top, start)
+        following = Flight(contact, start) if self.liftoff == "fly" else Outcome.LIFTED_OFF
+        event = Event(EventKind.LIFT_OFF, time, surface=contact.active)
+        return Transition((*events, event), following, state)
 
     def touchdown(
-        self, time: float, state: State, integrator: Integrator | None = None
+        self, contact: Top, time: float, state: State, integrator: Integrator | None = None
     ) -> Transition:
         """Collide, unless with a face, and go on as the impact leaves the top."""
-        reported = (self.event(EventKind.TOUCHDOWN, time),)
-        if lands_flat(self.top, state.axis):
+        reported = (Event(EventKind.TOUCHDOWN, time, surface=contact.active),)
+        if lands_flat(contact, state.axis):
             return Transition(reported, Outcome.LYING_FLAT, state)
-        return self._collide(time, state, reported, self.restitution, integrator)
+        return self._collide(contact, time, state, reported, self.restitution, integrator)
 
     def touch(
-        self, surface: int, time: float, state: State, integrator: Integrator | None = None
+        self,
+        contact: Top,
+        surface: int,
+        time: float,
+        state: State,
+        integrator: Integrator | None = None,
     ) -> Transition:
         """Collide with another surface, and go on as the impact leaves the top.
 
         Where more come to the table at once, the outermost strikes: what lies between sinks more
         slowly.
         """
-        striking = self.on(surface)
+        striking = contact.each[surface]
         faster = [
             neighbour
-            for neighbour in other_touching(self.top, state)[:1]
-            if gap_rate(state, neighbour) < gap_rate(state, striking.top)
+            for neighbour in other_touching(contact, state)[:1]
+            if gap_rate(state, neighbour) < gap_rate(state, striking)
         ]
-        return (self._of(faster[0]) if faster else striking).touchdown(time, state, integrator)
+        return self.touchdown(faster[0] if faster else striking, time, state, integrator)
 
-    def inconsistent(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+    def inconsistent(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
         """Collide without approach where no contact force is consistent with the friction.
 
         Unless an impact has just left it so: then rounding decides, not friction.
         """
         struck = sum(event.kind is EventKind.IMPACT for event in events)
         if self.liftoff == "fly" and struck <= 1:
-            return self._collide(time, state, events, 0.0)
+            return self._collide(contact, time, state, events, 0.0)
         detail = "no contact force is consistent with the friction"
         if any(event.kind is EventKind.INDETERMINATE for event in events):
             detail = "the impact that contact.indeterminate names needs contact.liftoff = fly"
@@ -482,6 +491,7 @@ class Automaton:
 
     def _collide(
         self,
+        contact: Top,
         time: float,
         state: State,
         events: tuple[Event, ...],
@@ -489,62 +499,64 @@ class Automaton:
         integrator: Integrator | None = None,
     ) -> Transition:
         try:
-            struck, rebounds = collision(state, restitution, self.top, integrator)
+            struck, rebounds = collision(state, restitution, contact, integrator)
         except ArithmeticError as error:
             return failed("The impulse of the impact", error, state, events)
         impulse, lost = float(struck.impulse), float(struck.energy_lost)
-        hit = replace(self.event(EventKind.IMPACT, time, impulse, lost), steps=struck.steps)
+        hit = Event(EventKind.IMPACT, time, impulse, lost, contact.active, struck.steps)
         if not struck.impulse:
             # Nothing but rounding kept the contact from being a resting one.
-            return self._untouched(time, struck.state, events)
+            return self._untouched(contact, time, struck.state, events)
         if rebounds:
-            return Transition((*events, hit), self._flight(Start.REBOUND), struck.state)
-        return self.resting(time, struck.state, (*events, hit))
+            return Transition((*events, hit), Flight(contact, Start.REBOUND), struck.state)
+        return self.resting(contact, time, struck.state, (*events, hit))
 
-    def _untouched(self, time: float, state: State, events: tuple[Event, ...]) -> Transition:
+    def _untouched(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
         """Go on where an impact had no impulse."""
-        if isinstance(self.top.surface, Hull):
-            return self.resting(time, state, events)
-        slip = slip_of(*along_table(state), self.top)
-        slips = not is_set_valued(self.top.friction) or inner(slip, slip) > 0.0
-        return Transition(events, self.mode_for(state, slips=slips), state)
+        if isinstance(contact.surface, Hull):
+            return self.resting(contact, time, state, events)
+        slip = slip_of(*along_table(state), contact)
+        slips = not is_set_valued(contact.friction) or inner(slip, slip) > 0.0
+        return Transition(events, self.mode_for(contact, state, slips=slips), state)
 
-    def jammed(self, time: float, state: State) -> Transition | None:
+    def jammed(self, contact: Top, time: float, state: State) -> Transition | None:
         """Return what follows where friction that turns made the normal force grow beyond all
         bounds, if it did.
         """
         try:
-            past = past_jamming(state, self.top)
+            past = past_jamming(state, contact)
         except ArithmeticError as error:
             what = "What follows where friction jams the contact"
             return failed(what, error, state) if isinstance(error, Unsolved) else None
         if past is None:
             return None
         beyond, *prior = past
-        following = self.inconsistent(time, beyond, ())
+        following = self.inconsistent(contact, time, beyond, ())
         if not following.events and isinstance(following.then, Mode):
             # Slip is so little that by rounding nothing strikes, and slipping on it would jam at
             # once.
-            following = self.resolve(time, stuck_at_once(beyond, self.top), (True, False))
+            following = self.resolve(contact, time, stuck_at_once(beyond, contact), (True, False))
         return add_prior_impulse(following, state, *prior)
 
     # Two contacts.
 
-    def _with_other_surfaces(self, time: float, following: Transition) -> Transition:
+    def _with_other_surfaces(self, contact: Top, time: float, following: Transition) -> Transition:
         """Return what follows on one contact, unless it presses another surface that touches onto
         the table: then both are resolved.
         """
         mode, state = following.then, following.state
-        if not isinstance(self.top.surface, Hull) or not isinstance(mode, IntegratedMode):
+        if not isinstance(contact.surface, Hull) or not isinstance(mode, IntegratedMode):
             return following
         reaction = mode.reaction(mode.numbers(state))
         wrench = Wrench(reaction.force, reaction.torque)
-        for neighbour in other_touching(self.top, state):
-            closes = stays_closed(self.top, neighbour, state)
-            if closes and gap_acceleration(self.top, neighbour, state, wrench) < 0.0:
+        for neighbour in other_touching(contact, state):
+            closes = stays_closed(contact, neighbour, state)
+            if closes and gap_acceleration(contact, neighbour, state, wrench) < 0.0:
                 # The resolver of both reports what sticks.
                 halts = [event for event in following.events if event.kind is EventKind.HALT]
-                return self.resting(time, state, tuple(halts))
+                return self.resting(contact, time, state, tuple(halts))
         return following
 
     def resolve_two(
@@ -571,16 +583,16 @@ class Automaton:
         if consistent == [BOTH]:
             if arrived:
                 lost = float(energy(state, tops[0]) - energy(contacts.state, tops[0]))
-                events = (*events, self.event(EventKind.DOUBLE_CONTACT, time, 0.0, lost))
+                event = Event(EventKind.DOUBLE_CONTACT, time, 0.0, lost, tops[0].active)
+                events = (*events, event)
             ended = time + time_to_end(state, contacts)
             # Rolling that begins now began when the slip ended that held it up.
             turned = ended if resolved.rolls != rolls else time
             events = (*events, *contacts.changes((ended, turned), resolved, before))
             return replace(self._mode_on_two(contacts, resolved), events=events)
-        numbers = [number_of(top) for top in contacts.tops]
-        opens, stays = numbers if consistent == [SECOND] else numbers[::-1]
-        events = (*events, Event(EventKind.OPENING, time, surface=opens))
-        return self.on(stays).resting_alone(time, contacts.state, events)
+        opens, stays = contacts.tops if consistent == [SECOND] else contacts.tops[::-1]
+        events = (*events, Event(EventKind.OPENING, time, surface=opens.active))
+        return self.resting_alone(stays, time, contacts.state, events)
 
     def slip_on_two(self, time: float, state: State, mode: ContactMode, contact: int) -> Transition:
         """Return the mode in which a contact of two begins to slip at the limit of what the table

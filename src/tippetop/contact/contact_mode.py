@@ -7,7 +7,6 @@ from typing import Any, ClassVar, Self
 
 from tippetop.contact.guards import GuardValue, guards_on_one, guards_on_two
 from tippetop.contact.mode import IntegratedMode, Reaction, split
-from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.contacts.branches import is_branched, on_numbered_branch
 from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_one, forces_on_two
@@ -99,14 +98,14 @@ class ContactMode(IntegratedMode):
         if not self.is_mixed:
             return self.status + self._place
         rolling = "_without_rolling" if self.holds_rolling else ""
-        first, second = (number_of(top) for top in self.tops)
+        first, second = (top.active for top in self.tops)
         return f"{STICKS}{rolling}_on_{first}_{SLIPS}_on_{second}"
 
     @property
     def stuck(self) -> tuple[int, ...]:
         """Numbers of the surfaces that stick."""
         pairs = zip(self.tops, self.sticks, strict=True)
-        return tuple([number_of(top) for top, sticks in pairs if sticks])
+        return tuple([top.active for top, sticks in pairs if sticks])
 
     @property
     def lasting(self) -> bool:

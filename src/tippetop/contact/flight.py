@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Segment, explanation
-from tippetop.contact.surfaces import number_of
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import ELEMENTARY, DenseSolution
 from tippetop.mechanics.flight.free_motion import flight_rates, fly, gap, gap_rate, precession
@@ -107,7 +106,7 @@ class Flight(Mode):
         if lowest is None:
             return ModeEnd(COMPLETED, state)
         later = state._replace(height=support_at(state.axis, lowest.surface)[0])
-        return ModeEnd(LANDING, later, number_of(lowest))
+        return ModeEnd(LANDING, later, lowest.active)
 
 
 def start_of(state: State, top: Top) -> Start:

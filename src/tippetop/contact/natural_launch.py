@@ -12,7 +12,6 @@ from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Mode, Transition
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import lowest_surface
 from tippetop.mechanics.top import Top, natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
@@ -60,7 +59,7 @@ def initial_mode(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
 
     It slides, but where the table would have to pull: then it lets go.
     """
-    lowest = top._replace(surface=lowest_surface(top.surface, state.axis[2]))
+    lowest = top.lowest_at(state.axis[2])
     sliding, numbers = ContactMode(lowest, pulls=True), along_table(state).pack()
     try:
         presses = sliding.reaction(numbers).force[2] > 0.0

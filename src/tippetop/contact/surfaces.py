@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 from tippetop.contact.mode import numbered
 from tippetop.mechanics.lying_down import slap_guard
-from tippetop.mechanics.surfaces.hull import Hull, acting, each_surface, is_edge
+from tippetop.mechanics.surfaces.hull import acting, each_surface, is_edge
 from tippetop.mechanics.surfaces.surface import FLAT, gap_guard, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
@@ -17,11 +17,6 @@ FACE, WOBBLE, TOUCH = "face", "wobble", "touch"
 MARGIN = 1e-15
 """Gap, in sizes, below zero at which a surface touches: one that just let go is there by rounding.
 """
-
-
-def number_of(top: Top) -> int:
-    """Number of the surface that is active."""
-    return top.surface.active if isinstance(top.surface, Hull) else 0
 
 
 SurfaceGuard: TypeAlias = Callable[[Top, Vector, Vector], Scalar]
@@ -35,9 +30,7 @@ def surface_guards(top: Top) -> list[tuple[str, SurfaceGuard]]:
     guards: list[tuple[str, SurfaceGuard]] = []
     if is_edge(top.surface):
         guards.append((FACE, lambda top, axis, momentum: slap_guard(axis, momentum, top)))
-    open_ones = [
-        number for number in range(len(each_surface(top.surface))) if number != number_of(top)
-    ]
+    open_ones = [number for number in range(len(each_surface(top.surface))) if number != top.active]
     return guards + [(numbered(TOUCH, number), _gap_of(number)) for number in open_ones]
 
 
@@ -101,6 +94,6 @@ def clearance(top: Top, c: float) -> float:
     gaps = [
         height - surface.height(c)
         for number, surface in enumerate(each_surface(top.surface))
-        if number != number_of(top)
+        if number != top.active
     ]
     return float(min(gaps))

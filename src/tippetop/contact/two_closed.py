@@ -6,7 +6,6 @@ from typing import NamedTuple
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.guards import SLOWEST_SLIP
 from tippetop.contact.mode import Event, EventKind
-from tippetop.contact.surfaces import number_of
 from tippetop.mechanics.contacts.branches import off_branch
 from tippetop.mechanics.contacts.contact_forces import forces_on_two
 from tippetop.mechanics.contacts.contact_point import contact_points
@@ -190,13 +189,13 @@ class TwoClosed:
         """
         events = []
         for top, held in zip(self.tops, resolved.sticks, strict=True):
-            surface = number_of(top)
+            surface = top.active
             if held != (surface in before.stuck):
                 kind = EventKind.STICK if held else EventKind.SLIP
                 events.append(Event(kind, times[0], surface=surface))
         if before.rolled != bool(resolved.rolls):
             kind = EventKind.ROLL if resolved.rolls else EventKind.HALT
-            events += [Event(kind, times[1], surface=number_of(top)) for top in self.tops]
+            events += [Event(kind, times[1], surface=top.active) for top in self.tops]
         return tuple(sorted(events, key=lambda event: event.time))
 
 

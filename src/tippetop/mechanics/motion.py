@@ -102,7 +102,9 @@ def contact_swing(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
     return (-(slope * tilting[0] + radius * omega[1]), radius * omega[0] - slope * tilting[1])
 
 
-def contact(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> SlidingContact:
+def sliding_contact(
+    axis: Vector, momentum: Vector, velocity: Horizontal, top: Top
+) -> SlidingContact:
     """Geometry, slip and contact force of the body on the table.
 
     Parameters
@@ -173,7 +175,7 @@ def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:
 
 def sliding_rates(state: SlidingState, top: Top) -> SlidingState:
     """Time derivative of the state of a sliding body."""
-    touch = contact(state.axis, state.momentum, state.velocity, top)
+    touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
     normal, force = touch.normal_force, touch.force
     x, y, _ = moment_per_normal_force(touch.arm, touch.traction)
     # About the vertical only friction has a moment: as that of the force, it is a product less.

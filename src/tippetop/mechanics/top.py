@@ -5,15 +5,18 @@ from typing import Any, NamedTuple
 from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.laws.friction import FrictionLaw, Traction
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import each_surface
+from tippetop.mechanics.surfaces.hull import Hull, each_surface, lowest_surface
 from tippetop.mechanics.surfaces.surface import Surface
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, scale
 
 
 class Top(NamedTuple):
-    """A body of revolution, the table's friction law and gravity: all that the equations of motion
-    need.
+    """A body of revolution with one contact: all that the equations of motion need.
+
+    A body of several surfaces (`Hull`) can touch the table with each of them, and one is active. Of
+    a law with branches it has the one that holds at this contact. `each` and `lowest_at` return the
+    same body with another contact, and `tippetop.mechanics.contacts.branches` another branch.
     """
 
     mass: Scalar
@@ -60,6 +63,19 @@ class Top(NamedTuple):
         surface = getattr(self.surface, "make", type(self.surface))
         proportions = len(self.surface.proportions)
         return Kind(surface, type(self.friction), proportions, coefficients, self.resists_rolling)
+
+    @property
+    def active(self) -> int:
+        """Number of the active surface; 0 if the body has no other."""
+        return self.surface.active if isinstance(self.surface, Hull) else 0
+
+    def lowest_at(self, c: float) -> "Top":
+        """Return the top with the surface active that reaches lowest at this cosine of the tilt; of
+        floats.
+        """
+        if not isinstance(self.surface, Hull):
+            return self
+        return self._replace(surface=lowest_surface(self.surface, c))
 
     @property
     def each(self) -> tuple["Top", ...]:

@@ -15,9 +15,9 @@ from pydantic import model_validator
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.slip_variables import is_slipping, size
 from tippetop.mechanics.laws.coulomb import RollingResistance
-from tippetop.mechanics.motion import along_table, contact, on_table
+from tippetop.mechanics.motion import along_table, on_table, sliding_contact
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull, is_edge, lowest_surface, sizes
+from tippetop.mechanics.surfaces.hull import Hull, is_edge, sizes
 from tippetop.mechanics.surfaces.surface import POLE
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions
@@ -139,10 +139,7 @@ class Problem(Part):
 
     def standing(self, functions: Functions = math) -> Top:
         """Return the top with the surface active that is lowest at launch."""
-        top, cosine = self.top, PoleExact(functions).cos(self.launch.tilt)
-        if not isinstance(top.surface, Hull):
-            return top
-        return top._replace(surface=lowest_surface(top.surface, cosine))
+        return self.top.lowest_at(PoleExact(functions).cos(self.launch.tilt))
 
     def start(self, functions: Functions = math) -> State:
         """Return the state at launch, SI.
@@ -335,7 +332,7 @@ def _resistance(problem: Problem) -> float:
         start, top = along_table(problem.start()), problem.standing()
         if is_set_valued(problem.friction.law) and not is_slipping(*start, top):
             return 1.0 + 0.0 * size(start.momentum)
-        touch = contact(start.axis, start.momentum, start.velocity, top)
+        touch = sliding_contact(start.axis, start.momentum, start.velocity, top)
         return float(touch.delassus + 0.0 * touch.free_acceleration)
     except ArithmeticError:
         return math.nan

@@ -12,11 +12,9 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import (
     Hull,
     acting,
-    each_surface,
     lowest_surface,
     outer_height,
 )
-from tippetop.mechanics.surfaces.surface import Surface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import axis_sine
@@ -67,10 +65,9 @@ def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) 
 def _settled_spin_tilt(theta: float, state: State, start: State, top: Top) -> float:
     """Return the tilt at which a motion without friction torque keeps spinning, rad, or nan."""
     if isinstance(top.surface, Hull):
-        lowest = lowest_surface(top.surface, state.axis[2])
-        if not _only_touches(lowest, theta):
+        top = top.lowest_at(state.axis[2])
+        if not _only_touches(top, theta):
             return math.nan
-        top = top._replace(surface=lowest)
     if acting(top.surface).spherical:
         return _steady_tilt_near(theta, state, top) if is_held(state, top, NEAR_FINAL) else math.nan
     if not _has_come_to_steady_spin(state, start, top):
@@ -124,12 +121,11 @@ def _has_come_to_steady_spin(state: State, start: State, top: Top) -> Scalar:
     return (remaining <= NEAR_STEADY) & (remaining <= APPROACHED * deviation(start, top))
 
 
-def _only_touches(active: Surface, at: float) -> bool:
+def _only_touches(top: Top, at: float) -> bool:
     """Return whether only the active surface of a hull reaches the table near a tilt, rad."""
-    number = getattr(active, "active", 0)
     near = (math.cos(at - NEAR_FINAL), math.cos(at), math.cos(at + NEAR_FINAL))
-    others = [one for one in each_surface(active) if getattr(one, "active", 0) != number]
-    return all(float(one.height(c)) < float(active.height(c)) for one in others for c in near)
+    others = [one.surface for one in top.each if one.active != top.active]
+    return all(float(one.height(c)) < float(top.surface.height(c)) for one in others for c in near)
 
 
 # translate: skip

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tippetop.contact.natural_launch import automaton_of
 from tippetop.contact.trajectory import LONGEST_RUN
 from tippetop.integrators.base import Array
-from tippetop.mechanics.motion import along_table, contact
+from tippetop.mechanics.motion import along_table, sliding_contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, is_edge, sizes
 from tippetop.mechanics.surfaces.surface import POLE, support_at
@@ -107,7 +107,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
         top = branched(filled.top, start)
         if filled.contact.liftoff != "fly":
             sliding = along_table(start)
-            touch = contact(*sliding, top)
+            touch = sliding_contact(*sliding, top)
             lifted = spread(filled.launch.gap, count) > 0.0
             fault[(~(touch.delassus > 0.0) & slips(start, top)) | lifted] = Fault.NO_CONTACT_FORCE
         fault[~(spread(filled.body.I3, count) <= 2.0 * spread(filled.body.I1, count))] = (

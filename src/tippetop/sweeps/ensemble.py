@@ -11,7 +11,7 @@ from tippetop.contact.contact_mode import sliding_motion
 from tippetop.contact.mode import Outcome
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import contact, on_table
+from tippetop.mechanics.motion import on_table, sliding_contact
 from tippetop.mechanics.quadratures import resistance_powers
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Kind
@@ -123,7 +123,7 @@ def swept_motion(kind: Kind) -> Motion:
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         top, state = kind.top(tuple(numbers)), SlidingState.unpack(y)
-        touch = contact(state.axis, state.momentum, state.velocity, top)
+        touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
         powers = resistance_powers(on_table(state, top), touch.traction.torque, top)
         return (*sliding.rates(y, numbers), *[touch.normal_force * power for power in powers])
 

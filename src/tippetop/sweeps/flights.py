@@ -26,7 +26,7 @@ from tippetop.mechanics.flight.separation import NARROWEST, Separation, Tip
 from tippetop.mechanics.flight.touchdown import highest_gap
 from tippetop.mechanics.motion import (
     along_table,
-    contact,
+    sliding_contact,
     sliding_rates,
 )
 from tippetop.mechanics.state import State
@@ -198,7 +198,7 @@ def closer_extremes(
 def slides(state: State, top: Top) -> Flags:
     """Return whether tops in contact, whose contact point is at rest vertically, go on sliding."""
     sliding = along_table(state)
-    touch = contact(sliding.axis, sliding.momentum, sliding.velocity, top)
+    touch = sliding_contact(sliding.axis, sliding.momentum, sliding.velocity, top)
     flags: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
     return flags
 

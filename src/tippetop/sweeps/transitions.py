@@ -145,10 +145,10 @@ class Crossings:
         lost = energy(state, top) - energy(after, top)
         slots.ends.struck[cells[sliding]] += np.broadcast_to(lost, sliding.shape)[sliding]
         others = np.flatnonzero(~sliding)
-        transitions = [
-            launches.automaton(int(cells[i])).touchdown(float(time[i]), single(state, i))
-            for i in others.tolist()
-        ]
+        transitions = []
+        for i in others.tolist():
+            automaton, one = launches.automaton(int(cells[i])), single(state, i)
+            transitions.append(automaton.touchdown(automaton.top, float(time[i]), one))
         return self._enter(
             lanes[others], time[others], picked(state, others), transitions, fly=False
         )
@@ -206,9 +206,8 @@ class Crossings:
         state, time = self.slots.states(lanes), self.slots.time(lanes)
         for i, lane in enumerate(lanes.tolist()):
             one = single(state, i)
-            mode = self.slots.launches.automaton(int(self.slots.cell[lane])).mode_for(
-                one, slips=True
-            )
+            automaton = self.slots.launches.automaton(int(self.slots.cell[lane]))
+            mode = automaton.mode_for(automaton.top, one, slips=True)
             self._follow_alone(lane, float(time[i]), one, Transition((), mode, one))
 
     def _follow_alone(self, lane: int, time: float, state: State, transition: Transition) -> None:

@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from tippetop.mechanics.contacts.forces import is_set_valued
-from tippetop.mechanics.motion import angular_velocity, contact
+from tippetop.mechanics.motion import angular_velocity, sliding_contact
 from tippetop.mechanics.top import Top
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.support.errors import Described, InvalidInput
@@ -41,7 +41,7 @@ def spin_rate(steady: SteadyState[float], top: Top) -> float:
     axis, momentum, velocity = state_of(steady, top)
     turning = angular_velocity(axis, momentum, top)[2]
     # `drilling` gives the branch of the law for drilling without slip.
-    touch = contact(axis, momentum, velocity, drilling(top, np.array([turning])))
+    touch = sliding_contact(axis, momentum, velocity, drilling(top, np.array([turning])))
     return float(touch.torque[2]) * math.cos(steady.tilt) / float(top.axial_inertia)
 
 

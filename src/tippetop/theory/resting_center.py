@@ -3,7 +3,6 @@
 import math
 from typing import NamedTuple
 
-from tippetop.mechanics.surfaces.hull import lowest_surface
 from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import Top
 
@@ -36,8 +35,7 @@ def resting_center(tilt: float, top: Top) -> RestingCenter | None:
     For a thin disk of radius R this is Omega^2 = 4 g / (R s), and for two balls that touch,
     cos(theta) = 2/5 - g / (Omega^2 R).
     """
-    lowest = lowest_surface(top.surface, math.cos(tilt))
-    return resting_center_on(tilt, top._replace(surface=lowest))
+    return resting_center_on(tilt, top.lowest_at(math.cos(tilt)))
 
 
 def resting_center_on(tilt: float, top: Top) -> RestingCenter | None:

@@ -45,8 +45,9 @@ def on_other_branch(top: Top) -> Top:
 
 
 def off_branch(top: Top) -> Top:
-    """Return the top with its whole law instead of one branch."""
-    return top._replace(friction=whole_law(top.friction))
+    """Return the top with its whole law instead of one branch; itself if the law has none."""
+    law = whole_law(top.friction)
+    return top if law is top.friction else top._replace(friction=law)
 
 
 def on_limit_branch(top: Top, wrench: Wrench) -> Top:

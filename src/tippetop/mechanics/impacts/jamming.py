@@ -14,7 +14,12 @@ from tippetop.mechanics.contacts.system import (
 )
 from tippetop.mechanics.impacts.struck_body import StruckBody
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import along_table, contact, moment_per_normal_force, on_table
+from tippetop.mechanics.motion import (
+    along_table,
+    moment_per_normal_force,
+    on_table,
+    sliding_contact,
+)
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
@@ -63,7 +68,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
         If a number on the way to it is too large.
     """
     sliding = along_table(state)
-    touch = contact(*sliding, top)
+    touch = sliding_contact(*sliding, top)
     if not abs(touch.delassus) < JAMMED / top.mass:
         return None
     force, moment = touch.traction.force, moment_per_normal_force(touch.arm, touch.traction)
@@ -74,7 +79,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
 
     before = slip_of(*sliding, top)
     stopping_impulse = size(before) / math.dist(slip_of(*after(1.0), top), before)
-    fall = touch.delassus - contact(*after(PROBED * stopping_impulse), top).delassus
+    fall = touch.delassus - sliding_contact(*after(PROBED * stopping_impulse), top).delassus
     if not fall > 0.0:
         if not abs(touch.free_acceleration) < JAMMED * top.gravity:
             return None

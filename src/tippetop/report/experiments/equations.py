@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from tippetop.integrators.base import Array
 from tippetop.mechanics.euler import published_normal_force, published_parameters, published_rates
-from tippetop.mechanics.motion import angular_velocity, contact
+from tippetop.mechanics.motion import angular_velocity, sliding_contact
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, cross, dot, scale
 from tippetop.problem.presets import REPORT, report_problem
@@ -108,7 +108,7 @@ def _arm_miss(now: xr.Dataset, top: Top) -> float:
     c, s = three[2], math.hypot(*axis[:2])
     one = (c * three - np.array(VERTICAL)) / s
     printed = R * (s * one + (alpha - c) * three)
-    arm = contact(axis, momentum, (velocity[0], velocity[1]), top).arm
+    arm = sliding_contact(axis, momentum, (velocity[0], velocity[1]), top).arm
     return float(np.abs(printed - np.array(arm)).max() / R)
 
 
@@ -125,7 +125,7 @@ def _torques(now: xr.Dataset, top: Top) -> dict[str, Any]:
     axis, momentum, velocity = (
         _vector(now, name) for name in ("axis", "angular_momentum", "velocity")
     )
-    touch = contact(axis, momentum, (velocity[0], velocity[1]), top)
+    touch = sliding_contact(axis, momentum, (velocity[0], velocity[1]), top)
     normal = touch.normal_force
     force: Vector = (normal * touch.traction.force[0], normal * touch.traction.force[1], normal)
     total: Vector = (force[0], force[1], normal - top.mass * top.gravity)
