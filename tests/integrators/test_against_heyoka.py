@@ -1,5 +1,14 @@
-"""Random launches have the same events by the package's Taylor method and by heyoka's."""
+"""Random launches have the same events by the package's Taylor method and by heyoka's.
 
+*How nearly the same.* A guard's value is known to its rounding, dg, so that the time at which it
+falls through zero is known to dg / |g'| where it falls at the rate g'. Where a body rocks from one
+surface to the other the closing speed g' falls without bound and dg stays, and so the times of its
+last rockings are known to 1e-10 s and less well. A rocking that lasts a part longer lets those
+after it last as much longer, since their durations are in fixed ratios. Two methods whose guards
+round otherwise differ by that, and no change of the launch shows it, for it changes both alike.
+"""
+
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -8,19 +17,75 @@ import pytest
 import tippetop as tt
 from campaigns import seeds
 from launches import ROUNDINGS, launch_of, nudged
+from tippetop.contact.mode import IntegratedMode, ModeEnd, Segment
+from tippetop.fit.dual import Dual
+from tippetop.mechanics.top import natural_units
 
 DURATION = 1.0
 SAME_TIME = 1e-10
 """Difference of event times, s, that rounding in two methods makes."""
 
+ROCKS_LONG = 191
+"""Seed of a launch whose last rockings no method tells to `SAME_TIME`."""
 
-def followed(fields: dict[str, Any], integrator: Any) -> Any:
-    """Return the run of a launch, or None if the problem is refused."""
+
+def problem_of(fields: dict[str, Any]) -> Any:
+    """Return the problem with some fields, or None if it is refused."""
     try:
-        problem = tt.Problem(**fields)
+        return tt.Problem(**fields)
     except tt.InvalidInput:
         return None
+
+
+def followed(problem: Any, integrator: Any) -> Any:
+    """Return the run of a problem."""
     return tt.simulate(problem, DURATION, times=[0.0], integrator=integrator)
+
+
+def falls(problem: Any) -> Iterator[tuple[float, float, float]]:
+    """Yield when guards fall in a run, how long their mode lasted, and the rounding of that, s."""
+    _, solution = tt.simulate(problem, DURATION, times=[0.0], integrator="taylor", dense=True)
+    unit, begin = natural_units(problem.top).time, 0.0
+    for segment in solution._block.segments:
+        if segment.mode_end is not None:
+            if isinstance(segment.mode, IntegratedMode):
+                for rounding in rounding_of_end(segment):
+                    yield (
+                        segment.end_time * unit,
+                        (segment.end_time - begin) * unit,
+                        rounding * unit,
+                    )
+            begin = segment.end_time
+
+
+def rounding_of_end(segment: Segment) -> Iterator[float]:
+    """Yield the rounding of the time at which the guard that ends a segment falls, if one does."""
+    mode: Any = segment.mode
+    y, parameters = segment.solution(segment.solution.knots[-1:])[0], tuple(mode.parameters)
+    rates = mode.motion.rates(y.tolist(), parameters)
+    nearby = np.random.default_rng(0).uniform(-1.0, 1.0, (len(y), 64)) * np.spacing(y)[:, None]
+    for guard in mode.motion.guards:
+        end = ModeEnd.by_guard(guard.name, segment.end_state)
+        if (end.cause, end.contact) == (segment.mode_end.cause, segment.mode_end.contact):
+            moving = [Dual(a, np.array([b])) for a, b in zip(y.tolist(), rates, strict=True)]
+            values = guard.value(list(y[:, None] + nearby), parameters)
+            yield float(np.std(values) / abs(guard.value(moving, parameters).parts[0]))
+
+
+def roundings_of(times: Any, problem: Any) -> Any:
+    """Return how far rounding of guards may move the events at some times, s."""
+    moved = np.zeros(len(times))
+    for time, lasted, rounding in falls(problem):
+        after = times - time
+        moved += np.where(
+            after >= -SAME_TIME, rounding * (1.0 + np.maximum(after, 0.0) / lasted), 0.0
+        )
+    return moved
+
+
+def same_time(times: Any, problem: Any) -> Any:
+    """Return how far events at some times, s, may be apart in two methods, s."""
+    return np.maximum(SAME_TIME, ROUNDINGS * roundings_of(times, problem))
 
 
 @pytest.mark.parametrize("seed", seeds(check=2, sample=20, claim=500))
@@ -29,16 +94,32 @@ def test_random_launches_have_the_events_that_heyoka_finds(seed):
     from heyoka_taylor import Heyoka  # noqa: PLC0415 - heyoka may not be installed
 
     fields = launch_of(seed)
-    run = followed(fields, "taylor")
-    if run is None:
+    problem = problem_of(fields)
+    if problem is None:
         return
-    same = followed(fields, Heyoka())
+    run, same = followed(problem, "taylor"), followed(problem, Heyoka())
     assert same.attrs["outcome"] == run.attrs["outcome"]
     assert same["event_kind"].values.tolist() == run["event_kind"].values.tolist()
-    apart = np.abs(same["event_time"].values - run["event_time"].values)
-    if np.max(apart, initial=0.0) > SAME_TIME:
+    times = run["event_time"].values
+    apart = np.abs(same["event_time"].values - times)
+    if np.max(apart, initial=0.0) <= SAME_TIME:
+        return
+    allowed = same_time(times, problem)
+    if np.any(apart > allowed):
         # A launch may multiply a rounding by more than the bound allows.
-        beside = followed(nudged(fields), "taylor")
+        beside = followed(problem_of(nudged(fields)), "taylor")
         assert beside["event_kind"].values.tolist() == run["event_kind"].values.tolist()
-        moved = np.abs(beside["event_time"].values - run["event_time"].values)
-        assert np.all(apart <= np.maximum(SAME_TIME, ROUNDINGS * np.max(moved)))
+        moved = np.abs(beside["event_time"].values - times)
+        allowed = np.maximum(allowed, ROUNDINGS * np.max(moved))
+    assert np.all(apart <= allowed)
+
+
+def test_only_the_last_rockings_may_be_further_apart():
+    """An error of a nanosecond in any other event is ten times the bound."""
+    problem = problem_of(launch_of(ROCKS_LONG))
+    times = followed(problem, "taylor")["event_time"].values
+    allowed = same_time(times, problem)
+    uncertain = allowed > SAME_TIME
+    assert 0.0 < np.mean(uncertain) < 0.2
+    assert np.all(times[uncertain] > times[-1] - 1e-6)
+    assert np.all(allowed < 20.0 * SAME_TIME)
