@@ -1,4 +1,13 @@
-"""Where a guard falls through zero within a step of an integrator."""
+"""Where a guard falls through zero within a step of an integrator: the search that all runs share.
+
+A function is looked at in places that divide the step evenly. Between two of them it falls from
+positive to not positive, or it dips and returns (`brackets`), and then its zero is bracketed. Three
+other modules state a part of this search, because it calls a function of time again and again.
+`polynomial_minima` does without branches, so that it is compiled, for one launch and for many, and
+leaves to `first_zero` what it cannot decide. `dormand_prince.suspect` tells in a loop over arrays
+which steps need no search. `tippetop.mechanics.roots.first_root` proves that no touch is passed
+over in a flight, whose gap has a known bound of its third derivative.
+"""
 
 # translate module: numbers
 
@@ -26,6 +35,11 @@ there the guard is zero but for errors, and a motion that stopped there would st
 INEXACT = 0.05
 """How near zero a dip must come, as a part of its depth, for the interpolation not to be trusted
 about it.
+"""
+
+BESIDE = 1e-6
+"""Distance, as a part of that between two probes, at which a guard is compared with its value at a
+probe to tell whether it rises there; much nearer, the difference is rounding.
 """
 
 
@@ -67,6 +81,34 @@ def first_fall(
     # The interpolation is wrong by more than the guard is: only ends of steps tell.
     fall = _fall_along(guards, landed, landed, step, AT_ONCE)
     return None if fall is None else (*fall, landed(fall[1]))
+
+
+def first_zero(
+    value: TimeFunction,
+    values: Sequence[float],
+    from_above: bool = False,
+    after_rise: bool = False,
+) -> float:
+    """Return where in [0, 1] a function first falls to zero from above; nan where it does not.
+
+    Parameters
+    ----------
+    value, values
+        The function, and its values in places that divide [0, 1] evenly, from 0 to 1.
+    from_above
+        Whether a function that starts below zero falls no sooner than it has been positive. One
+        that does not rise falls at 0.
+    after_rise
+        Whether that holds of one that starts at zero, too.
+    """
+    starts = values[0] == 0.0 if from_above else values[0] <= 0.0
+    if starts and values[1] <= 0.0 and not after_rise:
+        return 0.0
+    last = len(values) - 1
+    places = [k / last for k in range(last + 1)]
+    for low, high, function in brackets(places, values, value, value):
+        return crossing(function, low, high)
+    return math.nan
 
 
 def _fall_along(
@@ -122,7 +164,7 @@ def brackets(
     if least > 0.0 and 2.0 * least >= max(values):
         return  # The values vary too little for a dip to reach zero.
     if max(values[:2]) <= 0.0:
-        early = _early_bracket(probes[0], probes[last], value)
+        early = _early_bracket(probes[0], probes[last], last, value)
         if early is not None:
             yield early
     for i in range(last + 1):
@@ -140,17 +182,24 @@ def brackets(
                 ):
                     yield probes[before], place, exact
         if values[i] > 0.0 and values[after] <= 0.0:
+            if values[i] < values[before]:
+                # Where it rises at the probe before its fall, it may have dipped before that, too.
+                near = probes[i] - BESIDE * (probes[i] - probes[before])
+                if value(near) < values[i]:
+                    place, lowest = dip(value, probes[before], probes[i])
+                    if lowest <= 0.0:
+                        yield probes[before], place, value
             yield probes[i], probes[after], value
 
 
 def _early_bracket(
-    start: float, end: float, value: TimeFunction
+    start: float, end: float, intervals: int, value: TimeFunction
 ) -> tuple[float, float, TimeFunction] | None:
     """Return the interval before the first probe over which a guard falls that starts at zero and
     rises.
     """
     part = EARLIEST
-    while part < 1.0 / LOOKS:
+    while part < 1.0 / intervals:
         low, high = start + part * (end - start), start + 2.0 * part * (end - start)
         if value(low) > RISEN and value(high) <= 0.0:
             return low, high, value

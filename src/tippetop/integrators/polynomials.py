@@ -4,14 +4,15 @@
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.integrators.dense import Array, powers
-from tippetop.integrators.dormand_prince import EARLIEST, RISEN
+from tippetop.integrators.falls import first_zero
+from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Row, Scalar
 
 Choice: TypeAlias = Callable[[Any, Any, Any], Any]
@@ -28,11 +29,6 @@ ONE_BY_ONE = 4
 TOGETHER = 256
 """Columns that are multiplied at once: of a few hundred more, threads cost several times what they
 save.
-"""
-
-TURNS = 60
-"""Improvements of a zero at most: Newton's where they stay in the bracket, halvings where they do
-not.
 """
 
 
@@ -88,13 +84,6 @@ class Polynomials:
         """Values at the looks, shape (INTERVALS + 1, n)."""
         return times(_places(len(self.unit)), self.unit)
 
-    @property
-    def slopes(self) -> Array:
-        """First derivatives at the looks, over the interval, shape (INTERVALS + 1, n)."""
-        return times(
-            _places(len(self.unit) - 1), self.unit[1:] * np.arange(1, len(self.unit))[:, None]
-        )
-
     @cached_property
     def bending(self) -> Array:
         """How far a polynomial can lie below two neighbouring looks: interval^2 / 8 max |f''|,
@@ -132,42 +121,19 @@ class Polynomials:
         """First times at which the polynomials fall to zero from above, nan where they do not,
         shape (n,).
 
-        Where no look finds a polynomial at or below zero, but its second derivative could take it
-        there between two looks, its least value there is found first. A polynomial that starts at
-        or below zero and does not rise falls at 0, unless it has to come `from_above`: then it may
-        start at zero, not below. `after_rise`, for all or for some, it falls no sooner than it has
-        been positive.
+        See `tippetop.integrators.falls.first_zero`, to whose search they are left that may come so
+        low; `after_rise` is of all, or of each.
         """
-        values = self.values
-        falls = (values[1:] <= 0.0) & (values[:-1] > 0.0)
-        has_fall = np.asarray(falls.any(axis=0))
-        after = np.where(has_fall, falls.argmax(axis=0) + 1, INTERVALS + 1)
-        low, high = (after - 1) / INTERVALS, after / INTERVALS
-
-        nearer = np.minimum(values[:-1], values[1:])
-        dips = (nearer > 0.0) & (nearer <= self.bending) & (np.arange(INTERVALS)[:, None] < after)
-        if dips.any():
-            slopes = self.slopes
-            dips &= (slopes[:-1] < 0.0) & (slopes[1:] > 0.0)
-        for lane in np.flatnonzero(dips.any(axis=0)):
-            for interval in np.flatnonzero(dips[:, lane]):
-                place, value = of_each(
-                    _least_near, self.unit[:, [lane]], np.array([(interval + 0.5) / INTERVALS])
-                )
-                if value[0] <= 0.0:
-                    low[lane], high[lane], has_fall[lane] = interval / INTERVALS, place[0], True
-                    break
-        zeros = np.full(has_fall.shape, np.nan)
-        which = np.flatnonzero(has_fall)
-        if len(which):
-            zeros[which] = of_each(_zero, self.unit[:, which], low[which], high[which])
-        starts = (values[0] == 0.0) if from_above else (values[0] <= 0.0)
-        at_once = starts & (values[1] <= 0.0)
-        if at_once.any():
-            zeros[at_once & np.logical_not(after_rise)] = 0.0
-            for lane in np.flatnonzero(at_once & after_rise):
-                early = _early_fall(self.unit[:, lane].tolist())
-                zeros[lane] = zeros[lane] if early is None else early
+        zeros = np.full(len(self.span), np.nan)
+        which = np.flatnonzero(self.floor <= 0.0)
+        rising = np.broadcast_to(after_rise, zeros.shape)[which].tolist()
+        each = zip(
+            self.unit[:, which].T.tolist(), self.values[:, which].T.tolist(), rising, strict=True
+        )
+        zeros[which] = [
+            first_zero(partial(horner, terms), values, from_above, rises)
+            for terms, values, rises in each
+        ]
         return zeros * self.span
 
     def refined_least(self) -> tuple[Array, Array]:
@@ -274,39 +240,6 @@ def _least_near(
         if not some(moving):
             break
     return place, _horner(terms, place)[0]
-
-
-def _zero(
-    terms: Row, low: Scalar, high: Scalar, where: Choice, some: Callable[[Any], Any]
-) -> Scalar:
-    """Return a zero between places where a polynomial is positive and not positive."""
-    place, moving = 0.5 * (low + high), True
-    for _ in range(TURNS):
-        value, slope = _horner(terms, place)
-        positive = value > 0.0
-        low, high = where(positive, place, low), where(positive, high, place)
-        newton = place - value / where(slope == 0.0, 1.0, slope)
-        # Newton's method doubles the digits that are right: from nine on, this was the last step.
-        arrived = abs(newton - place) <= 1e-9 * place
-        outside = where(arrived, where(newton <= low, low, high), 0.5 * (low + high))
-        new = where((newton > low) & (newton < high), newton, outside)
-        still = where(arrived, False, abs(new - place) > 4e-16 * new)
-        place, moving = where(moving, new, place), moving & still
-        if not some(moving):
-            break
-    return place
-
-
-def _early_fall(terms: Row) -> float | None:
-    """Return where a polynomial falls to zero that starts there, rises, and falls before the first
-    look; None if it does not.
-    """
-    part = EARLIEST
-    while part < 1.0 / INTERVALS:
-        if _horner(terms, part)[0] > RISEN and _horner(terms, 2.0 * part)[0] <= 0.0:
-            return float(_zero(terms, part, 2.0 * part, _chosen, bool))
-        part *= 2.0
-    return None
 
 
 def _chosen(flag: bool, yes: float, no: float) -> float:

@@ -169,7 +169,7 @@ class Run {
       reading(solution, step, AXIS_Z, -1),
     );
     if (low <= 0 && high >= 0 && Number.isNaN(this.firstHorizontal)) {
-      const part = firstFall(reading(solution, step, AXIS_Z), true);
+      const part = firstZero(reading(solution, step, AXIS_Z), true);
       this.firstHorizontal = solution.time(step, part);
     }
   }
@@ -447,14 +447,19 @@ function leastInStep(values, threshold) {
   return { part: PROBES[lowest], value: low };
 }
 
+/** Where a function on [0, 1] first falls to zero; NaN where it does not. With `fromAbove` it must be above first. */
+function firstZero(value, fromAbove = false) {
+  return m.first_zero(value, PROBES.map(value), fromAbove);
+}
+
 /** The first part of a step at which n_z is in a band; NaN if it is not in that step. */
 function firstPartInBand(solution, step, low, high) {
   const start = solution.value(step, AXIS_Z, 0);
   const [least, most] = solution.bounds(step, AXIS_Z);
   if (least > high || most < low) return NaN;
   if (start <= high && start >= low) return 0;
-  if (start > high) return firstFall((part) => solution.value(step, AXIS_Z, part) - high);
-  return firstFall((part) => low - solution.value(step, AXIS_Z, part));
+  if (start > high) return firstZero((part) => solution.value(step, AXIS_Z, part) - high);
+  return firstZero((part) => low - solution.value(step, AXIS_Z, part));
 }
 
 /** The last part of a step at which n_z is not in a band; NaN if it is in it all along. */
@@ -464,19 +469,10 @@ function lastPartOutside(solution, step, low, high) {
   const last = solution.value(step, AXIS_Z, 1);
   if (last > high || last < low) return 1;
   const exits = [
-    firstFall((rest) => high - solution.value(step, AXIS_Z, 1 - rest)),
-    firstFall((rest) => solution.value(step, AXIS_Z, 1 - rest) - low),
+    firstZero((rest) => high - solution.value(step, AXIS_Z, 1 - rest)),
+    firstZero((rest) => solution.value(step, AXIS_Z, 1 - rest) - low),
   ].filter((rest) => !Number.isNaN(rest));
   return exits.length ? 1 - Math.min(...exits) : NaN;
-}
-
-/** Where a function on [0, 1] first falls to zero; NaN where it does not. With `fromAbove` it must be above first. */
-function firstFall(value, fromAbove = false) {
-  const probes = PROBES.map(value);
-  const beginsThere = fromAbove ? probes[0] === 0 : probes[0] <= 0;
-  if (beginsThere && probes[1] <= 0) return 0;
-  const [bracket] = m.brackets(PROBES, probes, value, value);
-  return bracket === undefined ? NaN : m.crossing(value, bracket[0], bracket[1]);
 }
 
 /** Give quaternions in a row the signs that let none jump. */
