@@ -54,6 +54,9 @@ the step: further they do where a guard hardly falls. Newton's method doubles th
 right: an improvement below the last, as a part of the step, is the last one.
 """
 
+FALL = 2
+"""Results of the search in a guard: when it falls, and whether that is undecided."""
+
 EFFORT = 1
 """How hard the compiler tries, of 3: more takes as long, and its code runs no faster."""
 
@@ -64,49 +67,33 @@ NODES = NodeArithmetic()
 
 _PLACE = ctypes.c_void_p
 
-DRIVER = """\
-declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
-declare void @llvm.memset.p0.i64(ptr, i8, i64, i1)
-define void @measure(ptr %raw, i64 %size, i64 %guards, ptr %measures) {{
+ROWS_LOOP = """\
+define void @{name}(ptr %rows, i64 %count, ptr %numbers, ptr %out) {{
 entry:
-  %most_place = getelementptr double, ptr %measures, i64 {largest}
-  store double 1.0, ptr %most_place
-  %first_place = getelementptr double, ptr %measures, i64 0
-  call void @llvm.memset.p0.i64(ptr %first_place, i8 0, i64 24, i1 false)
-  br label %number
-number:
-  %i = phi i64 [ 0, %entry ], [ %next_i, %number ]
-  %row = mul i64 %i, {count}
-  %begin = getelementptr double, ptr %raw, i64 %row
-  call void @largest(ptr %begin, ptr %measures, ptr %most_place, i64 1)
-  %next_i = add i64 %i, 1
-  %more = icmp ult i64 %next_i, %size
-  br i1 %more, label %number, label %ratios
-ratios:
-  %j = phi i64 [ 0, %number ], [ %next_j, %ratios ]
-  %ratio_row = mul i64 %j, {count}
-  %ratio_begin = getelementptr double, ptr %raw, i64 %ratio_row
-  call void @ratios(ptr %ratio_begin, ptr %measures, ptr %measures, i64 1)
-  %next_j = add i64 %j, 1
-  %more_ratios = icmp ult i64 %next_j, %size
-  br i1 %more_ratios, label %ratios, label %guard_terms
-guard_terms:
-  %terms = mul i64 %size, {count}
-  %guard_place = getelementptr double, ptr %raw, i64 %terms
-  br label %guard
-guard:
-  %g = phi i64 [ 0, %guard_terms ], [ %next_g, %guard_ratio ]
-  %guard_left = icmp ult i64 %g, %guards
-  br i1 %guard_left, label %guard_ratio, label %end
-guard_ratio:
-  %guard_row = mul i64 %g, {order}
-  %guard_begin = getelementptr double, ptr %guard_place, i64 %guard_row
-  call void @guard_ratio(ptr %guard_begin, ptr %measures, ptr %measures, i64 1)
-  %next_g = add i64 %g, 1
-  br label %guard
+  br label %next
+next:
+  %i = phi i64 [ 0, %entry ], [ %later, %row ]
+  %left = icmp ult i64 %i, %count
+  br i1 %left, label %row, label %end
+row:
+  %first = mul i64 %i, {length}
+  %begin = getelementptr double, ptr %rows, i64 %first
+  %place = mul i64 %i, {results}
+  %to = getelementptr double, ptr %out, i64 %place
+  call void @{function}(ptr %begin, ptr %numbers, ptr %to, i64 1)
+  %later = add i64 %i, 1
+  br label %next
 end:
   ret void
 }}
+"""
+"""The loop that calls a function for the coefficients of every number of the state, or of every
+guard. Each call has so many results of its own, or, if none, brings up to date those of all.
+"""
+
+STEPS_LOOP = """\
+declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
+declare void @llvm.memset.p0.i64(ptr, i8, i64, i1)
 define void @scale_all(ptr %raw, i64 %size, ptr %powers, ptr %row) {{
 entry:
   %terms = mul i64 %size, {count}
@@ -125,38 +112,20 @@ number:
 end:
   ret void
 }}
-define void @falls(ptr %raw, i64 %size, i64 %guards, ptr %span, ptr %out) {{
-entry:
-  %terms = mul i64 %size, {count}
-  %guard_place = getelementptr double, ptr %raw, i64 %terms
-  br label %guard
-guard:
-  %g = phi i64 [ 0, %entry ], [ %next, %search ]
-  %guard_left = icmp ult i64 %g, %guards
-  br i1 %guard_left, label %search, label %end
-search:
-  %row = mul i64 %g, {order}
-  %begin = getelementptr double, ptr %guard_place, i64 %row
-  %pair = mul i64 %g, 2
-  %fall = getelementptr double, ptr %out, i64 %pair
-  call void @fall(ptr %begin, ptr %span, ptr %fall, i64 1)
-  %next = add i64 %g, 1
-  br label %guard
-end:
-  ret void
-}}
 define i64 @follow(ptr %jet, ptr %y, ptr %p, ptr %room, ptr %raw, ptr %rows, i64 %most, i64 %size,
 i64 %guards) alignstack(64) {{
 entry:
-  %doubt = alloca double
   %measures = alloca [{measures} x double]
+  %looked = alloca [2 x double]
   %powers = alloca [{order} x double]
   %terms = mul i64 %size, {count}
+  %guard_rows = getelementptr double, ptr %raw, i64 %terms
   %guard_numbers = mul i64 %guards, {order}
-  %clock_at = add i64 %terms, %guard_numbers
-  %clock = getelementptr double, ptr %raw, i64 %clock_at
+  %clock = getelementptr double, ptr %guard_rows, i64 %guard_numbers
   %watch = getelementptr double, ptr %clock, i64 3
+  %largest_place = getelementptr double, ptr %measures, i64 {largest}
   %clock_copy = getelementptr double, ptr %measures, i64 {clock}
+  %doubt_place = getelementptr double, ptr %looked, i64 1
   %time_at = add i64 %terms, %size
   %width = add i64 %time_at, 4
   %state_bytes = mul i64 %size, 8
@@ -166,7 +135,11 @@ step:
   %begin = mul i64 %steps, %width
   %row = getelementptr double, ptr %rows, i64 %begin
   call void %jet(ptr %y, ptr %p, ptr %room, ptr %raw)
-  call void @measure(ptr %raw, i64 %size, i64 %guards, ptr %measures)
+  call void @llvm.memset.p0.i64(ptr %measures, i8 0, i64 24, i1 false)
+  store double 1.0, ptr %largest_place
+  call void @all_largest(ptr %raw, i64 %size, ptr %measures, ptr %largest_place)
+  call void @all_ratios(ptr %raw, i64 %size, ptr %measures, ptr %measures)
+  call void @all_guard_ratios(ptr %guard_rows, i64 %guards, ptr %measures, ptr %measures)
   call void @llvm.memcpy.p0.p0.i64(ptr %clock_copy, ptr %clock, i64 24, i1 false)
   %time = getelementptr double, ptr %row, i64 %time_at
   call void @timing(ptr %measures, ptr %measures, ptr %time, i64 1)
@@ -174,26 +147,18 @@ step:
   call void @powers(ptr %span_place, ptr %span_place, ptr %powers, i64 1)
   call void @scale_all(ptr %raw, i64 %size, ptr %powers, ptr %row)
   %span = load double, ptr %span_place
-  %watches = load double, ptr %watch
   %moves = fcmp ogt double %span, 0.0
-  br i1 %moves, label %guards_begin, label %stop
-guards_begin:
-  %guard_terms_begin = getelementptr double, ptr %raw, i64 %terms
-  br label %guard_loop
-guard_loop:
-  %guard = phi i64 [ 0, %guards_begin ], [ %next_guard, %look ]
-  %guard_left = icmp ult i64 %guard, %guards
-  %watched = fcmp ogt double %watches, 0.0
-  %looks = and i1 %guard_left, %watched
-  br i1 %looks, label %look, label %advance
+  br i1 %moves, label %look, label %stop
 look:
-  %guard_row = mul i64 %guard, {order}
-  %guard_terms = getelementptr double, ptr %guard_terms_begin, i64 %guard_row
-  call void @look(ptr %guard_terms, ptr %span_place, ptr %doubt, i64 1)
-  %doubted = load double, ptr %doubt
-  %falls = fcmp ogt double %doubted, 0.0
-  %next_guard = add i64 %guard, 1
-  br i1 %falls, label %stop, label %guard_loop
+  %watches = load double, ptr %watch
+  %watched = fcmp ogt double %watches, 0.0
+  %guards_watched = select i1 %watched, i64 %guards, i64 0
+  store double %span, ptr %looked
+  store double 0.0, ptr %doubt_place
+  call void @all_looks(ptr %guard_rows, i64 %guards_watched, ptr %looked, ptr %doubt_place)
+  %doubt = load double, ptr %doubt_place
+  %may_fall = fcmp ogt double %doubt, 0.0
+  br i1 %may_fall, label %stop, label %advance
 advance:
   %state = getelementptr double, ptr %row, i64 %terms
   call void @llvm.memcpy.p0.p0.i64(ptr %y, ptr %state, i64 %state_bytes, i1 false)
@@ -330,8 +295,8 @@ class CompiledSteps:
         self._engine = _step_code(order, min(LEFT_OUT, 1.0 / tolerance))
         kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[_PLACE] * 6, *[ctypes.c_int64] * 3)
         self.follow: Callable[..., int] = kind(self._engine.get_function_address("follow"))
-        falls = ctypes.CFUNCTYPE(None, _PLACE, *[ctypes.c_int64] * 2, *[_PLACE] * 2)
-        self.falls: Callable[..., None] = falls(self._engine.get_function_address("falls"))
+        falls = ctypes.CFUNCTYPE(None, _PLACE, ctypes.c_int64, *[_PLACE] * 2)
+        self.falls: Callable[..., None] = falls(self._engine.get_function_address("all_falls"))
         # Rooms that nobody uses at present: threads take one each.
         self.rooms = list[Array]()
 
@@ -424,13 +389,11 @@ class Run:
         Compiled code searches. It leaves undecided guards that begin at zero or come near it.
         """
         layout = self.layout
-        results = np.empty((layout.guards, 2))
-        self.stepper.falls(
-            self._raw.ctypes.data, layout.size, layout.guards, span_place, results.ctypes.data
-        )
+        rows, results = self._raw[layout.terms : layout.clock], np.empty((layout.guards, FALL))
+        self.stepper.falls(rows.ctypes.data, layout.guards, span_place, results.ctypes.data)
         times, undecided = results.T.tolist()
         if any(undecided):
-            terms = self._raw[layout.terms : layout.clock].reshape(layout.guards, layout.order).T
+            terms = rows.reshape(layout.guards, layout.order).T
             # A margin may be zero at first, and then falls at once.
             is_guard = np.arange(layout.guards) < self.stepper.guards
             spans = np.full(layout.guards, span)
@@ -539,23 +502,34 @@ def _step_code(order: int, left_out: float) -> Any:
         "timing": record(timing, measures, 0),
         "powers": record(lambda span, _: span_powers(span[0], order), 1, 0),
         "scale": record(scaled, count, order, 1),
-        "look": record(doubt_about, order, 1),
+        "look": record(doubt_about, order, 2),
         "fall": record(fall_of, order, 1),
     }
-    driver = DRIVER.format(
+    loops = {
+        "all_largest": ("largest", count, 0),
+        "all_ratios": ("ratios", count, 0),
+        "all_guard_ratios": ("guard_ratio", order, 0),
+        "all_looks": ("look", order, 0),
+        "all_falls": ("fall", order, FALL),
+    }
+    lines = [
+        ROWS_LOOP.format(name=name, function=function, length=length, results=results)
+        for name, (function, length, results) in loops.items()
+    ]
+    driver = STEPS_LOOP.format(
         order=order,
         count=count,
         measures=measures,
         largest=Measures._fields.index("largest"),
         clock=Measures._fields.index("time"),
     )
-    return loaded(llvm_source(functions, 1) + driver, EFFORT)
+    return loaded(llvm_source(functions, 1) + "".join(lines) + driver, EFFORT)
 
 
-def doubt_about(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar]:
-    """Return whether a guard may fall in a step of some length."""
-    probes = looked_at(terms, spans[0], PROBES_PER_STEP)
-    return [may_fall(terms, probes, spans[0], NODES)]
+def doubt_about(terms: Sequence[Scalar], looked: Sequence[Scalar]) -> list[Scalar]:
+    """Return how many guards may fall in a step of some length, from how many of those before."""
+    span, doubt = looked
+    return [doubt + may_fall(terms, looked_at(terms, span, PROBES_PER_STEP), span, NODES)]
 
 
 def fall_of(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar]:
