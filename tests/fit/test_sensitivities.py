@@ -130,6 +130,11 @@ def test_restitution_at_its_bound_has_no_derivative():
     assert slopes["reason"].values[0] != ""
     assert slopes["reason"].values[1] == ""
     assert np.all(np.isfinite(slopes["height"].sel(parameter="launch.gap").values))
+    # A result whose derivatives all end early is as long as the run.
+    run = tt.simulate(problem, 0.2, samples=21)
+    alone = tt.sensitivities(problem, 0.2, ["contact.restitution"], samples=21)
+    assert alone["time"].values.tolist() == run["time"].values.tolist()
+    assert np.isnan(alone["event_time"].values).tolist() == [[True] * run.sizes["event"]]
 
 
 @pytest.mark.parametrize(

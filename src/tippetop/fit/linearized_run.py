@@ -12,7 +12,7 @@ All derivatives at the ends of legs are total ones: they move with the time of t
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -61,6 +61,11 @@ READ_BESIDE = 2e-5
 that.
 """
 
+READ_ONE_SIDE = 1e-6
+"""The same where the run beside it is compared with the run itself: the error is 1e-6 over the
+scale of the motion. Rounding, 1e-10, stays below effects that count.
+"""
+
 TRIES, SHORTER = 3, 0.1
 """How often a junction is followed nearer to the run, and how much nearer each time, until the runs
 beside it go through the same events.
@@ -73,6 +78,9 @@ at which it falls has no derivative.
 
 FOUR = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0))
 """Rule of fourth order for a first derivative: places and weights."""
+
+TWO = ((-1, -0.5), (1, 0.5))
+"""Rule of second order, for searches, which need no more than the direction of a step."""
 
 OTHER_EVENTS = (
     "runs nearby go through other events: a choice of the contact is at its edge, or at the limit"
@@ -145,7 +153,8 @@ class IntegratedLeg:
         solution = self.solutions[direction // TOGETHER]
         moved, rates = self._rates_along(direction)
         terms = change * rates
-        terms[:, :, :-1] += solution.terms[:, : len(self.last)]
+        degree = solution.terms.shape[2]
+        terms[:, :, :degree] += solution.terms[:, : len(self.last)]
         ends = solution.knots + change * moved
         ends[-1] = end
         last = mode.state((self.last + change * self.changes[direction]).tolist())
@@ -163,9 +172,10 @@ class IntegratedLeg:
         span = knots[-1] - knots[0]
         moved = start + (stop - start) * (knots - knots[0]) / (span if span > 0.0 else 1.0)
         degree = solution.terms.shape[2]
-        terms = np.zeros((len(solution.terms), size, degree + 1))
-        terms[:, :, :degree] = solution.terms[:, place * size : (place + 1) * size]
+        terms = solution.terms[:, place * size : (place + 1) * size]
         if np.any(moved):
+            # The ends of a step move: its polynomial is one of a part of the step, to first order.
+            terms = np.concatenate([terms, np.zeros((*terms.shape[:2], 1))], axis=2)
             spans = np.diff(knots)[:, None, None]
             slopes = solution.terms[:, :size, 1:] * np.arange(1, degree) / spans
             terms[:, :, : degree - 1] += slopes * moved[:-1, None, None]
@@ -200,6 +210,8 @@ class Beside:
 class LinearizedRun:
     """A run of a problem, and its derivatives in several directions.
 
+    If they are `rough`, junctions are differentiated by `TWO` instead of `FOUR`.
+
     Attributes
     ----------
     failures
@@ -214,8 +226,10 @@ class LinearizedRun:
         directions: Sequence[Direction],
         *,
         tolerance: float | None = None,
+        rough: bool = False,
     ) -> None:
         self.problem, self.duration, self.grid = problem, duration, grid
+        self.rule = TWO if rough else FOUR
         self.fields = tuple(directions)
         self.directions = tuple([one.rates for one in directions])
         self.numbers = StartNumbers.of(problem)
@@ -303,7 +317,7 @@ class LinearizedRun:
             change = self._change(junction, direction)
             for _ in range(TRIES):
                 try:
-                    for place, weight in FOUR:
+                    for place, weight in self.rule:
                         beside = self.beside(junction, direction, place * change)
                         mode_beside: Any = beside.transitions[-1].then
                         row = np.array(mode_beside.numbers(beside.state))
@@ -560,8 +574,8 @@ class LinearizedRun:
         return time, automaton.follow(mode, how, time, self.integrator)
 
     @np.errstate(all="ignore")
-    def read_beside(self, direction: int, change: float) -> xr.Dataset:
-        """Return the dataset of the run beside the run, to first order in a change.
+    def read_beside(self, direction: int, change: float) -> "Reading":
+        """Return what a run beside the run shows, to first order in a change.
 
         Raises
         ------
@@ -605,18 +619,17 @@ class LinearizedRun:
         trajectory.end_at(time, state, self.outcome, self.trajectory.detail)
         trajectory.events = events
         problem = self._problem_beside(direction, change) or self.problem
-        run = self._dataset(problem, start, segments, trajectory)
-        return with_event_states(run, states, units)
+        return Reading(self._dataset(problem, start, segments, trajectory), states, units)
 
     @np.errstate(all="ignore")
-    def read(self) -> xr.Dataset:
-        """Return the dataset of the run itself."""
+    def read(self) -> "Reading":
+        """Return what the run itself shows."""
         start = self._launch(self.numbers, self.launch)
         segments = [segment for visit in self.visits for segment in visit.segments]
         run = self._dataset(self.problem, start, segments, self.trajectory)
         transitions = [self.launch, *(v.transition for v in self.visits if v.transition)]
         states = [one.state for one in transitions for _ in one.events]
-        return with_event_states(run, states, start.units)
+        return Reading(run, states, start.units)
 
     def _launch(self, numbers: StartNumbers, first: Transition) -> NaturalLaunch:
         """Return the launch of the run, or of one beside it."""
@@ -642,16 +655,16 @@ class LinearizedRun:
         block = Block(segments)
         recorder.take(block)
         run_metrics.take(block)
-        run = read_off(
-            start, (recorder, run_metrics), trajectory, self.outcome, self.grid, self.duration
-        )
-        return run.assign_attrs(problem=problem.to_json(), outcome=self.outcome.name.lower())
+        readers, outcome = (recorder, run_metrics), self.outcome
+        attributes = {"problem": problem.to_json(), "outcome": outcome.name.lower()}
+        grid, duration = self.grid, self.duration
+        return read_off(start, readers, trajectory, outcome, grid, duration, attributes=attributes)
 
     def _start_of(self, junction: Junction) -> float:
         return 0.0 if junction.before is None else junction.before.visit.end_time
 
-    def reach(self, direction: int) -> float:
-        """Return a change that moves the run by `READ_BESIDE` at most."""
+    def reach(self, direction: int, beside: float = READ_BESIDE) -> float:
+        """Return a change that moves the run by a distance at most."""
         rates = self.directions[direction]
         sizes = [1.0, float(np.max(np.abs(rates.pack())[: len(rates.top) + 10]))]
         size = 0.0
@@ -663,21 +676,33 @@ class LinearizedRun:
                 tangent = terms[:, place * size : (place + 1) * size, 0]
                 sizes += [float(np.max(np.abs(tangent), initial=0.0))]
                 sizes += [abs(float(times[direction])) for times in leg.times]
-        return READ_BESIDE / max(sizes)
+        return beside / max(sizes)
 
 
-def with_event_states(run: xr.Dataset, states: Sequence[State], units: Units) -> xr.Dataset:
-    """Return a run with the states just after its events, SI: see `EVENT_STATES`."""
-    rows = np.array([state.pack() for state in states], dtype=float).reshape(-1, 10)
-    scales = 1.0, units.angular_momentum, units.speed
-    variables: dict[str, Any] = {
-        name: (("event", "space"), rows[:, 3 * place : 3 * place + 3] * scale)
-        for place, (name, scale) in enumerate(zip(EVENT_STATES, scales, strict=False))
-    }
-    variables["event_height"] = (("event",), rows[:, 9] * units.length)
-    return run.assign(
-        {name: (*parts, EVENT_STATES[name].attributes) for name, parts in variables.items()}
-    )
+class Reading(NamedTuple):
+    """What a run shows."""
+
+    run: xr.Dataset
+    """Its dataset."""
+    states: Sequence[State]
+    """The states just after its events, natural units."""
+    units: Units
+    """The natural units."""
+
+    @property
+    def variables(self) -> dict[str, xr.Variable]:
+        """All its variables by name, with those of `EVENT_STATES`."""
+        rows = np.array([state.pack() for state in self.states], dtype=float).reshape(-1, 10)
+        scales = 1.0, self.units.angular_momentum, self.units.speed
+        values: list[Array] = [
+            rows[:, 3 * place : 3 * place + 3] * scale for place, scale in enumerate(scales)
+        ]
+        values.append(rows[:, 9] * self.units.length)
+        named = dict[str, xr.Variable]()
+        for (name, described), one in zip(EVENT_STATES.items(), values, strict=True):
+            dimensions = ("event", "space")[: one.ndim]
+            named[name] = xr.Variable(dimensions, one, described.attributes)
+        return {**{str(name): one for name, one in self.run.variables.items()}, **named}
 
 
 def is_integrated(mode: object) -> bool:

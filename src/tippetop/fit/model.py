@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tippetop.fit.linearized_run import Differs, LinearizedRun
+from tippetop.fit.linearized_run import READ_ONE_SIDE, Differs, LinearizedRun
 from tippetop.fit.measurement import Measurement
 from tippetop.fit.problem_numbers import SMALLEST_SCALE, Direction, require_fields, scale_of
 from tippetop.integrators.base import Array
@@ -121,21 +121,23 @@ class Model:
         """Return the derivatives of the values, shape (values, numbers).
 
         Where the run has no derivative, a column is NaN if `exact`, and `reasons` says why; else it
-        is a difference of runs, good enough to step by.
+        is a difference of runs. What is not exact is good enough to step by.
         """
         problem = self.problem_of(numbers)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Implausible)
             directions = [Direction.of(problem, field) for field in self.fields]
-            linear = LinearizedRun(problem, float(self.times[-1]), self.times, directions)
+            end = float(self.times[-1])
+            linear = LinearizedRun(problem, end, self.times, directions, rough=not exact)
         self.runs += 1
-        run = linear.read()
+        run = linear.read().run
         center = self.predict(numbers, run)
         columns = list[Array]()
         largest = np.nanmax(np.abs(center.values))
         for place, scale in enumerate(self.scales(numbers)):
             if place < len(self.fields):
-                column = self._field_column(numbers, place, linear)
+                values = None if exact else center.values
+                column = self._field_column(numbers, place, linear, values)
                 if exact and np.isnan(column).all():
                     self.reasons[self.names[place]] = linear.failures[place][1]
                 elif not exact and place in linear.failures:
@@ -157,16 +159,25 @@ class Model:
             )
         return np.array(sizes)
 
-    def _field_column(self, numbers: Array, place: int, linear: LinearizedRun) -> Array:
-        """Return the derivatives with respect to a field; NaN where the run has none."""
+    def _field_column(
+        self, numbers: Array, place: int, linear: LinearizedRun, center: Array | None
+    ) -> Array:
+        """Return the derivatives with respect to a field; NaN where the run has none.
+
+        They are differences from the values of the run itself, if those are given.
+        """
+
+        def beside(change: float) -> Array:
+            return self.predict(numbers, linear.read_beside(place, change).run).values
+
         if place not in linear.failures:
+            scale = linear.fields[place].scale
             with contextlib.suppress(Differs):
-                change = linear.reach(place)
-                ends = [
-                    self.predict(numbers, linear.read_beside(place, sign * change)).values
-                    for sign in (1.0, -1.0)
-                ]
-                return np.asarray((ends[0] - ends[1]) / (2.0 * change * linear.fields[place].scale))
+                if center is None:
+                    change = linear.reach(place)
+                    return np.asarray((beside(change) - beside(-change)) / (2.0 * change * scale))
+                change = linear.reach(place, READ_ONE_SIDE)
+                return np.asarray((beside(change) - center) / (change * scale))
         return np.full(len(self.data), np.nan)
 
     def _difference(self, numbers: Array, place: int, run: xr.Dataset | None) -> Array:

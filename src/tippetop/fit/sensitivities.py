@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tippetop.contact.trajectory import require_limits
-from tippetop.fit.linearized_run import EVENT_STATES, Differs, LinearizedRun
+from tippetop.fit.linearized_run import EVENT_STATES, Differs, LinearizedRun, Reading
 from tippetop.fit.problem_numbers import Direction, require_fields
 from tippetop.integrators.base import Array
 from tippetop.mechanics.top import natural_units
@@ -89,16 +89,16 @@ def sensitivities(
     require_fields(problem, wrt, "wrt")
     grid = sample_times(duration, samples, times)
     run = LinearizedRun(problem, duration, grid, [Direction.of(problem, name) for name in wrt])
-    columns, reasons = list[dict[str, Any]](), list[str]()
+    columns, reasons = list[dict[str, Array]](), list[str]()
     for direction in range(len(wrt)):
         slopes, reason = slopes_of(run, direction)
         columns.append(slopes)
         reasons.append(reason)
     units = [problem.quantity(name).units for name in wrt]
-    return _labelled(columns, [str(name) for name in wrt], units, reasons)
+    return _labelled(run.read(), columns, [str(name) for name in wrt], units, reasons)
 
 
-def slopes_of(run: LinearizedRun, direction: int) -> tuple[dict[str, xr.Variable], str]:
+def slopes_of(run: LinearizedRun, direction: int) -> tuple[dict[str, Array], str]:
     """Return the derivatives of the variables of a run with respect to a field, and why some do not
     exist.
     """
@@ -119,25 +119,24 @@ def slopes_of(run: LinearizedRun, direction: int) -> tuple[dict[str, xr.Variable
         return slopes, reason
 
 
-def _differences(ends: Sequence[xr.Dataset], apart: float, until: float) -> dict[str, xr.Variable]:
+def _differences(ends: Sequence[Reading], apart: float, until: float) -> dict[str, Array]:
     """Return the slopes of the variables between two runs, NaN from a time on."""
-    up, down = ends
-    slopes = dict[str, xr.Variable]()
+    up, down = (one.variables for one in ends)
+    slopes = dict[str, Array]()
     for name, variable in described().items():
-        high, low = up.variables[name], down.variables[name]
+        high, low = up[name], down[name]
         if high.dtype.kind != "f":
             continue
         slope: Array = (high.values - low.values) / apart
         if variable.units == "rad":
             slope = (np.remainder(slope * apart + 0.5 * TURN, TURN) - 0.5 * TURN) / apart
         if "time" in high.dims:
-            slope[up.variables["time"].values >= until] = np.nan
+            slope[up["time"].values >= until] = np.nan
         elif "event" in high.dims:
-            slope[up.variables["event_time"].values >= until] = np.nan
+            slope[up["event_time"].values >= until] = np.nan
         elif np.isfinite(until):
             slope = np.full_like(slope, np.nan)
-        slopes[name] = xr.Variable(high.dims, slope, high.attrs)
-    slopes["time"] = up.variables["time"]
+        slopes[name] = slope
     return slopes
 
 
@@ -147,37 +146,31 @@ def described() -> dict[str, Variable]:
 
 
 def _labelled(
-    columns: Sequence[dict[str, xr.Variable]],
+    nominal: Reading,
+    columns: Sequence[dict[str, Array]],
     names: Sequence[str],
     units: Sequence[str],
     reasons: Sequence[str],
 ) -> xr.Dataset:
-    """Return the slopes of all parameters as a dataset."""
+    """Return the slopes of all parameters as a dataset, as long as the run itself."""
     variables = dict[str, Any]()
-    longest = {
-        dimension: max(column[name].sizes.get(dimension, 0) for column in columns)
-        for name in columns[0]
-        for dimension in columns[0][name].dims
-    }
-    for name, first in columns[0].items():
-        if name == "time":
-            continue
-        shape = [longest[dimension] for dimension in first.dims]
-        values = np.full((len(columns), *shape), np.nan)
+    run = nominal.variables
+    for name in columns[0]:
+        one = run[name]
+        values = np.full((len(columns), *one.shape), np.nan)
         for row, column in enumerate(columns):
-            slope = column[name].values
-            within: Any = (row, *[slice(0, size) for size in slope.shape])
+            slope = column[name]
+            within: Any = (row, *[slice(size) for size in slope.shape])
             values[within] = slope
         attributes = {
-            "long_name": f"derivative of {first.attrs.get('long_name', name)}",
-            "numerator_units": first.attrs.get("units", "1"),
+            "long_name": f"derivative of {one.attrs.get('long_name', name)}",
+            "numerator_units": one.attrs.get("units", "1"),
         }
-        variables[name] = (("parameter", *first.dims), values, attributes)
+        variables[name] = (("parameter", *one.dims), values, attributes)
     variables["reason"] = (("parameter",), np.array(reasons, dtype=object).astype(str))
-    longest_time = max((column["time"].values for column in columns), key=len)
     coordinates = {
         "parameter": list(names),
         "parameter_units": ("parameter", list(units)),
-        "time": ("time", longest_time, {"units": "s", "long_name": "time since launch"}),
+        "time": ("time", run["time"].values, {"units": "s", "long_name": "time since launch"}),
     }
     return xr.Dataset(variables, coordinates)
