@@ -57,8 +57,9 @@ def fit(
     ] = False,
     track: Annotated[str | None, typer.Option(help="Track, of several in a file.")] = None,
     starts: Annotated[
-        int, number_option(int, "Number of points from which the search begins.")
-    ] = 1,
+        int | None,
+        number_option(int, "Points from which the search begins; as many as it needs by default."),
+    ] = None,
     plot: Annotated[
         Path | None, typer.Option(help="Draw data and fit as .png, .svg or .pdf.")
     ] = None,

@@ -1,6 +1,6 @@
 """What a fit tells: numbers with errors, residuals, and what the data do not determine."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
@@ -17,6 +17,7 @@ from tippetop.support.suggestions import not_one_of
 
 if TYPE_CHECKING:
     from tippetop.fit.least_squares import Search
+    from tippetop.fit.model import Model
 
 UNDETERMINED = 1e-6
 """Singular value, relative to the largest, below which data do not determine a direction: above the
@@ -30,6 +31,13 @@ SHARE = 0.3
 
 CORRELATED_RESIDUALS = 1.0
 """Statistic of Durbin and Watson below which residuals are not random: 2 for random ones."""
+
+FEWEST_RESIDUALS = 20
+"""Residuals from which on their statistic says something."""
+
+MOST_ABOVE = 5.0
+"""Standard deviations of a sum of squares above which noise of the stated size does not explain
+it."""
 
 RIVAL = 6.0
 """Sum of squares above the least, in variances, up to which another minimum is reported."""
@@ -358,23 +366,44 @@ def _cautions(
     for name, number, low, high in zip(model.names, numbers, search.low, search.high, strict=True):
         if min(abs(number - low), abs(number - high)) <= 1e-6 * max(abs(number), 1e-300):
             words.append(f"{name} is at the end of its range: its error means nothing")
-    if search.is_noise_known and degrees > 0 and cost > degrees + 5.0 * np.sqrt(2.0 * degrees):
+    if search.is_noise_known and exceeds_noise(cost, degrees):
         words.append(
             f"chi² is {cost:.4g} where {degrees} is expected: the noise is larger than stated, or"
             " the model lacks something (law of friction, air, wear)"
         )
-    for one, table in zip(model.measurements, residuals, strict=True):
-        for label, column in zip(one.observation.labels, table.T, strict=True):
-            series = column[np.isfinite(column)]
-            if len(series) < 20 or not np.any(series):
-                continue
-            statistic = float(np.sum(np.diff(series) ** 2) / np.sum(series**2))
-            if statistic < CORRELATED_RESIDUALS:
-                words.append(
-                    f"the residuals of {label} are not random (Durbin-Watson {statistic:.2f}): the"
-                    " model lacks something, and the errors are too small"
-                )
+    for label, column in columns_of(model, np.concatenate([one.ravel() for one in residuals])):
+        if are_correlated(column):
+            words.append(
+                f"the residuals of {label} are not random (Durbin-Watson"
+                f" {durbin_watson(column):.2f}): the model lacks something, and the errors are too"
+                " small"
+            )
     return tuple(words)
+
+
+def exceeds_noise(cost: float, degrees: int) -> bool:
+    """Return whether a sum of squares over known variances is far above the expected one."""
+    return degrees > 0 and cost > degrees + MOST_ABOVE * (2.0 * degrees) ** 0.5
+
+
+def columns_of(model: "Model", residuals: Array) -> Iterator[tuple[str, Array]]:
+    """Yield the label and the residuals of each column of the data, without missing ones."""
+    ends = np.cumsum([one.values.size for one in model.measurements])[:-1]
+    for one, part in zip(model.measurements, np.split(residuals, ends), strict=True):
+        table = part.reshape(one.values.shape)
+        for label, column in zip(one.observation.labels, table.T, strict=True):
+            yield label, column[np.isfinite(column)]
+
+
+def durbin_watson(series: Array) -> float:
+    """Return the statistic of Durbin and Watson of residuals: 2 for random ones, 0 for drifts."""
+    return float(np.sum(np.diff(series) ** 2) / np.sum(series**2))
+
+
+def are_correlated(series: Array) -> bool:
+    """Return whether residuals, where there are enough, are no random ones."""
+    enough = len(series) >= FEWEST_RESIDUALS and np.any(series)
+    return bool(enough and durbin_watson(series) < CORRELATED_RESIDUALS)
 
 
 class Comparison(NamedTuple):

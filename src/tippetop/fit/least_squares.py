@@ -7,13 +7,13 @@ correlations, profiles) needs the directions that the data do not determine, whi
 
 import contextlib
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 from scipy.stats import qmc
 
-from tippetop.fit.fitted import FitResult, Minimum
+from tippetop.fit.fitted import FitResult, Minimum, are_correlated, columns_of, exceeds_noise
 from tippetop.fit.measurement import Measurement
 from tippetop.fit.model import Model
 from tippetop.integrators.base import Array
@@ -30,10 +30,13 @@ STATIONARY = 0.05
 """Standard errors by which a last step of Gauss and Newton would still move a fit that counts as
 converged."""
 
+REPRODUCED = 1e-16
+"""Variance of residuals, where their noise is not known, that is rounding."""
+
 MOST_STEPS = 100
 """Trial points of one search."""
 
-STAGES = ((1 / 4, 3.0), (1 / 2, 3.0), (1.0, 3.0), (1.0, 1.0))
+BEGINNING, WHOLE = ((1 / 4, 3.0), (1 / 2, 3.0)), ((1.0, 3.0), (1.0, 1.0))
 """Parts of the data that are fitted first, and over how many periods of nutation they are averaged.
 
 A phase of nutation that is half a turn off makes a minimum of its own, and there are hundreds of
@@ -58,7 +61,15 @@ ROUGH, ROUGH_STEPS = 1e-3, 30
 """Tolerance and trial points of those searches: what they find is refined."""
 
 MOST_REFINED = 3
-"""How many of several starts are followed to the end of the data."""
+"""How many of several starts are refined."""
+
+SCANNED, MORE_STARTS = 64, 6
+"""Points whose runs are compared with the data where the fit from the problem's own numbers does
+not describe them, and how many of them are refined at most, the nearest first.
+
+Minima that differ by a phase of nutation over a second lie 8 % of the spin apart. Averaged over
+nutation they are as wide as that, and several of the points lie in each.
+"""
 
 Vary = Sequence[str] | Mapping[str, Any] | str
 
@@ -69,7 +80,7 @@ def fit(
     vary: Vary,
     *,
     noise: Any = None,
-    starts: int = 1,
+    starts: int | None = None,
     seed: int = 0,
 ) -> FitResult:
     """Return the problem whose run is nearest to measurements, with errors.
@@ -91,7 +102,9 @@ def fit(
     starts
         From how many points the search begins: the problem's own, and others spread over the
         ranges, or over 20 % where there are none. All are fitted to the first part of the data, and
-        those that stay near it to longer ones. Use it where nutation makes several minima.
+        those that stay near it to longer ones. None for the problem's own alone, and where that fit
+        does not describe the data, for those of 64 points too whose runs are nearest to them, until
+        a fit does: nutation makes other minima.
     seed
         Of the points.
 
@@ -119,8 +132,8 @@ def fit(
     measurements = _measurements(data, noise)
     fields, low, high = _ranges(problem, vary)
     model = Model(problem, measurements, fields)
-    if not (is_whole(starts) and starts >= 1):
-        raise InvalidInput("starts", starts, "a whole number, at least 1")
+    if not (starts is None or (is_whole(starts) and starts >= 1)):
+        raise InvalidInput("starts", starts, "a whole number, at least 1; or None for enough")
     warn_if_implausible(problem)
     measured = np.isfinite(model.data)
     if measured.sum() < len(model.names):
@@ -128,8 +141,10 @@ def fit(
         fewest = f"at least {len(model.names)}, as many as are fitted: {', '.join(model.names)}"
         raise InvalidInput("data", shown, fewest)
     search = Search(model, _deviations(measurements), low, high)
-    minima = [search.refine(start) for start in search.approach(search.starts(starts, seed))]
-    minima.sort(key=lambda minimum: minimum.cost)
+    minima = search.minima(search.starts(starts or 1, seed))
+    if starts is None and not search.describes(minima[0]):
+        beside = [one for one in search.first_description(seed) if one.converged]
+        minima = sorted([*minima, *beside], key=by_cost)
     best = minima[0]
     if not best.converged:
         pairs = zip(model.names, best.numbers, strict=True)
@@ -140,6 +155,20 @@ def fit(
             " starts"
         )
     return FitResult.of(search, best, [one for one in minima[1:] if one.converged])
+
+
+class Branch(NamedTuple):
+    """A start, fitted to a part of the data."""
+
+    numbers: Array
+    guess: Array
+    """Values of the fields at the start."""
+    cost: float = 0.0
+
+
+def by_cost(one: Branch | Minimum) -> float:
+    """Return the sum of the squares of the residuals."""
+    return one.cost
 
 
 class Search:
@@ -229,11 +258,60 @@ class Search:
         assert self.guess is not None
         return GUESS * self.model.scales(self.guess)
 
-    def approach(self, points: list[Array]) -> list[Array]:
-        """Return points nearer to minima, by fits of parts of the data without nutation."""
+    def minima(self, points: list[Array]) -> list[Minimum]:
+        """Return the minima that the search reaches from points, the least first."""
+        branches = [self._branch(point) for point in points]
+        branches = self.approach(branches, (*BEGINNING, *WHOLE))
+        return sorted([self.refine(one.numbers) for one in branches[:MOST_REFINED]], key=by_cost)
+
+    def first_description(self, seed: int) -> list[Minimum]:
+        """Return the minima from points whose runs are near the data, one after the other, up to
+        one that describes them.
+        """
+        minima = list[Minimum]()
+        for point in self.nearest(seed):
+            for branch in self.approach([self._branch(point)], WHOLE):
+                minima.append(self.refine(branch.numbers))
+            if minima and self.describes(minima[-1]):
+                break
+        return minima
+
+    def nearest(self, seed: int) -> list[Array]:
+        """Return those of many points whose runs are nearest to the data without nutation."""
+        measurements, fields = self.model.measurements, len(self.model.fields)
+        average = None
+        if all(len(one.times) for one in measurements):
+            average = _average(measurements, WHOLE[0][1] * nutation_period(self.model.problem))
+        deviations = self.deviations if self.is_noise_known else None
+        bounds = self.low[:fields], self.high[:fields]
+        averaged = Search(self.model, deviations, *bounds, average=average)
+        points = self.starts(SCANNED, seed)
+        costs = np.array([averaged.sum_of_squares(point) for point in points])
+        return [points[place] for place in np.argsort(costs)[:MORE_STARTS]]
+
+    def describes(self, minimum: Minimum) -> bool:
+        """Return whether a minimum was reached whose residuals may be noise."""
+        if not minimum.converged:
+            return False
+        values = self.residuals(minimum.numbers)
+        degrees = len(values) - len(minimum.numbers)
+        if self.is_noise_known:
+            return not exceeds_noise(minimum.cost, degrees)
+        if minimum.cost < REPRODUCED * max(degrees, 1):
+            return True
+        residuals = np.full(len(self.model.data), np.nan)
+        residuals[self.measured] = values
+        return not any(are_correlated(one) for _, one in columns_of(self.model, residuals))
+
+    def approach(
+        self, branches: list["Branch"], stages: Sequence[tuple[float, float]]
+    ) -> list["Branch"]:
+        """Return branches nearer to minima, by fits of parts of the data without nutation.
+
+        Those far above the least are left out, which comes first.
+        """
         model, fields = self.model, len(self.model.fields)
-        branches = [(point, point[:fields], 0.0) for point in points]
-        for part, periods in STAGES:
+        for part, periods in stages:
             first = [one.until(part * model.times[-1]) for one in model.measurements]
             count = sum(one.count for one in first)
             if count < FEWEST_PER_NUMBER * len(model.names) or not all(
@@ -244,20 +322,19 @@ class Search:
             deviations = _deviations(first) if self.is_noise_known else None
             average = _average(first, periods * nutation_period(model.problem))
             bounds = self.low[:fields], self.high[:fields]
-            ends = list[tuple[Array, Array, float]]()
-            for point, guess, _ in branches:
-                search = Search(shorter, deviations, *bounds, guess, average)
-                if np.isfinite(search.residuals(point)).all():
-                    end = search.refine(point, tolerance=ROUGH, steps=ROUGH_STEPS)
-                    ends.append((end.numbers, guess, end.cost))
+            ends = list[Branch]()
+            for one in branches:
+                search = Search(shorter, deviations, *bounds, one.guess, average)
+                if np.isfinite(search.residuals(one.numbers)).all():
+                    end = search.refine(one.numbers, tolerance=ROUGH, steps=ROUGH_STEPS)
+                    ends.append(Branch(end.numbers, one.guess, end.cost))
             model.runs += shorter.runs
             if not ends:
                 break
-            least = min(cost for _, _, cost in ends)
+            least = min(one.cost for one in ends)
             hopeless = least + HOPELESS * (1.0 if self.is_noise_known else least / count)
-            branches = [one for one in ends if one[2] < hopeless]
-        branches.sort(key=lambda branch: branch[2])
-        return [point for point, _, _ in branches[:MOST_REFINED]]
+            branches = sorted([one for one in ends if one.cost < hopeless], key=by_cost)
+        return branches
 
     def refine(
         self,
@@ -310,7 +387,11 @@ class Search:
         numbers = all_numbers(result.x * sizes)
         return Minimum(numbers, 2.0 * float(result.cost), converged, message)
 
-    def _sum_of_squares(self, numbers: Array) -> float:
+    def _branch(self, point: Array) -> "Branch":
+        return Branch(point, point[: len(self.model.fields)])
+
+    def sum_of_squares(self, numbers: Array) -> float:
+        """Return the sum of the squares of the residuals; infinity without a prediction."""
         values = self.residuals(numbers)
         total = float(values @ values)
         return total if np.isfinite(total) else np.inf
@@ -350,7 +431,7 @@ def _step_left(jacobian: Array, residuals: Array, is_noise_known: bool) -> float
     modes, strengths, _ = np.linalg.svd(jacobian / sizes, full_matrices=False)
     projected = (modes.T @ residuals)[strengths > 1e-6 * strengths[0]]
     variance = 1.0 if is_noise_known else residuals @ residuals / max(count - free, 1)
-    if variance < 1e-16:  # The data are reproduced to rounding.
+    if variance < REPRODUCED:
         return 0.0
     return float(np.linalg.norm(projected) / np.sqrt(variance))
 
