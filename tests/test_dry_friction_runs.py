@@ -232,7 +232,7 @@ def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> N
     automaton, slides = Automaton(top, "ignore", 0.0), ContactMode(top, pulls=True)
     start = natural_state(problem.start(), natural_units(problem.top))
     end = ModeEnd(STOPPING, start)
-    assert type(automaton.follow(slides, end, 0.0).then) is mode
+    assert type(automaton.follow(slides, end, 0.0).next) is mode
 
 
 def test_what_could_be_held_by_a_pull_only_slips():
@@ -253,7 +253,7 @@ def test_what_could_be_held_by_a_pull_only_slips():
         state = on_table(
             SlidingState(axis, momentum, velocity_without_slip(axis, momentum, top)), top
         )
-        mode = Automaton(top, "fly", 0.0).resting(top, 0.0, state).then
+        mode = Automaton(top, "fly", 0.0).resting(top, 0.0, state).next
         segment = next(mode.segments(0.0, state, 1e-3, make_integrator("dop853")))
         touch = sliding_contact(*along_table(segment.end_state), top)
         assert touch.normal_force > 0.0

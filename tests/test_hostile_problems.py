@@ -306,7 +306,7 @@ def test_pieces_of_flights_count() -> None:
 
 
 def test_a_single_impact_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(impact_process, "MOST", 5)
+    monkeypatch.setattr(impact_process, "MOST_STEPS", 5)
     run = tt.simulate(bouncing(), 0.2, samples=11)
     assert run.attrs["outcome"] == "failed"
     assert 0.0 < float(run["time"][-1]) < 0.2
@@ -328,7 +328,7 @@ def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPa
         uncounted.setattr(collision, "impact", lambda *given: impact(*given)._replace(steps=0))
         free = tt.simulate(rod, 0.1, samples=3, step_limit=105)
     assert free.attrs["outcome"] == "completed"
-    monkeypatch.setattr(impact_process, "MOST", 50)
+    monkeypatch.setattr(impact_process, "MOST_STEPS", 50)
     given_up = tt.simulate(rod, 0.1, samples=3)
     assert given_up.attrs["outcome"] == "failed"
     assert "an impact does not come to its end" in given_up.attrs["outcome_advice"]

@@ -132,6 +132,6 @@ def test_a_touchdown_takes_this_way_where_nothing_is_given_back():
         automaton = Automaton(top, "fly", restitution)
         ours, theirs = (automaton.touchdown(top, 1.0, state, way) for way in (TAYLOR, None))
         assert [event.kind for event in ours.events] == [event.kind for event in theirs.events]
-        assert type(ours.then) is type(theirs.then)
+        assert type(ours.next) is type(theirs.next)
         assert ours.state.pack() == pytest.approx(theirs.state.pack(), abs=1e-7)
         assert (ours.state == theirs.state) == (restitution > 0.0)

@@ -328,12 +328,12 @@ def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[Auto
 @pytest.mark.parametrize("velocity", [0.0, 1e-12, 1e-10])
 def test_what_hardly_slips_on_two_surfaces_rests(velocity: float) -> None:
     automaton, state = lying("coulomb", (-0.02, 0.02), velocity)
-    assert isinstance(automaton.resting(automaton.top, 0.0, state).then, Resting)
+    assert isinstance(automaton.resting(automaton.top, 0.0, state).next, Resting)
 
 
 def test_what_slips_on_two_surfaces_goes_on() -> None:
     automaton, state = lying("coulomb", (-0.02, 0.02), 1e-8)
-    assert len(automaton.resting(automaton.top, 0.0, state).then.tops) == 2
+    assert len(automaton.resting(automaton.top, 0.0, state).next.tops) == 2
 
 
 def test_the_farther_of_two_surfaces_beside_the_centre_of_mass_opens_and_is_named() -> None:
@@ -341,8 +341,8 @@ def test_the_farther_of_two_surfaces_beside_the_centre_of_mass_opens_and_is_name
     automaton, state = lying("viscous", (0.01, 0.02), 0.0)
     found = automaton.resting(automaton.top, 0.0, state)
     assert [(event.kind, event.surface) for event in found.events] == [(EventKind.OPENING, 1)]
-    assert isinstance(found.then, Mode)
-    assert found.then.label == "sliding_on_0"
+    assert isinstance(found.next, Mode)
+    assert found.next.label == "sliding_on_0"
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,6 @@ BANNED = {
 """Names that say nothing of what they stand for."""
 
 PUBLIC = {
-    ("contact/mode.py", "then"): "field of `tt.extend.Transition`",
     ("problem/bodies.py", "whole"): "keyword of `Body.turned`",
     ("cli/body.py", "whole"): "option --whole",
     ("lathe/design.py", "piece"): "argument of `design_insert`",

@@ -410,7 +410,7 @@ def test_steps_are_bounded_and_told(monkeypatch):
     state, tops = sliding_slowly(RegularizedCoulombLaw(0.6, 1e-6))
     steps = impact(state, 1.0, *tops).steps
     assert steps > impact(state, 0.0, *tops).steps > 10
-    monkeypatch.setattr(impact_process, "MOST", 10)
+    monkeypatch.setattr(impact_process, "MOST_STEPS", 10)
     with pytest.raises(ArithmeticError, match="end") as error:
         impact(state, 0.0, *tops)
     assert not isinstance(error.value, SlipEndsInImpact)

@@ -61,7 +61,7 @@ def test_a_phase_solves_the_equations_of_sliding(name):
     segments, _ = followed(name, 20.0)
     phases = [one for one in segments if isinstance(one.mode, SlipOnset)]
     assert max(one.steps for one in phases) > 1
-    assert any(one.transition.then.status == STICKS for one in phases), "it is followed to its end"
+    assert any(one.transition.next.status == STICKS for one in phases), "it is followed to its end"
     for segment in phases[:2]:
         top = segment.mode.top
         for begin, end in zip(segment.solution.knots[:-1], segment.solution.knots[1:], strict=True):

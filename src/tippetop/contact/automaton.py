@@ -534,7 +534,7 @@ class Automaton:
             return None
         beyond, *prior = past
         following = self.inconsistent(contact, time, beyond, ())
-        if not following.events and isinstance(following.then, Mode):
+        if not following.events and isinstance(following.next, Mode):
             # Slip is so little that by rounding nothing strikes, and slipping on it would jam at
             # once.
             following = self.resolve(contact, time, stuck_at_once(beyond, contact), (True, False))
@@ -546,7 +546,7 @@ class Automaton:
         """Return what follows on one contact, unless it presses another surface that touches onto
         the table: then both are resolved.
         """
-        mode, state = following.then, following.state
+        mode, state = following.next, following.state
         if not isinstance(contact.surface, Hull) or not isinstance(mode, IntegratedMode):
             return following
         reaction = mode.reaction(mode.numbers(state))
@@ -671,7 +671,7 @@ def add_prior_impulse(
 
     A run that ends without one ends in the state before.
     """
-    if not following.events and isinstance(following.then, Outcome):
+    if not following.events and isinstance(following.next, Outcome):
         return replace(following, state=before)
     hit = [
         replace(event, impulse=event.impulse + impulse, energy_lost=event.energy_lost + lost)

@@ -20,15 +20,21 @@ from tippetop.mechanics.series import horner
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
 
-ACCURACY, SLOWEST = 1e-11, 1e-5
-"""Largest last coefficients of the step, relative to the speed at its start or, for slower slip, to
-this speed in natural units, at which the rounding of the other numbers is as large.
+SMOOTH = 1e-11
+"""Largest last coefficients of the step, over the speed at its start."""
+
+SLOWEST = 1e-5
+"""The same over this speed, in natural units, where slip is slower: the rounding of the other
+numbers is as large there.
 """
 
-AT_REST, UNSEEN = 1e-12, 1e-15
+STEADY = 1e-12
 """Largest angle between the direction of slip and that of the step, times the time that is left, in
-natural units; or times the speed, which is the rounding of a state.
+natural units.
 """
+
+STATE_ROUNDING = 1e-15
+"""The same angle times the speed, in natural units, which is the rounding of a state."""
 
 
 @dataclass(frozen=True)
@@ -91,10 +97,10 @@ def collocated_end(
         return None
     slip = tuple([-change for change in step.changes[6:]])
     aside = math.dist(state.direction, scaled(1.0 / size(slip), slip))
-    at_rest = max(AT_REST, tolerance)
-    if not (aside * step.length < at_rest or aside * state.speed < UNSEEN):
+    steady = aside * step.length < max(STEADY, tolerance)
+    if not (steady or aside * state.speed < STATE_ROUNDING):
         return None
-    smooth = step.error < (ACCURACY * max(state.speed, SLOWEST)) ** 2
+    smooth = step.error < (SMOOTH * max(state.speed, SLOWEST)) ** 2
     if not smooth or step.least_speed <= 0.0:
         return None
     return CollocatedEnd(step.length, [*now, *slip], step.pieces(float(PARTS)))

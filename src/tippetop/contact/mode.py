@@ -106,7 +106,7 @@ class Transition:
 
     events: tuple[Event, ...]
     """What happened, in order."""
-    then: "Mode | Outcome"
+    next: "Mode | Outcome"
     """The next mode, or the outcome of the run."""
     state: State
     """The state in which it begins, floats."""

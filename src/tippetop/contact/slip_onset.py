@@ -143,7 +143,7 @@ class SlipOnset(TransientMode):
             slip = slip_of(state.axis, state.momentum, state.velocity[:2], self.top)
         if not ending.held and not begins[1]:
             rolling = point.turning[:2]
-        onset = find_onset(point, slip, rolling, begins, self.wrench)
+        onset = find_onset(point, slip, rolling, begins, held=self.wrench)
         if onset.slip is None:
             top = on_limit_branch(self.top, onset.wrench)
         else:

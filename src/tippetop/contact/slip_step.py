@@ -40,9 +40,11 @@ from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar
 
-SETTLED, MOST = 1e-28, 50
-"""Sum of the squares of changes, in natural units, that is rounding; and sweeps of a step at most.
-"""
+CONVERGED = 1e-28
+"""Sum of the squares of changes, in natural units, that is rounding."""
+
+SWEEP_LIMIT = 50
+"""Sweeps of a step at most."""
 
 PROBE_INTERVALS = 16
 """Intervals of a step at whose ends a margin's polynomial, of degree 15, is searched for a fall."""
@@ -134,8 +136,8 @@ class SlipStep:
         put_rows(self.sweeping, 0, [*start, extent, *frames], STAGES)
         put_rows(self.unknowns, 0, [*start, *ways, *guess], STAGES)
         improve, terms = self.compiled
-        self.sweeps += improve(self.unknowns, self.sweeping, self.results, SETTLED, MOST)
-        if not self.results[len(self.results) - 1] < SETTLED:
+        self.sweeps += improve(self.unknowns, self.sweeping, self.results, CONVERGED, SWEEP_LIMIT)
+        if not self.results[len(self.results) - 1] < CONVERGED:
             return False
         put_rows(self.measuring, 0, [self.length], STAGES)
         terms(self.results, self.measuring, self.rows, 0.0, 1)

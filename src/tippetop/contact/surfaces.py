@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 from tippetop.contact.mode import numbered
 from tippetop.mechanics.lying_down import slap_guard
 from tippetop.mechanics.surfaces.hull import acting, each_surface, is_edge
-from tippetop.mechanics.surfaces.surface import FLAT, gap_guard, support_at
+from tippetop.mechanics.surfaces.surface import NEARLY_FLAT, gap_guard, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 
@@ -47,7 +47,7 @@ def lands_flat(top: Top, axis: Vector) -> Scalar:
     the edge of.
     """
     edge: Any = acting(top.surface)
-    return is_edge(top.surface) and edge.lies_flat(axis, FLAT)
+    return is_edge(top.surface) and edge.lies_flat(axis, NEARLY_FLAT)
 
 
 def passes_flat(top: Top, rows: Sequence[Row]) -> bool:

@@ -67,14 +67,14 @@ class Trajectory:
     def segments(self) -> Iterator[Segment]:
         """Follow the launch, mode by mode and piece by piece."""
         transition, modes, steps = self._enter(self.start), 0, 0
-        while isinstance(transition.then, Mode):
+        while isinstance(transition.next, Mode):
             if self.time >= self.end or modes == self.limit:
                 self.outcome = (
                     Outcome.COMPLETED if self.time >= self.end else Outcome.TOO_MANY_PHASES
                 )
                 return
             modes += 1
-            mode = transition.then
+            mode = transition.next
             for segment in mode.segments(self.time, self.state, self.end, self.integrator):
                 self.time, self.state = segment.end_time, segment.end_state
                 steps += max(segment.steps, len(segment.solution.knots) - 1)
@@ -99,8 +99,8 @@ class Trajectory:
     def _enter(self, transition: Transition) -> Transition:
         self.events += transition.events
         self.state = transition.state
-        if isinstance(transition.then, Outcome):
-            self.outcome, self.detail = transition.then, transition.detail
+        if isinstance(transition.next, Outcome):
+            self.outcome, self.detail = transition.next, transition.detail
         return transition
 
 

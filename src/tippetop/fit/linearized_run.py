@@ -263,9 +263,9 @@ class LinearizedRun:
         visit: Visit | None = None
         for segment in self.trajectory.segments():
             if visit is None:
-                assert isinstance(entered.then, Mode)
+                assert isinstance(entered.next, Mode)
                 begin = self.visits[-1].end_time if self.visits else 0.0
-                visit = Visit(entered.then, begin, entered.state)
+                visit = Visit(entered.next, begin, entered.state)
                 self.visits.append(visit)
             visit.segments.append(segment)
             if segment.transition is not None:
@@ -319,7 +319,7 @@ class LinearizedRun:
                 try:
                     for place, weight in self.rule:
                         beside = self.beside(junction, direction, place * change)
-                        mode_beside: Any = beside.transitions[-1].then
+                        mode_beside: Any = beside.transitions[-1].next
                         row = np.array(mode_beside.numbers(beside.state))
                         changes[direction] += weight / change * row
                         ahead[direction] += weight / change * (beside.time - visit.time)
@@ -492,7 +492,7 @@ class LinearizedRun:
                     return Beside(done, segments, time, some[-1].end_state)
                 if how is None or visit.end is None or how.cause != visit.end.cause:
                     raise Differs(OTHER_EVENTS)
-                mode: Any = done[-1].then
+                mode: Any = done[-1].next
                 transition = automaton.follow(mode, how, time, self.integrator)
                 done.append(same(transition, following))
                 some[-1] = replace(some[-1], transition=transition)
@@ -506,7 +506,7 @@ class LinearizedRun:
     ) -> tuple[list[Segment], ModeEnd | None]:
         """Return the segments of a visit beside the run, and how it ended."""
         time, transition = start
-        mode: Any = transition.then
+        mode: Any = transition.next
         # The end of what begins is no event: it is followed for as long as in the run.
         begins = visit.end is not None and visit.end.cause == ONSET_OVER
         until = min(time + (visit.end_time - visit.time), end) if begins else end
@@ -548,7 +548,7 @@ class LinearizedRun:
         if last.mode_end.cause != ONSET_OVER:
             raise Differs(OTHER_EVENTS)
         onwards = automaton.follow(mode, last.mode_end, last.end_time, self.integrator)
-        mode_after: Any = onwards.then
+        mode_after: Any = onwards.next
         if not is_integrated(mode_after):
             raise Differs(OTHER_EVENTS)
         caught_up = list(mode_after.segments(last.end_time, onwards.state, until, self.integrator))
@@ -732,7 +732,7 @@ def same(transition: Transition, nominal: Transition) -> Transition:
     kinds = [event.kind for event in transition.events]
     if kinds != [event.kind for event in nominal.events]:
         raise Differs(OTHER_EVENTS)
-    mode, expected = transition.then, nominal.then
+    mode, expected = transition.next, nominal.next
     if isinstance(mode, Mode) and isinstance(expected, Mode):
         names = (mode.label, mode.form), (expected.label, expected.form)
         alike = type(mode) is type(expected) and names[0] == names[1]

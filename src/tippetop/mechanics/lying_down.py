@@ -59,10 +59,13 @@ the tilt's rate changes by as little until then, and the time by its square, 1e-
 of a step do not show much shorter times beside a double zero.
 """
 
-TURNING, FLOOR = 1e6, 1e-12
+TURNING = 1e6
 """Ratio of the tilt's rate to omega_e from which a face slaps, so that the least s it could come to
-is a millionth of the present one; and an omega_e, in natural units, that is rounding.
+is a millionth of the present one.
 """
+
+TURNING_FLOOR = 1e-12
+"""An omega_e, in natural units, that is rounding."""
 
 
 class Tilting(NamedTuple):
@@ -166,7 +169,7 @@ def slap_guard(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     That is s (s + `SLAP` (s' + `TURNING` |omega_e|)) with s' = c omega_t.
     """
     sine, along, across, _ = Tilting.of(axis, momentum, top)
-    turning = TURNING * power(along * along + FLOOR * FLOOR, 0.5)
+    turning = TURNING * power(along * along + TURNING_FLOOR * TURNING_FLOOR, 0.5)
     return sine * (sine + SLAP * (axis[2] * across + turning))
 
 

@@ -11,9 +11,11 @@ FINEST = 1e-10
 """Step, relative to its piece, below which a gap that is neither open nor closing counts as closed.
 """
 
-GOLDEN, NARROWED = 0.5 * (3.0 - 5.0**0.5), 29
-"""Smaller part of an interval in the golden ratio, and how often one is divided for a least value.
-"""
+GOLDEN = 0.5 * (3.0 - 5.0**0.5)
+"""Smaller part of an interval in the golden ratio."""
+
+DIVISIONS = 29
+"""How often an interval is divided for a least value."""
 
 Triple: TypeAlias = tuple[float, float, float]
 """A function's value and its first two derivatives."""
@@ -88,7 +90,7 @@ def dip(function: Callable[[float], float], low: float, high: float) -> tuple[fl
     a, b = low, high
     x, y = a + GOLDEN * (b - a), b - GOLDEN * (b - a)
     f, g = function(x), function(y)
-    for _ in range(NARROWED):
+    for _ in range(DIVISIONS):
         if f <= 0.0 or g <= 0.0:
             break
         if f < g:

@@ -168,13 +168,13 @@ class Crossings:
         again, starts, states = [], [], []
         for i, transition in enumerate(transitions):
             self._note(lanes[i], float(time[i]), transition)
-            if not isinstance(transition.then, Flight | Outcome) and not is_plain(transition.then):
+            if not isinstance(transition.next, Flight | Outcome) and not is_plain(transition.next):
                 self._follow_alone(int(lanes[i]), float(time[i]), single(state, i), transition)
                 continue
             self.slots.ends.struck[self.slots.cell[lanes[i]]] += transition.energy_lost
-            if isinstance(transition.then, Flight):
+            if isinstance(transition.next, Flight):
                 again.append(i)
-                starts.append(int(transition.then.start))
+                starts.append(int(transition.next.start))
                 states.append(transition.state.pack())
             else:
                 self._settle(lanes[i : i + 1], transition, time[i : i + 1])
@@ -196,8 +196,8 @@ class Crossings:
         state = State.unpack(
             [np.array([number], dtype=float) for number in transition.state.pack()]
         )
-        if isinstance(transition.then, Outcome):
-            self.slots.retire(lane, state, time, transition.then)
+        if isinstance(transition.next, Outcome):
+            self.slots.retire(lane, state, time, transition.next)
         else:
             self.slots.place(lane, state, time)
 

@@ -14,13 +14,22 @@ from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import solve
 
-ROUNDS, ITERATIONS, NEWTON = 100, 50, 12
-"""Rounds of the search, iterations in each, and steps of Newton's method that try to end it."""
+ROUNDS = 100
+"""Rounds of the search at most."""
 
-EXACT, DIRECTED = 4e-16, 1e-9
-"""Change of a direction that is rounding, and how well one must be known at least."""
+ITERATIONS = 50
+"""Iterations in each."""
 
-APART = 1e-7
+NEWTON_STEPS = 12
+"""Steps of Newton's method that try to end a round."""
+
+EXACT = 4e-16
+"""Change of a direction that is rounding."""
+
+DIRECTED = 1e-9
+"""How well a direction must be known at least."""
+
+DIFFERENCE = 1e-7
 """Difference of two directions from which a derivative is found; its error costs steps, no digits.
 """
 
@@ -85,7 +94,7 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
 def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
     """Return the directions by Newton's method from near ones; None if it fails."""
     last = DIRECTED
-    for _ in range(NEWTON):
+    for _ in range(NEWTON_STEPS):
         try:
             better = _newton(response, ways)
         except ArithmeticError:
@@ -137,8 +146,8 @@ def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
     count = len(present)
     columns = []
     for j in range(count):
-        displaced = across(moved([APART if i == j else 0.0 for i in range(count)]))
-        columns.append([(displaced[i] - present[i]) / APART for i in range(count)])
+        displaced = across(moved([DIFFERENCE if i == j else 0.0 for i in range(count)]))
+        columns.append([(displaced[i] - present[i]) / DIFFERENCE for i in range(count)])
     return moved(
         solve([[column[i] for column in columns] for i in range(count)], [-x for x in present])
     )

@@ -45,6 +45,7 @@ def find_onset(
     slip: Slip | None,
     rolling: Slip | None,
     begins: tuple[bool, bool],
+    *,
     held: Wrench | None = None,
     moved: Moved = forces_and_accelerations,
 ) -> Onset:
@@ -61,7 +62,7 @@ def find_onset(
     held
         What would hold what begins, if that is known and not both begin.
     moved
-        What the table does.
+        What the table does: in contact, or in an impact.
 
     Raises
     ------
@@ -100,7 +101,7 @@ def find_onset(
         # Against what would have held it; slip, if both begin, against what holds it once rolling
         # goes on.
         beside = (
-            find_onset(point, slip, rolling, (False, True), None, moved).rolling
+            find_onset(point, slip, rolling, (False, True), moved=moved).rolling
             if all(begins)
             else rolling
         )
@@ -117,18 +118,12 @@ def resolve_onset(
     point: ContactPoint,
     slip: Slip | None,
     rolling: Slip | None,
+    *,
     moved: Moved = forces_and_accelerations,
 ) -> tuple[Onset, tuple[bool, bool]]:
     """Return how a contact goes on after slip or rolling has ended, and which of them begin again.
 
-    Parameters
-    ----------
-    point
-        The contact point, floats.
-    slip, rolling
-        Slip and horizontal angular velocity, None where they have ended.
-    moved
-        What the table does: in contact, or in an impact.
+    The arguments are those of `find_onset`; slip and rolling that have ended are None.
 
     Raises
     ------
@@ -140,7 +135,7 @@ def resolve_onset(
         if begins[0] > ended[0] or begins[1] > ended[1]:
             continue
         try:
-            onset = find_onset(point, slip, rolling, begins, None, moved)
+            onset = find_onset(point, slip, rolling, begins, moved=moved)
         except ArithmeticError:
             continue
         if _admits(point, onset):

@@ -30,11 +30,14 @@ from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 HORIZON = 0.05
 """How long before its end slip is followed in a clock of its own, in natural units of time."""
 
-NEAR, APART = 1e-3, 0.1
-"""Slip, in natural units, below which its end is guarded, and from which it no longer is.
+NEAR = 1e-3
+"""Slip, in natural units, below which its end is guarded.
 
 To guard it costs as much again as to follow the motion, and most of a motion it does not end.
 """
+
+APART = 0.1
+"""Slip, in natural units, from which its end is guarded no longer."""
 
 ROUNDING = 1e-14
 """Slip, relative to the velocities it is made of, that is rounding."""

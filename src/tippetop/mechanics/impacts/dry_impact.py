@@ -39,18 +39,18 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import solve
 
-SLIP = SlipComponent(slip=True)
+SLIDING = SlipComponent(slip=True)
 
-ENDED = 10.0 * FUZZ
+NO_SLIP = 10.0 * FUZZ
 """Slip, in units of the body's speed, that is none."""
 
-KEPT = 1e-8
+SAME_DIRECTION = 1e-8
 """How near, relatively, friction must be to what keeps the direction of slip to count as equal to
 it.
 """
 
-LOOK = 4
-"""After how many steps each it is looked whether slip has come to a direction that it keeps."""
+STEPS_PER_PROBE = 4
+"""After so many steps each it is probed whether slip has come to a direction that it keeps."""
 
 
 def is_dry(top: Top) -> bool:
@@ -87,7 +87,7 @@ class DryProcess(SteppedProcess):
 
     def zeros(self, velocity: Slip) -> tuple[bool, bool]:
         """Return whether slip, and rolling, have ended at these velocities, if they can."""
-        (slip, rolling), least = self.parts(velocity), ENDED * self.body.speed
+        (slip, rolling), least = self.parts(velocity), NO_SLIP * self.body.speed
         ended = is_set_valued(self.top.friction) and size(slip) <= least
         return ended, self.top.resists_rolling and size(rolling) <= least
 
@@ -100,8 +100,12 @@ class DryProcess(SteppedProcess):
         if not (ended or stopped):
             return type(self)(self.body) if self.ended or self.stopped else self
         slip, rolling = self.parts(velocity)
-        go_on = None if ended else slip, None if stopped else rolling
-        onset, _ = resolve_onset(self.body.contact, *go_on, struck_motion)
+        onset, _ = resolve_onset(
+            self.body.contact,
+            None if ended else slip,
+            None if stopped else rolling,
+            moved=struck_motion,
+        )
         return type(self)(self.body, ended, stopped, onset.slip, onset.rolling)
 
     def friction(self, velocity: Slip) -> Slip:
@@ -157,7 +161,11 @@ class DryProcess(SteppedProcess):
         It is None if slip changes its direction, or begins, or rolling is resisted; or is not
         looked for.
         """
-        if steps % LOOK or self.top.resists_rolling or (self.ended and self.direction is not None):
+        if (
+            steps % STEPS_PER_PROBE
+            or self.top.resists_rolling
+            or (self.ended and self.direction is not None)
+        ):
             return None
         line = None if goal(impulse) >= 0.0 else self.line(impulse)
         if line is None:
@@ -179,7 +187,7 @@ class DryProcess(SteppedProcess):
         slip, unit = self.parts(velocity)[0], self.friction(velocity)
         if self.ended:
             return unit, math.inf
-        grip = SLIP.resisting(
+        grip = SLIDING.resisting(
             Wrench((unit[0], unit[1], 1.0), (unit[3], unit[4], unit[5])), self.top
         )
         speed, holds = size(slip), size(grip)
@@ -195,7 +203,7 @@ class DryProcess(SteppedProcess):
             rate = 0.0
         wrong = plus(doing, scaled(-rate, along))
         # What grows along a wrong direction would go ever farther.
-        if size(wrong) > (KEPT if rate > 0.0 else KEPT + fuzz) * holds:
+        if size(wrong) > (SAME_DIRECTION if rate > 0.0 else SAME_DIRECTION + fuzz) * holds:
             return None
         drilling = 0.0 if self.reach is None else self.reach * wrong[2]
         exact = plus(unit, (-wrong[0], -wrong[1], 0.0, 0.0, 0.0, -drilling))

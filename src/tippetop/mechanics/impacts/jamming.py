@@ -30,9 +30,14 @@ PROBED = 1e-6
 it.
 """
 
-JAMMED, PAST = 1e-3, 1e-7
+NEARLY_JAMMED = 1e-3
 """Delassus number times mass of a slipping contact, below which its normal force leaves no step to
-take; and how far it is below zero at least where it is past that, which rounding does not decide.
+take.
+"""
+
+PAST = 1e-7
+"""How far the Delassus number times mass is below zero at least where the contact is past the jam,
+which rounding does not decide.
 """
 
 
@@ -69,7 +74,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     """
     sliding = along_table(state)
     touch = sliding_contact(*sliding, top)
-    if not abs(touch.delassus) < JAMMED / top.mass:
+    if not abs(touch.delassus) < NEARLY_JAMMED / top.mass:
         return None
     force, moment = touch.traction.force, moment_per_normal_force(touch.arm, touch.traction)
 
@@ -81,7 +86,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     stopping_impulse = size(before) / math.dist(slip_of(*after(1.0), top), before)
     fall = touch.delassus - sliding_contact(*after(PROBED * stopping_impulse), top).delassus
     if not fall > 0.0:
-        if not abs(touch.free_acceleration) < JAMMED * top.gravity:
+        if not abs(touch.free_acceleration) < NEARLY_JAMMED * top.gravity:
             return None
         raise Unsolved(
             "it would open there too, and whether it does or is struck rigid bodies do not tell"

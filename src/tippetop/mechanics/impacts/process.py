@@ -43,12 +43,16 @@ STUCK = 1e-8
 SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
 
-NEWTON, SHORT, STRAIGHT = 4, 2e-3, 1e-8
-"""Improvements of the end of an impact, and how near to it, in parts of its last step, the way is
-short, and straight.
-"""
+NEWTON_STEPS = 4
+"""Improvements of the end of an impact."""
 
-MOST = 20_000
+SHORT = 2e-3
+"""How near to the end, in parts of the last step, a method of order 4 is exact enough."""
+
+STRAIGHT = 1e-8
+"""How near to the end, in the same unit, the impulse goes on in a straight line."""
+
+MOST_STEPS = 20_000
 """Steps after which an impact is given up, within seconds; most take some ten, on small patches
 thousands.
 """
@@ -184,7 +188,7 @@ class SteppedProcess(ImpactProcess):
         longest, waiting = self.longest, goal(impulse) >= 0.0
         step, now = 0.1 * longest, self.with_status(impulse)
         slope = now.slope(impulse)
-        for steps in range(MOST):
+        for steps in range(MOST_STEPS):
             line = now.along_line(impulse, goal, guess, steps)
             if line is not None:
                 impulse, ends_there = line
@@ -237,7 +241,7 @@ def landing(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Im
 
     last = taking.size
     impulse = along(last * crossing(lambda part: missing(taking.between(part)), 0.0, 1.0))
-    for _ in range(NEWTON):
+    for _ in range(NEWTON_STEPS):
         slope, value, nudge = now.slope(impulse), missing(impulse), 1e-3 * taking.size
         rate = (missing(advanced(impulse, nudge, slope)) - value) / nudge
         move = -value / rate if rate > 0.0 else taking.size

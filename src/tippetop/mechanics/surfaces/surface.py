@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol, Self, TypeAlias
 
 from tippetop.mechanics.vectors import Scalar, Vector, power
 
-FLAT = 1e-4
+NEARLY_FLAT = 1e-4
 """Sine of the tilt up to which a body that comes down from a flight lands on its face. In flights
 that would follow a landing on its edge, rounding of the height of the edge grows as 1 / s: below,
 they do not keep the energy to 1e-12; far above, rebounds that can be followed are left out.
