@@ -381,9 +381,9 @@ def _cautions(
     return tuple(words)
 
 
-def exceeds_noise(cost: float, degrees: int) -> bool:
-    """Return whether a sum of squares over known variances is far above the expected one."""
-    return degrees > 0 and cost > degrees + MOST_ABOVE * (2.0 * degrees) ** 0.5
+def exceeds_noise(cost: float, degrees: int, deviations: float = MOST_ABOVE) -> bool:
+    """Return whether a sum of squares over known variances is so far above the expected one."""
+    return degrees > 0 and cost > degrees + deviations * (2.0 * degrees) ** 0.5
 
 
 def columns_of(model: "Model", residuals: Array) -> Iterator[tuple[str, Array]]:

@@ -30,6 +30,10 @@ STATIONARY = 0.05
 """Standard errors by which a last step of Gauss and Newton would still move a fit that counts as
 converged."""
 
+UNLIKELY = 1.0
+"""Standard deviations of a sum of squares above the expected one from which on another minimum is
+sought: one fit in six that is right has more, and false ones may have little more than 1.5."""
+
 REPRODUCED = 1e-16
 """Variance of residuals, where their noise is not known, that is rounding."""
 
@@ -63,9 +67,9 @@ ROUGH, ROUGH_STEPS = 1e-3, 30
 MOST_REFINED = 3
 """How many of several starts are refined."""
 
-SCANNED, MORE_STARTS = 64, 6
+SCANNED, MORE_STARTS = 64, 12
 """Points whose runs are compared with the data where the fit from the problem's own numbers does
-not describe them, and how many of them are refined at most, the nearest first.
+not describe them, and how many of them, the nearest, are fitted.
 
 Minima that differ by a phase of nutation over a second lie 8 % of the spin apart. Averaged over
 nutation they are as wide as that, and several of the points lie in each.
@@ -269,9 +273,9 @@ class Search:
         one that describes them.
         """
         minima = list[Minimum]()
-        for point in self.nearest(seed):
-            for branch in self.approach([self._branch(point)], WHOLE):
-                minima.append(self.refine(branch.numbers))
+        branches = [self._branch(point) for point in self.nearest(seed)]
+        for branch in self.approach(branches, WHOLE[:1])[:MOST_REFINED]:
+            minima += [self.refine(one.numbers) for one in self.approach([branch], WHOLE[1:])]
             if minima and self.describes(minima[-1]):
                 break
         return minima
@@ -296,7 +300,7 @@ class Search:
         values = self.residuals(minimum.numbers)
         degrees = len(values) - len(minimum.numbers)
         if self.is_noise_known:
-            return not exceeds_noise(minimum.cost, degrees)
+            return not exceeds_noise(minimum.cost, degrees, UNLIKELY)
         if minimum.cost < REPRODUCED * max(degrees, 1):
             return True
         residuals = np.full(len(self.model.data), np.nan)

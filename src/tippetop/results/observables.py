@@ -161,7 +161,9 @@ class Recorder:
             axis[:, group.which], poles[group.which] = group.terms[:, :2, 0].T, group.poles
         gains = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
         changes = poles - np.concatenate([[self._pole], poles[:-1]])
-        values = np.cumsum(np.concatenate([self._sums[:, None], gains], axis=1), axis=1)
+        # Derivatives compare runs 1e-8 apart: what thousands of sums round away would show in them.
+        summed = np.concatenate([self._sums[:, None], gains], axis=1)
+        values = np.cumsum(summed, axis=1, dtype=np.longdouble).astype(float)
         values[2] = self._sums[2] + evenly_summed(gains[2])
         for step in np.flatnonzero(changes):
             values[2, step:] += changes[step] * np.arctan2(axis[1, step], axis[0, step])
