@@ -133,7 +133,8 @@ class ContactMode(IntegratedMode):
 
     def without_tops(self) -> Self:
         """Return the mode without its tops and parameters."""
-        return replace(super().without_tops(), beside=(), sense=1.0, slowest_rolling=0.0)
+        no_top: Any = None
+        return replace(self, top=no_top, beside=(), sense=1.0, slowest_rolling=0.0)
 
     def with_tops(self, tops: Sequence[Top], further: Sequence[Scalar]) -> Self:
         """Return the mode with tops, and with further parameters."""

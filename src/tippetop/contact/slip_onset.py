@@ -28,7 +28,7 @@ planar motion that velocity passes through zero, where friction jumps.
 FIRST_SPEED = 1e-100
 """Speed of the first instant, in natural units, which gives a velocity of zero its direction."""
 
-ONSET_OVER, ENDED = "begun", "slip ended"
+ONSET_OVER, ENDED = "onset over", "slip ended"
 """Causes of the end of such a mode: its onset is over, and an ordinary mode follows the motion; or
 slip has ended.
 """
@@ -105,12 +105,9 @@ class SlipOnset(TransientMode):
         if not phase.rows:
             yield failed_segment(self.reported_mode, time, state, UNSEEN)
             return
-        last = mode.state([*phase.last[: len(numbers)], 0.0, 0.0] if phase.ended else phase.last)
+        last = [*phase.last[: len(numbers)], 0.0, 0.0] if phase.ended else phase.last
         first = [FIRST_SPEED * number for direction in directions for number in direction]
-        solution = solution_of(phase, [*numbers, *first], (time, end))
-        cause = COMPLETED if solution.end >= end else ONSET_OVER
-        how = ModeEnd(ENDED if phase.ended else cause, last)
-        yield Segment(mode, solution, last, how, len(phase.knots) - 1, phase.sweeps)
+        yield onset_segment(mode, phase, [*numbers, *first], last, (time, end))
 
     def longest_step(self, numbers: Row, direction: Slip) -> float:
         """Return how long a step may be: a part of the time in which the velocity beside this one
@@ -161,16 +158,34 @@ class SlipOnset(TransientMode):
         return not self.ending.slip and self.ending.held
 
 
-def solution_of(
-    phase: SlipPhase, start: Sequence[float], times: tuple[float, float]
-) -> DenseSolution:
-    """Return the polynomials of a phase, moved to the times of its beginning and, at the latest, of
-    the end of the run. The numbers at the start give a velocity of zero its direction.
+def onset_segment(
+    mode: Mode,
+    phase: SlipPhase,
+    start: Sequence[float],
+    last: Sequence[float],
+    times: tuple[float, float],
+) -> Segment:
+    """Return the segment in which slip, or rolling, begins.
+
+    Parameters
+    ----------
+    mode
+        The mode.
+    phase
+        Its motion, as far as it was followed.
+    start, last
+        The numbers at its start, which give a velocity of zero its direction, and at its end.
+    times
+        When it begins, and when the run ends.
     """
     time, end = times
-    last = phase.knots[-1]
-    reach = end if last >= end - time else min(time + last, end)
-    return DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach)
+    lasts = phase.knots[-1]
+    reach = end if lasts >= end - time else min(time + lasts, end)
+    solution = DenseSolution.of_rows(phase.knots, start, phase.rows).moved(time, reach)
+    cause = COMPLETED if solution.end >= end else ONSET_OVER
+    state = mode.state(last)
+    how = ModeEnd(ENDED if phase.ended else cause, state)
+    return Segment(mode, solution, state, how, len(phase.knots) - 1, phase.sweeps)
 
 
 def failed_segment(mode: Mode, time: float, state: State, why: str) -> Segment:

@@ -6,8 +6,8 @@ from functools import lru_cache
 from typing import Any, Self
 
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.contact.mode import COMPLETED, ModeEnd, Segment, split
-from tippetop.contact.slip_onset import FIRST_SPEED, ONSET_OVER, UNSEEN, failed_segment, solution_of
+from tippetop.contact.mode import Segment, split
+from tippetop.contact.slip_onset import FIRST_SPEED, UNSEEN, failed_segment, onset_segment
 from tippetop.contact.slip_phase import follow_slip
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contacts.branches import is_branched
@@ -91,10 +91,7 @@ class SlipOnsetOnTwo(ContactMode):
             return
         first = scaled(FIRST_SPEED, self.direction)
         start = [*self.begin[:6], *first, *self.begin[6 + len(first) :]]
-        solution = solution_of(phase, start, (time, end))
-        last = self.state(phase.last)
-        how = ModeEnd(COMPLETED if solution.end >= end else ONSET_OVER, last)
-        yield Segment(self, solution, last, how, len(phase.knots) - 1, phase.sweeps)
+        yield onset_segment(self, phase, start, phase.last, (time, end))
 
 
 @lru_cache
