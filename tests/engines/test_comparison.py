@@ -11,10 +11,21 @@ import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.engines import comparison, limits
 from tippetop.engines.adapters import ADAPTERS, adapter
+from tippetop.engines.adapters.base import refusals, settings_of
 from tippetop.engines.cases import CASES
 from tippetop.engines.reference import case_of, judged_state, reference_state
 
 STEPS = (2e-3, 1e-3, 5e-4)
+
+PLAIN_ROW = {
+    "holds_until": 0.0,
+    "turns_over": None,
+    "turns_over_exactly": None,
+    "energy_error": None,
+    "jellett_error": None,
+    "microseconds_per_step": 1.0,
+}
+"""Numbers of a row that a test does not ask for."""
 
 
 def rows_of(case, states):
@@ -39,19 +50,22 @@ def test_results_that_do_not_converge_have_no_limit():
     assert limits.limit_of(case, rows_of(case, states)).law == "none"
 
 
-def test_regularized_friction_is_told_from_the_reference_and_its_width_is_measured():
+def test_a_width_is_stated_where_the_limit_is_of_friction_regularized_over_it():
     case, width = case_of("coulomb-roll"), 2e-3
     softened = tt.RegularizedCoulombFriction(mu=case.problem.friction.mu, eps=width)
     problem = case.problem.model_copy(update={"friction": softened})
     run = tt.simulate(problem, float(case.times[0]), samples=2)
     state = judged_state(case, run["axis"].values[-1], run["angular_velocity"].values[-1])
     slope = np.linspace(0.5, 1.0, 6)
-    soft = limits.limit_of(case, rows_of(case, [state + 0.1 * step * slope for step in STEPS]))
-    assert soft.law == "regularized"
-    assert soft.width == pytest.approx(width, rel=0.03)
+    rows = rows_of(case, [state + 0.1 * step * slope for step in STEPS])
+    soft = limits.limit_of(case, rows, width)
+    assert (soft.law, soft.width) == ("regularized", width)
     assert soft.step_error == pytest.approx(0.1 * STEPS[-1], rel=1e-6)
+    for unlike in (None, 0.7 * width, 1.4 * width):
+        assert limits.limit_of(case, rows, unlike).law == "different", "of another width, or none"
     exact = reference_state(case)
-    hard = limits.limit_of(case, rows_of(case, [exact + 0.1 * step * slope for step in STEPS]))
+    rows = rows_of(case, [exact + 0.1 * step * slope for step in STEPS])
+    hard = limits.limit_of(case, rows, width)
     assert (hard.law, hard.model_error < 1e-12) == ("reference", True)
     shifted = [exact + 0.05 + 0.1 * step * slope for step in STEPS]
     assert limits.limit_of(case, rows_of(case, shifted)).law == "different"
@@ -79,11 +93,27 @@ def test_a_program_comes_nearer_to_the_reference_with_shorter_steps(name):
     reference = comparison.exact(case)
     best = []
     for step in (2e-3, 2.5e-4):
-        tasks = [comparison.EngineTask(made, case, setting) for setting in made.settings]
+        tasks = [comparison.EngineTask(made, case, setting) for setting in settings_of(made, case)]
         rows = [comparison.measure(task, step, reference, drawn=False) for task in tasks]
         best.append(min(row["error"] for row in rows))
     assert best[1] < 0.5 * best[0]
     assert best[1] < 0.01
+
+
+@pytest.mark.parametrize("name", [name for name in ADAPTERS if name != "moreau"])
+def test_a_run_does_not_depend_on_the_runs_before_it(name):
+    made = adapter(name)
+    pytest.importorskip(made.module, reason=f"{made.name} is not installed")
+    # Where a program can state it, rolling friction shows best how near a contact begins.
+    case = case_of("rest" if settings_of(made, case_of("rest")) else "coulomb-roll")
+    short, exact = case._replace(compared=1), comparison.exact(case)
+    tasks = [comparison.EngineTask(made, short, one) for one in settings_of(made, case)]
+    states = {}
+    for task in [*tasks, *reversed(tasks)]:
+        row = comparison.measure(task, 1e-3, exact, drawn=False)
+        states.setdefault(task.setting.name, []).append(row["state"])
+    for setting, (first, second) in states.items():
+        assert first == second, setting
 
 
 def test_interrupted_results_go_on_where_they_ended(tmp_path, monkeypatch):
@@ -131,14 +161,12 @@ def test_stored_results_are_of_every_case_setting_and_step(name):
     stored, made = comparison.stored([name])[name], adapter(name)
     assert stored["suite"] == comparison.SUITE_VERSION
     assert stored["settings"] == [setting._asdict() for setting in made.settings]
-    refused = {case.name: made.refusal(case) for case in CASES if made.refusal(case)}
-    assert stored["refused"] == refused
+    assert stored["refused"] == refusals(made, CASES)
     done = {(row["case"], row["setting"], row["asked_step"]) for row in stored["rows"]}
     asked = {
         (case.name, setting.name, step)
         for case in CASES
-        if case.name not in refused
-        for setting in made.settings
+        for setting in settings_of(made, case)
         for step in comparison.STEPS
     }
     assert done == asked
@@ -156,6 +184,33 @@ def test_a_stored_result_comes_again(tmp_path):
         earlier = before[row["case"], row["setting"], row["asked_step"]]
         for name in ("error", "energy_error", "tilt_error"):
             assert row[name] == pytest.approx(earlier[name], rel=1e-6, abs=1e-12)
+
+
+def test_stored_limits_are_regularized_over_the_width_of_their_setting_alone():
+    regularized = []
+    for name, stored in comparison.stored().items():
+        widths = {one["name"]: one["width"] for one in stored["settings"]}
+        for limit in stored["limits"]:
+            if limit["law"] == "regularized":
+                assert limit["width"] == widths[limit["setting"]]
+                regularized.append((name, limit["setting"], limit["case"]))
+    assert ("exudyn", "RK44", "coulomb-roll") in regularized, "its friction zone is 1e-3 m/s"
+
+
+def test_the_best_setting_holds_at_the_shortest_step_and_is_the_first_of_equals():
+    def row(setting, step, error):
+        result = {"failure": "lost"} if error is None else {"step": step, "error": error}
+        return {"case": "painleve", "setting": setting, "asked_step": step, **result}
+
+    def best_of(*rows):
+        rows = [{**PLAIN_ROW, **one} for one in rows]
+        (verdict,) = comparison.verdicts({"x": {"engine": "X", "limits": [], "rows": rows}})
+        return verdict.setting, verdict.error
+
+    fails = [row("fails", 1e-3, 1e-6), row("fails", 5e-4, None)]
+    assert best_of(*fails, row("holds", 1e-3, 0.2), row("holds", 5e-4, 0.1)) == ("holds", 0.1)
+    assert best_of(*fails) == ("fails", 1e-6)
+    assert best_of(row("plain", 1e-3, 0.1002), row("rare", 1e-3, 0.1001)) == ("plain", 0.1002)
 
 
 def test_without_any_program_the_stored_results_are_shown_in_80_columns(monkeypatch):

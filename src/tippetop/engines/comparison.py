@@ -14,7 +14,15 @@ from numpy.typing import NDArray
 
 import tippetop as tt
 from tippetop.engines.adapters import ADAPTERS, adapter
-from tippetop.engines.adapters.base import Adapter, EngineState, Setting, is_installed, version_of
+from tippetop.engines.adapters.base import (
+    Adapter,
+    EngineState,
+    Setting,
+    is_installed,
+    refusals,
+    settings_of,
+    version_of,
+)
 from tippetop.engines.cases import CASES, Case
 from tippetop.engines.limits import Limit, limit_of
 from tippetop.engines.reference import (
@@ -70,9 +78,8 @@ def tasks(names: Sequence[str] | None, cases: Sequence[str] | None) -> Iterator[
     for name in names or ADAPTERS:
         made = adapter(name)
         for case in chosen:
-            if made.refusal(case) is None:
-                for setting in made.settings:
-                    yield EngineTask(made, case, setting)
+            for setting in settings_of(made, case):
+                yield EngineTask(made, case, setting)
 
 
 def installed(names: Sequence[str] | None = None) -> list[str]:
@@ -261,7 +268,7 @@ def _add_limit(result: dict[str, Any], task: EngineTask) -> None:
     """Put the limit of a task's rows into results, in place of an earlier one."""
     case, setting = task.case.name, task.setting.name
     rows = [row for row in result["rows"] if (row["case"], row["setting"]) == (case, setting)]
-    limit = limit_of(task.case, rows)._replace(case=case, setting=setting)
+    limit = limit_of(task.case, rows, task.setting.width)._replace(case=case, setting=setting)
     others = [one for one in result["limits"] if one != _limit_in(result, task)]
     record = {name: _plain(value) for name, value in limit._asdict().items()}
     result["limits"] = [*others, record]
@@ -292,18 +299,20 @@ def _predicted(before: Mapping[str, Any], task: EngineTask, step: float) -> floa
 def _opened(folder: Path, name: str, made: Adapter) -> dict[str, Any]:
     """Return the results of a folder if they are of the same versions and options, or empty ones.
 
-    Results of settings whose options are no longer the same are left out.
+    Results of settings whose options or width are no longer the same are left out.
     """
     head = {"engine": made.name, "version": version_of(made), "suite": SUITE_VERSION}
     about = {
         "settings": [setting._asdict() for setting in made.settings],
-        "refused": {case.name: made.refusal(case) for case in CASES if made.refusal(case)},
+        "refused": refusals(made, CASES),
     }
     results = load(folder, name)
     if results is None or any(results.get(key) != value for key, value in head.items()):
         return {**head, **about, "limits": [], "rows": []}
-    options = {setting["name"]: setting["options"] for setting in results["settings"]}
-    unchanged = [one.name for one in made.settings if options.get(one.name) == one.options]
+    earlier = {one["name"]: (one["options"], one.get("width")) for one in results["settings"]}
+    unchanged = [
+        one.name for one in made.settings if earlier.get(one.name) == (one.options, one.width)
+    ]
     for part in ("limits", "rows"):
         results[part] = [one for one in results[part] if one["setting"] in unchanged]
     return {**results, **about}
@@ -348,16 +357,15 @@ class EngineVerdict(NamedTuple):
 
 
 def verdicts(results: Mapping[str, Mapping[str, Any]]) -> list[EngineVerdict]:
-    """Return what each program makes of each case, at the setting with the least error."""
+    """Return what each program makes of each case, at the first setting with the least error."""
     verdicts = []
     for result in results.values():
         rows = [row for row in result["rows"] if "failure" not in row]
         for case in dict.fromkeys(row["case"] for row in rows):
-            of_case = [row for row in rows if row["case"] == case]
-            finest = _finest(of_case)
-            best = min(finest, key=lambda row: _number(row["error"], math.inf))
-            same = [row for row in of_case if row["setting"] == best["setting"]]
+            finest = _finest(row for row in result["rows"] if row["case"] == case)
+            best = min(finest, key=_rounded_error)
             key = (case, best["setting"])
+            same = [row for row in rows if (row["case"], row["setting"]) == key]
             limits = [one for one in result["limits"] if (one["case"], one["setting"]) == key]
             limit = _limit(limits[0]) if limits else Limit(*key, "none", *4 * (math.nan,))
             same.sort(key=lambda row: -row["step"])
@@ -388,13 +396,21 @@ def errors_at(
 
 
 def _finest(rows: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return of each setting the row with the shortest step."""
-    finest: dict[str, Mapping[str, Any]] = {}
-    for row in rows:
-        last = finest.get(row["setting"])
-        if last is None or row["step"] < last["step"]:
-            finest[row["setting"]] = row
-    return list(finest.values())
+    """Return of each setting the row with the shortest step.
+
+    Settings that fail at their shortest step are left out, unless all do: of those the row is the
+    last before they fail.
+    """
+    by_step = sorted(rows, key=lambda row: -row["asked_step"])
+    attempted = {row["setting"]: row for row in by_step}
+    finished = {row["setting"]: row for row in by_step if "failure" not in row}
+    reliable = [row for row in attempted.values() if "failure" not in row]
+    return reliable or list(finished.values())
+
+
+def _rounded_error(row: Mapping[str, Any]) -> float:
+    """Return the error to two digits: settings that agree in them are equally good."""
+    return float(f"{_number(row['error'], math.inf):.2g}")
 
 
 def _verdict(engine: str, rows: Sequence[Mapping[str, Any]], limit: Limit) -> EngineVerdict:

@@ -2,8 +2,8 @@
 
 Results that converge geometrically have a limit beyond the shortest step (Aitken's). What lies
 between the limit and the reference is the program's model; what lies between the limit and the
-shortest step's result is the error of steps. On dry friction the model is held against friction
-that is regularized over a range of slip speeds, of which the best is given.
+shortest step's result is the error of steps. Where a setting regularizes dry friction over a slip
+speed, the model is held against exact runs on friction that is regularized over it.
 """
 
 import functools
@@ -33,11 +33,9 @@ SAME = 2.0
 FARTHEST = 0.1
 """Error of steps beyond which a limit says nothing: the steps are too long for an order."""
 
-WIDTHS = np.logspace(-6.0, 0.0, 37)
-"""Slip speeds over which friction is regularized for comparison, m/s."""
-
 LIKENESS = 0.2
-"""Part of the model's error that regularized friction may leave unexplained."""
+"""Part of the model's error that regularized friction may leave unexplained: programs differ in the
+force within the width, and the limit is extrapolated."""
 
 
 class Limit(NamedTuple):
@@ -58,8 +56,13 @@ class Limit(NamedTuple):
     """Slip speed over which friction is regularized, m/s; nan for another law."""
 
 
-def limit_of(case: Case, rows: Sequence[Mapping[str, Any]]) -> Limit:
-    """Return what the rows of a case at one setting converge to."""
+def limit_of(
+    case: Case, rows: Sequence[Mapping[str, Any]], setting_width: float | None = None
+) -> Limit:
+    """Return what the rows of a case at one setting converge to.
+
+    `setting_width` is the slip speed, m/s, over which the setting regularizes friction.
+    """
     rows = sorted((row for row in rows if "failure" not in row), key=lambda row: -row["step"])
     steps = [row["step"] for row in rows]
     states = [np.array(row["state"], float) for row in rows]
@@ -79,10 +82,10 @@ def limit_of(case: Case, rows: Sequence[Mapping[str, Any]]) -> Limit:
             return Limit(case.name, setting, "none", *4 * (math.nan,))
     else:
         law = "different"
-        if isinstance(case.problem.friction, tt.CoulombFriction):
-            best, apart = nearest_width(case, state)
-            if apart <= SAME * step_error + LIKENESS * model_error:
-                law, width = "regularized", best
+        if setting_width is not None and isinstance(case.problem.friction, tt.CoulombFriction):
+            regularized = regularized_state(case.name, setting_width)
+            if _distance(state, regularized) <= LIKENESS * model_error:
+                law, width = "regularized", setting_width
     return Limit(case.name, setting, law, order, step_error, model_error, width)
 
 
@@ -100,33 +103,16 @@ def extrapolation(steps: Sequence[float], states: Sequence[Array]) -> tuple[Arra
     return third + share / (1.0 - share) * (third - second), order
 
 
-def nearest_width(case: Case, state: Array) -> tuple[float, float]:
-    """Return the width of regularized friction that comes nearest to a state, and its distance."""
-    states = _regularized_states(case.name)
-    # Between two widths the state goes along a line, in the logarithm of the width.
-    starts, changes = states[:-1], np.diff(states, axis=0)
-    squares = np.maximum(np.sum(changes**2, axis=1), np.finfo(float).tiny)
-    shares = np.clip(np.sum((state - starts) * changes, axis=1) / squares, 0.0, 1.0)
-    distances = np.abs(starts + shares[:, None] * changes - state).max(axis=1)
-    k = int(np.argmin(distances))
-    width = WIDTHS[k] * (WIDTHS[k + 1] / WIDTHS[k]) ** shares[k]
-    return float(width), float(distances[k])
-
-
 @functools.cache
-def _regularized_states(name: str) -> Array:
-    """Return the state at which a case is judged for each of `WIDTHS`."""
+def regularized_state(name: str, width: float) -> Array:
+    """Return the state of a case that is judged, on friction regularized over a width, m/s."""
     case = case_of(name)
     friction = case.problem.friction
     assert isinstance(friction, tt.CoulombFriction)
-    states = []
-    for width in WIDTHS:
-        softened = tt.RegularizedCoulombFriction(mu=friction.mu, eps=float(width))
-        problem = case.problem.model_copy(update={"friction": softened})
-        run = tt.simulate(problem, float(case.times[case.judged - 1]), samples=2)
-        last = [run[name].values[-1] for name in ("axis", "angular_velocity")]
-        states.append(judged_state(case, *last))
-    return np.array(states)
+    softened = tt.RegularizedCoulombFriction(mu=friction.mu, eps=width)
+    problem = case.problem.model_copy(update={"friction": softened})
+    run = tt.simulate(problem, float(case.times[case.judged - 1]), samples=2)
+    return judged_state(case, *[run[one].values[-1] for one in ("axis", "angular_velocity")])
 
 
 def _distance(one: Array, two: Array) -> float:

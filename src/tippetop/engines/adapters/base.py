@@ -1,6 +1,7 @@
 """What an adapter of another program is, and helpers for writing one."""
 
 import importlib.metadata
+from collections.abc import Iterable
 from importlib.util import find_spec
 from typing import Any, NamedTuple, Protocol
 
@@ -22,6 +23,8 @@ class Setting(NamedTuple):
     source: str
     """Where the program's documentation says so."""
     options: dict[str, Any]
+    width: float | None = None
+    """Slip speed over which friction is regularized at every step, m/s; None without such a one."""
 
 
 class EngineState(NamedTuple):
@@ -59,11 +62,25 @@ class Adapter(Protocol):
     settings: tuple[Setting, ...]
     """Ways to set it: the first is its defaults."""
 
-    def refusal(self, case: Case) -> str | None:
-        """Return why it cannot state a case; None where it can."""
+    def refusal(self, case: Case, setting: Setting) -> str | None:
+        """Return why it cannot state a case at a setting; None where it can."""
 
     def start(self, case: Case, step: float, setting: Setting) -> EngineRun:
         """Return a case at its launch, with steps of this length, s."""
+
+
+def settings_of(adapter: Adapter, case: Case) -> list[Setting]:
+    """Return the settings at which an adapter's program can state a case."""
+    return [one for one in adapter.settings if adapter.refusal(case, one) is None]
+
+
+def refusals(adapter: Adapter, cases: Iterable[Case]) -> dict[str, str]:
+    """Return why an adapter's program can state cases at none of its settings, by their names."""
+    reasons = {}
+    for case in cases:
+        if not settings_of(adapter, case):
+            reasons[case.name] = str(adapter.refusal(case, adapter.settings[0]))
+    return reasons
 
 
 def is_installed(adapter: Adapter) -> bool:
@@ -78,24 +95,28 @@ def version_of(adapter: Adapter) -> str:
     return importlib.metadata.version(adapter.package)
 
 
-def dry_only(case: Case) -> str | None:
-    """Return why a program with Coulomb friction at a point cannot state a case."""
-    friction = case.problem.friction
-    if isinstance(friction, tt.ViscousFriction):
+def no_film(case: Case) -> str | None:
+    """Return why a program without viscous friction cannot state a case."""
+    if isinstance(case.problem.friction, tt.ViscousFriction):
         return "no friction in proportion to slip and normal force"
-    if isinstance(friction, tt.ContensouFriction):
-        return "no drilling friction"
     return None
+
+
+def no_drilling(case: Case) -> str | None:
+    """Return why a program without drilling friction cannot state a case."""
+    return (
+        "no drilling friction" if isinstance(case.problem.friction, tt.ContensouFriction) else None
+    )
 
 
 def no_rolling(case: Case) -> str | None:
     """Return why a program without rolling friction cannot state a case."""
-    return "no rolling friction" if case.problem.rolling_resistance else None
+    return "no dry rolling friction" if case.problem.rolling_resistance else None
 
 
 def no_rebound(case: Case) -> str | None:
     """Return why a program without a coefficient of restitution cannot state a case."""
-    return "no coefficient of restitution" if case.problem.contact.restitution else None
+    return "rebounds by stiffness and damping only" if case.problem.contact.restitution else None
 
 
 def axis_of(quaternion: Array) -> Array:

@@ -36,8 +36,8 @@ class Moreau:
         ),
     )
 
-    def refusal(self, case: Case) -> str | None:
-        """Return why it cannot state a case; None where it can."""
+    def refusal(self, case: Case, setting: Setting) -> str | None:
+        """Return why it cannot state a case at a setting; None where it can."""
         if isinstance(case.problem.friction, tt.ViscousFriction):
             return "only set-valued friction"
         shapes = primitives(case.problem.body, ellipsoids=False)

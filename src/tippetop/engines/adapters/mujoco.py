@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from tippetop.engines.adapters.base import EngineState, Setting, axis_of, no_rebound
-from tippetop.engines.bodies import friction_numbers, mjcf
+from tippetop.engines.adapters.base import EngineState, Setting, axis_of, no_film, no_rebound
+from tippetop.engines.bodies import mjcf
 from tippetop.engines.cases import Case
 
 _FREE_BODY = "Computation, Numerical integration (implicitfast, RK4) and Gyroscopic derivatives"
@@ -62,11 +62,9 @@ class MuJoCo:
         ),
     )
 
-    def refusal(self, case: Case) -> str | None:
-        """Return why it cannot state a case; None where it can."""
-        if not friction_numbers(case.problem).sliding:
-            return "no friction in proportion to slip and normal force"
-        return no_rebound(case)
+    def refusal(self, case: Case, setting: Setting) -> str | None:
+        """Return why it cannot state a case at a setting; None where it can."""
+        return no_film(case) or no_rebound(case)
 
     def start(self, case: Case, step: float, setting: Setting) -> "MuJoCoStepper":
         """Return a case at its launch, with steps of this length, s."""
