@@ -46,9 +46,9 @@ of all. A guard's zero needs fewer digits than they do, since the state there is
 guard would cost steps.
 """
 
-EFFORT, FEW = 3, 0
-"""How hard the compiler tries, of 3; and where code is to run a few times: a tenth of the time
-compiles it, and it runs for twice as long.
+EFFORT = 0
+"""How hard the compiler tries, of 3: a launch is followed once, and code that runs in half the time
+takes ten times as long to compile.
 """
 
 Numbers: TypeAlias = Callable[[tuple[float, ...]], Sequence[float]]

@@ -1,11 +1,11 @@
 """Random launches have the same events by the package's Taylor method and by heyoka's.
 
-*How nearly the same.* A guard's value is known to its rounding, dg, so that the time at which it
-falls through zero is known to dg / |g'| where it falls at the rate g'. Where a body rocks from one
-surface to the other the closing speed g' falls without bound and dg stays, and so the times of its
-last rockings are known to 1e-10 s and less well. A rocking that lasts a part longer lets those
-after it last as much longer, since their durations are in fixed ratios. Two methods whose guards
-round otherwise differ by that, and no change of the launch shows it, for it changes both alike.
+*How nearly the same.* A guard's value g is known to its rounding dg, and so the time at which it
+falls through zero at the rate g' is known to dg / |g'|. Where a body rocks from one surface to the
+other, g' falls without bound and dg stays: the times of its last rockings are known to 1e-10 s and
+less well. A rocking that lasts longer by a part lets those after it last longer by that part, since
+their durations are in fixed ratios. Two methods whose guards round in other ways differ by as much,
+and no change of the launch shows it, for it changes both alike.
 """
 
 from collections.abc import Iterator
@@ -24,6 +24,9 @@ from tippetop.mechanics.top import natural_units
 DURATION = 1.0
 SAME_TIME = 1e-10
 """Difference of event times, s, that rounding in two methods makes."""
+
+LATER = 10.0
+"""Duration of all rockings after one, at most, in units of that one: they shorten geometrically."""
 
 ROCKS_LONG = 191
 """Seed of a launch whose last rockings no method tells to `SAME_TIME`."""
@@ -63,23 +66,25 @@ def rounding_of_end(segment: Segment) -> Iterator[float]:
     mode: Any = segment.mode
     y, parameters = segment.solution(segment.solution.knots[-1:])[0], tuple(mode.parameters)
     rates = mode.motion.rates(y.tolist(), parameters)
-    nearby = np.random.default_rng(0).uniform(-1.0, 1.0, (len(y), 64)) * np.spacing(y)[:, None]
+    random = np.random.default_rng(0)
+    states = y[:, None] * (1.0 + 1e-12 * random.uniform(-1.0, 1.0, (len(y), 64)))
+    roundings = 0.5 * np.spacing(states) * random.uniform(-1.0, 1.0, states.shape)
+    exact_states = states.astype(np.longdouble) + roundings
     for guard in mode.motion.guards:
         end = ModeEnd.by_guard(guard.name, segment.end_state)
         if (end.cause, end.contact) == (segment.mode_end.cause, segment.mode_end.contact):
             moving = [Dual(a, np.array([b])) for a, b in zip(y.tolist(), rates, strict=True)]
-            values = guard.value(list(y[:, None] + nearby), parameters)
-            yield float(np.std(values) / abs(guard.value(moving, parameters).parts[0]))
+            exact = guard.value(list(exact_states), parameters)
+            rounding = np.std(guard.value(list(states), parameters) - exact)
+            yield float(rounding / abs(guard.value(moving, parameters).parts[0]))
 
 
 def roundings_of(times: Any, problem: Any) -> Any:
     """Return how far rounding of guards may move the events at some times, s."""
     moved = np.zeros(len(times))
     for time, lasted, rounding in falls(problem):
-        after = times - time
-        moved += np.where(
-            after >= -SAME_TIME, rounding * (1.0 + np.maximum(after, 0.0) / lasted), 0.0
-        )
+        later = np.clip((times - time) / lasted, 0.0, LATER)
+        moved += np.where(times >= time - SAME_TIME, rounding * (1.0 + later), 0.0)
     return moved
 
 

@@ -256,3 +256,16 @@ def test_where_no_cache_can_be_kept_every_process_compiles_for_itself(tmp_path, 
     assert sorted(tmp_path.rglob("*")) == before
     if folder.is_file():
         assert folder.read_text() == "mine"
+
+
+def test_a_guard_that_turns_where_its_polynomial_goes_on_does_not_fall():
+    """It is |t - 0.5| + 0.1 but for a rounding, which no polynomial made at t = 0 tells."""
+    clock = Motion(
+        lambda y, _: (1.0,),
+        size=1,
+        parameters=0,
+        guards=(Guard("turns", lambda y, _: ((y[0] - 0.5) ** 2 + 1e-24) ** 0.5 + 0.1),),
+    )
+    arcs = list(taylor.Taylor().integrate(clock, (), (0.0, np.array([0.0])), 2.0))
+    assert [arc.guard for arc in arcs] == [None]
+    assert whole(arcs).solution.end == 2.0

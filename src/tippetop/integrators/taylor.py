@@ -54,6 +54,11 @@ the step: further they do where a guard hardly falls. Newton's method doubles th
 right: an improvement below the last, as a part of the step, is the last one.
 """
 
+TURNED, UNSURE = 1e-2, 1e-10
+"""Value at the zero of its polynomial, as a part of that at the step's begin and in natural units,
+beyond which a guard does not fall there. What polynomials leave out is less, or the tolerance.
+"""
+
 FALL = 2
 """Results of the search in a guard: when it falls, and whether that is undecided."""
 
@@ -290,7 +295,7 @@ class CompiledSteps:
 
     def __init__(self, motion: Motion, recorded: Recorded, order: int, tolerance: float) -> None:
         self.jet = SeriesExpansion(recorded, order)
-        self.guards, self.order = len(motion.guards), order
+        self.guards, self.order, self.unsure = len(motion.guards), order, max(UNSURE, tolerance)
         self.layout = StepLayout(recorded.size, len(recorded.outputs) - recorded.size, order)
         self._engine = _step_code(order, min(LEFT_OUT, 1.0 / tolerance))
         kind = ctypes.CFUNCTYPE(ctypes.c_int64, *[_PLACE] * 6, *[ctypes.c_int64] * 3)
@@ -366,7 +371,9 @@ class Run:
             if guard is None:
                 fall_time += BEYOND * float(np.spacing(abs(self.time) + fall_time))
             else:
-                fall_time = self._polished(rows[steps], span, guard, fall_time)
+                polished = self._polished(rows[steps], span, guard, fall_time)
+                guard = None if polished is None else guard
+                fall_time = 0.5 * fall_time if polished is None else polished
             self._end_at(rows[steps], span, fall_time)
             steps += 1
             if guard is not None:
@@ -404,16 +411,20 @@ class Run:
         fall_time, first = min(fallen)
         return first, fall_time
 
-    def _polished(self, row: Array, span: float, guard: int, fall: float) -> float:
+    def _polished(self, row: Array, span: float, guard: int, fall: float) -> float | None:
         """Return when a guard falls along the polynomials of the state, by Newton's method.
 
-        The guard's own polynomial differs from it by what both leave out.
+        The guard's own polynomial differs from it by what both leave out. None if it does not fall
+        there: a guard like sqrt(x^2 + tiny^2) turns where its polynomial goes on.
         """
         place = self.layout.terms + guard * self.layout.order
+        positive = max(TURNED * float(self._raw[place]), self.stepper.unsure)
         for _ in range(POLISHES):
             self._state[:] = np.cumsum(self._at(row, fall / span), axis=1)[:, -1]
             self.stepper.jet.expand(*self._places)
             value, slope = self._raw[place : place + 2].tolist()
+            if value > positive:
+                return None
             move = -value / slope if slope < 0.0 else math.nan
             if not (abs(move) <= NEAR * span and 0.0 < fall + move <= span):
                 break
