@@ -5,7 +5,7 @@ A metric is an event or an extreme of the motion itself, never of its samples. A
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,7 +35,10 @@ Flags = NDArray[np.bool_]
 
 @dataclass
 class Ends:
-    """Ends of n launches and what led to them, in natural units: shape (n,), or numbers of one."""
+    """Ends of n launches and what led to them, in natural units: shape (n,), or numbers of one.
+
+    `tippetop.results.accumulation` says how each follows from those of the parts of a run.
+    """
 
     state: State
     """States at the end."""
@@ -71,23 +74,6 @@ class Ends:
     """First time at which n_z was in the band of `settled_band`; nan if it never was."""
     rolls: Scalar
     """1 if the top rolls without slip and without loss at the end, else 0."""
-
-    # translate: skip
-    @classmethod
-    def unknown(cls, count: int) -> "Ends":
-        """Return ends of launches that have not been followed yet."""
-        unknown: dict[str, Any] = {field.name: np.full(count, np.nan) for field in fields(cls)}
-        none = {
-            name: np.zeros(count)
-            for name in (
-                *("struck", "drilled", "rolled", "airborne", "highest_gap", "highest"),
-                "rolls",
-            )
-        }
-        counts = {name: np.zeros(count, dtype=np.int64) for name in ("steps", "flights")}
-        outcome = np.full(count, OUTCOMES.index(Outcome.FAILED), dtype=np.int8)
-        state = State.unpack([np.full(count, np.nan) for _ in range(10)])
-        return cls(**{**unknown, **none, **counts, "outcome": outcome, "state": state})
 
     @classmethod
     def of_one(
@@ -129,17 +115,6 @@ class Ends:
             *settling,
             rolls,
         )
-
-    # translate: skip
-    def put(self, where: NDArray[np.intp], ends: "Ends") -> None:
-        """Copy the ends of some launches to their places."""
-        for field in fields(self):
-            mine, theirs = getattr(self, field.name), getattr(ends, field.name)
-            if field.name == "state":
-                for column, number in zip(mine.pack(), theirs.pack(), strict=True):
-                    column[where] = number
-            else:
-                mine[where] = theirs
 
 
 # translate: skip

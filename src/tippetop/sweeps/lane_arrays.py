@@ -11,7 +11,8 @@ from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
-from tippetop.results.metrics import OUTCOMES, Ends
+from tippetop.results.accumulation import accumulate, before_launch
+from tippetop.results.metrics import OUTCOMES
 from tippetop.sweeps.launch_arrays import Flags, Indices, Launches, branched
 from tippetop.sweeps.taylor_step import LANES
 from tippetop.sweeps.taylor_stepper import Stepper
@@ -19,6 +20,9 @@ from tippetop.sweeps.tip_extremes import TipMotion
 
 NATURAL = Units(1.0, 1.0, 1.0)
 """Units of what is dimensionless."""
+
+HELD_BY_LANES = {"time", "outcome", "steps", "turned", "arrived"}
+"""Quantities that lanes hold themselves until their launches end."""
 
 LOSSES = slice(8, 10)
 """Rows of the work of drilling and of rolling, where a law has a torque."""
@@ -53,7 +57,7 @@ class Slots:
         count, layout = len(launches), stepper.layout
         lanes = count + -count % LANES
         self.launches, self.stepper, self.layout = launches, stepper, layout
-        self.ends, self.tip = Ends.unknown(count), TipMotion.of(lanes)
+        self.ends, self.tip = before_launch(count), TipMotion.of(lanes)
         self.cell: Indices = np.minimum(np.arange(lanes), count - 1)
         self.alive, self.end = np.arange(lanes) < count, launches.end[self.cell]
         pauses = np.zeros((layout.numbers - layout.parameters, lanes))
@@ -141,23 +145,24 @@ class Slots:
         if not len(lanes):
             return
         ends, cells = self.ends, self.cell[lanes]
-        for stored, number in zip(ends.state.pack(), state.pack(), strict=True):
-            stored[cells] = number
         fine = np.all(np.isfinite(np.array(np.broadcast_arrays(*state.pack()))), axis=0)
-        ends.time[cells] = time
-        ends.outcome[cells] = np.where(
-            fine, OUTCOMES.index(outcome), OUTCOMES.index(Outcome.FAILED)
-        )
-        ends.steps[cells] = self.rows[self.layout.steps, lanes]
-        if self.layout.size == LOSSES.stop:
-            drilled, rolled = -self.rows[LOSSES][:, lanes]
-            ends.drilled[cells] += drilled
-            ends.rolled[cells] += rolled
-        ends.turned[cells], ends.arrived[cells] = self.tip.turned[lanes], self.tip.reached[lanes]
-        self.rows[self.layout.remaining, lanes] = 0.0
-        self.alive[lanes] = False
         stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
         force, down, up = self.tip.least[:, lanes]
-        ends.least_force[cells] = np.where(stayed, np.fmin(ends.least_force[cells], force), 0.0)
-        ends.down[cells] = np.fmin(ends.down[cells], down)
-        ends.up[cells] = np.fmax(ends.up[cells], -up)
+        accumulate(
+            ends,
+            cells,
+            state,
+            time=time,
+            outcome=np.where(fine, OUTCOMES.index(outcome), OUTCOMES.index(Outcome.FAILED)),
+            steps=self.rows[self.layout.steps, lanes],
+            turned=self.tip.turned[lanes],
+            arrived=self.tip.reached[lanes],
+            least_force=np.where(stayed, force, 0.0),
+            down=down,
+            up=-up,
+        )
+        if self.layout.size == LOSSES.stop:
+            drilled, rolled = -self.rows[LOSSES][:, lanes]
+            accumulate(ends, cells, drilled=drilled, rolled=rolled)
+        self.rows[self.layout.remaining, lanes] = 0.0
+        self.alive[lanes] = False

@@ -15,6 +15,7 @@ from tippetop.integrators import DEFAULT, TOLERANCES, make_integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.results.accumulation import accumulate, before_launch, of_a_part
 from tippetop.results.metrics import Ends
 from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import RunMetrics
@@ -39,7 +40,7 @@ def follow_each(launches: Launches, tolerance: float, settled: float | None = No
 
     A launch in which something raises has failed, and nothing else is known of it.
     """
-    ends = Ends.unknown(len(launches))
+    ends = before_launch(len(launches))
     for i in range(len(launches)):
         try:
             automaton, state = launches.automaton(i), single(launches.state, i)
@@ -50,7 +51,7 @@ def follow_each(launches: Launches, tolerance: float, settled: float | None = No
         except Exception as error:  # noqa: BLE001 - whatever was raised, the others go on
             note_failure(error)
         else:
-            ends.put(np.array([i]), ended)
+            accumulate(ends, np.array([i]), ended.state, **of_a_part(ended))
     return ends
 
 

@@ -19,10 +19,11 @@ from tippetop.mechanics.flight.touchdown import Start
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import presses
 from tippetop.mechanics.state import State
+from tippetop.results.accumulation import accumulate, of_a_part
 from tippetop.results.metrics import OUTCOMES
 from tippetop.sweeps.flights import fly_all, rolls, slides, slips
 from tippetop.sweeps.impacts import collide
-from tippetop.sweeps.lane_arrays import Slots
+from tippetop.sweeps.lane_arrays import HELD_BY_LANES, Slots
 from tippetop.sweeps.launch_arrays import Indices, branched, picked, single
 from tippetop.sweeps.single_launches import follow
 
@@ -90,7 +91,7 @@ class Crossings:
         """Let lanes fly, or stop, whose normal force fell to zero."""
         slots = self.slots
         cells, state = slots.cell[lanes], slots.states(lanes)
-        slots.ends.lift_off[cells] = np.fmin(slots.ends.lift_off[cells], time)
+        accumulate(slots.ends, cells, lift_off=time)
         if slots.launches.liftoff == "stop":
             slots.retire(lanes, state, time, Outcome.LIFTED_OFF)
         else:
@@ -107,10 +108,14 @@ class Crossings:
             flown = fly_all(
                 state, launches.kind, numbers, horizon, vanishing, (slots.tip, lanes, time)
             )
-            ends.flights[cells] += 1
-            ends.airborne[cells] += flown.duration
-            ends.highest_gap[cells] = np.fmax(ends.highest_gap[cells], flown.highest_gap)
-            ends.highest[cells] = np.fmax(ends.highest[cells], flown.highest)
+            accumulate(
+                ends,
+                cells,
+                flights=1,
+                airborne=flown.duration,
+                highest_gap=flown.highest_gap,
+                highest=flown.highest,
+            )
             over = ~flown.landed & (flown.duration >= horizon)
             time = np.where(over, slots.end[lanes], time + flown.duration)
             slots.retire(lanes[over], picked(flown.state, over), time[over], Outcome.COMPLETED)
@@ -142,8 +147,8 @@ class Crossings:
         )
         sliding &= slips(after, top, far=True)
         slots.place(lanes[sliding], picked(after, sliding), time[sliding])
-        lost = energy(state, top) - energy(after, top)
-        slots.ends.struck[cells[sliding]] += np.broadcast_to(lost, sliding.shape)[sliding]
+        lost = np.broadcast_to(energy(state, top) - energy(after, top), sliding.shape)
+        accumulate(slots.ends, cells[sliding], struck=lost[sliding])
         others = np.flatnonzero(~sliding)
         transitions = []
         for i in others.tolist():
@@ -171,7 +176,8 @@ class Crossings:
             if not isinstance(transition.next, Flight | Outcome) and not is_plain(transition.next):
                 self._follow_alone(int(lanes[i]), float(time[i]), single(state, i), transition)
                 continue
-            self.slots.ends.struck[self.slots.cell[lanes[i]]] += transition.energy_lost
+            cell = self.slots.cell[lanes[i]]
+            accumulate(self.slots.ends, cell, struck=transition.energy_lost)
             if isinstance(transition.next, Flight):
                 again.append(i)
                 starts.append(int(transition.next.start))
@@ -188,8 +194,7 @@ class Crossings:
     def _note(self, lane: int, time: float, transition: Transition) -> None:
         """Note a lift-off."""
         if any(event.kind is EventKind.LIFT_OFF for event in transition.events):
-            ends, cell = self.slots.ends, self.slots.cell[lane]
-            ends.lift_off[cell] = np.fmin(ends.lift_off[cell], time)
+            accumulate(self.slots.ends, self.slots.cell[lane], lift_off=time)
 
     def _settle(self, lane: Indices, transition: Transition, time: Array) -> None:
         """Let a top slide, or end its run."""
@@ -220,19 +225,16 @@ class Crossings:
         )
         begin = slots.launches.automaton(int(slots.cell[lane])), state, time
         launched = single(slots.launches.state, int(slots.cell[lane]))
-        ended, tally = follow(
+        ended, run_metrics = follow(
             begin, transition, float(slots.end[lane]), self.tolerance, launched=launched
         )
-        for name in ("flights", "airborne", "struck", "drilled", "rolled"):
-            getattr(ends, name)[cell] += getattr(ended, name)
-        for name in ("highest_gap", "highest", "up"):
-            getattr(ends, name)[cell] = np.fmax(getattr(ends, name)[cell], getattr(ended, name))
-        for name in ("lift_off", "least_force", "down"):
-            getattr(ends, name)[cell] = np.fmin(getattr(ends, name)[cell], getattr(ended, name))
-        ends.settled[cell], ends.rolls[cell] = ended.settled, ended.rolls
+        parts = of_a_part(ended)
+        accumulate(ends, cell, **{name: parts[name] for name in parts if name not in HELD_BY_LANES})
         tip = slots.tip
         tip.turned[where] = np.fmin(tip.turned[where], ended.turned)
-        arrived = tally.arrival(tip.low[where], tip.high[where]) if self.banded else ended.arrived
+        arrived = ended.arrived
+        if self.banded:
+            arrived = run_metrics.arrival(tip.low[where], tip.high[where])
         tip.reached[where] = np.fmin(tip.reached[where], arrived)
         slots.rows[slots.layout.steps, where] += ended.steps
         slots.retire(where, ended.state, ended.time, OUTCOMES[ended.outcome])
