@@ -242,7 +242,9 @@ def read_off(
     top, units, state = start.top, start.units, start.state
     early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
     sampled = recorder.finish(trajectory.time, trajectory.state, early)
-    ends = run_metrics.ends(trajectory.state, trajectory.time, outcome, trajectory.events)
+    ends = run_metrics.ends(
+        trajectory.state, trajectory.time, outcome, trajectory.events, recorder.sums
+    )
     peak_tilt, peak_time = run_metrics.peak
     begin = State.unpack([np.float64(number) for number in state.pack()])
     end_time = duration if trajectory.time == trajectory.end else trajectory.time * units.time

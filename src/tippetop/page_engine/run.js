@@ -26,15 +26,9 @@ const FORCE = 7;
 const conserved = (mode, y) => m.monitored_quantities(mode.state(y), mode.top);
 const CONSERVED = 5;
 
-// What is integrated along a run. The first six stand in `Rates` at the same place.
-const X = 0;
-const Y = 1;
-const TURN = 2;
-const WORK = 3;
-const DRILLED = 4;
-const ROLLED = 5;
-const STRUCK = 6;
-const SUMS = 7;
+// Places of what is summed up along a run, in the order of `Sums`.
+const SUMS = m.Sums.fields.length;
+const [TURN, WORK, STRUCK] = ["turn", "work", "struck"].map((name) => m.Sums.fields.indexOf(name));
 
 /** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
 export function simulate(
@@ -74,10 +68,8 @@ class Run {
     this.trajectory = new m.Trajectory(automaton, launch, end, integrator(tolerance), ...limits);
 
     this.pole = this.start.axis[2] >= 0 ? 1 : -1;
-    this.sums = new Float64Array(SUMS);
-    this.sums[TURN] = this.pole * problem.launch.azimuth;
-    this.sums[WORK] = -launch.energy_lost;
-    this.sums[STRUCK] = launch.energy_lost;
+    const turn = this.pole * problem.launch.azimuth;
+    this.sums = Float64Array.from(m.Sums.at_launch(turn, launch.energy_lost));
 
     this.segments = [];
     this.steps = 0;
@@ -145,7 +137,7 @@ class Run {
     for (let i = 0; i < nodes.length; i += 1) {
       const gains = segment.ratesAt(step, part * nodes[i], pole);
       const weight = weights[i] * span;
-      for (let k = X; k <= ROLLED; k += 1) sums[k] += weight * gains[k];
+      for (let k = 0; k < m.INTEGRALS; k += 1) sums[k] += weight * gains[k];
       lowest = Math.min(lowest, gains[FORCE]);
       highest = Math.max(highest, gains[FORCE]);
     }
@@ -229,7 +221,7 @@ class Run {
       events,
       this.flightRecord,
       this.steps,
-      [-this.sums[DRILLED], -this.sums[ROLLED]],
+      new m.Sums(...this.sums),
       extremes.map((extreme) => extreme.refined()),
       [this.firstHorizontal, settled, this.arrival(m.settled_band(settled))],
       Number(this.rolls),
@@ -323,13 +315,7 @@ class Run {
     const samples = new m.Samples(
       time,
       segment.instantsAt(step, part),
-      sums[X],
-      sums[Y],
-      sums[TURN],
-      sums[WORK],
-      sums[STRUCK],
-      -sums[DRILLED],
-      -sums[ROLLED],
+      new m.Sums(...sums),
       pole,
       null,
     );

@@ -26,6 +26,7 @@ from tippetop.mechanics.vectors import Scalar, length
 from tippetop.mechanics.view import axis_sine, precession_rate
 from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE, Ending
 from tippetop.results.settling import is_barred, tilt
+from tippetop.results.sums import Sums
 
 OUTCOMES = tuple(Outcome)
 """Outcomes by number."""
@@ -84,16 +85,15 @@ class Ends:
         events: Sequence[Event],
         flights: Flights,
         steps: int,
-        resisted: tuple[float, float],
+        sums: Sums,
         least: Sequence[float],
         settling: tuple[float, float, float],
         rolls: float,
     ) -> "Ends":
         """Return the ends of one launch.
 
-        `resisted` holds the energy lost to drilling and to rolling, `least` the least values of the
-        normal force, n_z, -n_z and, in flights, the negative height, and `settling` the numbers
-        `turned`, `settled` and `arrived`.
+        `least` holds the least values of the normal force, n_z, -n_z and, in flights, the negative
+        height, and `settling` the numbers `turned`, `settled` and `arrived`.
         """
         lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
         struck, count = sum([event.energy_lost for event in events]), len(flights.rows)
@@ -108,7 +108,7 @@ class Ends:
             count,
             *pressed,
             struck,
-            *resisted,
+            *sums.losses,
             *aloft,
             down,
             -up,

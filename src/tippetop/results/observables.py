@@ -18,6 +18,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 from tippetop.results.monitor import Monitor, monitored_quantities
 from tippetop.results.samples import Samples
+from tippetop.results.sums import INTEGRALS, Sums
 
 _INTEGRALS = np.array(
     [
@@ -31,6 +32,13 @@ _INTEGRALS = np.array(
 """Integrals from 0 of Lagrange's polynomials on Gauss's points, in powers of a variable from -1 to
 1 over a step.
 """
+
+
+TURN, WORK, STRUCK = (Sums._fields.index(name) for name in ("turn", "work", "struck"))
+"""Places of sums that change otherwise than by their rates alone."""
+
+READINGS = 3 + len(Sums._fields)
+"""Row from which on a sample has its readings, after time, mode, sums and pole."""
 
 
 def monitored_in(mode: Mode, y: Row) -> tuple[Scalar, ...]:
@@ -61,12 +69,11 @@ class Recorder:
         self._parts: list[Array] = []
         self.modes = [SLIPS, Flight.name]
         self._sampled = 0
-        self._last: tuple[Block, tuple[Array, Array, Array, Array]] | None = None
+        self._last: tuple[Block, tuple[Array, Array, Array]] | None = None
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
-        # A law without torque dissipates no energy by drilling or rolling.
-        self._resisted = not top.torque_free
-        self._sums = np.array([0.0, 0.0, self._pole * azimuth, -lost] + [0.0, 0.0] * self._resisted)
-        self._struck = lost
+        # A law without torque does no work by drilling or rolling.
+        self._integrals = 1 + WORK if top.torque_free else INTEGRALS
+        self._sums = np.array(Sums.at_launch(self._pole * azimuth, lost))
         self.monitor = Monitor(top, start)
 
     @classmethod
@@ -86,6 +93,11 @@ class Recorder:
         if len(times):
             self._sample(block, times, *integrals)
 
+    @property
+    def sums(self) -> Sums:
+        """What is summed up from launch to the end of the last block."""
+        return Sums(*self._sums.tolist())
+
     def outcome_of(self, trajectory: Trajectory) -> Outcome:
         """Return the outcome of a trajectory whose blocks were all taken, checked by the
         monitor.
@@ -93,7 +105,7 @@ class Recorder:
         assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
         tolerance = getattr(trajectory.integrator, "tolerance", 0.0)
         return self.monitor.final_outcome(
-            trajectory.outcome, trajectory.state, self._sums[3], tolerance
+            trajectory.outcome, trajectory.state, self._sums[WORK], tolerance
         )
 
     def finish(self, end: float, state: State, early: bool) -> Samples:
@@ -107,25 +119,23 @@ class Recorder:
         if not self._parts:
             self._parts.append(self._single(state))
         rows = np.concatenate(self._parts, axis=1) if len(self._parts) > 1 else self._parts[0]
-        times, mode, x, y, turn, work, drilled, rolled, struck, pole = rows[:10]
-        readings, lost = Instants.unpack(rows[10:]), (struck, drilled, rolled)
-        return Samples(times, readings, x, y, turn, work, *lost, pole, mode.astype(np.int8))
+        times, mode, *sums, pole = rows[:READINGS]
+        readings = Instants.unpack(rows[READINGS:])
+        return Samples(times, readings, Sums(*sums), pole, mode.astype(np.int8))
 
     def _sample(
-        self, block: Block, times: Array, rates: Array, values: Array, poles: Array, struck: Array
+        self, block: Block, times: Array, rates: Array, values: Array, poles: Array
     ) -> None:
         """Take the samples of a block at some times."""
         step = block.step_at(times)
         part = parts_of(times, block.starts[step], block.ends[step])
         integrals = _INTEGRALS @ powers(2.0 * part - 1.0, len(NODES) + 1).T * block.spans[step]
-        sums = values.take(step, axis=1) + np.einsum(
-            "ik,qik->qk", integrals, rates.take(step, axis=2)
-        )
-        rows = np.empty((10 + TOLD, len(times)))
-        rows[0], rows[2:6], rows[6:8] = times, sums[:4], -sums[4:] if self._resisted else 0.0
-        rows[8], rows[9] = struck[step], poles[step]
+        sums = values.take(step, axis=1)
+        sums[: len(rates)] += np.einsum("ik,qik->qk", integrals, rates.take(step, axis=2))
+        rows = np.empty((READINGS + TOLD, len(times)))
+        rows[0], rows[2 : READINGS - 1], rows[READINGS - 1] = times, sums, poles[step]
         for mode, chosen, numbers in block.sampled(step, part):
-            rows[10:, chosen] = numbers
+            rows[READINGS:, chosen] = numbers
             if mode.label not in self.modes:
                 self.modes.append(mode.label)
             rows[1, chosen] = self.modes.index(mode.label)
@@ -135,54 +145,49 @@ class Recorder:
         """Return the sample of a launch that ended as it began."""
         mode, numbers = initial_mode(state, self.top)
         readings = read(instants, mode, np.array([numbers]).T)[:, 0]
-        sums = [*self._sums[:4], 0.0, 0.0, self._struck, self._pole]
-        return np.array([[0.0, 0.0, *sums, *readings]]).T
+        return np.array([[0.0, 0.0, *self._sums, self._pole, *readings]]).T
 
-    def _integrate(self, block: Block) -> tuple[Array, Array, Array, Array]:
+    def _integrate(self, block: Block) -> tuple[Array, Array, Array]:
         """Integrate along the steps of a block.
 
         Returns
         -------
         tuple
-            Rates of the quadratures at Gauss's points, shape (q, 8, k), their values at the starts
-            of the steps, shape (q, k), the charts of the angle, and the energy lost in impacts
-            before, both of shape (k,). The quadratures are x, y, the angle and the work and, for a
-            law with a torque, the work of drilling and of rolling.
+            Rates of the integrals at Gauss's points, shape (q, 8, k), the sums at the starts of the
+            steps, shape (7, k), and the charts of the angle, shape (k,). The integrals are those of
+            `Sums`, of a law without torque up to the work.
         """
-        count = len(block.starts)
-        rates, axis = np.empty((len(self._sums), len(NODES), count)), np.empty((2, count))
+        count, last = len(block.starts), self._integrals
+        rates, axis = np.empty((last, len(NODES), count)), np.empty((2, count))
         poles = np.empty(count)
         for group in block.groups:
-            at_nodes = group.nodes[: len(rates)]
+            at_nodes = group.nodes[:last]
             if len(group.which) == count:
                 rates = at_nodes
             else:
                 rates[:, :, group.which] = at_nodes
             axis[:, group.which], poles[group.which] = group.terms[:, :2, 0].T, group.poles
-        gains = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
+        gains = np.zeros((len(self._sums), count))
+        gains[:last] = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
         changes = poles - np.concatenate([[self._pole], poles[:-1]])
-        # Derivatives compare runs 1e-8 apart: what thousands of sums round away would show in them.
-        summed = np.concatenate([self._sums[:, None], gains], axis=1)
-        values = np.cumsum(summed, axis=1, dtype=np.longdouble).astype(float)
-        values[2] = self._sums[2] + evenly_summed(gains[2])
+        values = np.cumsum(np.concatenate([self._sums[:, None], gains], axis=1), axis=1)
+        values[TURN] = self._sums[TURN] + evenly_summed(gains[TURN])
         for step in np.flatnonzero(changes):
-            values[2, step:] += changes[step] * np.arctan2(axis[1, step], axis[0, step])
+            values[TURN, step:] += changes[step] * np.arctan2(axis[1, step], axis[0, step])
         lost = np.zeros(count + 1)
         for place, segment in zip(np.cumsum(block.lengths), block.segments, strict=True):
             if segment.transition is not None:
                 lost[place] += segment.transition.energy_lost
-        struck = np.cumsum(lost)
-        values[3] -= struck
-        struck += self._struck
-        self._struck = float(struck[-1])
+        values[WORK] -= np.cumsum(lost)
+        values[STRUCK] += np.cumsum(lost)
         self._sums, self._pole = values[:, -1], float(poles[-1])
         for group in block.groups:
             size, cosine, height, energy, jellett = read(
                 monitored_in, group.mode, group.start_numbers, total=len(group.which)
             )
             with np.errstate(invalid="ignore"):  # edges have nan where the axis is vertical
-                self.monitor.check(size, cosine, height, energy, jellett, values[3, group.which])
-        return rates, values[:, :-1], poles, struck[:-1]
+                self.monitor.check(size, cosine, height, energy, jellett, values[WORK, group.which])
+        return rates, values[:, :-1], poles
 
 
 def evenly_summed(gains: Array) -> Array:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from tippetop.contact.block import WEIGHTS, Block, ModeSteps
+from tippetop.contact.block import Block, ModeSteps
 from tippetop.contact.contact_mode import STICKS
 from tippetop.contact.flights import Flights
 from tippetop.contact.mode import Event, Outcome
@@ -27,6 +27,7 @@ from tippetop.results.metrics import (
     turning_time,
 )
 from tippetop.results.settling import settled_tilt_of_one
+from tippetop.results.sums import Sums
 
 AT_ONCE = 4
 """Steps in the first batch of a search for the first time of an event; the factor by which batches
@@ -55,7 +56,6 @@ class RunMetrics:
         )
         self._lowest_begin = list[Array]()
         self._turned = np.nan
-        self._drilled = self._rolled = 0.0
         self.steps = self.evaluations = 0
         self.methods = dict[str, Integrator]()
         self.peak = self._tilt_at(float(start.axis[2])), 0.0
@@ -82,8 +82,6 @@ class RunMetrics:
                 continue
             if not self.flights.rows:
                 self._take_force(group)
-            if not group.mode.top.torque_free:
-                self._take_work(group)
 
     def _take_tip(self, group: ModeSteps, starts: Array) -> None:
         """Accumulate the extremes of n_z and the time of turning over."""
@@ -114,14 +112,12 @@ class RunMetrics:
         unit = to_powers @ (transform @ Rates(*group.at(places, near)).force)
         self._pressed.append(Polynomials.of_unit(unit, group.spans[near]))
 
-    def _take_work(self, group: ModeSteps) -> None:
-        """Accumulate the work of drilling and of rolling."""
-        shares, rates = WEIGHTS[:, None] * group.spans, Rates(*group.nodes)
-        self._drilled -= float(np.sum(shares * rates.drilling))
-        self._rolled -= float(np.sum(shares * rates.rolling))
-
-    def ends(self, state: State, time: float, outcome: Outcome, events: Sequence[Event]) -> Ends:
-        """Return the accumulated `Ends` of a launch with this last state, time and outcome."""
+    def ends(
+        self, state: State, time: float, outcome: Outcome, events: Sequence[Event], sums: Sums
+    ) -> Ends:
+        """Return the accumulated `Ends` of a launch with this last state, time and outcome, and
+        these sums.
+        """
         last = State.unpack([np.float64(number) for number in state.pack()])
         leasts = least_of_each(self._pressed, self._lowest, self._highest, self._raised)
         self._take_peak(leasts[1])
@@ -136,7 +132,7 @@ class RunMetrics:
             events,
             self.flights,
             self.steps,
-            (self._drilled, self._rolled),
+            sums,
             [least.value for least in leasts],
             (self._turned, settled, self.arrival(*settled_band(settled))),
             float(self._rolls),

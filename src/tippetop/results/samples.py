@@ -14,6 +14,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import scale
 from tippetop.mechanics.view import axis_sine
+from tippetop.results.sums import Sums
 
 
 class Samples(NamedTuple):
@@ -23,26 +24,18 @@ class Samples(NamedTuple):
     """Sample times."""
     instants: Instants
     """Readings of the state and the contact."""
-    x: Array
-    y: Array
-    """Horizontal position of the centre of mass."""
-    turn: Array
-    work: Array
-    """Work of the contact force since launch."""
-    struck: Array
-    drilled: Array
-    rolled: Array
-    """Energy lost since launch in impacts, to drilling and to rolling."""
+    sums: Sums
+    """What is summed up from launch on."""
     pole: Array
-    """Angle psi about the axis, and the pole of its chart (see `tippetop.mechanics.quadratures`).
-    """
+    """Pole of the chart of the angle about the axis (see `tippetop.mechanics.quadratures`)."""
     mode: NDArray[np.int8]
     """Number of the contact mode in the recorder's list `modes`."""
 
 
 def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     """Return every variable of `catalogue.SAMPLED` in SI, by name, of a top in natural units."""
-    instants, state = samples.instants, samples.instants.state
+    instants, state, sums = samples.instants, samples.instants.state, samples.sums
+    drilled, rolled = sums.losses
     axis, momentum = state.axis, state.momentum
     sine, (slip_x, slip_y), tilting = axis_sine(axis), instants.slip, instants.tilting
     upright = sine == 0.0
@@ -66,20 +59,19 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "contact_force": np.stack(scale(units.force, instants.force), -1),
         "contact_torque": np.stack(scale(units.energy, instants.torque), -1),
         "energy": instants.energy * units.energy,
-        "work": samples.work * units.energy,
-        "sliding_loss": (-samples.work - samples.struck - samples.drilled - samples.rolled)
-        * units.energy,
-        "drilling_loss": samples.drilled * units.energy,
-        "rolling_loss": samples.rolled * units.energy,
+        "work": sums.work * units.energy,
+        "sliding_loss": (-sums.work - sums.struck - drilled - rolled) * units.energy,
+        "drilling_loss": drilled * units.energy,
+        "rolling_loss": rolled * units.energy,
         "jellett": instants.jellett * units.jellett,
         "height": state.height * units.length,
         "gap": instants.gap * units.length,
-        "x": samples.x * units.length,
-        "y": samples.y * units.length,
+        "x": sums.x * units.length,
+        "y": sums.y * units.length,
         "axis": np.stack(axis, -1),
         "velocity": np.stack(scale(units.speed, state.velocity), -1),
         "angular_momentum": np.stack(scale(units.angular_momentum, momentum), -1),
-        "orientation": np.stack(orientation(axis, samples.turn, samples.pole, np), -1),
+        "orientation": np.stack(orientation(axis, sums.turn, samples.pole, np), -1),
     }
 
 

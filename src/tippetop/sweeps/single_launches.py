@@ -88,7 +88,7 @@ def follow(
         run_metrics.take(block)
     outcome = recorder.outcome_of(trajectory)
     return run_metrics.ends(
-        trajectory.state, trajectory.time, outcome, trajectory.events
+        trajectory.state, trajectory.time, outcome, trajectory.events, recorder.sums
     ), run_metrics
 
 
