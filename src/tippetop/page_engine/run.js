@@ -26,9 +26,9 @@ const FORCE = 7;
 const conserved = (mode, y) => m.monitored_quantities(mode.state(y), mode.top);
 const CONSERVED = 5;
 
-// Places of what is summed up along a run, in the order of `Sums`.
-const SUMS = m.Sums.fields.length;
-const [TURN, WORK, STRUCK] = ["turn", "work", "struck"].map((name) => m.Sums.fields.indexOf(name));
+// Places of what is summed up along a run, in the order of `RunSums`.
+const SUMS = m.RunSums.fields.length;
+const [TURN, WORK, STRUCK] = ["turn", "work", "struck"].map((name) => m.RunSums.fields.indexOf(name));
 
 /** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
 export function simulate(
@@ -69,7 +69,7 @@ class Run {
 
     this.pole = this.start.axis[2] >= 0 ? 1 : -1;
     const turn = this.pole * problem.launch.azimuth;
-    this.sums = Float64Array.from(m.Sums.at_launch(turn, launch.energy_lost));
+    this.sums = Float64Array.from(m.RunSums.at_launch(turn, launch.energy_lost));
 
     this.segments = [];
     this.steps = 0;
@@ -221,7 +221,7 @@ class Run {
       events,
       this.flightRecord,
       this.steps,
-      new m.Sums(...this.sums),
+      new m.RunSums(...this.sums),
       extremes.map((extreme) => extreme.refined()),
       [this.firstHorizontal, settled, this.arrival(m.settled_band(settled))],
       Number(this.rolls),
@@ -315,7 +315,7 @@ class Run {
     const samples = new m.Samples(
       time,
       segment.instantsAt(step, part),
-      new m.Sums(...sums),
+      new m.RunSums(...sums),
       pole,
       null,
     );

@@ -26,7 +26,7 @@ from tippetop.mechanics.vectors import Scalar, length
 from tippetop.mechanics.view import axis_sine, precession_rate
 from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE, Ending
 from tippetop.results.settling import is_barred, tilt
-from tippetop.results.sums import Sums
+from tippetop.results.sums import RunSums
 
 OUTCOMES = tuple(Outcome)
 """Outcomes by number."""
@@ -85,7 +85,7 @@ class Ends:
         events: Sequence[Event],
         flights: Flights,
         steps: int,
-        sums: Sums,
+        sums: RunSums,
         least: Sequence[float],
         settling: tuple[float, float, float],
         rolls: float,

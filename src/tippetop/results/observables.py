@@ -18,7 +18,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 from tippetop.results.monitor import Monitor, monitored_quantities
 from tippetop.results.samples import Samples
-from tippetop.results.sums import INTEGRALS, Sums
+from tippetop.results.sums import INTEGRALS, RunSums
 
 _INTEGRALS = np.array(
     [
@@ -34,10 +34,10 @@ _INTEGRALS = np.array(
 """
 
 
-TURN, WORK, STRUCK = (Sums._fields.index(name) for name in ("turn", "work", "struck"))
+TURN, WORK, STRUCK = (RunSums._fields.index(name) for name in ("turn", "work", "struck"))
 """Places of sums that change otherwise than by their rates alone."""
 
-READINGS = 3 + len(Sums._fields)
+READINGS = 3 + len(RunSums._fields)
 """Row from which on a sample has its readings, after time, mode, sums and pole."""
 
 
@@ -73,7 +73,7 @@ class Recorder:
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
         # A law without torque does no work by drilling or rolling.
         self._integrals = 1 + WORK if top.torque_free else INTEGRALS
-        self._sums = np.array(Sums.at_launch(self._pole * azimuth, lost))
+        self._sums = np.array(RunSums.at_launch(self._pole * azimuth, lost))
         self.monitor = Monitor(top, start)
 
     @classmethod
@@ -94,9 +94,9 @@ class Recorder:
             self._sample(block, times, *integrals)
 
     @property
-    def sums(self) -> Sums:
+    def sums(self) -> RunSums:
         """What is summed up from launch to the end of the last block."""
-        return Sums(*self._sums.tolist())
+        return RunSums(*self._sums.tolist())
 
     def outcome_of(self, trajectory: Trajectory) -> Outcome:
         """Return the outcome of a trajectory whose blocks were all taken, checked by the
@@ -121,7 +121,7 @@ class Recorder:
         rows = np.concatenate(self._parts, axis=1) if len(self._parts) > 1 else self._parts[0]
         times, mode, *sums, pole = rows[:READINGS]
         readings = Instants.unpack(rows[READINGS:])
-        return Samples(times, readings, Sums(*sums), pole, mode.astype(np.int8))
+        return Samples(times, readings, RunSums(*sums), pole, mode.astype(np.int8))
 
     def _sample(
         self, block: Block, times: Array, rates: Array, values: Array, poles: Array
@@ -155,7 +155,7 @@ class Recorder:
         tuple
             Rates of the integrals at Gauss's points, shape (q, 8, k), the sums at the starts of the
             steps, shape (7, k), and the charts of the angle, shape (k,). The integrals are those of
-            `Sums`, of a law without torque up to the work.
+            `RunSums`, of a law without torque up to the work.
         """
         count, last = len(block.starts), self._integrals
         rates, axis = np.empty((last, len(NODES), count)), np.empty((2, count))

@@ -27,7 +27,7 @@ from tippetop.results.metrics import (
     turning_time,
 )
 from tippetop.results.settling import settled_tilt_of_one
-from tippetop.results.sums import Sums
+from tippetop.results.sums import RunSums
 
 AT_ONCE = 4
 """Steps in the first batch of a search for the first time of an event; the factor by which batches
@@ -113,7 +113,7 @@ class RunMetrics:
         self._pressed.append(Polynomials.of_unit(unit, group.spans[near]))
 
     def ends(
-        self, state: State, time: float, outcome: Outcome, events: Sequence[Event], sums: Sums
+        self, state: State, time: float, outcome: Outcome, events: Sequence[Event], sums: RunSums
     ) -> Ends:
         """Return the accumulated `Ends` of a launch with this last state, time and outcome, and
         these sums.

@@ -14,7 +14,7 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import scale
 from tippetop.mechanics.view import axis_sine
-from tippetop.results.sums import Sums
+from tippetop.results.sums import RunSums
 
 
 class Samples(NamedTuple):
@@ -24,7 +24,7 @@ class Samples(NamedTuple):
     """Sample times."""
     instants: Instants
     """Readings of the state and the contact."""
-    sums: Sums
+    sums: RunSums
     """What is summed up from launch on."""
     pole: Array
     """Pole of the chart of the angle about the axis (see `tippetop.mechanics.quadratures`)."""

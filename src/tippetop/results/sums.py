@@ -12,7 +12,7 @@ INTEGRALS = 6
 """
 
 
-class Sums(NamedTuple):
+class RunSums(NamedTuple):
     """What is summed up along a run from launch on, in natural units."""
 
     x: Scalar
@@ -29,7 +29,7 @@ class Sums(NamedTuple):
     """Energy lost in impacts."""
 
     @classmethod
-    def at_launch(cls, turn: float, lost: float) -> "Sums":
+    def at_launch(cls, turn: float, lost: float) -> "RunSums":
         """Return the sums at launch, for the angle there and the energy lost in an impact there."""
         return cls(0.0, 0.0, turn, -lost, 0.0, 0.0, lost)
 
