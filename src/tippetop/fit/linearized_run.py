@@ -574,7 +574,7 @@ class LinearizedRun:
         return time, automaton.follow(mode, how, time, self.integrator)
 
     @np.errstate(all="ignore")
-    def read_beside(self, direction: int, change: float) -> "Reading":
+    def read_beside(self, direction: int, change: float) -> "RunReading":
         """Return what a run beside the run shows, to first order in a change.
 
         Raises
@@ -619,17 +619,17 @@ class LinearizedRun:
         trajectory.end_at(time, state, self.outcome, self.trajectory.detail)
         trajectory.events = events
         problem = self._problem_beside(direction, change) or self.problem
-        return Reading(self._dataset(problem, start, segments, trajectory), states, units)
+        return RunReading(self._dataset(problem, start, segments, trajectory), states, units)
 
     @np.errstate(all="ignore")
-    def read(self) -> "Reading":
+    def read(self) -> "RunReading":
         """Return what the run itself shows."""
         start = self._launch(self.numbers, self.launch)
         segments = [segment for visit in self.visits for segment in visit.segments]
         run = self._dataset(self.problem, start, segments, self.trajectory)
         transitions = [self.launch, *(v.transition for v in self.visits if v.transition)]
         states = [one.state for one in transitions for _ in one.events]
-        return Reading(run, states, start.units)
+        return RunReading(run, states, start.units)
 
     def _launch(self, numbers: StartNumbers, first: Transition) -> NaturalLaunch:
         """Return the launch of the run, or of one beside it."""
@@ -679,7 +679,7 @@ class LinearizedRun:
         return beside / max(sizes)
 
 
-class Reading(NamedTuple):
+class RunReading(NamedTuple):
     """What a run shows."""
 
     run: xr.Dataset

@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tippetop.contact.trajectory import require_limits
-from tippetop.fit.linearized_run import EVENT_STATES, Differs, LinearizedRun, Reading
+from tippetop.fit.linearized_run import EVENT_STATES, Differs, LinearizedRun, RunReading
 from tippetop.fit.problem_numbers import Direction, require_fields
 from tippetop.integrators.base import Array
 from tippetop.mechanics.top import natural_units
@@ -119,7 +119,7 @@ def slopes_of(run: LinearizedRun, direction: int) -> tuple[dict[str, Array], str
         return slopes, reason
 
 
-def _differences(ends: Sequence[Reading], apart: float, until: float) -> dict[str, Array]:
+def _differences(ends: Sequence[RunReading], apart: float, until: float) -> dict[str, Array]:
     """Return the slopes of the variables between two runs, NaN from a time on."""
     up, down = (one.variables for one in ends)
     slopes = dict[str, Array]()
@@ -146,7 +146,7 @@ def described() -> dict[str, Variable]:
 
 
 def _labelled(
-    nominal: Reading,
+    nominal: RunReading,
     columns: Sequence[dict[str, Array]],
     names: Sequence[str],
     units: Sequence[str],
