@@ -248,7 +248,7 @@ def _outlook_of_several_surfaces(problem: Problem) -> Outlook:
         flip_time=None,
         flip_time_needs=None,
         standing=single.standing if low == 0.0 or high == math.pi else None,
-        lying=lying(problem.top._replace(surface=hull), problem.launch.tilt),
+        lying=lying(problem.standing(), problem.launch.tilt),
         surface=hull.active,
         tilts=(low, high),
     )
