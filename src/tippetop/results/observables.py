@@ -170,7 +170,9 @@ class Recorder:
         gains = np.zeros((len(self._sums), count))
         gains[:last] = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
         changes = poles - np.concatenate([[self._pole], poles[:-1]])
-        values = np.cumsum(np.concatenate([self._sums[:, None], gains], axis=1), axis=1)
+        # Derivatives compare runs 1e-8 apart: what thousands of sums round away would show in them.
+        summed = np.concatenate([self._sums[:, None], gains], axis=1)
+        values = np.cumsum(summed, axis=1, dtype=np.longdouble).astype(float)
         values[TURN] = self._sums[TURN] + evenly_summed(gains[TURN])
         for step in np.flatnonzero(changes):
             values[TURN, step:] += changes[step] * np.arctan2(axis[1, step], axis[0, step])
