@@ -92,7 +92,7 @@ def test_a_first_step_and_the_clock_tell_the_same_of_it(name, monkeypatch):
 def test_slip_is_followed_to_its_end_however_near_a_step_ends_before_it(monkeypatch):
     shortest = math.inf
     for length in np.linspace(0.4, 0.7, 31):
-        monkeypatch.setattr(slip_phase, "FIRST", length)
+        monkeypatch.setattr(slip_phase, "FIRST_LENGTH", length)
         segments, _ = followed("sphere", 10.0)
         phases = [one for one in segments if isinstance(one.mode, SlipOnset)]
         assert len(phases) > 2

@@ -52,7 +52,14 @@ from tippetop.contact.touching import (
     stays_closed,
 )
 from tippetop.contact.transient import Resting, TransientMode
-from tippetop.contact.two_closed import BOTH, SECOND, Before, TwoClosed, rolling_of, time_to_end
+from tippetop.contact.two_closed import (
+    BOTH_CLOSED,
+    SECOND_ALONE,
+    Before,
+    TwoClosed,
+    rolling_of,
+    time_to_end,
+)
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contacts.branches import off_branch, on_branch, on_other_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -580,7 +587,7 @@ class Automaton:
         if len(consistent) != 1:
             detail = "not exactly one set of forces is consistent with two surfaces that touch"
             return Transition(events, Outcome.FAILED, state, detail)
-        if consistent == [BOTH]:
+        if consistent == [BOTH_CLOSED]:
             if arrived:
                 lost = float(energy(state, tops[0]) - energy(contacts.state, tops[0]))
                 event = Event(EventKind.DOUBLE_CONTACT, time, 0.0, lost, tops[0].active)
@@ -590,7 +597,7 @@ class Automaton:
             turned = ended if resolved.rolls != rolls else time
             events = (*events, *contacts.changes((ended, turned), resolved, before))
             return replace(self._mode_on_two(contacts, resolved), events=events)
-        opens, stays = contacts.tops if consistent == [SECOND] else contacts.tops[::-1]
+        opens, stays = contacts.tops if consistent == [SECOND_ALONE] else contacts.tops[::-1]
         events = (*events, Event(EventKind.OPENING, time, surface=opens.active))
         return self.resting_alone(stays, time, contacts.state, events)
 

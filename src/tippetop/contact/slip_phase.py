@@ -15,12 +15,22 @@ from tippetop.mechanics.contacts.slip_variables import APART, inner, scaled, siz
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.top import Top
 
-FIRST, LEAST, LEAST_PART, LEAST_FIRST = 0.7, 0.005, 0.05, 1e-13
+FIRST_LENGTH = 0.7
 """Length of the first step that is tried, in natural units of time, about as long as the error
-allows where slip recurs: a shorter one costs steps, a longer one fails; the shortest one, below
-which slip does not follow what drives it and other methods are quicker, and the same over the
-length of the first one, where all of the motion is fast; and the shortest one at the beginning or
-the end of slip, below which rounding of the numbers hides what begins.
+allows where slip recurs: a shorter one costs steps, a longer one fails.
+"""
+
+LEAST = 0.005
+"""Shortest step, in natural units of time, below which slip does not follow what drives it and
+other methods are quicker.
+"""
+
+LEAST_PART = 0.05
+"""The same over the length of the first step, where all of the motion is fast."""
+
+LEAST_FIRST = 1e-13
+"""Shortest step at the beginning or the end of slip, in natural units of time, below which rounding
+of the numbers hides what begins.
 """
 
 ACCURACY = 1e-22
@@ -36,15 +46,20 @@ ROUNDING = 1e-28
 BEYOND = 1.05
 """Length of a step over the time that slip seems to last, so that the end lies within."""
 
-DIP, NONE = 0.1, 1e-11
-"""Fraction of the largest speed in a step below which the speed may vanish between two points; and
-the speed, in natural units, that counts as zero at the end of slip.
-"""
+DIP = 0.1
+"""Fraction of the largest speed in a step below which the speed may vanish between two points."""
 
-LONGER, SHORTER, SHORTEST, HALF = 1.5, 0.8, 0.3, 0.5
-"""Largest ratio of a step to the one before; largest and smallest ratio of a step to the one that
-failed; and the ratio where a margin falls.
-"""
+NO_SPEED = 1e-11
+"""Speed, in natural units, that counts as zero at the end of slip."""
+
+LONGER = 1.5
+"""Largest ratio of a step to the one before."""
+
+SHORTER, SHORTEST = 0.8, 0.3
+"""Largest and smallest ratio of a step to the one that failed."""
+
+HALF = 0.5
+"""Ratio of a step to the one in which a margin falls."""
 
 SAFETY = 0.9
 """Ratio of a step to the one that the error allows."""
@@ -108,7 +123,7 @@ def follow_slip(
         The parameters of the motion, if they are not the numbers of the top.
     """
     step = SlipStep(motion, top.numbers if numbers is None else numbers)
-    now, directions, length = [*start[0]], [*start[1]], FIRST
+    now, directions, length = [*start[0]], [*start[1]], FIRST_LENGTH
     first, count = motion.velocities[0]
     knots, rows, ended = [0.0], list[Array](), False
 
@@ -150,7 +165,7 @@ def follow_slip(
         knots += [begin + length * end for end in ends]
         if ended:
             now = [a + b for a, b in zip(now, change_over(pieces, len(now)), strict=True)]
-            if not size(velocity(now)) < NONE:
+            if not size(velocity(now)) < NO_SPEED:
                 # Its direction turned by so much that it ends elsewhere.
                 return SlipPhase(knots[:finished], rows, before, False, step.sweeps)
         else:

@@ -44,9 +44,13 @@ ABOUT = 1.0 + 1e-3
 velocities.
 """
 
-FIRST, SECOND, BOTH, NEITHER = "first", "second", "both", "neither"
+FIRST_ALONE, SECOND_ALONE, BOTH_CLOSED, NONE_CLOSED = "first", "second", "both", "none"
+"""Sets of contacts that may stay closed."""
 
 OPENS, HELD, CLOSES = "opens", "held", "closes"
+"""What the other contact does beside one that carries the body: it opens; or rolling is held, so
+that both may stay; or it closes, and the one cannot carry the body alone.
+"""
 
 
 class Before(NamedTuple):
@@ -129,17 +133,19 @@ class TwoClosed:
         forces are positive, else the one with the larger normal force.
         """
         normal, free = resolved.motion.normal, free_rates(self.pair).points
-        candidates = [BOTH] if normal[0] > 0.0 and normal[1] > 0.0 else []
+        candidates = [BOTH_CLOSED] if normal[0] > 0.0 and normal[1] > 0.0 else []
         if self.stopped and candidates and not resolved.rolls:
             return candidates
         results = [self._beside_pressed(number) for number in (0, 1)]
         held = [number for number in (0, 1) if results[number] == HELD]
         if held and not candidates:
-            return [(FIRST, SECOND)[max(held, key=lambda number: normal[number])]]
+            return [(FIRST_ALONE, SECOND_ALONE)[max(held, key=lambda number: normal[number])]]
         candidates += [
-            name for result, name in zip(results, (FIRST, SECOND), strict=True) if result == OPENS
+            name
+            for result, name in zip(results, (FIRST_ALONE, SECOND_ALONE), strict=True)
+            if result == OPENS
         ]
-        return candidates + ([NEITHER] if min(free[0][2], free[1][2]) >= 0.0 else [])
+        return candidates + ([NONE_CLOSED] if min(free[0][2], free[1][2]) >= 0.0 else [])
 
     def _beside_pressed(self, number: int) -> str:
         """Return whether this contact can carry the body alone, and what the other does then."""
