@@ -221,7 +221,7 @@ def test_an_indeterminate_contact_force_is_reported_and_what_follows_can_be_chos
     for run in (struck, opened):
         assert "indeterminate" in run.attrs["outcome_advice"]
     without_flights = Automaton(paradox.top, "stop", 0.0, "impact")
-    transition = without_flights.resting(0.0, paradox.start())
+    transition = without_flights.resting(paradox.top, 0.0, paradox.start())
     assert transition.next is tt.Outcome.FAILED
     assert "needs contact.liftoff = fly" in transition.detail
 
