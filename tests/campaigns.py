@@ -12,13 +12,23 @@ import pytest
 from hypothesis import settings
 
 
-def seeds(check: int, sample: int, claim: int, always: Sequence[int] = ()) -> list[Any]:
+def seeds(
+    check: int,
+    sample: int,
+    claim: int,
+    always: Sequence[int] = (),
+    sampled: Sequence[int] = (),
+) -> list[Any]:
     """Return the seeds of a campaign as parameters.
 
     Every check runs those below `check` and those of `always`, `make test-all` those below
-    `sample`, and `make campaigns` those below `claim`.
+    `sample` and those of `sampled`, and `make campaigns` those below `claim`.
     """
-    return [_marked(k, -1 if k in always else k, check, sample) for k in range(claim)]
+
+    def first(seed: int) -> int:
+        return -1 if seed in always else min(seed, check) if seed in sampled else seed
+
+    return [_marked(k, first(k), check, max(sample, check + bool(sampled))) for k in range(claim)]
 
 
 def seed_ranges(check: int, sample: int, claim: int, size: int) -> list[Any]:

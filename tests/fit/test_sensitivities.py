@@ -204,11 +204,28 @@ def richardson(problem, times, field, kinds):
     return found
 
 
-@pytest.mark.parametrize("seed", seeds(check=24, sample=24, claim=600, always=[164, 233]))
+ENDS_ON_TWO = (55, 80, 534)
+"""Seeds in which slip ends on two contacts, with a direction of which few digits are known."""
+
+FAST_FORCES = (51, 462)
+"""Seeds whose normal force changes fast beside a sample."""
+
+
+@pytest.mark.parametrize(
+    "seed",
+    seeds(
+        check=24,
+        sample=24,
+        claim=600,
+        always=[164, 233],
+        sampled=[*ENDS_ON_TWO, *FAST_FORCES],
+    ),
+)
 @pytest.mark.filterwarnings("ignore::tippetop.Implausible")
 def test_random_problems_agree_with_differences(seed):
-    """The campaign does not pass whole: after long chains of stick and slip some seeds differ more,
-    or have no derivative (25, 51, 55, 69, 80, 113, 229, 346, 374, 408, 462 and 534 among others).
+    """The campaign does not pass whole. Where surfaces strike in turns or slip turns round in an
+    impact some seeds differ more (25, 69, 113, 229 and 408 among others); after a hundred ends of
+    slip runs nearby may go through other events (346, 374).
     """
     case = random_case(seed)
     if case is None:

@@ -20,6 +20,7 @@ import xarray as xr
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.block import Block
 from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.guards import ENDING
 from tippetop.contact.mode import (
     COMPLETED,
     FAILURE,
@@ -56,9 +57,9 @@ The error of the rule over four such runs is the fourth power of that over the s
 and rounding over it: slip that is about to end, at 1e-3, is the smallest scale.
 """
 
-READ_BESIDE = 2e-5
+READ_BESIDE = 5e-6
 """How far beside the run its variables are read off, in natural units: the error is the square of
-that.
+that over the scale of the motion, as small as 1e-2 for normal forces, and rounding over it.
 """
 
 READ_ONE_SIDE = 1e-6
@@ -74,6 +75,12 @@ beside it go through the same events.
 GRAZING = 1e-9
 """Sine of the angle between the motion and the surface where a guard is zero, below which the time
 at which it falls has no derivative.
+"""
+
+SLIP_LEFT = 1e-5
+"""Time before the end of slip on two contacts, in natural units, at which the derivative of that
+end is found first: slip, 1e-5 then, has 11 digits, and what follows changes the time by 1e-5 of
+what the slip's direction changes.
 """
 
 FOUR = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0))
@@ -173,13 +180,14 @@ class IntegratedLeg:
         moved = start + (stop - start) * (knots - knots[0]) / (span if span > 0.0 else 1.0)
         degree = solution.terms.shape[2]
         terms = solution.terms[:, place * size : (place + 1) * size]
-        if np.any(moved):
+        stretched = moved - start
+        if np.any(stretched):
             # The ends of a step move: its polynomial is one of a part of the step, to first order.
             terms = np.concatenate([terms, np.zeros((*terms.shape[:2], 1))], axis=2)
             spans = np.diff(knots)[:, None, None]
             slopes = solution.terms[:, :size, 1:] * np.arange(1, degree) / spans
-            terms[:, :, : degree - 1] += slopes * moved[:-1, None, None]
-            terms[:, :, 1:degree] += slopes * np.diff(moved)[:, None, None]
+            terms[:, :, : degree - 1] += slopes * stretched[:-1, None, None]
+            terms[:, :, 1:degree] += slopes * np.diff(stretched)[:, None, None]
         self.along[direction] = moved, terms
         return moved, terms
 
@@ -368,33 +376,63 @@ class LinearizedRun:
         mode: Any = visit.mode
         motion, parameters = mode.motion, np.array(mode.parameters, dtype=float)
         start = np.array(mode.numbers(visit.state), dtype=float)
-        tangents = changes - np.outer(times, motion.rates(start.tolist(), parameters.tolist()))
+        # Derivatives at a fixed time since the beginning of the leg are followed, not at a fixed
+        # time: so errors of rates multiply the derivative of what the leg lasts, and not the much
+        # larger one of its times, where surfaces strike in turns ever sooner.
         rates = np.stack([self._parameter_rates(mode, one) for one in self.directions])
+        carried = parameters, rates
+        solutions, last, final = self._followed(visit, carried, (visit.time, start, changes))
+        earlier = np.zeros(len(times))
+        near = visit.end_time - SLIP_LEFT
+        slip_ends = visit.end is not None and visit.end.cause == ENDING
+        if slip_ends and near > visit.time and all(len(one.terms) for one in solutions):
+            # Slip is known to a few digits where it ends on two contacts, and so is the direction
+            # of friction. The derivative of the time at which there was more of it needs more, and
+            # the rest depends little on what is varied.
+            moments = [
+                np.reshape(one.rows(np.array([near])), (-1, len(start))) for one in solutions
+            ]
+            moment, tangents = moments[0][0], np.vstack([rows[1:] for rows in moments])
+            slopes = np.array(motion.rates(moment.tolist(), parameters.tolist()))
+            _, earlier = self._guard_times(visit, (moment, tangents, slopes), carried)
+            tangents = tangents + np.outer(earlier, slopes)
+            _, last, final = self._followed(visit, carried, (near, moment, tangents))
+        slopes = np.array(motion.rates(last.tolist(), parameters.tolist()))
+        guard, lasts = self._guard_times(visit, (last, final, slopes), carried)
+        if guard is None:
+            lasts = lasts - times
+        total = final + np.outer(lasts, slopes)
+        return IntegratedLeg(visit, solutions, (times, times + earlier + lasts), last, total, guard)
+
+    def _followed(
+        self, visit: Visit, carried: tuple[Array, Array], begin: tuple[float, Array, Array]
+    ) -> tuple[list[DenseSolution], Array, Array]:
+        """Return the solutions of the variational equations of a visit from a time, numbers and
+        their derivatives on, and the last numbers and derivatives.
+        """
+        (parameters, rates), (time, start, tangents) = carried, begin
+        mode: Any = visit.mode
         solutions, last, ended = list[DenseSolution](), start, list[Array]()
         for first in range(0, len(tangents), TOGETHER):
             some = slice(first, first + TOGETHER)
             solved = followed(
-                motion,
+                mode.motion,
                 np.vstack([parameters, rates[some]]),
-                (visit.time, np.vstack([start, tangents[some]])),
+                (time, np.vstack([start, tangents[some]])),
                 visit.end_time,
                 self.integrator,
             )
             if solved is None:
                 size = (1 + len(tangents[some])) * len(start)
-                solutions.append(DenseSolution.empty(visit.time, size))
+                solutions.append(DenseSolution.empty(time, size))
                 for direction in range(first, first + len(tangents[some])):
-                    self.fail(direction, visit.time, UNSOLVED)
+                    self.fail(direction, time, UNSOLVED)
                 ended.append(np.zeros_like(tangents[some]))
                 continue
             solutions.append(solved[0])
             last = solved[1][0]
             ended.append(solved[1][1:])
-        final = np.vstack(ended)
-        slopes = np.array(motion.rates(last.tolist(), parameters.tolist()))
-        guard, ahead = self._guard_times(visit, (last, final, slopes), (parameters, rates))
-        total = final + np.outer(ahead, slopes)
-        return IntegratedLeg(visit, solutions, (times, ahead), last, total, guard)
+        return solutions, last, np.vstack(ended)
 
     def _parameter_rates(self, mode: Mode, direction: StartNumbers) -> Array:
         """Return the derivatives of the parameters of a mode."""
@@ -421,7 +459,7 @@ class LinearizedRun:
         self, visit: Visit, at: tuple[Array, Array, Array], carried: tuple[Array, Array]
     ) -> tuple[tuple[Guard, Array] | None, Array]:
         """Return the guard that ends a visit, with its gradient over the square of that, and the
-        derivatives of its time.
+        derivatives of the time that the visit lasts; or of the end of the run, without a guard.
         """
         (last, tangents, slopes), (parameters, rates) = at, carried
         count, size = tangents.shape
@@ -664,18 +702,21 @@ class LinearizedRun:
         return 0.0 if junction.before is None else junction.before.visit.end_time
 
     def reach(self, direction: int, beside: float = READ_BESIDE) -> float:
-        """Return a change that moves the run by a distance at most."""
+        """Return a change that moves the run by a distance at most, at a fixed time too."""
         rates = self.directions[direction]
         sizes = [1.0, float(np.max(np.abs(rates.pack())[: len(rates.top) + 10]))]
         size = 0.0
         for leg in self.legs:
             if isinstance(leg, IntegratedLeg) and direction not in self.failures:
-                terms = leg.solutions[direction // TOGETHER].terms
+                solution = leg.solutions[direction // TOGETHER]
+                terms = solution.terms
                 size = len(leg.last)
                 place = 1 + direction % TOGETHER
                 tangent = terms[:, place * size : (place + 1) * size, 0]
                 sizes += [float(np.max(np.abs(tangent), initial=0.0))]
-                sizes += [abs(float(times[direction])) for times in leg.times]
+                rates_of_change = terms[:, :size, 1] / np.diff(solution.knots)[:, None]
+                fastest = float(np.max(np.abs(rates_of_change), initial=1.0))
+                sizes += [fastest * abs(float(times[direction])) for times in leg.times]
         return beside / max(sizes)
 
 
