@@ -22,13 +22,13 @@ def seeds(
     """Return the seeds of a campaign as parameters.
 
     Every check runs those below `check` and those of `always`, `make test-all` those below
-    `sample` and those of `sampled`, and `make campaigns` those below `claim`.
+    `sample`, which is more, and those of `sampled`, and `make campaigns` those below `claim`.
     """
 
     def first(seed: int) -> int:
-        return -1 if seed in always else min(seed, check) if seed in sampled else seed
+        return -1 if seed in always else check if seed in sampled else seed
 
-    return [_marked(k, first(k), check, max(sample, check + bool(sampled))) for k in range(claim)]
+    return [_marked(k, first(k), check, sample) for k in range(claim)]
 
 
 def seed_ranges(check: int, sample: int, claim: int, size: int) -> list[Any]:

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from campaigns import among
 from tippetop.theory.advice import standing_spin
 from tippetop.theory.prospects import prospects
 
@@ -27,7 +26,8 @@ def volume(profile):
     return np.pi / 3.0 * abs(np.sum((r * w - s * z) * (r + s)))
 
 
-@pytest.mark.parametrize("name", among(POOR, check=1))
+@pytest.mark.slow  # Examples of `tt.improve` follow one of them in every check.
+@pytest.mark.parametrize("name", POOR)
 def test_a_poor_top_made_better_turns_over(name):
     better = tt.improve(tt.presets.body(name))
     assert better.spin < USUAL < better.before
