@@ -28,7 +28,9 @@ const CONSERVED = 5;
 
 // Places of what is summed up along a run, in the order of `RunSums`.
 const SUMS = m.RunSums.fields.length;
-const [TURN, WORK, STRUCK] = ["turn", "work", "struck"].map((name) => m.RunSums.fields.indexOf(name));
+const [TURN, WORK, STRUCK] = ["turn", "work", "struck"].map((name) =>
+  m.RunSums.fields.indexOf(name),
+);
 
 /** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
 export function simulate(
