@@ -21,8 +21,8 @@ const HEIGHT = 9;
 
 // What is read off a mode's numbers in a step: functions for `reader`, and how many values each returns.
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole);
-const RATES = 8;
-const FORCE = 7;
+const RATES = m.Rates.fields.length;
+const FORCE = m.Rates.fields.indexOf("force");
 const conserved = (mode, y) => m.monitored_quantities(mode.state(y), mode.top);
 const CONSERVED = 5;
 
