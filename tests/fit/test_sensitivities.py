@@ -137,6 +137,33 @@ def test_restitution_at_its_bound_has_no_derivative():
     assert np.isnan(alone["event_time"].values).tolist() == [[True] * run.sizes["event"]]
 
 
+def test_the_time_of_a_guard_that_nearly_grazes_goes_as_a_square_root():
+    """Where the normal force dips to zero and no more, the time of lift-off is t - C (p - q)^(1/2),
+    and its derivative to the power of -2 is linear in p and zero at q.
+    """
+
+    def thrown(rate):
+        launch = tt.Launch(tilt=1.0, tilt_rate=rate, spin=155.0)
+        return tt.presets.report_problem().replace({"launch": launch, "contact.liftoff": "stop"})
+
+    def lifts_off(rate):
+        return tt.simulate(thrown(rate), 0.1, samples=2).attrs["outcome"] == "lifted_off"
+
+    low, high = 10.0, 20.0
+    for _ in range(28):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if lifts_off(middle) else (middle, high)
+    inverse_squares = []
+    for beyond in (1e-4, 2e-4):
+        wrt = ["launch.tilt_rate"]
+        slopes = tt.sensitivities(thrown(high + beyond), 0.1, wrt, samples=2)
+        inverse_squares.append(slopes["end_time"].item() ** -2)
+    near, far = inverse_squares
+    zero = high + 1e-4 - 1e-4 * near / (far - near)
+    assert abs(zero - high) < 1e-6  # A hundredth of the distance: so large is the next term.
+    assert tt.sensitivities(thrown(low - 1e-4), 0.1, wrt, samples=2)["reason"].item() == ""
+
+
 @pytest.mark.parametrize(
     ("wrt", "word"),
     [("friction.mu", "list"), ([], "list"), (["friction.nu"], "nu"), (["contact"], "number")],
