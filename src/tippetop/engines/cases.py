@@ -86,6 +86,14 @@ CASES = (
         2.0,
     ),
     Case(
+        "stick-slip",
+        "A top on slippery dry friction sticks and slips 190 times",
+        "many beginnings and ends of slip",
+        _on_friction(tt.CoulombFriction(mu=0.02985), 155.0),
+        6.0,
+        compared=5,
+    ),
+    Case(
         "drilling",
         "A top on a contact patch turns over (ellipsoidal limit surface)",
         "slipping and drilling at once",
