@@ -100,7 +100,10 @@ class Reference(NamedTuple):
         """
         late, cut = self.event_agreement, self.case.cut_off
         spread = cut * RATE_AFTER_CUT_OFF
-        return not late > EVENT_LIMIT + cut and self.state_agreement <= STATE_LIMIT + spread
+        return (
+            not late > EVENT_LIMIT + cut + self.case.added_up
+            and self.state_agreement <= STATE_LIMIT + spread
+        )
 
 
 def case_of(name: str) -> Case:
