@@ -8,6 +8,7 @@ import numpy as np
 
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_motion
 from tippetop.contact.slip_end_motion import slip_end_motion
+from tippetop.contact.slip_end_on_two import end_on_two
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.slip_end import SlipComponent
@@ -80,6 +81,9 @@ def sliding_motions(top):
             for told, sticks in statuses.items():
                 mode = mode_on_two((top, other), way, sticks, sense=-1.0)
                 yield f"two {way}{told}", mode.motion, mode.parameters
+            if is_set_valued(law):
+                end = end_on_two(mode_on_two((top, other), way), 0)
+                yield f"two {way} closing", end.clock_motion, (*end.parameters, 1e9, 1e-3)
 
 
 def sticking_motions(top):

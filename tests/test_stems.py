@@ -11,7 +11,9 @@ from tippetop.contact import automaton, collision, touching
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import sliding_on_two
 from tippetop.contact.mode import EventKind, Mode
+from tippetop.contact.slip_end_on_two import SlipEndOnTwo
 from tippetop.contact.transient import Resting
+from tippetop.integrators import make_integrator
 from tippetop.mechanics.contacts.contact_point import contact_points
 from tippetop.mechanics.contacts.forces import normal_wrench
 from tippetop.mechanics.contacts.slip_variables import slip_of
@@ -328,7 +330,16 @@ def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[Auto
 @pytest.mark.parametrize("velocity", [0.0, 1e-12, 1e-10])
 def test_what_hardly_slips_on_two_surfaces_rests(velocity: float) -> None:
     automaton, state = lying("coulomb", (-0.02, 0.02), velocity)
-    assert isinstance(automaton.resting(automaton.top, 0.0, state).next, Resting)
+    following, end = automaton.resting(automaton.top, 0.0, state), 0.0
+    if velocity:
+        mode, method = following.next, make_integrator("dop853", 3e-14)
+        assert isinstance(mode, SlipEndOnTwo)
+        (segment,) = mode.segments(0.0, following.state, 1.0, method)
+        assert segment.mode_end is not None
+        end = segment.solution.end
+        following = automaton.follow(mode, segment.mode_end, end)
+    assert isinstance(following.next, Resting)
+    assert end == pytest.approx(velocity / 0.3, rel=1e-12)
 
 
 def test_what_slips_on_two_surfaces_goes_on() -> None:

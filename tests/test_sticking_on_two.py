@@ -11,7 +11,8 @@ import xarray as xr
 
 import tippetop as tt
 from campaigns import among
-from lying import lying
+from lying import lying, resisted
+from tippetop.contact import slip_clock
 from tippetop.contact.contact_mode import ContactMode, mode_on_two
 from tippetop.contact.natural_launch import automaton_of
 from tippetop.contact.slip_onset_on_two import SlipOnsetOnTwo
@@ -55,8 +56,23 @@ def test_a_dumbbell_that_slides_along_itself_stops_as_a_block() -> None:
     run = followed_by_steps(DUMBBELL.replace({"launch.velocity": (0.2, 0.0, 0.0)}), 1.0)
     assert run.attrs["outcome"] == "at_rest"
     assert times(run, "stick") == pytest.approx([0.2 / (MU * G)] * 2, rel=1e-13)
-    assert float(run["event_time"][-1]) == pytest.approx(float(run["time"][-1]), abs=1e-9)
+    assert float(run["event_time"][-1]) == pytest.approx(float(run["time"][-1]), rel=1e-13)
     assert float(run["energy_lost_sliding"]) == pytest.approx(0.5 * MASS * 0.2**2, rel=1e-13)
+
+
+def test_the_end_of_slip_on_two_converges_as_its_last_moments_are_followed_nearer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """On one contact, and on both at the same instant."""
+    for problem, duration, contacts in ((resisted(31), 0.2, 1), (resisted(56), 0.1, 2)):
+        found = []
+        for horizon in (1e-6, 3e-8, 1e-10):
+            monkeypatch.setattr(slip_clock, "LANDING", (horizon, 1e-16))
+            run = followed_by_steps(problem, duration)
+            found.append([*times(run, "stick"), *run["angular_momentum"].values[-1] * 1e3])
+            assert len(times(run, "stick")) == contacts
+        np.testing.assert_allclose(found[1], found[2], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(found[0], found[2], rtol=0, atol=1e-11)
 
 
 def test_a_dumbbell_that_turns_stops_under_the_couple_of_both_ends() -> None:

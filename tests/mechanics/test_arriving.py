@@ -17,7 +17,7 @@ from tippetop.contact.slip_end_motion import slip_end_state
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.integrators.scipy_methods import SciPy
-from tippetop.mechanics.contacts.slip_end import SlipComponent, slip_end_rates
+from tippetop.mechanics.contacts.slip_end import SlipComponent, rates_in_time, slip_end_rates
 from tippetop.mechanics.contacts.slip_variables import size, velocity_of
 from tippetop.mechanics.laws.contensou import EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzDrillingLaw, HertzLaw
@@ -36,7 +36,8 @@ def in_its_clock(top, start, until):
     """The numbers of a top that slips less and less, by an implicit method."""
 
     def rates(_, y):
-        rate = slip_end_rates(slip_end_state(y.tolist(), SLIP), SLIP, top)
+        state = slip_end_state(y.tolist(), SLIP)
+        rate = slip_end_rates(state, rates_in_time(state, SLIP, top))
         return [*rate.axis, *rate.momentum, *rate.direction, rate.speed, rate.time]
 
     return solve_ivp(rates, (0.0, until), start, "Radau", rtol=1e-9, atol=1e-13).y[:, -1].tolist()

@@ -19,7 +19,7 @@ from tippetop.mechanics.contacts.forces import (
     velocity_without_slip,
     without_drilling,
 )
-from tippetop.mechanics.contacts.slip_end import SlipComponent, slip_end_rates
+from tippetop.mechanics.contacts.slip_end import SlipComponent, rates_in_time, slip_end_rates
 from tippetop.mechanics.contacts.slip_variables import size, velocity_of
 from tippetop.mechanics.laws.contensou_hertz import BRANCH_TORQUE, HertzLaw
 from tippetop.mechanics.laws.coulomb import CoulombLaw
@@ -51,7 +51,8 @@ def test_slip_ends_on_the_branch_its_direction_turns_to(seed):
     top, axis, momentum, slip = about_to_stick(np.random.default_rng(seed))
 
     def rates(_, y):
-        rate = slip_end_rates(slip_end_state(y.tolist(), SLIP), SLIP, top)
+        state = slip_end_state(y.tolist(), SLIP)
+        rate = slip_end_rates(state, rates_in_time(state, SLIP, top))
         return [*rate.axis, *rate.momentum, *rate.direction, rate.speed, rate.time]
 
     start = [*axis, *momentum, *(x / size(slip) for x in slip), size(slip), 0.0]

@@ -411,8 +411,9 @@ def test_the_clock_of_slips_end_is_left_where_slip_outlasts_twice_what_it_begins
             (math.cos(angle), math.sin(angle)),
         )
         now = SlipEndState(axis, momentum, (), direction, speed, 0.0)
-        left = time_to_end(scaled(speed, direction), rates_in_time(now, ending, top).xi)
-        guard = reopening_guard(now, ending, top)
+        rates = rates_in_time(now, ending, top)
+        left = time_to_end(scaled(speed, direction), rates.xi)
+        guard = reopening_guard(now, rates, top)
         if left < HORIZON:
             counts["begins"] += 1
             assert guard > 0.0

@@ -6,6 +6,7 @@ rest normally on the table goes through `Automaton.resting`, and from there to t
 contact (`Automaton.resolve`) or of two (`Automaton.resolve_two`).
 """
 
+import math
 from dataclasses import dataclass, replace
 
 from tippetop.contact.collision import collision
@@ -38,11 +39,15 @@ from tippetop.contact.mode import (
 from tippetop.contact.settling_flat import FLAT, SettlingFlat, settling_flat
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.contact.slip_end_motion import JAMMED, LANDED, OVERTAKEN, REOPENING
+from tippetop.contact.slip_end_on_two import SlipEndOnTwo, end_on_two
 from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
-from tippetop.contact.slip_onset_on_two import (
-    SlipOnsetOnTwo,
+from tippetop.contact.slip_onset_on_two import SlipOnsetOnTwo
+from tippetop.contact.soonest_end import (
+    on_present_branch,
+    rolls_freely,
+    soonest_end,
+    soonest_end_on_two,
 )
-from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
 from tippetop.contact.surfaces import FACE, TOUCH, WOBBLE, lands_flat, lies_flat
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
@@ -52,14 +57,7 @@ from tippetop.contact.touching import (
     stays_closed,
 )
 from tippetop.contact.transient import Resting, TransientMode
-from tippetop.contact.two_closed import (
-    BOTH_CLOSED,
-    SECOND_ALONE,
-    Before,
-    TwoClosed,
-    rolling_of,
-    time_to_end,
-)
+from tippetop.contact.two_closed import BOTH_CLOSED, SECOND_ALONE, Before, TwoClosed, rolling_of
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contacts.branches import off_branch, on_branch, on_other_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -232,8 +230,14 @@ class Automaton:
     def _after_two(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
         """Return what follows on two contacts."""
         state, rolls = end.state, mode.rolls
-        if isinstance(mode, SlipOnsetOnTwo) and end.cause == ONSET_OVER:
-            return Transition((), sliding_on_two(state, mode.tops, rolls), state)
+        if end.cause in (ONSET_OVER, REOPENING):
+            return Transition((), self._slides_on_two(state, mode.tops, rolls), state)
+        if end.cause == STOPPING:
+            ending, time_left = soonest_end_on_two(mode, state)
+            following = end_on_two(mode, ending) if time_left < math.inf else mode
+            return Transition((), following, state)
+        if end.cause == OVERTAKEN:
+            return Transition((), end_on_two(mode, 1), state)
         if end.cause == OPENING:
             opens, stays = (mode.tops, mode.tops[::-1])[end.contact]
             event = Event(EventKind.OPENING, time, surface=opens.active)
@@ -244,7 +248,10 @@ class Automaton:
         if end.cause == BRANCH:
             tops = list(mode.tops)
             tops[end.contact] = on_other_branch(tops[end.contact])
-            return Transition((), mode.with_tops(tops, mode.further), state)
+            after = mode.with_tops(tops, mode.further)
+            if isinstance(after, SlipEndOnTwo):
+                after = replace(after, begin=(*end.numbers[:-1], 0.0))
+            return Transition((), after, state)
         if end.cause == SLIP:
             return self.slip_on_two(time, state, mode, end.contact)
         if end.cause == ROLLING_STOPPING:
@@ -592,10 +599,7 @@ class Automaton:
                 lost = float(energy(state, tops[0]) - energy(contacts.state, tops[0]))
                 event = Event(EventKind.DOUBLE_CONTACT, time, 0.0, lost, tops[0].active)
                 events = (*events, event)
-            ended = time + time_to_end(state, contacts)
-            # Rolling that begins now began when the slip ended that held it up.
-            turned = ended if resolved.rolls != rolls else time
-            events = (*events, *contacts.changes((ended, turned), resolved, before))
+            events = (*events, *contacts.changes(time, resolved, before))
             return replace(self._mode_on_two(contacts, resolved), events=events)
         opens, stays = contacts.tops if consistent == [SECOND_ALONE] else contacts.tops[::-1]
         events = (*events, Event(EventKind.OPENING, time, surface=opens.active))
@@ -612,7 +616,7 @@ class Automaton:
         except ArithmeticError as error:
             what = "The direction in which slip, or rolling, begins on two surfaces"
             return failed(what, error, state)
-        events = contacts.changes((time, time), resolved, Before.of(mode))
+        events = contacts.changes(time, resolved, Before.of(mode))
         return replace(self._slip_begins(contacts, resolved), events=events)
 
     def _mode_on_two(self, contacts: TwoClosed, resolved: Resolution) -> Transition:
@@ -622,9 +626,8 @@ class Automaton:
         if resolved.begins is not None:
             return self._slip_begins(contacts, resolved)
         if not any(resolved.sticks):
-            return Transition(
-                (), sliding_on_two(contacts.state, contacts.tops, contacts.rolls), contacts.state
-            )
+            mode = self._slides_on_two(contacts.state, contacts.tops, contacts.rolls)
+            return Transition((), mode, contacts.state)
         if all(resolved.sticks):
             slowest = contacts.slowest_rolling
             mode = mode_on_two(contacts.tops, contacts.rolls, (True, True), slowest_rolling=slowest)
@@ -635,6 +638,12 @@ class Automaton:
         return Transition(
             (), self._turning(contacts.tops, contacts.xi[2], contacts.rolls), contacts.state
         )
+
+    def _slides_on_two(self, state: State, tops: Tops, rolls: float) -> ContactMode:
+        """Return the mode of two contacts that slip; where that is about to end, in its clock."""
+        mode = sliding_on_two(state, tops, rolls)
+        ending, time_left = soonest_end_on_two(mode, state)
+        return end_on_two(mode, ending) if time_left <= HORIZON else mode
 
     def _turning(self, tops: Tops, zeta: float, rolls: float) -> ContactMode:
         """Return the mode in which the first contact sticks, and the second slips so."""

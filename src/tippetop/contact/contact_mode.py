@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import Any, ClassVar, Self
 
 from tippetop.contact.guards import GuardValue, guards_on_one, guards_on_two
-from tippetop.contact.mode import IntegratedMode, Reaction, split
+from tippetop.contact.mode import BOTH, IntegratedMode, Reaction, split
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.contacts.branches import is_branched, on_numbered_branch
 from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_one, forces_on_two
@@ -22,6 +22,7 @@ from tippetop.mechanics.contacts.forces import (
 from tippetop.mechanics.contacts.pair import Tops, slip_apart, slips_of
 from tippetop.mechanics.contacts.pair_resolver import rolling_direction
 from tippetop.mechanics.contacts.slip_variables import remaining, scaled, slip_of, slip_part
+from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.lying_down import Wobble
 from tippetop.mechanics.motion import along_table, axis_rate, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState, State
@@ -221,6 +222,15 @@ class ContactMode(IntegratedMode):
         acceleration = self.contact_forces(y)[0].acceleration(0)
         change = slip_part(flat(acceleration), slip_length(self.top.friction))
         return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
+
+    def slip_and_rate(self, y: Row, number: int) -> tuple[Slip, Slip]:
+        """Return the slip of one of two contacts that slip, or xi of both (-1), and its rate."""
+        forces, slips = self.contact_forces(y)
+        if number == BOTH:
+            first: Any = slips[0]
+            return (first[0], first[1], slip_apart(forces.points)), forces.rate
+        slip: Any = slips[number]
+        return slip, forces.rates.points[number][:2]
 
     def wobble(self, y: Row) -> Wobble:
         """Return the wobble of a body on an edge."""

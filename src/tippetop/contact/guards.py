@@ -3,10 +3,10 @@
 A guard is a function of a mode and its numbers, which falls through zero where the mode ends.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any, TypeAlias
 
-from tippetop.contact.mode import numbered, split
+from tippetop.contact.mode import BOTH, numbered, split
 from tippetop.contact.surfaces import WOBBLE, SurfaceGuard, surface_guards
 from tippetop.mechanics.contacts.branches import has_limit_branches, is_branched, limit_guard
 from tippetop.mechanics.contacts.contact_forces import ContactForces
@@ -20,14 +20,12 @@ from tippetop.mechanics.contacts.forces import (
 from tippetop.mechanics.contacts.pair import slip_apart
 from tippetop.mechanics.contacts.slip_variables import (
     branch_guard,
-    inner,
     nearing_guard,
     parting_guard,
     remaining,
     rolling_stopping_guard,
     slip_of,
 )
-from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.lying_down import LEFT_OUT
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.hull import is_edge
@@ -40,18 +38,13 @@ SLIP, ROLLING = "slip", "rolling"
 """The table can no longer hold slip, or rolling."""
 
 STOPPING, ROLLING_STOPPING, ENDING = "stopping", "rolling stopping", "ending"
-"""Slip, or rolling, is about to end; or it has ended, on two contacts."""
+"""Slip, or rolling, is about to end; or the body has stopped turning about one of two contacts."""
 
 NEARING, PARTING = "nearing", "parting"
 """Slip becomes so small that its end is guarded, and so large that it is no more."""
 
 BRANCH, LIMIT_BRANCH = "branch", "limit branch"
 """Another branch of the law, or of its limit surface, takes over."""
-
-SLOWEST_SLIP = 1e-9
-"""Slip in natural units at which it ends on one of two contacts, or on both where drilling is
-resisted too, and is not followed further.
-"""
 
 GuardValue: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
 """Name of a guard, and its value from a mode and the numbers of that."""
@@ -164,14 +157,14 @@ def _sticking_on_two(mode: Any) -> list[GuardValue]:
 
 
 def _slipping_on_two(mode: Any) -> list[GuardValue]:
-    """Return the guards of slip's end, of both contacts at once if drilling is resisted, and of the
-    branches of the law.
+    """Return the guards of slip that is about to end, of both contacts at once if drilling is
+    resisted, and of the branches of the law.
     """
     law, guards = mode.top.friction, list[GuardValue]()
     if slip_length(law) is not None:
-        guards.append((ENDING, lambda mode, y: _slip_beyond_least(mode.contact_forces(y)[1])))
+        guards.append((STOPPING, lambda mode, y: remaining(*mode.slip_and_rate(y, BOTH))))
     elif is_set_valued(law):
-        guards += [(numbered(ENDING, number), _slip(number)) for number in (0, 1)]
+        guards += [(numbered(STOPPING, number), _slip_left(number)) for number in (0, 1)]
     if is_branched(law):
         guards += [(numbered(BRANCH, number), _branch(number)) for number in (0, 1)]
     return guards
@@ -186,18 +179,9 @@ def _normal(number: int) -> Callable[[Any, Row], Scalar]:
     return lambda mode, y: _forces(mode, y).wrenches[number].force[2]
 
 
-def _slip(number: int) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: _slip_beyond_least([mode.contact_forces(y)[1][number]])
+def _slip_left(number: int) -> Callable[[Any, Row], Scalar]:
+    return lambda mode, y: remaining(*mode.slip_and_rate(y, number))
 
 
 def _branch(number: int) -> Callable[[Any, Row], Scalar]:
     return lambda mode, y: branch_guard(mode.contact_forces(y)[1][number], mode.tops[number])
-
-
-def _slip_beyond_least(slips: Sequence[Slip]) -> Scalar:
-    """Falls through zero where so little is left of all these that they are followed no further.
-
-    A length: it falls straight through, where its square would only touch zero. In straight motion
-    steps may lead beyond the end of slip, and rounding hides so slight a touch.
-    """
-    return sum(inner(slip, slip) for slip in slips) ** 0.5 - SLOWEST_SLIP

@@ -14,6 +14,7 @@ from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import is_set_valued, rolling_reserve, slip_reserve
 from tippetop.mechanics.contacts.slip_end import (
     SlipComponent,
+    SlipEndRates,
     SlipEndState,
     jamming_guard,
     landing_guard,
@@ -89,23 +90,31 @@ def slip_end_motion(kind: Kind, ending: SlipComponent, guarded: bool) -> Motion:
         return kind.top(tuple(numbers[: kind.numbers]))
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        rate = slip_end_rates(slip_end_state(y, ending), ending, top_of(numbers))
-        return (*rate.axis, *rate.momentum, *rate.velocity, *rate.direction, rate.speed, rate.time)
+        state = slip_end_state(y, ending)
+        return pack_clock(slip_end_rates(state, rates_in_time(state, ending, top_of(numbers))))
 
     def guard(name: str, value: Callable[[SlipEndState, Top, Sequence[Scalar]], Scalar]) -> Guard:
         return Guard(
             name, lambda y, numbers: value(slip_end_state(y, ending), top_of(numbers), numbers)
         )
 
+    def rates_of(state: SlipEndState, top: Top) -> SlipEndRates:
+        return rates_in_time(state, ending, top)
+
     def held_by(state: SlipEndState, top: Top) -> Wrench:
-        return rates_in_time(state, ending, top).wrench
+        return rates_of(state, top).wrench
 
     def on_branch_still(state: SlipEndState, top: Top, _: Sequence[Scalar]) -> Scalar:
         return branch_guard(slip_beside(state, ending, top) or state.direction, top)
 
     guards = [
-        guard(REOPENING, lambda state, top, _: reopening_guard(state, ending, top)),
-        guard(LANDED, lambda state, top, numbers: landing_guard(state, ending, top, numbers[-1])),
+        guard(REOPENING, lambda state, top, _: reopening_guard(state, rates_of(state, top), top)),
+        guard(
+            LANDED,
+            lambda state, top, numbers: landing_guard(
+                state, rates_of(state, top), top, numbers[-1]
+            ),
+        ),
         guard(TIME, lambda state, _, numbers: numbers[-2] - state.time),
     ]
     top = kind.example
@@ -161,4 +170,16 @@ def slip_end_state(y: Row, ending: SlipComponent) -> SlipEndState:
     count, free = len(y), 8 if ending.moves else 6
     return SlipEndState(
         *split(y), tuple(y[6:free]), tuple(y[free : count - 2]), y[count - 2], y[count - 1]
+    )
+
+
+def pack_clock(state: SlipEndState) -> tuple[Scalar, ...]:
+    """Return the numbers of a state, or of rates, in the clock."""
+    return (
+        *state.axis,
+        *state.momentum,
+        *state.velocity,
+        *state.direction,
+        state.speed,
+        state.time,
     )

@@ -5,21 +5,20 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Self
 
-from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.mode import Segment, split
 from tippetop.contact.slip_onset import FIRST_SPEED, UNSEEN, failed_segment, onset_segment
 from tippetop.contact.slip_phase import follow_slip
+from tippetop.contact.transient_on_two import TransientOnTwo
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contacts.branches import is_branched
-from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_two
+from tippetop.mechanics.contacts.contact_forces import forces_on_two
 from tippetop.mechanics.contacts.contact_point import contact_points
-from tippetop.mechanics.contacts.forces import Slips
 from tippetop.mechanics.contacts.pair import slips_of
 from tippetop.mechanics.contacts.slip_collocation import SlipMotion
-from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled, velocity_of
+from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.motion import axis_rate, on_table
-from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.motion import axis_rate
+from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Row, Scalar
 
@@ -28,29 +27,13 @@ NUMBERS = 9
 
 
 @dataclass(frozen=True)
-class SlipOnsetOnTwo(ContactMode):
-    """The first moments of slip at one of two contacts, or at both.
-
-    Its numbers are axis, angular momentum and xi (see `tippetop.mechanics.contacts.pair`).
-    """
+class SlipOnsetOnTwo(TransientOnTwo):
+    """The first moments of slip at one of two contacts, or at both."""
 
     begin: tuple[float, ...] = ()
     """The numbers at the start."""
     direction: Slip = ()
     """Direction of what begins: of the slip of the first contact, or of xi."""
-
-    def state(self, y: Row) -> State:
-        """Return the state, with its height."""
-        axis, momentum = split(y)
-        momentum = self.stilled(axis, momentum)
-        velocity = velocity_of(axis, momentum, (y[6], y[7]), self.top)
-        return on_table(SlidingState(axis, momentum, velocity), self.top)
-
-    def contact_forces(self, y: Row) -> tuple[ContactForces, Slips]:
-        """Return the forces and accelerations, and the slips of both contacts."""
-        pair = contact_points(*split(y), self.tops)
-        slips = slips_of(pair, (y[6], y[7], y[8]))
-        return forces_on_two(pair, slips, self.rolls), slips
 
     def without_tops(self) -> Self:
         """Without the numbers of one state, too."""

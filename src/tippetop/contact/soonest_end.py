@@ -1,8 +1,12 @@
-"""Which velocity of one contact ends first at present rates, slip or rolling, and how soon."""
+"""Which velocity ends first at present rates, and how soon: slip or rolling of one contact, or the
+slip of one of two.
+"""
 
+from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.mode import BOTH
 from tippetop.mechanics.contacts.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
+from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued, slip_length
 from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import is_rolling, slip_of, time_to_end
 from tippetop.mechanics.motion import along_table
@@ -47,3 +51,18 @@ def soonest_end(top: Top, state: State, slips: bool) -> tuple[SlipComponent | No
         if time_left < least:
             soonest, least = ending, time_left
     return soonest, least
+
+
+def soonest_end_on_two(mode: ContactMode, state: State) -> tuple[int, float]:
+    """Return on which of two contacts that slip it ends first at present rates, and the time left.
+
+    On both (-1) where the law resists drilling. The time is infinite where none can end.
+    """
+    law = mode.top.friction
+    if not is_set_valued(law):
+        return BOTH, float("inf")
+    numbers = mode.numbers(state)
+    contacts = [BOTH] if slip_length(law) is not None else [0, 1]
+    times = [time_to_end(*mode.slip_and_rate(numbers, number)) for number in contacts]
+    soonest = times.index(min(times))
+    return contacts[soonest], times[soonest]

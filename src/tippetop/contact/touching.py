@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 
 from tippetop.contact.flight import TOUCHING
-from tippetop.contact.guards import SLOWEST_SLIP
 from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points
 from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
 from tippetop.mechanics.contacts.pair import Tops
-from tippetop.mechanics.contacts.slip_variables import size, slip_of
+from tippetop.mechanics.contacts.slip_variables import has_ended, slip_of
 from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.contacts.wrench import Wrench
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
@@ -55,10 +54,10 @@ def gap_acceleration(top: Top, beside: Top, state: State, wrench: Wrench) -> flo
 
 
 def _both_slip(top: Top, beside: Top, state: State) -> bool:
-    """Return whether both contacts slip faster than where slip on two contacts ends, if it can."""
+    """Return whether both contacts slip, by more than rounding, if slip can end."""
     if not is_set_valued(top.friction):
         return True
-    return all(size(slip_of(*along_table(state), one)) > SLOWEST_SLIP for one in (top, beside))
+    return not any(has_ended(*along_table(state), one) for one in (top, beside))
 
 
 def outermost(touching: Sequence[Top], axis: Vector) -> Tops:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.contact.guards import SLOWEST_SLIP
 from tippetop.contact.mode import Event, EventKind
 from tippetop.mechanics.contacts.branches import off_branch
 from tippetop.mechanics.contacts.contact_forces import forces_on_two
@@ -27,22 +26,12 @@ from tippetop.mechanics.contacts.pair_resolver import (
     turning_about,
 )
 from tippetop.mechanics.contacts.slip_onset import resolve_onset
-from tippetop.mechanics.contacts.slip_variables import inner, is_rolling, size, slip_of
+from tippetop.mechanics.contacts.slip_variables import has_ended, is_rolling, slip_of
 from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-
-TOGETHER = 30.0
-"""How many times `SLOWEST_SLIP` the slip of the other contact may be where it ends on one to end
-with it.
-"""
-
-ABOUT = 1.0 + 1e-3
-"""The same of slip that ends on both at once: what is left of it is known to rounding of the
-velocities.
-"""
 
 FIRST_ALONE, SECOND_ALONE, BOTH_CLOSED, NONE_CLOSED = "first", "second", "both", "none"
 """Sets of contacts that may stay closed."""
@@ -185,43 +174,20 @@ class TwoClosed:
         patches = self.rolls and slip_length(self.tops[0].friction) is not None
         return rolling_of_slip(self.pair, self.rolls) if patches else -1.0
 
-    def changes(
-        self, times: tuple[float, float], resolved: Resolution, before: Before
-    ) -> tuple[Event, ...]:
+    def changes(self, time: float, resolved: Resolution, before: Before) -> tuple[Event, ...]:
         """Return the events of contacts that stick and did not, or slip and stuck; and the same of
         rolling.
-
-        The times are that of slip's end, or beginning, and that of rolling's.
         """
         events = []
         for top, held in zip(self.tops, resolved.sticks, strict=True):
             surface = top.active
             if held != (surface in before.stuck):
                 kind = EventKind.STICK if held else EventKind.SLIP
-                events.append(Event(kind, times[0], surface=surface))
+                events.append(Event(kind, time, surface=surface))
         if before.rolled != bool(resolved.rolls):
             kind = EventKind.ROLL if resolved.rolls else EventKind.HALT
-            events += [Event(kind, times[1], surface=top.active) for top in self.tops]
-        return tuple(sorted(events, key=lambda event: event.time))
-
-
-def time_to_end(state: State, contacts: TwoClosed) -> float:
-    """Return the time to the end of slip that is followed no further, at its present rate."""
-    if not any(contacts.ended):
-        return 0.0
-    tops = contacts.tops
-    slips = [slip_of(*along_table(state), top) for top in tops]
-    number = 0 if size(slips[0]) <= size(slips[1]) else 1
-    slip, speed = slips[number], size(slips[number])
-    if not 0.0 < speed <= TOGETHER * SLOWEST_SLIP or not size(slips[1 - number]):
-        return 0.0
-    pair = contact_points(state.axis, state.momentum, tops)
-    motion = forces_on_two(pair, (slips[0], slips[1]), contacts.rolls)
-    change: Slip = motion.rates.points[number][:2]
-    if slip_length(tops[0].friction) is not None:
-        slip, change = (slips[0][0], slips[0][1], slip_apart(pair)), motion.rate
-    rate = inner(slip, change)
-    return inner(slip, slip) / -rate if rate < 0.0 else 0.0
+            events += [Event(kind, time, surface=top.active) for top in self.tops]
+        return tuple(events)
 
 
 def rolling_of(state: State, top: Top) -> float:
@@ -237,10 +203,6 @@ def ended_slips(state: State, tops: Tops) -> tuple[bool, bool]:
     """On which contacts slip has ended: on both at once where drilling is resisted too."""
     if not is_set_valued(tops[0].friction):
         return False, False
-    first, second = (size(slip_of(*along_table(state), top)) for top in tops)
-    least, limit = min(first, second), ABOUT * SLOWEST_SLIP
-    if slip_length(tops[0].friction) is not None:
-        return (True, True) if first * first + second * second <= limit * limit else (False, False)
-    if least > limit:
-        return False, False
-    return first <= TOGETHER * limit, second <= TOGETHER * limit
+    first, second = (has_ended(*along_table(state), top) for top in tops)
+    both = first and second
+    return (both, both) if slip_length(tops[0].friction) is not None else (first, second)

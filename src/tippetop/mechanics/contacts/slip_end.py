@@ -133,7 +133,9 @@ class SlipEndState(NamedTuple):
     momentum: Vector
     """Axis n, and angular momentum L, kg m^2/s."""
     velocity: Slip
-    """Horizontal velocity of the centre of mass, m/s, where that is free; else nothing."""
+    """Horizontal velocity of the centre of mass, m/s, where that is free, or zeta of two contacts
+    (see `slip_end_on_two`); else nothing.
+    """
     direction: Slip
     """Direction e of xi, a unit vector."""
     speed: Scalar
@@ -172,9 +174,8 @@ def slip_beside(state: SlipEndState, ending: SlipComponent, top: Top) -> Slip | 
     return slip_of(state.axis, state.momentum, (state.velocity[0], state.velocity[1]), top)
 
 
-def slip_end_rates(state: SlipEndState, ending: SlipComponent, top: Top) -> SlipEndState:
+def slip_end_rates(state: SlipEndState, rates: SlipEndRates) -> SlipEndState:
     """Rates in the clock of the way that xi goes, in units of s."""
-    rates = rates_in_time(state, ending, top)
     pace = inner(rates.xi, rates.xi) ** -0.5
     along, step = pace * inner(rates.xi, state.direction), pace * state.speed
     # The last part is none where e is a unit vector, and keeps it one.
@@ -186,33 +187,27 @@ def slip_end_rates(state: SlipEndState, ending: SlipComponent, top: Top) -> Slip
     )
 
 
-def reopening_guard(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar:
+def reopening_guard(state: SlipEndState, rates: SlipEndRates, top: Top) -> Scalar:
     """Falls through zero where xi outlasts twice the `HORIZON` of `remaining`, by more than what
     rounding of its direction in a state makes of it.
 
     A state has xi to `DIGITS` of the velocities it is made of, and so the rate R to that part of
     |A| / s: a velocity that is not more than rounding stays in the clock until it ends or grows.
     """
-    rate, turning = (
-        rates_in_time(state, ending, top).xi,
-        angular_velocity(state.axis, state.momentum, top),
-    )
+    rate, turning = rates.xi, angular_velocity(state.axis, state.momentum, top)
     doubt = DIGITS * ((1.0 + dot(turning, turning)) * inner(rate, rate)) ** 0.5
     horizon = 2.0 * HORIZON
     return horizon * doubt - remaining(scaled(state.speed, state.direction), rate, horizon)
 
 
-def landing_guard(state: SlipEndState, ending: SlipComponent, top: Top, horizon: Scalar) -> Scalar:
+def landing_guard(state: SlipEndState, rates: SlipEndRates, top: Top, horizon: Scalar) -> Scalar:
     """Falls through zero where xi, at its present rate, ends within the horizon (s), and is small
     by itself.
 
     That is s + horizon R V / (V + |A|) with a velocity V that is `QUICK` times the body's own:
     where xi changes faster than that, there may be much of it left for so short a time.
     """
-    rate, turning = (
-        rates_in_time(state, ending, top).xi,
-        angular_velocity(state.axis, state.momentum, top),
-    )
+    rate, turning = rates.xi, angular_velocity(state.axis, state.momentum, top)
     quick = QUICK * (1.0 + dot(turning, turning)) ** 0.5
     share = quick / (quick + inner(rate, rate) ** 0.5)
     return state.speed + horizon * share * inner(rate, state.direction)
@@ -242,12 +237,11 @@ def jamming_guard(state: SlipEndState, ending: SlipComponent, top: Top) -> Scala
     return point.response(pressed).point[2] - JAMMING * point.response(FORCES[2]).point[2]
 
 
-def landed(state: SlipEndState, ending: SlipComponent, top: Top) -> tuple[SlipEndState, float]:
+def landed(state: SlipEndState, rates: SlipEndRates) -> tuple[SlipEndState, float]:
     """Return the state where xi has ended, by one step at the present rates, and an error estimate.
 
     In natural units, of the time and of the velocities.
     """
-    rates = rates_in_time(state, ending, top)
     along = inner(rates.xi, state.direction)
     time_left = -state.speed / along
     across = plus(rates.xi, scaled(-along, state.direction))

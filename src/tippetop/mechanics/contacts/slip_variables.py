@@ -42,6 +42,11 @@ APART = 0.1
 ROUNDING = 1e-14
 """Slip, relative to the velocities it is made of, that is rounding."""
 
+LEFT_OVER = 30.0
+"""How many times `ROUNDING`, in natural units and relative to the velocities, is left of the slip
+of one contact where that of another ends with it: a hundred roundings of each motion leave less,
+and friction takes as little slip away in no time.
+"""
 
 SMALLEST_DIVISOR = 1e-200
 """Added to what divides, where a velocity is zero."""
@@ -93,6 +98,12 @@ def least_slip(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -
     """Slip that is more than rounding."""
     turning = scaled(top.surface.size, angular_velocity(axis, momentum, top))
     return ROUNDING * sum(abs(number) for number in (*turning, *velocity))
+
+
+def has_ended(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> bool:
+    """Return whether what is left of slip is what rounding leaves where it has ended; of floats."""
+    least = ROUNDING + float(least_slip(axis, momentum, velocity, top))
+    return size(slip_of(axis, momentum, velocity, top)) <= LEFT_OVER * least
 
 
 def is_rolling(axis: Vector, momentum: Vector, top: Top) -> Scalar:
