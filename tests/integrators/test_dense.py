@@ -233,6 +233,13 @@ def test_memory_that_arrays_leave_is_not_fetched_again():
 
         print(*(faults_of_some_arrays() for _ in range(3)))
     """
-    made = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
-    first, *others = map(int, made.stdout.split())
-    assert max(others) < 0.1 * first
+
+    def part_fetched_again():
+        made = subprocess.run(
+            [sys.executable, "-c", code], check=True, capture_output=True, text=True
+        )
+        first, *others = map(int, made.stdout.split())
+        return max(others) / first
+
+    # A system that is short of memory takes it from a process now and then.
+    assert min(part_fetched_again() for _ in range(3)) < 0.1

@@ -1,6 +1,7 @@
 """What follows a velocity in the clock of its end, and what makes polynomials in time of that."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from tippetop.contact.collocated_end import CollocatedEnd
@@ -84,10 +85,14 @@ def follow_clock(clock: EndClock, begin: Row, longest: float, integrator: Integr
         for arc in slip_end_arcs(
             integrator, clock.motion, (*clock.parameters, longest, horizon), start
         ):
-            arcs.append(arc)
             start = arc.solution.end, arc.end_state
             now = clock.unpack(arc.end_state.tolist())
-            if arc.guard is None and arc.failure is None and arc.steps >= FEW:
+            if goes_on(arc) and landing_guard(now, clock.rates(now), clock.top, horizon) <= 0.0:
+                # Steps of a loose tolerance may leave more out than is left of the velocity.
+                arcs.append(replace(arc, guard=LANDED))
+                break
+            arcs.append(arc)
+            if goes_on(arc) and arc.steps >= FEW:
                 arrival = clock.collocated(now)
             if arrival is not None:
                 return Approach(arcs, now, arrival)
@@ -99,6 +104,11 @@ def follow_clock(clock: EndClock, begin: Row, longest: float, integrator: Integr
     if not arcs and arrival is None:
         last = landed(now, clock.rates(now))[0]
     return Approach(arcs, last, arrival)
+
+
+def goes_on(arc: Arc) -> bool:
+    """Return whether nothing has ended an arc."""
+    return arc.guard is None and arc.failure is None
 
 
 def segment_of(

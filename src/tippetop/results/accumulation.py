@@ -5,8 +5,6 @@ every quantity of `tippetop.results.metrics.Ends` but the state, `ACCUMULATED` h
 the first part, and how that of a part is joined to it.
 """
 
-# translate module: skip
-
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
