@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from tippetop.contact.collocated_end import CollocatedEnd
 from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Segment
-from tippetop.contact.slip_end_motion import FEW, JAMMED, LANDED, TIME, slip_end_arcs
+from tippetop.contact.slip_end_motion import FEW, JAMMED, LANDED, TIME, goes_on, slip_end_arcs
 from tippetop.contact.transient import DEGREE, SETTLED
 from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
@@ -104,11 +104,6 @@ def follow_clock(clock: EndClock, begin: Row, longest: float, integrator: Integr
     if not arcs and arrival is None:
         last = landed(now, clock.rates(now))[0]
     return Approach(arcs, last, arrival)
-
-
-def goes_on(arc: Arc) -> bool:
-    """Return whether nothing has ended an arc."""
-    return arc.guard is None and arc.failure is None
 
 
 def segment_of(

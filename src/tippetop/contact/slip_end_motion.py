@@ -58,6 +58,11 @@ ends.
 """
 
 
+def goes_on(arc: Arc) -> bool:
+    """Return whether nothing has ended an arc."""
+    return arc.guard is None and arc.failure is None
+
+
 def slip_end_arcs(
     integrator: Integrator, motion: Motion, parameters: Sequence[float], start: tuple[float, Array]
 ) -> Iterator[Arc]:
@@ -67,13 +72,13 @@ def slip_end_arcs(
         for arc in integrator.integrate(motion, parameters, start, end):
             arcs += 1
             stalled = arc.solution.end - start[0] < STALLED * start[0]
-            many = arc.guard is None and arc.failure is None and (arcs == MOST or stalled)
+            many = goes_on(arc) and (arcs == MOST or stalled)
             yield (
                 replace(arc, failure="slip, or rolling, takes too many steps to end")
                 if many
                 else arc
             )
-            if many or arc.guard is not None or arc.failure is not None:
+            if many or not goes_on(arc):
                 return
             start = arc.solution.end, arc.end_state
 
