@@ -269,3 +269,41 @@ def test_a_guard_that_turns_where_its_polynomial_goes_on_does_not_fall():
     arcs = list(taylor.Taylor().integrate(clock, (), (0.0, np.array([0.0])), 2.0))
     assert [arc.guard for arc in arcs] == [None]
     assert whole(arcs).solution.end == 2.0
+
+
+def bending(y, _):
+    """0.2 until t = 0.5, and from there on 0.2 - 2 (t - 0.5): it falls at 0.6."""
+    late = y[0] - 0.5
+    return 0.2 - late - (late * late + 1e-24) ** 0.5
+
+
+def test_a_guard_that_falls_in_a_step_whose_polynomial_does_not_tell_falls_at_its_end():
+    """An oscillation beside the guard takes steps; in one of them the guard bends."""
+    clock = Motion(
+        lambda y, _: (1.0, y[2], -y[1]),
+        size=3,
+        parameters=0,
+        guards=(Guard("bends", bending),),
+    )
+    arcs = list(taylor.Taylor().integrate(clock, (), (0.0, np.array([0.0, 1.0, 0.0])), 5.0))
+    assert [arc.guard for arc in arcs] == ["bends"]
+    before, end = arcs[-1].solution.knots[-2:]
+    assert before < 0.5
+    assert 0.6 <= end < 4.0
+    assert arcs[-1].end_state[0] == end
+
+
+@pytest.mark.parametrize("end", [0.55, 2.0])
+def test_so_it_does_at_the_end_of_the_motion(end):
+    clock = Motion(lambda y, _: (1.0,), size=1, parameters=0, guards=(Guard("bends", bending),))
+    arcs = list(taylor.Taylor().integrate(clock, (), (0.0, np.array([0.0])), end))
+    assert [arc.guard for arc in arcs] == ["bends" if end > 0.6 else None]
+    assert whole(arcs).solution.end == end
+
+
+def test_a_guard_that_starts_below_zero_has_not_fallen():
+    """By rounding, or because what it guards has just ended: it is to rise first."""
+    guards = (Guard("below", lambda y, _: y[0] - 1e-9), Guard("stays", lambda y, _: -1.0 - y[0]))
+    clock = Motion(lambda y, _: (1.0,), size=1, parameters=0, guards=guards)
+    arcs = list(taylor.Taylor().integrate(clock, (), (0.0, np.array([0.0])), 2.0))
+    assert [arc.guard for arc in arcs] == [None]

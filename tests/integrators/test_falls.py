@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from tippetop.integrators import Guard
+from tippetop.integrators.base import Motion
 from tippetop.integrators.falls import first_fall
+from tippetop.integrators.sampling import Accepted, StepByStep
 
 ERROR = 1e-11
 STEP = (3.0, 4.0)
@@ -89,3 +91,29 @@ def test_a_pole_beyond_which_a_guard_is_negative_hides_no_fall_before_it(pole):
     number, time, _ = first_fall([beyond, before], along, along, STEP)
     assert number == 1
     assert time == pytest.approx(STEP[0] + pole - 1e-3, abs=1e-14)
+
+
+class Leaping(StepByStep):
+    """A method whose interpolation ends beside the states between which it leads."""
+
+    degree = 2
+
+    def steps(self, rates, start, end):
+        for time, number in ((1.0, 0.5), (2.0, -1e-9), (3.0, -1.0)):
+
+            def dense(at):
+                return np.array([1e-9 if at < 2.5 else -1.0])
+
+            yield Accepted(time, np.array([number]), dense, dense)
+
+
+def test_a_guard_that_only_the_state_after_a_step_shows_below_zero_falls_in_that_step():
+    positive = Motion(
+        lambda y, _: (0.0 * y[0],),
+        size=1,
+        parameters=0,
+        guards=(Guard("positive", lambda y, _: y[0]),),
+    )
+    (arc,) = Leaping().integrate(positive, (), (0.0, np.array([1.0])), 3.0)
+    assert arc.guard == "positive"
+    assert arc.solution.end == pytest.approx(2.0, abs=1e-9)

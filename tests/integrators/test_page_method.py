@@ -153,9 +153,8 @@ def test_a_guard_is_looked_at_closely_unless_it_hardly_varies(name):
     terms, values = np.zeros(dormand_prince.POWERS), np.zeros((dormand_prince.LOOKS + 2, 1))
     terms[1], values[0] = 1.0, along(0.0)
     room, tight = np.zeros(0), tolerance <= dormand_prince.TIGHT
-    assert (
-        dormand_prince.suspect(guards, (), terms, 0, np.zeros(1), values, room, tight) == may_fall
-    )
+    end, place = np.ones(1), np.zeros(1)
+    assert dormand_prince.suspect(guards, (), terms, 0, end, place, values, room, tight) == may_fall
     assert len(looks) == most
     assert len(set(looks)) == most
 
@@ -203,3 +202,19 @@ def test_whole_numbers_are_numbers(name, kind):
     assert arc.guard == "touches"
     assert arc.solution.end == pytest.approx(2.0, rel=1e-12)
     assert arc.end_state == pytest.approx([0.0, -4.0], abs=1e-11)
+
+
+@pytest.mark.parametrize("tight", [False, True])
+def test_a_guard_that_is_negative_in_the_state_at_the_end_may_fall(tight):
+    """The polynomials of the step end beside that state, by rounding."""
+
+    def guards(y, p, out):
+        out[0] = y[0]
+
+    terms, values = np.zeros(dormand_prince.POWERS), np.zeros((dormand_prince.LOOKS + 2, 1))
+    terms[0] = values[0] = 1e-17
+    for end, falls in ((1e-17, False), (-1e-17, True)):
+        state, place, room = np.array([end]), np.zeros(1), np.zeros(0)
+        assert (
+            dormand_prince.suspect(guards, (), terms, 0, state, place, values, room, tight) == falls
+        )

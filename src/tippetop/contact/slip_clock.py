@@ -1,7 +1,6 @@
 """What follows a velocity in the clock of its end, and what makes polynomials in time of that."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from tippetop.contact.collocated_end import CollocatedEnd
@@ -85,13 +84,9 @@ def follow_clock(clock: EndClock, begin: Row, longest: float, integrator: Integr
         for arc in slip_end_arcs(
             integrator, clock.motion, (*clock.parameters, longest, horizon), start
         ):
+            arcs.append(arc)
             start = arc.solution.end, arc.end_state
             now = clock.unpack(arc.end_state.tolist())
-            if goes_on(arc) and landing_guard(now, clock.rates(now), clock.top, horizon) <= 0.0:
-                # Steps of a loose tolerance may leave more out than is left of the velocity.
-                arcs.append(replace(arc, guard=LANDED))
-                break
-            arcs.append(arc)
             if goes_on(arc) and arc.steps >= FEW:
                 arrival = clock.collocated(now)
             if arrival is not None:

@@ -40,10 +40,9 @@ OWN = (REOPENING, LANDED, TIME)
 CLOCK_LIMIT = 1e4
 """More of the clock than any velocity takes to end, but one that turns for ever."""
 
-SOON = (0.3, 2.0, 50.0)
-"""Parts of the clock that are looked at by themselves. After the first two, friction that takes
-thousands of steps to slip's end may have turned it as far as it does: slip is then followed by
-collocation (see `collocated_end`). In the last, slip becomes less than 1e-20 of what it was.
+SOON = (0.3, 2.0)
+"""Parts of the clock after which friction that takes thousands of steps to slip's end may have
+turned it as far as it does: slip is then followed by collocation (see `collocated_end`).
 """
 
 FEW = 16

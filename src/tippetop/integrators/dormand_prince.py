@@ -71,6 +71,7 @@ def probe_guards(
     p: Array,
     terms: Array,
     first: int,
+    end: Array,
     y: Array,
     values: Array,
     room: Array,
@@ -78,12 +79,13 @@ def probe_guards(
 ) -> bool:
     """Put the guards' values at the looks of a step into the rows of values after the first.
 
-    False where they vary so little at a tight tolerance that none falls: only those at its middle
-    and its end are there then.
+    The last are those of the state `end` itself, with which the next step starts: so a guard falls
+    within a step, never between two. False where they vary so little at a tight tolerance that none
+    falls: only those at its middle and its end are there then.
     """
-    for number in (LOOKS // 2, LOOKS):
-        within(terms, first, number / LOOKS, y)
-        evaluate(guards, y, p, values[number])
+    within(terms, first, 0.5, y)
+    evaluate(guards, y, p, values[LOOKS // 2])
+    evaluate(guards, end, p, values[LOOKS])
     if tight and are_steady(values):
         return False
     for number in range(1, LOOKS):
@@ -227,15 +229,16 @@ def suspect(
     p: Array,
     terms: Array,
     first: int,
+    end: Array,
     y: Array,
     values: Array,
     room: Array,
     tight: bool,
 ) -> bool:
-    """Return whether a guard may fall in a step; values has those at its start, and room for the
-    other looks.
+    """Return whether a guard may fall in a step that ends in a state; values has those at its
+    start, and room for the other looks.
     """
-    if not probe_guards(guards, p, terms, first, y, values, room, tight):
+    if not probe_guards(guards, p, terms, first, end, y, values, room, tight):
         return False
     for guard in range(len(values[0])):
         if may_fall(values, guard):
@@ -339,7 +342,7 @@ def advance(
         steps += 1
         knots[steps] = span[0]
         if count > 0:
-            if suspect(guards, p, terms, first, place, values, room, tolerance[0] <= TIGHT):
+            if suspect(guards, p, terms, first, y, place, values, room, tolerance[0] <= TIGHT):
                 return steps, calls, SUSPECT
             for guard in range(count):
                 values[0, guard] = values[LOOKS, guard]

@@ -72,7 +72,8 @@ class StepByStep(ABC):
             if isinstance(step, str):
                 yield arc(state, failure=step)
                 return
-            fall = first_fall(guards, step.dense, step.advance, (knots[-1], step.end))
+            dense = between(step, (knots[-1], state))
+            fall = first_fall(guards, dense, step.advance, (knots[-1], step.end))
             if fall is not None:
                 number, at, last = fall
                 keep(at, step.dense)
@@ -84,3 +85,18 @@ class StepByStep(ABC):
                 yield arc(state)
         if values:
             yield arc(state)
+
+
+def between(step: Accepted, start: tuple[float, Array]) -> Dense:
+    """Return the solution within a step, with the states themselves at both ends.
+
+    What interpolates there may differ from them, so that a guard would change its sign from one
+    step to the next and fall in none.
+    """
+
+    def dense(time: float) -> Array:
+        if time <= start[0]:
+            return start[1]
+        return step.end_state if time >= step.end else step.dense(time)
+
+    return dense

@@ -150,6 +150,8 @@ class Stepping:
         functions, values = self.functions, np.empty(self.functions.number)
 
         def dense(at: float) -> Array:
+            if at >= reach:
+                return self.state
             functions.within(self.terms, first, (at - begin) / (reach - begin), row)
             return np.array(row[: self.size])
 

@@ -330,6 +330,9 @@ class Run:
         self._clock = self._raw[self.layout.clock :]
         self._clock[:] = start[0], 0.0, end, 1.0
         self._knots, self._terms = np.empty(0), np.empty(0)
+        terms, order = self.layout.terms, self.layout.order
+        self._guard_values = self._raw[terms : terms + stepper.guards * order : order]
+        self._were_positive = np.zeros(stepper.guards, dtype=bool)
         self.start_state, self.expansions = self.state, 0
 
     @property
@@ -353,11 +356,17 @@ class Run:
         guard = failure = None
         while steps < most and self.time < self._clock[2]:
             place, counts = rows[steps:].ctypes.data, (most - steps, layout.size, layout.guards)
+            unsearched = int(self._clock[3] == 0.0)
             count = stepper.follow(stepper.jet.address, *self._places, place, *counts)
             steps, self.expansions = steps + count, self.expansions + count
+            if count > unsearched:  # The search has found all guards positive.
+                self._were_positive[:] = True
             if steps == most or self.time >= self._clock[2]:
                 break
             self.expansions += 1
+            guard = self._fallen_at_start()
+            if guard is not None:
+                break
             span = float(rows[steps, -1])
             if not span > 0.0:
                 failure = NOT_FINITE
@@ -378,6 +387,10 @@ class Run:
             steps += 1
             if guard is not None:
                 break
+        if guard is None and failure is None and stepper.guards:
+            stepper.jet.expand(*self._places)
+            self.expansions += 1
+            guard = self._fallen_at_start()
         self._knots, self._terms = (
             rows[:steps, layout.time].copy(),
             rows[:steps, : layout.terms].copy(),
@@ -389,6 +402,16 @@ class Run:
         """Return the steps that were taken last, from the time at which they began."""
         shape = steps, self.layout.size, self.layout.order + 1
         return DenseSolution(np.append(begin, self._knots), self._terms.reshape(shape))
+
+    def _fallen_at_start(self) -> int | None:
+        """Return the guard that is not positive where a step starts and was so a step before.
+
+        Its own polynomial may not show that it falls: it leaves out as much as is left of the
+        guard, by rounding or at a loose tolerance.
+        """
+        fallen = self._were_positive & (self._guard_values <= 0.0)
+        self._were_positive = self._guard_values > 0.0
+        return int(fallen.argmax()) if fallen.any() else None
 
     def _first_fall(self, span: float, span_place: int) -> tuple[int, float] | None:
         """Return which guard, or margin of a choice, falls first in a step, and when.
