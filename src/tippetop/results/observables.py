@@ -3,6 +3,7 @@
 from typing import Self
 
 import numpy as np
+from numpy.polynomial.legendre import Legendre, leg2poly
 
 from tippetop.contact.block import NODES, WEIGHTS, Block
 from tippetop.contact.contact_mode import SLIPS
@@ -22,10 +23,7 @@ from tippetop.results.sums import INTEGRALS, RunSums
 
 _INTEGRALS = np.array(
     [
-        np.polynomial.Legendre.fit(NODES, unit, len(NODES) - 1, domain=[0.0, 1.0])
-        .integ(lbnd=0.0)
-        .convert(kind=np.polynomial.Polynomial, domain=[0.0, 1.0])
-        .coef
+        leg2poly(Legendre.fit(NODES, unit, len(NODES) - 1, domain=[0.0, 1.0]).integ(lbnd=0.0).coef)
         for unit in np.eye(len(NODES))
     ]
 )
