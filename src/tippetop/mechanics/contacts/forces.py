@@ -107,15 +107,20 @@ def normal_constraints(
     points: Sequence[ContactPoint], slips: Slips, rolling: Slip | None
 ) -> list[Constraint]:
     """Return the constraints that keep the gaps closed: unit normal forces with their friction."""
-    resistance, couple = points[0].top.rolling_resistance, None
-    if resistance is not None and rolling is not None:
-        turning = (rolling[0], rolling[1], 0.0)
-        is_single = len(points) == 1
-        couple = resistance.couple(turning) if is_single else scale(-resistance.length, turning)
+    couple = rolling_couple(points, rolling)
     return [
         Constraint(Component(number, VERTICAL), normal_wrench(point, slip, couple))
         for number, (point, slip) in enumerate(zip(points, slips, strict=True))
     ]
+
+
+def rolling_couple(points: Sequence[ContactPoint], rolling: Slip | None) -> Vector | None:
+    """Return the couple that resists rolling per unit normal force; None without one."""
+    resistance = points[0].top.rolling_resistance
+    if resistance is None or rolling is None:
+        return None
+    turning = (rolling[0], rolling[1], 0.0)
+    return resistance.couple(turning) if len(points) == 1 else scale(-resistance.length, turning)
 
 
 def rolling_constraints(points: Sequence[ContactPoint], rolling: Slip | None) -> list[Constraint]:
@@ -153,22 +158,20 @@ def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | 
     """
     if slip is not None:
         point = point._replace(top=on_branch(point.top, slip))
-    points, slips = (point,), (slip,)
-    (normal,) = normal_constraints(points, slips, rolling)
-    held = [
-        *sticking_constraints(points, [slip is None]),
-        *rolling_constraints(points, rolling),
-    ]
+    normal, points = pressing_wrench(point, slip, rolling), (point,)
+    held = rolling_constraints(points, rolling)
+    if slip is None:
+        held = [*sticking_constraints(points, [True]), *held]
     if not held:
-        return normal.wrench
-    driven = rates_added(points, 0, normal.wrench)
+        return normal
+    driven = rates_added(points, 0, normal)
     further = solve_constraints(points, held, driven).wrenches
-    return sum_at(0, [(0, normal.wrench), *further])
+    return sum_at(0, [(0, normal), *further])
 
 
 def pressing_wrench(point: ContactPoint, slip: Slip | None, rolling: Slip | None) -> Wrench:
     """Return a unit normal force with the friction, and the rolling couple, that go with it."""
-    return normal_constraints((point,), (slip,), rolling)[0].wrench
+    return normal_wrench(point, slip, rolling_couple((point,), rolling))
 
 
 def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None = None) -> Wrench:
