@@ -12,11 +12,22 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import tippetop as tt
+from tippetop.contact.automaton import Automaton
+from tippetop.contact.mode import EventKind
 from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import along_table, contact_swing, on_table, sliding_contact
+from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.motion import (
+    along_table,
+    contact_swing,
+    falls_by_zero,
+    on_table,
+    sliding_contact,
+)
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surfaces.surface import SphereSurface
+from tippetop.mechanics.top import Top
 
 M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
 """Mass, radius, distance of the centres, moments of inertia, friction and gravity, SI."""
@@ -296,3 +307,39 @@ def test_what_sticks_at_once_takes_the_energy_of_its_slip_and_does_not_open(
         lost.append(energy(before, problem.top) - energy(after, problem.top))
     assert lost[0] > 0.0
     assert lost[1] == pytest.approx(100.0 * lost[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("near", [1e-9, -1e-9])
+def test_a_force_falls_by_zero_or_by_infinity_however_weak_what_presses(near: float) -> None:
+    """Near A = 0 friction has no bound, though but 1e-4 of what the acceleration b is made of
+    presses.
+    """
+    random, count = np.random.default_rng(2), 0
+    while count < 20:
+        surface, way = SphereSurface(1.0, random.uniform(-0.9, 0.9)), random.normal(size=3)
+        axis, momentum = tuple(way / np.linalg.norm(way)), tuple(random.normal(size=3))
+        velocity = tuple(random.normal(size=2))
+        free = Top(1.0, 0.05, 0.04, surface, CoulombLaw(0.0), 0.0)
+        lifting = sliding_contact(axis, momentum, velocity, free).free_acceleration
+        ready, rough = (
+            sliding_contact(axis, momentum, velocity, free._replace(friction=CoulombLaw(mu)))
+            for mu in (0.0, 1.0)
+        )
+        jams_at = ready.delassus / (ready.delassus - rough.delassus)
+        if lifting <= 0.0 or not 0.0 < jams_at < 10.0:
+            continue
+        count += 1
+        jammed, opened = (
+            free._replace(friction=CoulombLaw(mu), gravity=gravity)
+            for mu, gravity in (
+                (jams_at * (1.0 + near), lifting * (1.0 + 1e-4)),
+                (0.5 * jams_at, lifting * (1.0 + near)),
+            )
+        )
+        for top, by_zero in ((jammed, False), (opened, True)):
+            normal = sliding_contact(axis, momentum, velocity, top).normal_force
+            assert falls_by_zero(normal, axis, momentum, top) == by_zero
+            state = on_table(SlidingState(axis, momentum, velocity), top)
+            after = Automaton(top, "fly", 0.0).lift_off(top, 0.0, state, normal)
+            kinds = [event.kind for event in after.events[:1]]
+            assert (kinds == [EventKind.LIFT_OFF]) == by_zero

@@ -79,12 +79,12 @@ from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.flight.touchdown import Start
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import along_table, on_table, presses, sliding_contact
+from tippetop.mechanics.motion import along_table, falls_by_zero, on_table, sliding_contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
-from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.vectors import Row, Scalar
 
 REST = 1e-13
 """Velocities and accelerations, in natural units, that are rounding in a body at rest."""
@@ -177,7 +177,7 @@ class Automaton:
             failure = Transition((), Outcome.FAILED, state, end.detail)
             return self.jammed(contact, time, state) or failure
         if end.cause == LIFT_OFF:
-            return self.lift_off(contact, time, state)
+            return self.lift_off(contact, time, state, normal_force(mode, mode.numbers(state)))
         if end.cause in (NEARING, PARTING):
             return Transition((), self.mode_for(contact, state, slips=True), state)
         if end.cause in (STOPPING, ROLLING_STOPPING):
@@ -187,7 +187,7 @@ class Automaton:
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
         wrench = mode.contact_forces(mode.numbers(state))[0].wrenches[0]
         if wrench.force[2] <= 0.0 and not self.pulls:
-            return self.lift_off(contact, time, state)
+            return self.lift_off(contact, time, state, wrench.force[2])
         begins = SlipComponent(
             end.cause == SLIP, held=mode.holds_rolling if end.cause == SLIP else mode.sticks[0]
         )
@@ -214,7 +214,7 @@ class Automaton:
         if end.cause == JAMMED:
             return self.jammed(contact, time, state) or self.inconsistent(contact, time, state, ())
         if end.cause == LIFT_OFF:
-            return self.lift_off(contact, time, state)
+            return self.lift_off(contact, time, state, normal_force(mode, end.numbers[:-2]))
         if end.cause == REOPENING:
             stuck = not ending.slip and ending.held
             return Transition((), self.mode_for(contact, state, slips=not stuck), state)
@@ -434,15 +434,15 @@ class Automaton:
 
     # Leaving the table, and impacts.
 
-    def lift_off(self, contact: Top, time: float, state: State) -> Transition:
+    def lift_off(self, contact: Top, time: float, state: State, normal: Scalar) -> Transition:
         """Leave the table, unless the normal force changed its sign by way of infinity.
 
         Then it is decided anew how contact goes on: Painleve's paradox begins, or the motion is so
         stiff that errors of an explicit method look like that.
         """
-        if presses(state.axis, state.momentum, contact):
-            return self.resting(contact, time, state)
-        return self._leave(contact, time, state, (), Start.LIFT_OFF)
+        if falls_by_zero(normal, state.axis, state.momentum, contact):
+            return self._leave(contact, time, state, (), Start.LIFT_OFF)
+        return self.resting(contact, time, state)
 
     def _release(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
@@ -678,6 +678,14 @@ class Automaton:
 def _may_jam(mode: Mode) -> bool:
     """Return whether the integrator of a mode may fail because friction jams the contact."""
     return isinstance(mode, ContactMode) and mode.slides_freely
+
+
+def normal_force(mode: Mode, numbers: Row) -> Scalar:
+    """Return the normal force in a mode at its numbers, floats; infinite at a pole."""
+    try:
+        return mode.reaction(numbers).force[2]
+    except ArithmeticError:
+        return math.inf
 
 
 def add_prior_impulse(

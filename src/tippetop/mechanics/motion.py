@@ -14,10 +14,9 @@ from tippetop.mechanics.surfaces.surface import contact_vector, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, cross, dot, scale
 
-PRESSED, ROUNDING = 1e-3, 1e-13
-"""Acceleration of the gap, over the largest of its parts, below which it is taken for zero at a
-lift-off; and the relative error of the axis, which is what such an acceleration may be made of in
-fast motion.
+ROUNDING = 1e-13
+"""Rounding of the gap's acceleration and of the axis after a run, relative to the largest part of
+the former and to 1. Less calls rounding a force; more hides as weak a force.
 """
 
 
@@ -154,7 +153,7 @@ def driven_acceleration(axis: Vector, upwards: Scalar, moment: Vector, top: Top)
 
 
 def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Return whether the gap would close without a contact force, by more than errors of a run.
+    """Return whether the gap would close without a contact force, by more than rounding.
 
     A truth value of floats, or an array of them.
     """
@@ -162,7 +161,18 @@ def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     sinking = top.gravity + (bending + swinging)
     lever = abs(support_at(axis, top.surface)[1]) / top.transverse_inertia
     error = ROUNDING * lever * dot(momentum, momentum) / top.transverse_inertia
-    return sinking > PRESSED * (top.gravity + abs(bending) + abs(swinging)) + error
+    return sinking > ROUNDING * (top.gravity + abs(bending) + abs(swinging)) + error
+
+
+def falls_by_zero(normal: Scalar, axis: Vector, momentum: Vector, top: Top) -> Scalar:
+    """Return whether a normal force -b / A changes its sign because b does, not A.
+
+    Where b is zero the force is, too; where A is, it is beyond all bounds. So what tells is whether
+    it is less than the mass times the parts of b: neither case comes anywhere near that. A truth
+    value of floats, or an array of them.
+    """
+    bending, swinging = turning_parts(axis, momentum, top)
+    return abs(normal) < top.mass * (top.gravity + abs(bending) + abs(swinging))
 
 
 def moment_per_normal_force(arm: Vector, traction: Traction) -> Vector:

@@ -17,7 +17,7 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.flight.touchdown import Start
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import presses
+from tippetop.mechanics.motion import along_table, falls_by_zero, sliding_contact
 from tippetop.mechanics.state import State
 from tippetop.results.accumulation import accumulate, of_a_part
 from tippetop.results.metrics import OUTCOMES
@@ -67,7 +67,10 @@ class Crossings:
         on_branch, free = names == BRANCH, names == LIFT_OFF
         if free.any():
             states = self.slots.states(lanes)
-            free &= ~presses(states.axis, states.momentum, self.slots.tops(lanes))
+            tops = self.slots.tops(lanes)
+            with np.errstate(divide="ignore"):
+                normal = sliding_contact(*along_table(states), tops).normal_force
+            free &= falls_by_zero(normal, states.axis, states.momentum, tops)
         ending = ~(on_branch | free)
         if ending.any():
             cells, state = self.slots.cell[lanes[ending]], self.slots.states(lanes[ending])
