@@ -217,6 +217,23 @@ def naive(state, tops, steps):
             return y[:3], y[3:], np.array(others).T
 
 
+@pytest.mark.parametrize(
+    ("ends", "slip"), [((1.0, 3.0), 1.0), ((1.0, 1.4), 2.0), ((2.0, -1.0), 1.0)]
+)
+def test_friction_makes_an_impact_without_approach_end(ends, slip):
+    """Painleve's paradox at one contact while another touches: slip falls until it opens."""
+    hull = Hull.of(tuple(SphereSurface(1.0, center) for center in ends))
+    tops = Top(1.0, 1.0, 0.5, hull, ViscousLaw(5.0), 1.0).each
+    state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, 0.0, 0.2), (slip, 0.1)), tops[0])
+    assert gap_rate(state, tops[0]) == gap_rate(state, tops[1]) == 0.0
+    found = impact(state, 0.0, *tops)
+    assert gap_rate(found.state, tops[0]) == pytest.approx(0.0, abs=1e-14)
+    lost = energy(state, tops[0]) - energy(found.state, tops[0])
+    assert found.energy_lost == pytest.approx(lost, rel=1e-12)
+    assert lost > 0.0
+    assert found.impulse == pytest.approx(found.state.velocity[2], rel=1e-12)
+
+
 @pytest.mark.parametrize("law", [ViscousLaw(0.3), RegularizedCoulombLaw(0.2, 0.3)])
 def test_with_friction_it_is_what_small_steps_find(law):
     @settings(max_examples=5, phases=(Phase.explicit, Phase.generate))

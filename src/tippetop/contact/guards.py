@@ -35,13 +35,17 @@ LIFT_OFF, OPENING = "lift-off", "opening"
 """The normal force of the only contact, or of one of two, falls to zero."""
 
 SLIP, ROLLING = "slip", "rolling"
-"""The table can no longer hold slip, or rolling."""
+"""Friction can no longer prevent slip, or the couple of rolling resistance rolling, which is a
+horizontal angular velocity everywhere here.
+"""
 
 STOPPING, ROLLING_STOPPING, ENDING = "stopping", "rolling stopping", "ending"
 """Slip, or rolling, is about to end; or the body has stopped turning about one of two contacts."""
 
 NEARING, PARTING = "nearing", "parting"
-"""Slip becomes so small that its end is guarded, and so large that it is no more."""
+"""Slip falls below `slip_variables.NEAR`, where its end begins to be guarded, or grows beyond
+`APART`, where it no longer is.
+"""
 
 BRANCH, LIMIT_BRANCH = "branch", "limit branch"
 """Another branch of the law, or of its limit surface, takes over."""

@@ -21,7 +21,9 @@ from tippetop.problem.problem import Problem
 
 # translate: skip
 class NaturalLaunch(NamedTuple):
-    """Launch of a run in natural units, with these units."""
+    """All that a run starts from, in natural units, and these units, by which `results.derived`
+    and `results.metrics` go back to SI.
+    """
 
     units: Units
     top: Top

@@ -110,6 +110,7 @@ def slip_end_motion(kind: Kind, ending: SlipComponent, guarded: bool) -> Motion:
         return rates_of(state, top).wrench
 
     def on_branch_still(state: SlipEndState, top: Top, _: Sequence[Scalar]) -> Scalar:
+        """Return the guard of the law's branch, by the slip that goes on, or else that ends."""
         return branch_guard(slip_beside(state, ending, top) or state.direction, top)
 
     guards = [

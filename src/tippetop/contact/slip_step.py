@@ -233,8 +233,8 @@ class SlipStep:
 
 
 def pieces_of(rows: Any, size: int, parts: float) -> Array:
-    """Return polynomials of numbers in the first parts of a step, the last of which may be a
-    fraction.
+    """Return polynomials of numbers in the first parts of a step. Where the last is a fraction of a
+    part, its variable is scaled to run from 0 to 1 there.
 
     Part after part, and one number after the other: coefficients from the first power on.
     """

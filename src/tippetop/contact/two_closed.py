@@ -36,7 +36,7 @@ from tippetop.mechanics.top import Top
 FIRST_ALONE, SECOND_ALONE, BOTH_CLOSED, NONE_CLOSED = "first", "second", "both", "none"
 """Sets of contacts that may stay closed."""
 
-OPENS, HELD, CLOSES = "opens", "held", "closes"
+OPENS, HELD, IMPOSSIBLE = "opens", "held", "impossible"
 """What the other contact does beside one that carries the body: it opens; or rolling is held, so
 that both may stay; or it closes, and the one cannot carry the body alone.
 """
@@ -140,16 +140,16 @@ class TwoClosed:
         """Return whether this contact can carry the body alone, and what the other does then."""
         point = self.pair[number]
         if point.free.point[2] >= 0.0:
-            return CLOSES
+            return IMPOSSIBLE
         slip = None if self.ended[number] else slip_of(*along_table(self.state), self.tops[number])
         onset, _ = resolve_onset(point, slip, None if self.stopped else point.turning[:2])
         if onset.wrench.force[2] <= 0.0:
-            return CLOSES
+            return IMPOSSIBLE
         if onset.rolling is None:
             return HELD
         rates = rates_under(self.pair, [(number, onset.wrench)], free_rates(self.pair))
         opens = rates.points[1 - number][2] >= 0.0
-        return OPENS if opens else CLOSES
+        return OPENS if opens else IMPOSSIBLE
 
     def slipping(self, contact: int | None) -> Resolution:
         """Return how slip begins at the limit of what the table can: on this of the contacts that
@@ -170,7 +170,9 @@ class TwoClosed:
 
     @property
     def slowest_rolling(self) -> float:
-        """The |omega_e| at which patches slip that stick while the body rolls; -1 for none."""
+        """The |omega_e| to which rolling must fall before two patches that stick begin to slip; -1
+        where they never do, nothing rolls, or the law has no patch.
+        """
         patches = self.rolls and slip_length(self.tops[0].friction) is not None
         return rolling_of_slip(self.pair, self.rolls) if patches else -1.0
 

@@ -5,8 +5,9 @@ horizontal part e of its axis, omega_e, and across it, omega_t, a face closes on
 of two ways.
 
 It **slaps** onto the table where the tilt falls at a finite rate: s' = omega_t, and the time left
-is s / |omega_t|. A little of omega_e turns the body round instead: e turns at the rate Omega, about
-omega_e / s, and s has a least value near s omega_e / omega_t.
+is s / |omega_t|. A little of omega_e turns the body round instead: e turns at the rate Omega =
+omega_z - c omega_e / s, with c the cosine of the tilt, and s has a least value near s omega_e /
+omega_t.
 
 It **wobbles** down (Euler's disk) where omega_t is small beside omega_e. Near s = 0 the motion
 keeps its form if s, the velocities and Omega are multiplied by q^2, q and 1/q, and time by q. The

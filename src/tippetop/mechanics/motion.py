@@ -35,7 +35,8 @@ class SlidingContact(NamedTuple):
     """Acceleration b of the gap there would be without a contact force, m/s^2."""
     delassus: Scalar
     """Acceleration A of the gap per unit normal force with the friction that goes with it, 1/kg.
-    Where it is not positive, no contact force is consistent (Painleve's paradox).
+    Where it is negative no contact force is consistent if b < 0, and two are, zero and -b / A, if
+    b > 0 (Painleve's paradox).
     """
 
     @property

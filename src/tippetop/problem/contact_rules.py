@@ -27,7 +27,8 @@ class Contact(Variant):
     indeterminate
         What happens where strong friction makes the contact force indeterminate (Painleve's
         paradox), so that both an impact and a lift-off satisfy the laws of mechanics and friction:
-        "impact" or "lift_off".
+        "impact" or "lift_off". A contact that sticks stays closed where friction can hold it, even
+        where opening would be consistent, too.
 
     Examples
     --------

@@ -16,9 +16,9 @@ and the needed forces T_i across e and S along it, Coulomb's friction can where 
 
 Patches that resist drilling both stick or neither does, as xi = 0. There nothing works, and the
 body turns about the line that joins both contact points as fast as it did: in the frame that goes
-with it nothing changes, both T_i are zero, and S is all that the limit surfaces have to exert: as
-Coulomb's friction does. Where rolling is resisted the T_i are none any more but constant, and
-moments of drilling may take a share in what holds the points across e.
+with it nothing changes, both T_i are zero, and S is all that friction has to exert. Where rolling
+is resisted the T_i are none any more but constant, and moments of drilling may take a share in what
+holds the points across e.
 
 What rolls turns about e, one way or the other: rolling resistance is a couple -+ length (N_1 + N_2)
 e. Where omega_e = 0 it is any up to that, along e: across e the normal forces hold the body

@@ -9,9 +9,9 @@ depends on the direction e = xi / s alone, s = |xi|, and on numbers that do not 
     y' = Y(y, e),        xi' = A(y, e) = R e + V,        s' = R,        s e' = V,        V.e = 0.
 
 With xi itself as a variable beside y nothing cancels as it goes to zero. Where R < 0, s reaches
-zero in finite time while e turns ever faster. In a clock whose unit is the time s / |A|, nearly -ln
-s, it does not: de = V/|A|, dy = s Y/|A|, dt = s/|A|, ds = s R/|A|. Nor does it where s has a least
-value, R = 0.
+zero in finite time, and e turns at the rate V/s, which may grow without bound. In a clock whose
+unit is the time s / |A|, nearly -ln s, it does not: de = V/|A|, dy = s Y/|A|, dt = s/|A|, ds = s
+R/|A|. Nor does it where s has a least value, R = 0.
 """
 
 from typing import NamedTuple

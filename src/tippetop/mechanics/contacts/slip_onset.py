@@ -123,6 +123,9 @@ def resolve_onset(
 ) -> tuple[Onset, tuple[bool, bool]]:
     """Return how a contact goes on after slip or rolling has ended, and which of them begin again.
 
+    What is held goes first: a contact that strong friction can hold stays closed even where b > 0,
+    so that opening would be consistent, too (Painleve's paradox).
+
     The arguments are those of `find_onset`; slip and rolling that have ended are None.
 
     Raises

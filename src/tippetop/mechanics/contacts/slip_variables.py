@@ -157,7 +157,8 @@ def rolling_stopping_guard(state: SlidingState, rate: SlidingState, top: Top) ->
 
 
 def remaining(velocity: Slip, change: Slip, horizon: float = HORIZON) -> Scalar:
-    """Positive while a velocity outlasts a horizon: s (s + horizon R R^2 / (A^2 + s^2)).
+    """Positive while a velocity outlasts a horizon: s (s + horizon R R^2 / (A^2 + s^2)), in natural
+    units.
 
     At its present rate of change A = R e + V it ends after the time s / -R. Where its direction
     turns faster than it ends, as that of a disk that wobbles down, it counts as farther from its

@@ -67,7 +67,11 @@ class Component(NamedTuple):
 
 
 class Constraint(NamedTuple):
-    """A component that is held, and the wrench per unit of its multiplier."""
+    """A component that is held, and the wrench per unit of its multiplier.
+
+    The wrench of the normal velocity of a contact that slips has friction in it: the matrix of the
+    system is not symmetric then.
+    """
 
     component: Component
     wrench: Wrench

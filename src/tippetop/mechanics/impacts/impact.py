@@ -8,15 +8,16 @@ torque N t, the struck one gains
 
     dP = (z + f) dp,        dL = (a x (z + f) + t) dp,        f, t = law(slip, angular velocity),
 
-and the velocity w of its contact point changes by dw = M dP, with M the inverse inertia that the
-contact feels, symmetric and positive definite. For viscous friction alone this is a linear
-equation, solved exactly; for another law it is integrated (Glocker 2014, Meccanica 49, and Leine
-and Glocker 2003, Eur. J. Mech. A 22, treat set-valued laws in the same setting).
+and the velocity v of its contact point changes by dv = M dP + (J t dp) x a, with J the inverse
+inertia of the body and M that of the contact (Delassus matrix), symmetric and positive definite.
+For viscous friction alone this is a linear equation, solved exactly; for another law it is
+integrated (Glocker 2014, Meccanica 49, and Leine and Glocker 2003, Eur. J. Mech. A 22, treat
+set-valued laws in the same setting).
 
 *Compression* lasts until the normal velocity v_n returns to zero from below. It may sink first:
 where friction presses the contact together more than p opens it (Painleve's paradox), an impact
-starts even at v_n = 0 and ends only when the slip has changed. It always ends, since M is positive
-definite and slip that friction has stopped leaves dv_n/dp = M_nn - M_nt M_tt^-1 M_tn > 0.
+starts even at v_n = 0 and ends only when the slip has changed. It always ends: while v_n < 0 the
+kinetic energy falls, dT/dp = v_n + f.v + t.omega < 0, but the impulse would make it grow with p^2.
 
 *Restitution* is Poisson's: it lasts while p grows from the impulse of compression p_c to (1 + e)
 p_c, with friction going on. With friction, that hypothesis may create energy: the slope dv_n/dp can

@@ -74,8 +74,10 @@ class ProcessOnTwo(SteppedProcess):
 
     @property
     def speed(self) -> float:
-        """Speed at which what strikes sinks, m/s."""
-        return -float(self.body.before[2])
+        """Speed at which what strikes sinks, m/s; in an impact without approach that at which its
+        contact point moves.
+        """
+        return -float(self.body.before[2]) or self.body.striking
 
     def normal(self, impulse: Impulse) -> float:
         """Normal impulse of what strikes, N s."""

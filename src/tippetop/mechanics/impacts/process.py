@@ -202,7 +202,7 @@ class SteppedProcess(ImpactProcess):
             if (error > 1.0 and step > SHORTEST * longest) or (reached and waiting):
                 step *= min(0.5, max(0.1, 0.9 * error**POWER))
                 continue
-            impulse = landing(now, taking, ends) if reached else taking.end
+            impulse = reach(now, taking, ends) if reached else taking.end
             if reached and goal(impulse) >= max(end(impulse) for end in ends):
                 return impulse, steps + 1
             later, waiting = now.with_status(impulse), False
@@ -226,24 +226,25 @@ def error_ratio(now: SteppedProcess, made: RungeKuttaStep) -> float:
     )
 
 
-def landing(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Impulse:
+def reach(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Impulse:
     """Return the impulse within a step at which one of some goals is reached.
 
     The cubic through its ends tells about where. From there on it is Newton's method, as a goal is
     linear in the impulse, or the least or largest of some that are.
     """
 
-    def missing(point: Impulse) -> float:
+    def nearest(point: Impulse) -> float:
+        """Return the largest of the goals: negative until one is reached."""
         return max(end(point) for end in ends)
 
     def along(size: float) -> Impulse:
         return step_to(taking.start, taking.slopes[0], size, now.slope)
 
     last = taking.size
-    impulse = along(last * crossing(lambda part: missing(taking.between(part)), 0.0, 1.0))
+    impulse = along(last * crossing(lambda part: nearest(taking.between(part)), 0.0, 1.0))
     for _ in range(NEWTON_STEPS):
-        slope, value, nudge = now.slope(impulse), missing(impulse), 1e-3 * taking.size
-        rate = (missing(advanced(impulse, nudge, slope)) - value) / nudge
+        slope, value, nudge = now.slope(impulse), nearest(impulse), 1e-3 * taking.size
+        rate = (nearest(advanced(impulse, nudge, slope)) - value) / nudge
         move = -value / rate if rate > 0.0 else taking.size
         if abs(move) < STRAIGHT * taking.size:
             return advanced(impulse, move, slope)
@@ -254,4 +255,4 @@ def landing(now: SteppedProcess, taking: RungeKuttaStep, ends: list[Goal]) -> Im
             abs(move),
             (short_step if short else step_to)(impulse, slope, move, now.slope),
         )
-    return along(crossing(lambda size: missing(along(size)), 0.0, taking.size))
+    return along(crossing(lambda size: nearest(along(size)), 0.0, taking.size))

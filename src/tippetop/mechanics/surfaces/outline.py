@@ -50,7 +50,7 @@ def is_outline(lines: Sequence[Line], surface: Surface) -> bool:
 
 
 def smoothly_joined(edges: Sequence[Line]) -> list[Line]:
-    """Edges that follow one another as lines without corners."""
+    """Return edges that follow one another, joined to lines where they turn by less than SMOOTH."""
     lines = list[Line]()
     for edge in edges:
         if lines and _turn(lines[-1], edge) < SMOOTH:
