@@ -19,6 +19,7 @@ from tippetop.mechanics.contacts.contact_point import contact_points
 from tippetop.mechanics.contacts.forces import slip_length
 from tippetop.mechanics.contacts.pair import slip_apart
 from tippetop.mechanics.contacts.slip_end import (
+    SlipEndRates,
     SlipEndState,
     landing_guard,
     reopening_guard,
@@ -68,7 +69,7 @@ class SlipEndOnTwo(TransientOnTwo):
             self.parameters,
             self.top,
             lambda y: unpack_clock(y, self.drills),
-            lambda now: rates_on_two(now, self.forces(now)),
+            self.rates_in_time,
             self.pack,
             lambda _: None,
             False,
@@ -83,6 +84,10 @@ class SlipEndOnTwo(TransientOnTwo):
         """Return the forces and accelerations in the clock."""
         first, second = self.tops
         return forces_in_clock(now, (first, second), self.rolls)
+
+    def rates_in_time(self, now: SlipEndState) -> SlipEndRates:
+        """Return the rates in time in the clock."""
+        return rates_on_two(now, self.forces(now))
 
     def pack(self, now: SlipEndState) -> tuple[Scalar, ...]:
         """Return axis, angular momentum and xi."""
@@ -135,45 +140,51 @@ def slip_end_motion_on_two(form: Any, kinds: tuple[Kind, ...]) -> Motion:
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         state = unpack_clock(y, drills)
-        return pack_clock(
-            slip_end_rates(state, rates_on_two(state, mode_of(numbers).forces(state)))
+        return pack_clock(slip_end_rates(state, mode_of(numbers).rates_in_time(state)))
+
+    def guard(name: str, value: Callable[[SlipEndState, Any, Sequence[Scalar]], Scalar]) -> Guard:
+        return Guard(
+            name, lambda y, numbers: value(unpack_clock(y, drills), mode_of(numbers), numbers)
         )
-
-    def guard(
-        name: str, value: Callable[[SlipEndState, Any, ContactForces, Sequence[Scalar]], Scalar]
-    ) -> Guard:
-        def guard_value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-            state, mode = unpack_clock(y, drills), mode_of(numbers)
-            return value(state, mode, mode.forces(state), numbers)
-
-        return Guard(name, guard_value)
 
     def on_branch_still(number: int) -> Callable[..., Scalar]:
-        return lambda state, mode, now, _: branch_guard(
-            slips_in_clock(now.points, state)[number], mode.tops[number]
-        )
+        def branch_guard_value(state: SlipEndState, mode: Any, _: Sequence[Scalar]) -> Scalar:
+            pair = contact_points(state.axis, state.momentum, mode.tops)
+            return branch_guard(slips_in_clock(pair, state)[number], mode.tops[number])
+
+        return branch_guard_value
 
     guards = [
         guard(
             REOPENING,
-            lambda state, mode, now, _: reopening_guard(state, rates_on_two(state, now), mode.top),
+            lambda state, mode, _: reopening_guard(state, mode.rates_in_time(state), mode.top),
         ),
         guard(
             LANDED,
-            lambda state, mode, now, numbers: landing_guard(
-                state, rates_on_two(state, now), mode.top, numbers[-1]
+            lambda state, mode, numbers: landing_guard(
+                state, mode.rates_in_time(state), mode.top, numbers[-1]
             ),
         ),
-        guard(TIME, lambda state, _, __, numbers: numbers[-2] - state.time),
-        guard(numbered(OPENING, 0), lambda _, __, now, ___: now.normal[0]),
-        guard(numbered(OPENING, 1), lambda _, __, now, ___: now.normal[1]),
+        guard(TIME, lambda state, _, numbers: numbers[-2] - state.time),
+        guard(numbered(OPENING, 0), lambda state, mode, _: mode.forces(state).normal[0]),
+        guard(numbered(OPENING, 1), lambda state, mode, _: mode.forces(state).normal[1]),
     ]
     if form.holds_rolling:
-        guards.append(guard(ROLLING, lambda _, __, now, ___: now.rolling_reserve))
+        guards.append(guard(ROLLING, lambda state, mode, _: mode.forces(state).rolling_reserve))
     elif top.resists_rolling:
-        guards.append(guard(ROLLING_STOPPING, lambda _, mode, now, ___: mode.rolls * now.rolling))
+        guards.append(
+            guard(
+                ROLLING_STOPPING,
+                lambda state, mode, _: mode.rolls * mode.forces(state).rolling,
+            )
+        )
     if not drills:
-        guards.append(guard(OVERTAKEN, lambda state, _, now, __: overtaking_on_two(state, now)))
+        guards.append(
+            guard(
+                OVERTAKEN,
+                lambda state, mode, _: overtaking_on_two(state, mode.forces(state)),
+            )
+        )
     if is_branched(top.friction):
         guards += [guard(numbered(BRANCH, number), on_branch_still(number)) for number in (0, 1)]
     return Motion(rates, 11, count + 2, tuple(guards), lasting=False)
