@@ -57,7 +57,14 @@ from tippetop.contact.touching import (
     stays_closed,
 )
 from tippetop.contact.transient import Resting, TransientMode
-from tippetop.contact.two_closed import BOTH_CLOSED, SECOND_ALONE, Before, TwoClosed, rolling_of
+from tippetop.contact.two_closed import (
+    BOTH_CLOSED,
+    NONE_CLOSED,
+    SECOND_ALONE,
+    Before,
+    TwoClosed,
+    rolling_of,
+)
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contacts.branches import off_branch, on_branch, on_other_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -592,8 +599,7 @@ class Automaton:
         except ArithmeticError as error:
             return failed("The forces on two surfaces that touch", error, state, events)
         if len(consistent) != 1:
-            detail = "not exactly one set of forces is consistent with two surfaces that touch"
-            return Transition(events, Outcome.FAILED, state, detail)
+            return self._without_unique_forces(contacts, time, consistent, events)
         if consistent == [BOTH_CLOSED]:
             if arrived:
                 lost = float(energy(state, tops[0]) - energy(contacts.state, tops[0]))
@@ -604,6 +610,28 @@ class Automaton:
         opens, stays = contacts.tops if consistent == [SECOND_ALONE] else contacts.tops[::-1]
         events = (*events, Event(EventKind.OPENING, time, surface=opens.active))
         return self.resting_alone(stays, time, contacts.state, events)
+
+    def _without_unique_forces(
+        self, contacts: TwoClosed, time: float, consistent: list[str], events: tuple[Event, ...]
+    ) -> Transition:
+        """Return what follows where no set of forces on two contacts is consistent, or several are.
+
+        As on one contact (`resting_alone`), an impact without approach takes slip away where
+        friction jams one of them; where several sets are consistent the body may lift off, too.
+        """
+        state = contacts.state
+        if consistent:
+            surface = contacts.tops[0].active
+            events = (*events, Event(EventKind.INDETERMINATE, time, surface=surface))
+        if NONE_CLOSED in consistent and self.indeterminate == "lift_off":
+            return self._release(contacts.tops[0], time, state, events)
+        if contacts.jammed:
+            contact = contacts.jammed[0]
+            at_rest = on_table(along_table(state), contact)
+            return self.inconsistent(contact, time, at_rest, events)
+        count = "more than one" if consistent else "no"
+        detail = f"{count} set of forces is consistent with two surfaces that touch"
+        return Transition(events, Outcome.FAILED, state, detail)
 
     def slip_on_two(self, time: float, state: State, mode: ContactMode, contact: int) -> Transition:
         """Return the mode in which a contact of two begins to slip at the limit of what the table

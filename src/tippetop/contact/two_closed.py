@@ -25,11 +25,11 @@ from tippetop.mechanics.contacts.pair_resolver import (
     rolling_of_slip,
     turning_about,
 )
-from tippetop.mechanics.contacts.slip_onset import resolve_onset
+from tippetop.mechanics.contacts.slip_onset import find_onset, resolve_onset
 from tippetop.mechanics.contacts.slip_variables import has_ended, is_rolling, slip_of
 from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.motion import along_table, sliding_contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 
@@ -116,7 +116,7 @@ class TwoClosed:
         return resolution(self.pair, self.xi, self.ended, self.rolls)
 
     def consistent(self, resolved: Resolution) -> list[str]:
-        """Return the sets of contacts that may stay closed; exactly one is expected.
+        """Return the sets of contacts that may stay closed, the largest first; one is expected.
 
         With rolling held, two contacts can hold whatever one of them can: both stay if both normal
         forces are positive, else the one with the larger normal force.
@@ -139,10 +139,15 @@ class TwoClosed:
     def _beside_pressed(self, number: int) -> str:
         """Return whether this contact can carry the body alone, and what the other does then."""
         point = self.pair[number]
-        if point.free.point[2] >= 0.0:
-            return IMPOSSIBLE
         slip = None if self.ended[number] else slip_of(*along_table(self.state), self.tops[number])
-        onset, _ = resolve_onset(point, slip, None if self.stopped else point.turning[:2])
+        rolling = None if self.stopped else point.turning[:2]
+        if slip is not None and rolling is not None:
+            # Nothing is held, so that nothing is to be tried: friction may press the contact, too.
+            onset = find_onset(point, slip, rolling, (False, False))
+        elif point.free.point[2] >= 0.0:
+            return IMPOSSIBLE
+        else:
+            onset, _ = resolve_onset(point, slip, rolling)
         if onset.wrench.force[2] <= 0.0:
             return IMPOSSIBLE
         if onset.rolling is None:
@@ -150,6 +155,16 @@ class TwoClosed:
         rates = rates_under(self.pair, [(number, onset.wrench)], free_rates(self.pair))
         opens = rates.points[1 - number][2] >= 0.0
         return OPENS if opens else IMPOSSIBLE
+
+    @property
+    def jammed(self) -> list[Top]:
+        """The slipping contacts that friction presses more than their normal force opens them."""
+        sliding = along_table(self.state)
+        return [
+            top
+            for top, ended in zip(self.tops, self.ended, strict=True)
+            if not ended and sliding_contact(*sliding, top).delassus < 0.0
+        ]
 
     def slipping(self, contact: int | None) -> Resolution:
         """Return how slip begins at the limit of what the table can: on this of the contacts that

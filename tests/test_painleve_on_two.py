@@ -1,0 +1,109 @@
+"""Painleve's paradox on two contacts: several sets of forces are consistent, or none is."""
+
+from collections import Counter
+
+import numpy as np
+
+from tippetop.contact.automaton import Automaton
+from tippetop.contact.flight import Flight
+from tippetop.contact.mode import EventKind, Outcome, Transition
+from tippetop.contact.two_closed import Before
+from tippetop.mechanics.contacts.pair import Tops
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.motion import on_table
+from tippetop.mechanics.state import SlidingState, State
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import SphereSurface
+from tippetop.mechanics.top import Top
+
+SETS = {(True, True): "both", (True, False): "first", (False, True): "second", (False, False): ""}
+
+
+def drawn(random: np.random.Generator) -> tuple[Tops, State] | None:
+    """Two spheres of a slender body that slide on rough ground in a turn about the vertical."""
+    (r1, r2), (z1, z2) = random.uniform(0.2, 1.0, 2), random.uniform(-1.0, 1.0, 2)
+    if abs(r1 - r2) >= abs(z1 - z2):
+        return None
+    c = (r1 - r2) / (z1 - z2)
+    if r1 - z1 * c <= 0.0:
+        return None
+    across = 10.0 ** random.uniform(-3.0, -0.3)
+    along, mu = across * 10.0 ** random.uniform(-2.0, 0.25), 10.0 ** random.uniform(-1.0, 0.7)
+    hull = Hull.of((SphereSurface(r1, z1), SphereSurface(r2, z2)))
+    top = Top(1.0, across, along, hull, CoulombLaw(mu), 1.0)
+    axis, (a, b) = np.array([(1.0 - c * c) ** 0.5, 0.0, c]), random.normal(size=2)
+    turning = across * 10.0 ** random.uniform(-1.0, 1.5) * (a * axis + np.array([0.0, 0.0, b]))
+    velocity = random.normal(size=2) * 10.0 ** random.uniform(-1.0, 1.0)
+    start = SlidingState(tuple(axis.tolist()), tuple(turning.tolist()), tuple(velocity.tolist()))
+    first, second = top.each
+    return (first, second), on_table(start, first)
+
+
+def acceleration(state: State, top: Top, force: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Second derivatives of the gaps of both surfaces, m/s^2, under a force and gravity, by
+    differentiating z - r + zeta n_z twice.
+    """
+    n, L = np.array(state.axis), np.array(state.momentum)
+    pull = force[2] / top.mass - top.gravity
+    turned = np.cross(np.cross(at, force), n) + np.cross(L, np.cross(L, n)) / top.transverse_inertia
+    return np.array(
+        [pull + one.surface.slope(0.0) * -turned[2] / top.transverse_inertia for one in top.each]
+    )
+
+
+def consistent_sets(tops: Tops, state: State) -> Counter[str]:
+    """All sets of contacts with positive forces beside which no other gap closes."""
+    n, L = np.array(state.axis), np.array(state.momentum)
+    top, mu = tops[0], tops[0].friction.mu
+    excess = (1.0 / top.axial_inertia - 1.0 / top.transverse_inertia) * (L @ n)
+    omega = L / top.transverse_inertia + excess * n
+    free = acceleration(state, top, np.zeros(3), np.zeros(3))
+    columns = []
+    for one in tops:
+        slope, height = one.surface.slope(n[2]), one.surface.height(n[2])
+        arm = -slope * (n - np.array([0.0, 0.0, n[2]])) - np.array([0.0, 0.0, height])
+        slip = (np.array(state.velocity) + np.cross(omega, arm))[:2]
+        force = np.array([*(-mu * slip / np.hypot(*slip)), 1.0])
+        columns.append(acceleration(state, top, force, arm) - free)
+    matrix, sets = np.array(columns).T, Counter[str]()
+    for closed, name in SETS.items():
+        which, normal = np.flatnonzero(closed), np.zeros(2)
+        normal[which] = np.linalg.solve(matrix[np.ix_(which, which)], -free[which])
+        opening = (matrix @ normal + free)[~np.array(closed)]
+        if np.all(normal[which] > 0.0) and np.all(opening >= 0.0):
+            sets[name] += 1
+    return sets
+
+
+def resolved(tops: Tops, state: State, choice: str) -> Transition:
+    """What follows on the two contacts."""
+    return Automaton(tops[0], "fly", 0.0, choice).resolve_two(0.0, state, tops, Before(), 0.0)
+
+
+def test_two_contacts_report_whether_their_forces_are_unique() -> None:
+    """By an enumeration of its own: more sets than one are reported, none is an impact."""
+    random, counts = np.random.default_rng(5), Counter[int]()
+    while min(counts[0], counts[2]) < 6:
+        case = drawn(random)
+        if case is None:
+            continue
+        tops, state = case
+        sets = consistent_sets(tops, state)
+        if counts[min(len(sets), 2)] >= 12:
+            continue
+        counts[min(len(sets), 2)] += 1
+        after = {choice: resolved(tops, state, choice) for choice in ("impact", "lift_off")}
+        for following in after.values():
+            kinds = [event.kind for event in following.events]
+            single = len(sets) == 1 and sets.keys() <= {"first", "second"}
+            if not single:  # One contact alone may be indeterminate by itself.
+                assert (EventKind.INDETERMINATE in kinds) == (len(sets) > 1), (sets, kinds)
+            if len(sets) != 1 and following.next is not Outcome.FAILED:
+                struck = EventKind.IMPACT in kinds
+                assert struck or "" in sets
+                if struck:
+                    assert energy(following.state, tops[0]) < energy(state, tops[0])
+        if "" in sets and len(sets) > 1:
+            assert isinstance(after["lift_off"].next, Flight)
+            assert after["lift_off"].state == state
