@@ -3,6 +3,7 @@
 from collections import Counter
 
 import numpy as np
+import pytest
 
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.flight import Flight
@@ -107,3 +108,25 @@ def test_two_contacts_report_whether_their_forces_are_unique() -> None:
         if "" in sets and len(sets) > 1:
             assert isinstance(after["lift_off"].next, Flight)
             assert after["lift_off"].state == state
+
+
+def indeterminate(random: np.random.Generator) -> tuple[Tops, State]:
+    """Draw two contacts that may let go, but need not."""
+    while True:
+        case = drawn(random)
+        if case is not None:
+            sets = consistent_sets(*case)
+            if "" in sets and len(sets) > 1:
+                return case
+
+
+@pytest.mark.parametrize("choice", ["impact", "lift_off"])
+def test_where_tops_cannot_fly_indeterminate_forces_end_the_run(choice: str) -> None:
+    tops, state = indeterminate(np.random.default_rng(8))
+    automaton = Automaton(tops[0], "stop", 0.0, choice)
+    after = automaton.resolve_two(0.0, state, tops, Before(), 0.0)
+    if choice == "lift_off":
+        assert after.next is Outcome.LIFTED_OFF
+    else:
+        assert after.next is Outcome.FAILED
+        assert "contact.indeterminate names needs contact.liftoff = fly" in after.detail

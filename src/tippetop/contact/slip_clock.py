@@ -136,9 +136,9 @@ def _end(arc: Arc | None, state: State) -> ModeEnd:
     """Return what ended the mode."""
     if arc is None:
         return ModeEnd(LANDED, state)
-    if arc.failure is not None or arc.guard is None:
-        detail = arc.failure or "the slip neither ends nor goes on"
-        return ModeEnd(FAILURE, state, detail=detail)
+    if arc.failure is not None:
+        return ModeEnd(FAILURE, state, detail=arc.failure)
+    assert arc.guard is not None, "an end of slip whose clock still goes on"
     if arc.guard == TIME:
         return ModeEnd(COMPLETED, state)
     return ModeEnd.by_guard(arc.guard, state, tuple(arc.end_state.tolist()))

@@ -51,6 +51,9 @@ FEW = 16
 MOST = 16
 """Arcs after which such an end is given up, within seconds; most take two."""
 
+ENDLESS = "slip, or rolling, does not come to its end"
+"""Why such an end is given up."""
+
 STALLED = 1e-9
 """Part of the clock that an arc of thousands of steps goes, if it goes no farther, from which none
 ends.
@@ -65,19 +68,18 @@ def goes_on(arc: Arc) -> bool:
 def slip_end_arcs(
     integrator: Integrator, motion: Motion, parameters: Sequence[float], start: tuple[float, Array]
 ) -> Iterator[Arc]:
-    """Return the end of slip, or of rolling, in its clock, arc by arc."""
+    """Return the end of slip, or of rolling, in its clock, arc by arc; a guard or a failure ends
+    the last.
+    """
     arcs = 0
     for end in (*[start[0] + part for part in SOON if start[0] + part < CLOCK_LIMIT], CLOCK_LIMIT):
         for arc in integrator.integrate(motion, parameters, start, end):
             arcs += 1
             stalled = arc.solution.end - start[0] < STALLED * start[0]
-            many = goes_on(arc) and (arcs == MOST or stalled)
-            yield (
-                replace(arc, failure="slip, or rolling, takes too many steps to end")
-                if many
-                else arc
-            )
-            if many or not goes_on(arc):
+            endless = arcs == MOST or stalled or arc.solution.end >= CLOCK_LIMIT
+            given_up = goes_on(arc) and endless
+            yield replace(arc, failure=ENDLESS) if given_up else arc
+            if given_up or not goes_on(arc):
                 return
             start = arc.solution.end, arc.end_state
 
