@@ -31,7 +31,7 @@ from tippetop.mechanics.contacts.slip_variables import (
     slip_part,
 )
 from tippetop.mechanics.contacts.wrench import Slip, Wrench
-from tippetop.mechanics.impacts.process import SteppedProcess
+from tippetop.mechanics.impacts.process import SAME_FRICTION, SteppedProcess
 from tippetop.mechanics.impacts.struck_body import FUZZ, Goal, Impulse, first_reach
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.runge_kutta import RungeKuttaStep
@@ -43,11 +43,6 @@ SLIDING = SlipComponent(slip=True)
 
 NO_SLIP = 10.0 * FUZZ
 """Slip, in units of the body's speed, that is none."""
-
-SAME_DIRECTION = 1e-8
-"""How near, relatively, friction must be to what keeps the direction of slip to count as equal to
-it.
-"""
 
 STEPS_PER_PROBE = 4
 """After so many steps each it is probed whether slip has come to a direction that it keeps."""
@@ -203,7 +198,7 @@ class DryProcess(SteppedProcess):
             rate = 0.0
         wrong = plus(doing, scaled(-rate, along))
         # What grows along a wrong direction would go ever farther.
-        if size(wrong) > (SAME_DIRECTION if rate > 0.0 else SAME_DIRECTION + fuzz) * holds:
+        if size(wrong) > (SAME_FRICTION if rate > 0.0 else SAME_FRICTION + fuzz) * holds:
             return None
         drilling = 0.0 if self.reach is None else self.reach * wrong[2]
         exact = plus(unit, (-wrong[0], -wrong[1], 0.0, 0.0, 0.0, -drilling))

@@ -17,7 +17,12 @@ from typing import Self
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.slip_variables import plus
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.impacts.process import STUCK, SteppedProcess, slip_error
+from tippetop.mechanics.impacts.process import (
+    NO_VELOCITY,
+    SAME_FRICTION,
+    SteppedProcess,
+    slip_error,
+)
 from tippetop.mechanics.impacts.struck_body import (
     NO_IMPULSE,
     NORMAL,
@@ -30,12 +35,10 @@ from tippetop.mechanics.motion import point_velocity
 from tippetop.mechanics.runge_kutta import RungeKuttaStep
 from tippetop.mechanics.vectors import Vector, add, cross, length, scale
 
-OPEN = 1e-9
-"""Normal velocity of a contact that is closed, and slip that has ended, in units of what strikes.
-"""
-
 SUNK = 1e-7
-"""Normal velocity below zero at which it sinks, in the same units: beyond all errors of steps."""
+"""Normal velocity below zero at which a contact sinks, in units of that with which the other one
+strikes: beyond all errors of steps.
+"""
 
 OTHER = 7
 """Place of the other contact's normal impulse."""
@@ -98,7 +101,10 @@ class ProcessOnTwo(SteppedProcess):
     def with_status(self, impulse: Impulse) -> Self:
         """Return the process after an impulse, with the status of the other contact."""
         rise = self.velocities_beside(impulse)[2] / self.speed
-        pressed, sunk = bool(rise <= OPEN), bool(rise < -(OPEN if self.sunk else SUNK))
+        pressed, sunk = (
+            bool(rise <= NO_VELOCITY),
+            bool(rise < -(NO_VELOCITY if self.sunk else SUNK)),
+        )
         same = pressed == self.pressed and sunk == self.sunk
         return self if same else replace(self, pressed=pressed, sunk=sunk)
 
@@ -120,7 +126,7 @@ class ProcessOnTwo(SteppedProcess):
         rate = 1.0 / self.speed
         if resistance is not None:
             rolling = length((velocity[3], velocity[4], 0.0))
-            if self.body.lever * rolling < OPEN * self.speed:
+            if self.body.lever * rolling < NO_VELOCITY * self.speed:
                 raise SlipEndsInImpact("rolling ends in an impact on two surfaces")
             rate += 2.0 * resistance.length / (self.body.lever**2 * rolling)
         unit, share = self.sliding(velocity), 0.0
@@ -154,7 +160,7 @@ class ProcessOnTwo(SteppedProcess):
     def sliding(self, velocity: Slip) -> Slip:
         """Return the friction at a contact with these velocities; see `friction`."""
         slip = length((velocity[0], velocity[1], 0.0))
-        if is_set_valued(self.body.contact.top.friction) and slip < OPEN * self.speed:
+        if is_set_valued(self.body.contact.top.friction) and slip < NO_VELOCITY * self.speed:
             raise SlipEndsInImpact("slip ends in an impact on two surfaces")
         return self.friction(velocity)
 
@@ -185,6 +191,6 @@ class ProcessOnTwo(SteppedProcess):
         change = self.body.change(unit)
         x, y, rise, *_ = change
         moved = self.beside(change)
-        if not length((x, y, 0.0)) + length((moved[0], moved[1], 0.0)) < STUCK * rise:
+        if not length((x, y, 0.0)) + length((moved[0], moved[1], 0.0)) < SAME_FRICTION * rise:
             return None
         return first_reach(self.body.line_from(impulse, unit), goal, self.speed / rise), True

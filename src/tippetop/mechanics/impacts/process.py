@@ -37,8 +37,16 @@ LONGEST = 5.0
 TOLERANCE = 1e-9
 """Error of the slip in a step of the integration, relative to the slip."""
 
-STUCK = 1e-8
-"""How near the traction must be to the one that holds the slip constant to count as equal to it."""
+SAME_FRICTION = 1e-8
+"""Difference, relatively, up to which friction counts as what holds slip, or its direction: ten
+times what steps leave out, so that they come this near. Much less is never met; more ends steps
+while slip still changes.
+"""
+
+NO_VELOCITY = 1e-9
+"""Velocity, in units of that with which a contact strikes, that is none: a contact opens with more,
+and slip that is less has ended. It is what steps leave out of slip, `TOLERANCE`.
+"""
 
 SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
@@ -174,14 +182,14 @@ class SteppedProcess(ImpactProcess):
         x, y, *_ = body.change((0.0, 0.0, *unit[2:]))
         holding = ((b * y - d * x) / (a * d - b * b), (b * x - a * y) / (a * d - b * b))
         fuzz = FUZZ * body.striking * math.hypot(*unit[:2]) / (math.hypot(*velocity[:2]) or 1.0)
-        if math.dist(unit[:2], holding) > STUCK + fuzz:
+        if math.dist(unit[:2], holding) > SAME_FRICTION + fuzz:
             return None
         if not any(unit[:2]):
             # What is held without friction needs none, but for rounding.
             holding = (0.0, 0.0)
         end = first_reach(body.line_from(impulse, (*holding, *unit[2:])), goal, guess)
         later = self.friction(body.velocities(end))
-        return (end, True) if math.dist(later, unit) <= 2.0 * (STUCK + fuzz) else None
+        return (end, True) if math.dist(later, unit) <= 2.0 * (SAME_FRICTION + fuzz) else None
 
     def until(self, impulse: Impulse, goal: Goal, guess: float) -> tuple[Impulse, int]:
         """Step by step."""
@@ -215,7 +223,7 @@ def slip_error(ends: Sequence[Slip], off: Slip, speed: float) -> float:
     """Return the norm of an error in velocities: of slip relative to slip, of the normal one to a
     speed.
     """
-    slip = max(1e-9 * speed, *[math.hypot(*end[:2]) for end in ends])
+    slip = max(NO_VELOCITY * speed, *[math.hypot(*end[:2]) for end in ends])
     return float(max(math.hypot(*off[:2]) / slip, abs(off[2]) / speed))
 
 
