@@ -16,12 +16,12 @@ from tippetop.contact.guards import (
     BRANCH,
     LIFT_OFF,
     LIMIT_BRANCH,
-    NEARING,
     OPENING,
-    PARTING,
     ROLLING,
     ROLLING_STOPPING,
     SLIP,
+    SLIP_LARGE,
+    SLIP_SMALL,
     STOPPING,
 )
 from tippetop.contact.mode import (
@@ -38,7 +38,7 @@ from tippetop.contact.mode import (
 )
 from tippetop.contact.settling_flat import FLAT, SettlingFlat, settling_flat
 from tippetop.contact.slip_end import SlipEnd
-from tippetop.contact.slip_end_motion import JAMMED, LANDED, OVERTAKEN, REOPENING
+from tippetop.contact.slip_end_motion import JAMMED, OVERTAKEN, REACHED_ZERO, REOPENING
 from tippetop.contact.slip_end_on_two import SlipEndOnTwo, end_on_two
 from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
 from tippetop.contact.slip_onset_on_two import SlipOnsetOnTwo
@@ -185,7 +185,7 @@ class Automaton:
             return self.jammed(contact, time, state) or failure
         if end.cause == LIFT_OFF:
             return self.lift_off(contact, time, state, normal_force(mode, mode.numbers(state)))
-        if end.cause in (NEARING, PARTING):
+        if end.cause in (SLIP_SMALL, SLIP_LARGE):
             return Transition((), self.mode_for(contact, state, slips=True), state)
         if end.cause in (STOPPING, ROLLING_STOPPING):
             return self._follow_to_end(contact, state, slips=slips)
@@ -196,7 +196,7 @@ class Automaton:
         if wrench.force[2] <= 0.0 and not self.pulls:
             return self.lift_off(contact, time, state, wrench.force[2])
         begins = SlipComponent(
-            end.cause == SLIP, held=mode.holds_rolling if end.cause == SLIP else mode.sticks[0]
+            end.cause == SLIP, held=mode.prevents_rolling if end.cause == SLIP else mode.sticks[0]
         )
         return self._begin(contact, time, state, begins, wrench)
 
@@ -213,8 +213,8 @@ class Automaton:
 
     def _after_clock(self, contact: Top, mode: SlipEnd, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a velocity has ended, or is no longer about to."""
-        state, ending = end.state, mode.ending
-        if end.cause == LANDED:
+        state, ending = end.state, mode.component
+        if end.cause == REACHED_ZERO:
             new = ending.slip, not ending.slip
             resolved = self.resolve(contact, time, state, new, held=ending.held)
             return self._with_other_surfaces(contact, time, resolved)
@@ -226,7 +226,7 @@ class Automaton:
             stuck = not ending.slip and ending.held
             return Transition((), self.mode_for(contact, state, slips=not stuck), state)
         if end.cause == OVERTAKEN:
-            second = replace(mode, ending=SlipComponent(not ending.slip), begin=())
+            second = replace(mode, component=SlipComponent(not ending.slip), begin=())
             return Transition((), second, state)
         if end.cause in (BRANCH, LIMIT_BRANCH):
             top, begin = on_other_branch(mode.top), (*end.numbers[:-1], 0.0)
@@ -235,7 +235,9 @@ class Automaton:
         return self._begin(contact, time, state, SlipComponent(slip=end.cause == SLIP))
 
     def _after_two(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
-        """Return what follows on two contacts."""
+        """Return what follows a guard of two contacts: one opens, or slip or rolling begins or
+        ends.
+        """
         state, rolls = end.state, mode.rolls
         if end.cause in (ONSET_OVER, REOPENING):
             return Transition((), self._slides_on_two(state, mode.tops, rolls), state)
@@ -414,11 +416,12 @@ class Automaton:
     ) -> Transition:
         """Go on on the active surface, whatever else touches: slide, stick, leave or lie flat.
 
-        With a Delassus number A <= 0 friction presses the contact as it is pressed (Painleve's
-        paradox). If the contact would close without a force, no force is consistent, and an impact
-        without approach takes as much slip away as it needs to: Darboux's and Keller's way out. If
-        it would open, the case is indeterminate: the contact may open, too, and the normal force
-        -b / A is consistent as well, but the least disturbance grows without bound under it.
+        With A <= 0 the moment of friction closes the gap at least as fast as the normal force opens
+        it (Painleve's paradox). If the contact would close without a force, no force is consistent,
+        and an impact without approach takes as much slip away as it needs to, as Darboux and Keller
+        propose. If it would open, the case is indeterminate: the contact may open, too, and the
+        normal force -b / A is consistent as well, but the least disturbance grows without bound
+        under it.
         """
         if lies_flat(contact, state.axis):
             return Transition(events, Outcome.LYING_FLAT, state)

@@ -43,7 +43,7 @@ class ContactMode(IntegratedMode):
 
     sticks: tuple[bool, ...] = (False,)
     """Whether each contact sticks, and does not drill where the law resists that; else it slips."""
-    holds_rolling: bool = False
+    prevents_rolling: bool = False
     """Whether rolling resistance holds the top, which turns about the vertical, or not at all."""
     near: bool = False
     """Whether slip on one contact is so small that it may be about to end, which then is guarded.
@@ -78,12 +78,12 @@ class ContactMode(IntegratedMode):
     @property
     def slides_freely(self) -> bool:
         """Whether one contact is closed and slips, and nothing holds rolling."""
-        return self.is_single and not self.sticks[0] and not self.holds_rolling
+        return self.is_single and not self.sticks[0] and not self.prevents_rolling
 
     @property
     def status(self) -> str:
         """Name of the motion in a result, without the surfaces that touch."""
-        rolling = "_without_rolling" if self.holds_rolling else ""
+        rolling = "_without_rolling" if self.prevents_rolling else ""
         if self.is_mixed:
             return f"{STICKS}_and_{SLIPS}{rolling}"
         return (STICKS if self.sticks[0] else SLIPS) + rolling
@@ -98,7 +98,7 @@ class ContactMode(IntegratedMode):
         """Its status, and the numbers of the surfaces if the body has several."""
         if not self.is_mixed:
             return self.status + self._place
-        rolling = "_without_rolling" if self.holds_rolling else ""
+        rolling = "_without_rolling" if self.prevents_rolling else ""
         first, second = (top.active for top in self.tops)
         return f"{STICKS}{rolling}_on_{first}_{SLIPS}_on_{second}"
 
@@ -176,7 +176,7 @@ class ContactMode(IntegratedMode):
 
     def stilled(self, axis: Vector, momentum: Vector) -> Vector:
         """Return the angular momentum, without rolling where that is held."""
-        return without_rolling(axis, momentum, self.top) if self.holds_rolling else momentum
+        return without_rolling(axis, momentum, self.top) if self.prevents_rolling else momentum
 
     # Forces and rates.
 
@@ -188,7 +188,7 @@ class ContactMode(IntegratedMode):
         points = contact_points(*split(y), self.tops)
         if self.is_single:
             slip = None if self.sticks[0] else slip_of(*split(y), (y[6], y[7]), self.top)[:2]
-            rolling = None if self.holds_rolling else points[0].turning[:2]
+            rolling = None if self.prevents_rolling else points[0].turning[:2]
             return forces_on_one(points[0], slip, rolling), (slip,)
         if self.is_mixed:
             zeta = slip_apart(points)
@@ -280,7 +280,7 @@ def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:
     be soon.
     """
     no_top: Any = None
-    return motion_of(ContactMode(no_top, holds_rolling=held, pulls=not guarded), (kind,))
+    return motion_of(ContactMode(no_top, prevents_rolling=held, pulls=not guarded), (kind,))
 
 
 def mode_on_two(

@@ -42,7 +42,7 @@ horizontal angular velocity everywhere here.
 STOPPING, ROLLING_STOPPING, ENDING = "stopping", "rolling stopping", "ending"
 """Slip, or rolling, is about to end; or the body has stopped turning about one of two contacts."""
 
-NEARING, PARTING = "nearing", "parting"
+SLIP_SMALL, SLIP_LARGE = "slip small", "slip large"
 """Slip falls below `slip_variables.NEAR`, where its end begins to be guarded, or grows beyond
 `APART`, where it no longer is.
 """
@@ -59,7 +59,7 @@ def guards_on_one(mode: Any) -> list[GuardValue]:
     shape.
     """
     guards = _sticking_on_one(mode) if mode.sticks[0] else _slipping_on_one(mode)
-    if mode.holds_rolling:
+    if mode.prevents_rolling:
         guards.append((ROLLING, _rolling_reserve))
     elif mode.top.resists_rolling:
         guards.append((ROLLING_STOPPING, _rolling_left))
@@ -85,9 +85,9 @@ def _slipping_on_one(mode: Any) -> list[GuardValue]:
         guards.append((LIFT_OFF, _normal(0)))
     if is_set_valued(law) and mode.near:
         guards.append((STOPPING, lambda mode, y: mode.slip_left(y)))
-        guards.append((PARTING, lambda mode, y: parting_guard(SlidingState.unpack(y), mode.top)))
+        guards.append((SLIP_LARGE, lambda mode, y: parting_guard(SlidingState.unpack(y), mode.top)))
     elif is_set_valued(law):
-        guards.append((NEARING, lambda mode, y: nearing_guard(SlidingState.unpack(y), mode.top)))
+        guards.append((SLIP_SMALL, lambda mode, y: nearing_guard(SlidingState.unpack(y), mode.top)))
     if hasattr(law, "branch_guard"):
         guards.append((BRANCH, _branch_on_one))
     return guards
@@ -125,7 +125,7 @@ def guards_on_two(mode: Any) -> list[GuardValue]:
     table.
     """
     guards: list[GuardValue] = [(numbered(OPENING, number), _normal(number)) for number in (0, 1)]
-    if mode.holds_rolling:
+    if mode.prevents_rolling:
         guards.append((ROLLING, lambda mode, y: _forces(mode, y).rolling_reserve))
     elif mode.top.resists_rolling:
         guards.append((ROLLING_STOPPING, lambda mode, y: mode.rolls * _forces(mode, y).rolling))

@@ -46,7 +46,7 @@ def onset_motion(kind: Kind, begins: tuple[SlipComponent, ...], guarded: bool) -
     free = 8 if first.moves else 6
     counts = [len(component.wrenches(top)) for component in begins]
     velocities = tuple([(free + sum(counts[:i]), count) for i, count in enumerate(counts)])
-    holds_rolling = first.slip and first.held and top.resists_rolling
+    prevents_rolling = first.slip and first.held and top.resists_rolling
     holds_slip = not first.slip and first.held
     branches = not holds_slip and hasattr(top.friction, "branch_guard")
     limits = holds_slip and has_limit_branches(top.friction)
@@ -74,7 +74,7 @@ def onset_motion(kind: Kind, begins: tuple[SlipComponent, ...], guarded: bool) -
         for component in begins:
             changes += [*component.rate(acceleration, body)]
         margins = [wrench.force[2]] if guarded else []
-        if holds_rolling:
+        if prevents_rolling:
             margins.append(rolling_reserve(point, wrench, slip))
         if holds_slip:
             margins.append(slip_reserve(body, wrench))
@@ -85,5 +85,5 @@ def onset_motion(kind: Kind, begins: tuple[SlipComponent, ...], guarded: bool) -
         margins += [value(body, axis, momentum) for _, value in surfaces]
         return changes, margins
 
-    count = sum([guarded, holds_rolling, holds_slip, branches, limits]) + len(surfaces)
+    count = sum([guarded, prevents_rolling, holds_slip, branches, limits]) + len(surfaces)
     return SlipMotion(rates, free + sum(counts), velocities, kind.numbers, count)

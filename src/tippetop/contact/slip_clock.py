@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from tippetop.contact.collocated_end import CollocatedEnd
 from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Segment
-from tippetop.contact.slip_end_motion import FEW, JAMMED, LANDED, TIME, goes_on, slip_end_arcs
+from tippetop.contact.slip_end_motion import FEW, JAMMED, REACHED_ZERO, TIME, goes_on, slip_end_arcs
 from tippetop.contact.transient import DEGREE, SETTLED
 from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
@@ -13,7 +13,7 @@ from tippetop.mechanics.contacts.slip_end import (
     SlipEndRates,
     SlipEndState,
     landed,
-    landing_guard,
+    zero_guard,
 )
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
@@ -79,7 +79,7 @@ def follow_clock(clock: EndClock, begin: Row, longest: float, integrator: Integr
     now, start, arcs = clock.unpack(begin), (0.0, as_array(begin)), list[Arc]()
     arrival, last = clock.collocated(now) if clock.tries_at_once else None, now
     for horizon in LANDING:
-        if arrival is not None or (landing_guard(now, clock.rates(now), clock.top, horizon) <= 0.0):
+        if arrival is not None or (zero_guard(now, clock.rates(now), clock.top, horizon) <= 0.0):
             continue
         for arc in slip_end_arcs(
             integrator, clock.motion, (*clock.parameters, longest, horizon), start
@@ -91,7 +91,7 @@ def follow_clock(clock: EndClock, begin: Row, longest: float, integrator: Integr
                 arrival = clock.collocated(now)
             if arrival is not None:
                 return Approach(arcs, now, arrival)
-        if arcs[-1].guard != LANDED:
+        if arcs[-1].guard != REACHED_ZERO:
             return Approach(arcs, now, None)
         last, doubt = landed(now, clock.rates(now))
         if doubt < SETTLED:
@@ -135,7 +135,7 @@ def segment_of(
 def _end(arc: Arc | None, state: State) -> ModeEnd:
     """Return what ended the mode."""
     if arc is None:
-        return ModeEnd(LANDED, state)
+        return ModeEnd(REACHED_ZERO, state)
     if arc.failure is not None:
         return ModeEnd(FAILURE, state, detail=arc.failure)
     assert arc.guard is not None, "an end of slip whose clock still goes on"

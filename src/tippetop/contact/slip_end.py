@@ -35,7 +35,7 @@ class SlipEnd(TransientMode):
     @property
     def motion(self) -> Motion:
         """Its equations in the clock."""
-        return slip_end_motion(self.top.kind, self.ending, not self.pulls)
+        return slip_end_motion(self.top.kind, self.component, not self.pulls)
 
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
@@ -47,8 +47,8 @@ class SlipEnd(TransientMode):
             self.motion,
             self.top.numbers,
             self.top,
-            lambda y: slip_end_state(y, self.ending),
-            lambda now: rates_in_time(now, self.ending, self.top),
+            lambda y: slip_end_state(y, self.component),
+            lambda now: rates_in_time(now, self.component, self.top),
             pack_moment,
             lambda now: self._arrival(now, longest, tolerance),
             slip_length(self.top.friction) is not None,
@@ -70,9 +70,9 @@ class SlipEnd(TransientMode):
         """Return the end of slip by collocation, if its direction has come to rest and nothing else
         happens.
         """
-        if not self.ending.slip:
+        if not self.component.slip:
             return None
-        arrival = collocated_end(now, self.ending, self.top, tolerance)
+        arrival = collocated_end(now, self.component, self.top, tolerance)
         if arrival is None or now.time + arrival.time_left > longest:
             return None
         numbers = (*self.top.numbers, longest, 0.0)
@@ -90,6 +90,6 @@ class SlipEnd(TransientMode):
     def _clock(self, state: State) -> tuple[float, ...]:
         """Return the numbers of the clock at a state."""
         velocity = state.velocity[:2]
-        xi = self.ending.of(state.axis, state.momentum, velocity, self.top)
-        free = velocity if self.ending.moves else ()
+        xi = self.component.of(state.axis, state.momentum, velocity, self.top)
+        free = velocity if self.component.moves else ()
         return (*state.axis, *state.momentum, *free, *scaled(1.0 / size(xi), xi), size(xi), 0.0)

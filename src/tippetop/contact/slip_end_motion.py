@@ -17,12 +17,12 @@ from tippetop.mechanics.contacts.slip_end import (
     SlipEndRates,
     SlipEndState,
     jamming_guard,
-    landing_guard,
     overtaking_guard,
     rates_in_time,
     reopening_guard,
     slip_beside,
     slip_end_rates,
+    zero_guard,
 )
 from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled, velocity_of
 from tippetop.mechanics.contacts.wrench import Wrench
@@ -32,9 +32,10 @@ from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar
 
-REOPENING, LANDED, TIME, OVERTAKEN, JAMMED = "reopening", "landed", "time", "overtaken", "jammed"
+REOPENING, REACHED_ZERO, TIME = "reopening", "zero", "time"
+OVERTAKEN, JAMMED = "overtaken", "jammed"
 
-OWN = (REOPENING, LANDED, TIME)
+OWN = (REOPENING, REACHED_ZERO, TIME)
 """Guards of the clock itself; the others are of what else may happen."""
 
 CLOCK_LIMIT = 1e4
@@ -118,10 +119,8 @@ def slip_end_motion(kind: Kind, ending: SlipComponent, guarded: bool) -> Motion:
     guards = [
         guard(REOPENING, lambda state, top, _: reopening_guard(state, rates_of(state, top), top)),
         guard(
-            LANDED,
-            lambda state, top, numbers: landing_guard(
-                state, rates_of(state, top), top, numbers[-1]
-            ),
+            REACHED_ZERO,
+            lambda state, top, numbers: zero_guard(state, rates_of(state, top), top, numbers[-1]),
         ),
         guard(TIME, lambda state, _, numbers: numbers[-2] - state.time),
     ]

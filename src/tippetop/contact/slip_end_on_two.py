@@ -9,7 +9,7 @@ from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.guards import BRANCH, OPENING, ROLLING, ROLLING_STOPPING
 from tippetop.contact.mode import Segment, numbered, split
 from tippetop.contact.slip_clock import EndClock, follow_clock, segment_of
-from tippetop.contact.slip_end_motion import LANDED, OVERTAKEN, REOPENING, TIME, pack_clock
+from tippetop.contact.slip_end_motion import OVERTAKEN, REACHED_ZERO, REOPENING, TIME, pack_clock
 from tippetop.contact.transient import straight
 from tippetop.contact.transient_on_two import TransientOnTwo
 from tippetop.integrators.base import Guard, Integrator, Motion
@@ -21,9 +21,9 @@ from tippetop.mechanics.contacts.pair import slip_apart
 from tippetop.mechanics.contacts.slip_end import (
     SlipEndRates,
     SlipEndState,
-    landing_guard,
     reopening_guard,
     slip_end_rates,
+    zero_guard,
 )
 from tippetop.mechanics.contacts.slip_end_on_two import (
     forces_in_clock,
@@ -111,7 +111,7 @@ def end_on_two(mode: ContactMode, number: int) -> SlipEndOnTwo:
     """Return the mode in which the slip of a contact of two ends, or that of both (-1)."""
     first, second = mode.tops[::-1] if number == 1 else mode.tops
     return SlipEndOnTwo(
-        first, (False, False), mode.holds_rolling, beside=(second,), rolls=mode.rolls
+        first, (False, False), mode.prevents_rolling, beside=(second,), rolls=mode.rolls
     )
 
 
@@ -160,8 +160,8 @@ def slip_end_motion_on_two(form: Any, kinds: tuple[Kind, ...]) -> Motion:
             lambda state, mode, _: reopening_guard(state, mode.rates_in_time(state), mode.top),
         ),
         guard(
-            LANDED,
-            lambda state, mode, numbers: landing_guard(
+            REACHED_ZERO,
+            lambda state, mode, numbers: zero_guard(
                 state, mode.rates_in_time(state), mode.top, numbers[-1]
             ),
         ),
@@ -169,7 +169,7 @@ def slip_end_motion_on_two(form: Any, kinds: tuple[Kind, ...]) -> Motion:
         guard(numbered(OPENING, 0), lambda state, mode, _: mode.forces(state).normal[0]),
         guard(numbered(OPENING, 1), lambda state, mode, _: mode.forces(state).normal[1]),
     ]
-    if form.holds_rolling:
+    if form.prevents_rolling:
         guards.append(guard(ROLLING, lambda state, mode, _: mode.forces(state).rolling_reserve))
     elif top.resists_rolling:
         guards.append(

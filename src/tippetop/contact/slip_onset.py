@@ -49,19 +49,19 @@ class SlipOnset(TransientMode):
     @property
     def begins(self) -> tuple[SlipComponent, ...]:
         """The velocities that begin."""
-        return SLIP_AND_ROLLING if self.with_rolling else (self.ending,)
+        return SLIP_AND_ROLLING if self.with_rolling else (self.component,)
 
     @property
     def clause(self) -> str:
         """Clause of a sentence that states what begins."""
         if self.with_rolling:
             return "slip and rolling begin"
-        return "slip begins" if self.ending.slip else "rolling begins"
+        return "slip begins" if self.component.slip else "rolling begins"
 
     @property
     def form(self) -> str:
         """What begins decides how its numbers are read."""
-        slip, held = self.ending
+        slip, held = self.component
         return f"{self.name}: {len(self.begins)} begin, slip {slip}, held {held}"
 
     def reaction(self, y: Row) -> Reaction:
@@ -91,7 +91,7 @@ class SlipOnset(TransientMode):
             yield failed_segment(self.reported_mode, time, state, why)
             return
         top = mode.top
-        velocity = state.velocity[:2] if self.ending.moves else ()
+        velocity = state.velocity[:2] if self.component.moves else ()
         numbers = [*state.axis, *state.momentum, *velocity]
         begin = [*numbers, *[0.0 for direction in directions for _ in direction]]
         phase = follow_slip(
@@ -99,7 +99,7 @@ class SlipOnset(TransientMode):
             top,
             (begin, directions),
             end - time,
-            to_end=len(self.begins) == 1 and self.ending.recurs(top),
+            to_end=len(self.begins) == 1 and self.component.recurs(top),
             longest_step=mode.longest_step,
         )
         if not phase.rows:
@@ -113,26 +113,26 @@ class SlipOnset(TransientMode):
         """Return how long a step may be: a part of the time in which the velocity beside this one
         could end, at its present rate; infinity where nothing can.
         """
-        moves, slip = self.ending.moves, None
+        moves, slip = self.component.moves, None
         can_end = is_set_valued(self.top.friction) if moves else self.top.resists_rolling
         if self.with_rolling or not can_end:
             return math.inf
         axis, momentum, velocity, _ = self._parts(numbers)
         point = ContactPoint.of(axis, momentum, self.top)
-        beside: Slip = () if self.ending.held else point.turning[:2]
+        beside: Slip = () if self.component.held else point.turning[:2]
         if moves:
             slip = slip_of(axis, momentum, (velocity[0], velocity[1]), self.top)
             beside = slip
         if not beside or size(beside) == 0.0:
             return math.inf
-        acceleration = self.ending.contact(point, direction, slip)[1]
-        change = SlipComponent(not self.ending.slip).rate(acceleration, self.top)
+        acceleration = self.component.contact(point, direction, slip)[1]
+        change = SlipComponent(not self.component.slip).rate(acceleration, self.top)
         closing = inner(beside, change)
         return PART * inner(beside, beside) / -closing if closing < 0.0 else math.inf
 
     def _with_directions(self, state: State) -> "tuple[SlipOnset, list[Slip]]":
         """Return the mode on its law's branch, and the directions of what begins."""
-        ending = self.ending
+        ending = self.component
         begins = ending.slip, not ending.slip or self.with_rolling
         point = ContactPoint.of(state.axis, state.momentum, self.top)
         slip, rolling = None, None
@@ -155,7 +155,7 @@ class SlipOnset(TransientMode):
     @property
     def stuck(self) -> bool:
         """Whether the contact sticks meanwhile."""
-        return not self.ending.slip and self.ending.held
+        return not self.component.slip and self.component.held
 
 
 def onset_segment(

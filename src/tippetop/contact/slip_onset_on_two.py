@@ -49,7 +49,7 @@ class SlipOnsetOnTwo(TransientOnTwo):
             slips = direction, slips[1]
         now = forces_on_two(pair, slips, self.rolls)
         margins = [*now.normal]
-        if self.holds_rolling:
+        if self.prevents_rolling:
             margins.append(now.rolling_reserve)
         elif self.top.resists_rolling:
             margins.append(self.rolls * now.rolling)

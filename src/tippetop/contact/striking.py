@@ -7,7 +7,7 @@ executors of motions, of one launch and of many, follow it too, unless slip ends
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 
-from tippetop.contact.guards import BRANCH, NEARING
+from tippetop.contact.guards import BRANCH, SLIP_SMALL
 from tippetop.integrators.base import Guard, Integrator, Motion
 from tippetop.integrators.dense import as_array
 from tippetop.mechanics.contacts.branches import is_branched, on_branch, on_other_branch
@@ -114,5 +114,5 @@ def impact_motion(kind: Kind, *, ending: bool = False) -> Motion:
     if is_branched(kind.example.friction):
         guards.append(guard(BRANCH, branch))
     if ending:
-        guards.append(guard(NEARING, lambda state, top: nearing_guard(along_table(state), top)))
+        guards.append(guard(SLIP_SMALL, lambda state, top: nearing_guard(along_table(state), top)))
     return Motion(rates, size=6, parameters=kind.numbers + 3, guards=tuple(guards))

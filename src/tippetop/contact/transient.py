@@ -43,7 +43,7 @@ DEGREE = 14
 class TransientMode(Mode):
     """A moment between two modes; a result reports the one of them in which something moves."""
 
-    ending: SlipComponent
+    component: SlipComponent
     """The velocity xi that ends or begins, and whether the other is held."""
     pulls: bool = False
     """Whether the table may pull."""
@@ -53,7 +53,7 @@ class TransientMode(Mode):
     @property
     def reported_mode(self) -> ContactMode:
         """The mode that a result reports for it."""
-        slip, held = self.ending
+        slip, held = self.component
         return ContactMode(self.top, (not slip and held,), slip and held)
 
     @property
@@ -64,15 +64,17 @@ class TransientMode(Mode):
     @property
     def form(self) -> str:
         """What ends or begins decides how its numbers are read."""
-        return f"{self.name}: slip {self.ending.slip}, held {self.ending.held}"
+        return f"{self.name}: slip {self.component.slip}, held {self.component.held}"
 
     def state(self, y: Row) -> State:
         """Return the state from axis, momentum, velocity where it is free, and xi."""
         axis, momentum, velocity, xi = self._parts(y)
-        if self.ending.slip:
+        if self.component.slip:
             velocity = velocity_of(axis, momentum, xi, self.top)
-            momentum = without_rolling(axis, momentum, self.top) if self.ending.held else momentum
-        elif self.ending.held:
+            momentum = (
+                without_rolling(axis, momentum, self.top) if self.component.held else momentum
+            )
+        elif self.component.held:
             velocity = velocity_without_slip(axis, momentum, self.top)
         return on_table(SlidingState(axis, momentum, (velocity[0], velocity[1])), self.top)
 
@@ -80,9 +82,9 @@ class TransientMode(Mode):
         """Return the contact force and torque, from xi, of which a state has few digits."""
         axis, momentum, velocity, xi = self._parts(y)
         now = SlipEndState(axis, momentum, velocity, xi, 0.0, 0.0)
-        force, torque = rates_in_time(now, self.ending, self.top).wrench
+        force, torque = rates_in_time(now, self.component, self.top).wrench
         power = dot(torque, angular_velocity(axis, momentum, self.top))
-        slip = xi if self.ending.slip else slip_beside(now, self.ending, self.top)
+        slip = xi if self.component.slip else slip_beside(now, self.component, self.top)
         if slip is not None:
             power = power + (force[0] * slip[0] + force[1] * slip[1])
         return Reaction(force, torque, power)
@@ -90,7 +92,7 @@ class TransientMode(Mode):
     @property
     def free(self) -> int:
         """How many numbers come before what ends or begins."""
-        return 8 if self.ending.moves else 6
+        return 8 if self.component.moves else 6
 
     def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
         return *split(y), tuple(y[6 : self.free]), tuple(y[self.free :])

@@ -19,8 +19,8 @@ from tippetop.mechanics.contacts.pair import (
 )
 from tippetop.mechanics.contacts.pair_resolver import (
     Resolution,
-    both_letting_go,
-    letting_go,
+    both_begin_to_slip,
+    first_begins_to_slip,
     resolution,
     rolling_of_slip,
     turning_about,
@@ -176,9 +176,9 @@ class TwoClosed:
             If there is no direction for it, or more than one.
         """
         if contact is None or slip_length(self.tops[0].friction) is not None:
-            return both_letting_go(self.pair, self.rolls)
+            return both_begin_to_slip(self.pair, self.rolls)
         if not all(self.ended):
-            return letting_go(self.pair, self.xi, self.rolls)
+            return first_begins_to_slip(self.pair, self.xi, self.rolls)
         needed = forces_on_two(self.pair, (None, None), self.rolls).needed(contact)
         sign = 1.0 if (needed > 0.0) == (contact == 0) else -1.0
         return turning_about(self.pair, 1 - contact, sign, self.rolls)

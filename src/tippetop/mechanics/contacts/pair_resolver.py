@@ -84,9 +84,13 @@ def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float
         return Resolution(held, (False, False), rolls)
     if not all(ended):
         sticks = held.reserve(0) >= 0.0
-        return Resolution(held, (True, False), rolls) if sticks else letting_go(pair, xi, rolls)
+        return (
+            Resolution(held, (True, False), rolls)
+            if sticks
+            else first_begins_to_slip(pair, xi, rolls)
+        )
     if slip_length(pair[0].top.friction) is not None:
-        return patches_letting_go(pair, rolls) or Resolution(held, (True, True), rolls)
+        return patches_begin_to_slip(pair, rolls) or Resolution(held, (True, True), rolls)
     if held.is_held:
         return Resolution(held, (True, True), rolls)
     for number in (0, 1):
@@ -94,10 +98,10 @@ def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float
             trial = turning_about(pair, number, sign, rolls)
             if trial.motion.rate[2] * sign >= 0.0 and trial.motion.reserve(number) >= 0.0:
                 return trial
-    return both_letting_go(pair, rolls)
+    return both_begin_to_slip(pair, rolls)
 
 
-def letting_go(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
+def first_begins_to_slip(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
     """Return the resolution in which the first contact, which alone sticks, begins to slip.
 
     Raises
@@ -119,7 +123,7 @@ def letting_go(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
     return Resolution(motion(direction), (False, False), rolls, (*direction, 0.0))
 
 
-def both_letting_go(pair: ContactPair, rolls: float) -> Resolution:
+def both_begin_to_slip(pair: ContactPair, rolls: float) -> Resolution:
     """Both contacts begin to slip, which cannot be held.
 
     Raises
@@ -168,7 +172,7 @@ def against(held: ContactForces) -> Slip:
     return (*v, -(ratios[1] - ratios[0]))
 
 
-def patches_letting_go(pair: ContactPair, rolls: float) -> Resolution | None:
+def patches_begin_to_slip(pair: ContactPair, rolls: float) -> Resolution | None:
     """Return how patches begin to slip that both stick; None where they can be held.
 
     They can where forces alone hold them, without moments of drilling. If not, moments may help:
@@ -183,7 +187,7 @@ def patches_letting_go(pair: ContactPair, rolls: float) -> Resolution | None:
     if held.is_held:
         return None
     try:
-        return both_letting_go(pair, rolls)
+        return both_begin_to_slip(pair, rolls)
     except ArithmeticError:
         if moments_hold(held):
             return None
@@ -227,7 +231,7 @@ def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
 
     q, still = 0.0, at(0.0)
     for _ in range(CUTS):
-        trial = patches_letting_go(at(q), rolls)
+        trial = patches_begin_to_slip(at(q), rolls)
         if trial is None:
             break
         assert trial.begins is not None

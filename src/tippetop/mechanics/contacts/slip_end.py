@@ -200,7 +200,7 @@ def reopening_guard(state: SlipEndState, rates: SlipEndRates, top: Top) -> Scala
     return horizon * doubt - remaining(scaled(state.speed, state.direction), rate, horizon)
 
 
-def landing_guard(state: SlipEndState, rates: SlipEndRates, top: Top, horizon: Scalar) -> Scalar:
+def zero_guard(state: SlipEndState, rates: SlipEndRates, top: Top, horizon: Scalar) -> Scalar:
     """Falls through zero where xi, at its present rate, ends within the horizon (s), and is small
     by itself.
 
