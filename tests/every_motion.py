@@ -90,7 +90,7 @@ def sticking_motions(top):
     """Every motion of a top in which it sticks."""
     kind, numbers, rolls = top.kind, top.numbers, top.resists_rolling
     for held in (False, True)[: 1 + rolls]:
-        mode = ContactMode(top, sticks=(True,), holds_rolling=held)
+        mode = ContactMode(top, sticks=(True,), prevents_rolling=held)
         yield mode.status, mode.motion, numbers
     if rolls:
         yield (

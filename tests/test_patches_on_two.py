@@ -26,7 +26,7 @@ from tippetop.contact.two_closed import rolling_of
 from tippetop.mechanics.contacts import pair_resolver
 from tippetop.mechanics.contacts.contact_forces import forces_on_two
 from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points
-from tippetop.mechanics.contacts.pair_resolver import moments_hold, patches_letting_go
+from tippetop.mechanics.contacts.pair_resolver import moments_hold, patches_begin_to_slip
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.unsolved import Unsolved
@@ -251,11 +251,11 @@ def test_a_search_that_fails_does_not_prove_that_patches_are_held(
     def fail(*_: object) -> None:
         raise Unsolved("no direction is found")
 
-    monkeypatch.setattr(pair_resolver, "both_letting_go", fail)
+    monkeypatch.setattr(pair_resolver, "both_begin_to_slip", fail)
     assert spared(rolling(0.5, 0.00775), 0.5) < 0.0
     with pytest.raises(Unsolved):
-        patches_letting_go(*resting_pair(rolling(0.5, 0.00775)))
-    assert patches_letting_go(*resting_pair(rolling(6.0, 0.0076))) is None
+        patches_begin_to_slip(*resting_pair(rolling(0.5, 0.00775)))
+    assert patches_begin_to_slip(*resting_pair(rolling(6.0, 0.0076))) is None
 
 
 def test_what_holds_hertz_s_patch_without_drilling_is_an_expression():

@@ -253,9 +253,10 @@ FAST_FORCES = (51, 462)
 )
 @pytest.mark.filterwarnings("ignore::tippetop.Implausible")
 def test_random_problems_agree_with_differences(seed):
-    """The campaign does not pass whole. Where surfaces strike in turns or slip turns round in an
-    impact some seeds differ more (25, 69, 113, 229 and 408 among others); after a hundred ends of
-    slip runs nearby may go through other events (346, 374).
+    """Of the first 300 seeds of the campaign eleven fail. Where surfaces strike in turns, slip
+    turns round in an impact or ends often, some differ more (25, 69, 93, 113, 122, 229 and 250);
+    where a motion grazes, or runs nearby go through other events, there is none (187, 200, 251,
+    279).
     """
     case = random_case(seed)
     if case is None:
