@@ -620,7 +620,8 @@ class Automaton:
         """Return what follows where no set of forces on two contacts is consistent, or several are.
 
         As on one contact (`resting_alone`), an impact without approach takes slip away where
-        friction jams one of them; where several sets are consistent the body may lift off, too.
+        friction jams one of them, the first if both; where several sets are consistent the body may
+        lift off, too. Where friction jams none the run ends.
         """
         state = contacts.state
         if consistent:

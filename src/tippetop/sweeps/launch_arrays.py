@@ -78,9 +78,10 @@ class Launches:
             return automaton
         return Automaton(top, self.liftoff, float(self.restitution[launch]), self.indeterminate)
 
-    def sliding(self, launch: int) -> ContactMode:
-        """Return the mode of one launch that slides."""
-        return ContactMode(self._top(launch), pulls=self.liftoff == "ignore")
+    def sliding(self, launch: int, state: State) -> ContactMode:
+        """Return the mode in which one launch slides in a state, on the branch that holds there."""
+        top = branched(self._top(launch), state)
+        return ContactMode(top, pulls=self.liftoff == "ignore")
 
     def _top(self, launch: int) -> Top:
         return self.kind.top(tuple(self.numbers[:, launch].tolist()))

@@ -81,7 +81,7 @@ class Crossings:
             ]
             transitions = [
                 launches.automaton(int(cell)).follow(
-                    launches.sliding(int(cell)), end, float(moment)
+                    launches.sliding(int(cell), end.state), end, float(moment)
                 )
                 for cell, end, moment in zip(cells, ends, time[ending], strict=True)
             ]
