@@ -629,10 +629,10 @@ class Automaton:
             events = (*events, Event(EventKind.INDETERMINATE, time, surface=surface))
         if NONE_CLOSED in consistent and self.indeterminate == "lift_off":
             return self._release(contacts.tops[0], time, state, events)
-        if contacts.jammed:
-            contact = contacts.jammed[0]
-            at_rest = on_table(along_table(state), contact)
-            return self.inconsistent(contact, time, at_rest, events)
+        jammed = contacts.jammed
+        if jammed:
+            touching = on_table(along_table(state), jammed[0])
+            return self.inconsistent(jammed[0], time, touching, events)
         count = "more than one" if consistent else "no"
         detail = f"{count} set of forces is consistent with two surfaces that touch"
         return Transition(events, Outcome.FAILED, state, detail)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from tippetop.contact.collocated_end import CollocatedEnd, collocated_end
 from tippetop.contact.mode import Segment
 from tippetop.contact.slip_clock import EndClock, follow_clock, segment_of
-from tippetop.contact.slip_end_motion import OWN, slip_end_motion, slip_end_state
+from tippetop.contact.slip_end_motion import CLOCK_GUARDS, slip_end_motion, slip_end_state
 from tippetop.contact.surfaces import passes_flat
 from tippetop.contact.transient import LOOKS, TransientMode, pack_moment, straight
 from tippetop.integrators.base import Integrator, Motion
@@ -81,7 +81,9 @@ class SlipEnd(TransientMode):
             xi = tuple(later[6:])
             clock = (*later[:6], *scaled(1.0 / size(xi), xi), size(xi), now.time)
             if not all(
-                one.value(clock, numbers) > 0.0 for one in self.motion.guards if one.name not in OWN
+                one.value(clock, numbers) > 0.0
+                for one in self.motion.guards
+                if one.name not in CLOCK_GUARDS
             ):
                 return None
         rows = [arrival.at(probe / LOOKS) for probe in range(LOOKS + 1)]

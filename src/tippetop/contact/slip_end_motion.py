@@ -35,7 +35,7 @@ from tippetop.mechanics.vectors import Row, Scalar
 REOPENING, REACHED_ZERO, TIME = "reopening", "zero", "time"
 OVERTAKEN, JAMMED = "overtaken", "jammed"
 
-OWN = (REOPENING, REACHED_ZERO, TIME)
+CLOCK_GUARDS = (REOPENING, REACHED_ZERO, TIME)
 """Guards of the clock itself; the others are of what else may happen."""
 
 CLOCK_LIMIT = 1e4

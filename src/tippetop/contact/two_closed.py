@@ -37,8 +37,8 @@ FIRST_ALONE, SECOND_ALONE, BOTH_CLOSED, NONE_CLOSED = "first", "second", "both",
 """Sets of contacts that may stay closed."""
 
 OPENS, HELD, IMPOSSIBLE = "opens", "held", "impossible"
-"""What the other contact does beside one that carries the body: it opens; or rolling is held, so
-that both may stay; or it closes, and the one cannot carry the body alone.
+"""Whether one contact can carry the body alone: it can, and the other opens; it can with rolling
+held, so that both may stay; or it cannot.
 """
 
 
