@@ -121,6 +121,10 @@ def test_the_suite_says_the_same_in_all_formats(tmp_path):
     assert "| `painleve` |" in (folder / "README.md").read_text()
     with pytest.raises(tt.FileTrouble, match="exists"):
         suite.write_suite(folder, ["painleve"])
+    with pytest.raises(tt.FileTrouble, match="cannot be written"):
+        suite.write_suite(folder / "README.md" / "inside", ["painleve"])
+    twice = suite.write_suite(tmp_path / "twice", ["painleve", "painleve"])
+    assert [one.case.name for one in twice] == ["painleve"]
 
 
 def test_energy_and_jellett_of_states_are_those_of_the_run():

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 import tippetop as tt
 from tippetop.engines.cases import CASES, Case
-from tippetop.support.errors import InvalidInput
-from tippetop.support.files import place_for, written_beside
+from tippetop.support.files import make_folder, place_for, written_beside
 from tippetop.support.suggestions import not_one_of
 
 SUITE_VERSION = "1.0"
@@ -232,14 +231,12 @@ def write_suite(
         If a file exists and `overwrite` is false, or cannot be written.
     """
     folder = Path(folder)
-    cases = [case_of(name) for name in names] if names else list(CASES)
-    if folder.exists() and not folder.is_dir():
-        raise InvalidInput("out", str(folder), "a folder")
+    cases = [case_of(name) for name in dict.fromkeys(names)] if names else list(CASES)
     paths = [folder / name for case in cases for name in _files_of(case.name)]
     for path in [*paths, *(folder / name for name in ("README.md", "schema.json"))]:
         if path.parent.is_dir():
             place_for(path, overwrite)
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder("out", folder)
     references = []
     for k, case in enumerate(cases):
         progress(k, len(cases), case.name)

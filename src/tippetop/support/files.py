@@ -93,6 +93,18 @@ def place_for(path: Path | str, overwrite: bool) -> Path:
     return target
 
 
+def make_folder(field: str, path: Path) -> None:
+    """Make a folder and the folders around it, where they are missing.
+
+    Raises `InvalidInput` if `path`, the value of a field, is a file, and `FileTrouble` if the
+    folder cannot be made.
+    """
+    if path.exists() and not path.is_dir():
+        raise InvalidInput(field, str(path), "a folder")
+    with in_words(path, "written"):
+        path.mkdir(parents=True, exist_ok=True)
+
+
 @contextmanager
 def written_beside(path: Path | str, overwrite: bool = False) -> Iterator[Path]:
     """Yield a temporary file that is moved to `path` once the block has written it.
