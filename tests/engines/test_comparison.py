@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from typer.testing import CliRunner
 
 import tippetop as tt
@@ -12,6 +13,7 @@ from tippetop.cli.commands import app
 from tippetop.engines import comparison, limits
 from tippetop.engines.adapters import ADAPTERS, adapter
 from tippetop.engines.adapters.base import refusals, settings_of
+from tippetop.engines.adapters.mujoco import damping_ratio
 from tippetop.engines.cases import CASES
 from tippetop.engines.reference import case_of, judged_state, reference_state
 
@@ -150,6 +152,67 @@ def test_results_of_other_options_are_run_again(tmp_path):
     assert [row["error"] < 1.0 for row in again["rows"]] == [True]
 
 
+def test_a_folder_that_cannot_be_made_is_said(tmp_path):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(tt.InvalidInput, match="folder"):
+        comparison.compare(tmp_path / "file", ["moreau"], ["restitution"], STEPS)
+    with pytest.raises(tt.FileTrouble, match="cannot be written"):
+        comparison.compare(tmp_path / "file" / "inside", ["moreau"], ["restitution"], STEPS)
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+def test_jellett_has_no_relative_error_where_it_is_zero_at_launch():
+    assert math.isnan(comparison.exact(case_of("painleve")).jellett)
+    assert comparison.exact(case_of("restitution")).jellett != 0.0
+
+
+def test_a_failure_names_no_object_of_the_process(monkeypatch):
+    def failing(*_):
+        raise RuntimeError("A value is not finite. It came from source id 311191.")
+
+    monkeypatch.setattr(comparison, "measure", failing)
+    task = next(iter(comparison.tasks(["moreau"], ["painleve"])))
+    row = comparison._tried(task, 1e-3, comparison.exact(task.case), False)
+    assert row["failure"] == "A value is not finite"
+
+
+@pytest.mark.parametrize("restitution", [0.2, 0.5, 0.8, 1.0])
+def test_a_spring_and_damper_rebound_with_the_restitution_asked_for(restitution):
+    ratio = damping_ratio(restitution)
+
+    def force(_, state):
+        return -state[0] - 2.0 * ratio * state[1]
+
+    def let_go(time, state):
+        return force(time, state) if time > 0.0 else 1.0
+
+    let_go.terminal = True
+    # A body comes down at unit speed on a spring of unit frequency, which only pushes.
+    run = solve_ivp(
+        lambda time, state: [state[1], force(time, state)],
+        (0.0, 10.0),
+        [0.0, -1.0],
+        events=let_go,
+        rtol=1e-10,
+        atol=1e-12,
+    )
+    assert run.status == 1
+    assert run.y[1, -1] == pytest.approx(restitution, abs=1e-8)
+
+
+def test_a_ball_without_spin_rebounds_in_mujoco_with_the_restitution_asked_for():
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    made, case = adapter("mujoco"), case_of("restitution")
+    dropped = case._replace(problem=case.problem.replace({"launch.tilt": 0.0, "launch.spin": 0.0}))
+    (setting,) = settings_of(made, dropped)
+    run = made.start(dropped, 1e-4, setting)
+    speeds = []
+    for _ in range(1000):
+        run.advance(1)
+        speeds.append(run.read().velocity[2])
+    assert max(speeds) / -min(speeds) == pytest.approx(0.8, abs=0.02)
+
+
 def test_a_damaged_file_of_results_is_said(tmp_path):
     (tmp_path / "moreau.json").write_text("{")
     with pytest.raises(tt.InvalidInput, match="file of results"):
@@ -237,7 +300,7 @@ def test_unknown_programs_and_steps_are_refused(tmp_path):
     result = CliRunner().invoke(app, ["engines", "--engine", "unreal"])
     assert isinstance(result.exception, tt.InvalidInput)
     assert "mujoco" in str(result.exception)
-    for step in (0.0, math.nan, 1.0):
+    for step in (0.0, 1e-12, math.nan, 1.0):
         with pytest.raises(tt.InvalidInput, match="step"):
             comparison.compare(tmp_path, ["moreau"], None, [step])
 

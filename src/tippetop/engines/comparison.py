@@ -34,7 +34,7 @@ from tippetop.engines.reference import (
     reference_state,
 )
 from tippetop.support.errors import InvalidInput
-from tippetop.support.files import read_text, written_beside
+from tippetop.support.files import make_folder, read_text, written_beside
 from tippetop.support.suggestions import not_one_of
 
 Array = NDArray[np.float64]
@@ -46,8 +46,16 @@ READINGS = 2e-3
 """How often the tilt is read for the time of turning over, s: a case whose states are closer has
 steps shorter in the same proportion."""
 
+SHORTEST = 1e-6
+"""Shortest step, s: a run of the briefest case, whose steps are a twentieth, takes seconds with it,
+and one of the longest some minutes."""
+
 HOLDS = 0.01
 """Error of the tilt up to which a run holds, rad."""
+
+ROUNDING_OF_JELLETT = 1e-9
+"""Part of I1 times angular velocity times height below which Jellett's integral is zero: rounding
+is far below it, and no case that spins is near it."""
 
 LONGEST = 60.0
 """Longest processor time of a run, s: a shorter step that would take longer is left out."""
@@ -96,7 +104,7 @@ class Exact(NamedTuple):
     energy: float
     """At launch, J."""
     jellett: float
-    """At launch, kg m^3/s."""
+    """At launch, kg m^3/s; nan where it is zero, or rounding of zero."""
 
 
 def exact(case: Case) -> Exact:
@@ -105,6 +113,9 @@ def exact(case: Case) -> Exact:
     numbers = numbers_of(case.problem, rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[:, 10])
     run = tt.simulate(case.problem, case.duration, samples=2)
     energy, jellett = float(run["energy"][0]), float(run["jellett"][0])
+    largest = case.problem.body.I1 * np.abs(rows[:, 4:7]).max() * rows[:, 10].max()
+    if abs(jellett) < ROUNDING_OF_JELLETT * largest:
+        jellett = math.nan
     return Exact(numbers, float(run["turns_over"]), energy, jellett)
 
 
@@ -157,9 +168,7 @@ def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dic
         "turns_over_exactly": math.nan if late else reference.turns_over,
         "energy_error": float((energies[-1] - exact["energy"][-1]) / reference.energy),
         "energy_gain": float(np.diff(energies).max() / reference.energy),
-        "jellett_error": _part(
-            float(numbers["jellett"][-1] - exact["jellett"][-1]), reference.jellett
-        ),
+        "jellett_error": float(numbers["jellett"][-1] - exact["jellett"][-1]) / reference.jellett,
         "seconds": took,
         "microseconds_per_step": 1e6 * took / (len(times) * readings_between * each),
     }
@@ -167,11 +176,6 @@ def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dic
         chosen = np.linspace(0, len(tilts) - 1, DRAWN + 1).round().astype(int)
         row["tilt"] = [round(tilts[k], 4) for k in chosen]
     return {name: _plain(value) for name, value in row.items()}
-
-
-def _part(value: float, total: float) -> float:
-    """Return a value over a total; nan where the total is nothing beside it but rounding."""
-    return value / total if abs(total) > 1e-6 * abs(value) else math.nan
 
 
 def _plain(value: Any) -> Any:
@@ -228,11 +232,12 @@ def compare(
     FileTrouble
         If results cannot be read or written.
     """
-    if not all(0.0 < step <= READINGS for step in steps):
-        raise InvalidInput("step", list(steps), f"lengths above 0 and at most {READINGS:g} s")
+    for step in steps:
+        if not SHORTEST <= step <= READINGS:
+            raise InvalidInput("step", step, f"a length from {SHORTEST:g} to {READINGS:g} s")
     folder = Path(folder)
     chosen = list(tasks(installed(names) if names else installed(), cases))
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder("out", folder)
     steps = sorted(steps, reverse=True)
     references: dict[str, Exact] = {}
     results: dict[str, dict[str, Any]] = {}
@@ -279,7 +284,8 @@ def _tried(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dict
     try:
         return measure(task, step, reference, drawn)
     except (ArithmeticError, AssertionError, RuntimeError, ValueError) as error:
-        message = " ".join(str(error).split())[:200]
+        # The first sentence says what went wrong; others may number objects of the process.
+        message = " ".join(str(error).split()).split(". ")[0][:200]
         return {
             "case": task.case.name,
             "setting": task.setting.name,
