@@ -4,12 +4,37 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import tippetop as tt
 from launches import TOLERANCE, asked, in_javascript
-from tippetop.contact.mode import BROKEN
+from test_painleve_on_two import drawn
+from tippetop.contact import slip_onset
+from tippetop.contact.automaton import Automaton
+from tippetop.contact.contact_mode import mode_on_two
+from tippetop.contact.mode import BOTH, BROKEN, Outcome
+from tippetop.contact.slip_onset import UNSEEN
+from tippetop.contact.two_closed import Before, TwoClosed
+from tippetop.mechanics.contacts import pair_resolver
+from tippetop.mechanics.contacts.slip_direction import Resisted, directions
+from tippetop.mechanics.flight import touchdown as flight_end
+from tippetop.mechanics.flight.complex_disc import Disc
+from tippetop.mechanics.flight.separation import CLEAR
+from tippetop.mechanics.flight.touchdown import Start, touchdown
+from tippetop.mechanics.impacts.impact import impact
+from tippetop.mechanics.impacts.impact_on_two import SlipEndsInImpact
+from tippetop.mechanics.laws.contensou import EllipsoidalLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.friction import ViscousLaw
+from tippetop.mechanics.motion import along_table, sliding_contact
 from tippetop.mechanics.roots import first_root
+from tippetop.mechanics.series import PLAIN, Series, unknown
+from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import RingSurface, SphereSurface, SpheroidSurface
+from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.problem.presets import REPORT, report_problem
 
@@ -98,3 +123,176 @@ def test_steps_that_are_lost_in_rounding_are_not_taken_for_ever() -> None:
     """
     with pytest.raises(Unsolved, match="rounding"):
         first_root(lambda _: (1.0, 0.0, 0.0), 1.8, 1.8 + 1e-14, 6.0 / 1e-17**3)
+
+
+EGG = Top(1.0, 0.2, 0.4, SpheroidSurface(1.0, 1.5), ViscousLaw(0.1), 1.0)
+DISK = Top(1.0, 0.2, 0.4, RingSurface(0.05, 1.0, 0.0), ViscousLaw(0.1), 1.0)
+
+
+def test_a_disk_let_go_flat_has_no_first_touch() -> None:
+    flat = State((0.0, 0.0, 1.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), 0.05)
+    with pytest.raises(Unsolved, match="lies flat at its start"):
+        touchdown(flat, DISK, math.inf, Start.RELEASE)
+
+
+def test_turns_shorter_than_rounding_of_time_hide_the_touch() -> None:
+    tumbling = State((0.6, 0.0, 0.8), (0.0, 1e17, 0.0), (0.0, 0.0, 0.0), 1.6)
+    with pytest.raises(Unsolved, match="turns are lost in rounding of time"):
+        touchdown(tumbling, EGG, math.inf)
+
+
+def test_a_body_that_tumbles_just_above_the_table_is_not_followed_for_ever(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Without weight to speak of it stays where every turn may touch, and none does."""
+    monkeypatch.setattr(flight_end, "MOST_DISCS", 100)
+    height = EGG.surface.height(1.0) + 0.5 * CLEAR * EGG.surface.size
+    low = State((1.0, 0.0, 0.0), (0.0, 3.0, 0.0), (0.0, 0.0, 0.0), float(height))
+    with pytest.raises(Unsolved, match="turns too often so near the table"):
+        touchdown(low, EGG._replace(gravity=1e-22), math.inf)
+
+
+def test_what_drives_slip_round_leads_nowhere() -> None:
+    """No law of friction does: a rate across every direction, which none resists."""
+
+    def turning(ways: Any) -> list[Resisted]:
+        return [Resisted((-y, x), 1.0) for x, y in ways]
+
+    with pytest.raises(Unsolved, match="no direction in which the contact can go on"):
+        directions(turning, [(1.0, 0.0)])
+
+
+def test_painleves_paradox_with_rolling_held_has_no_force() -> None:
+    """Friction presses the contact more than its force opens it, and rolling is at rest."""
+    problem = report_problem(0.0, tilt=1.5, mu=10.0).replace(
+        {"launch.slip": (10.0, 0.0), "rolling_resistance": 1e-6}
+    )
+    assert sliding_contact(*along_table(problem.start()), problem.top).delassus < 0.0
+    after = Automaton(problem.top, "fly", 0.0).resting(problem.top, 0.0, problem.start())
+    assert after.next is Outcome.FAILED
+    assert "nothing can hold the contact" in after.detail
+
+
+def test_at_the_singular_point_of_a_jam_it_is_open_what_follows() -> None:
+    """Genot and Brogliato's point: A and b are zero at once, and slip in a plane does not turn."""
+
+    def rod(mu: float, rate: float) -> tt.Problem:
+        return tt.Problem(
+            body=tt.Body(
+                mass=0.02,
+                shape=tt.EccentricSphere(radius=0.02, eccentricity=0.05),
+                I1=4e-8,
+                I3=4e-8,
+            ),
+            friction=tt.CoulombFriction(mu=mu),
+            launch=tt.Launch(tilt=math.pi - 1.2, spin=0.0, tilt_rate=rate, slip=(0.5, 0.0)),
+            contact=tt.Contact(liftoff="fly", restitution=0.0),
+        )
+
+    def delassus(mu: float) -> float:
+        problem = rod(mu, 0.0)
+        touch = sliding_contact(*along_table(problem.start()), problem.top)
+        return float(touch.delassus * problem.top.mass)
+
+    def opening(rate: float) -> float:
+        problem = rod(mu, rate)
+        return float(sliding_contact(*along_table(problem.start()), problem.top).free_acceleration)
+
+    mu = brentq(delassus, 0.01, 10.0, xtol=1e-16)
+    singular = rod(mu, brentq(opening, 0.0, 1000.0))
+    after = Automaton(singular.top, "fly", 0.0).jammed(singular.top, 0.0, singular.start())
+    assert after is not None
+    assert after.detail.startswith("What follows where friction jams the contact cannot be found:")
+    assert "whether it does or is struck rigid bodies do not tell" in after.detail
+
+
+def drawn_contacts(seed: int, law: Any = None, resistance: float | None = None) -> TwoClosed:
+    """A slender body on two spheres, of which the first sticks and the second slips if it can."""
+    case = drawn(np.random.default_rng(seed))
+    assert case is not None
+    (first, _), state = case
+    rolling = None if resistance is None else RollingResistance(resistance)
+    top = first._replace(rolling_resistance=rolling, friction=law or first.friction)
+    return TwoClosed.of(state, (top.each[0], top.each[1]), 0.0, (True, law is not None))
+
+
+@pytest.mark.parametrize(("seed", "count"), [(95, "more than one"), (34, "no")])
+def test_forces_on_two_contacts_may_be_many_or_none_without_a_jam(seed: int, count: str) -> None:
+    contacts = drawn_contacts(seed)
+    assert not contacts.jammed
+    automaton = Automaton(contacts.tops[0], "fly", 0.0)
+    tops, state = contacts.tops, contacts.state
+    after = automaton.resolve_two(0.0, state, tops, Before(), 0.0)
+    assert after.next is Outcome.FAILED
+    assert after.detail == f"{count} set of forces is consistent with two surfaces that touch"
+
+
+def test_slip_on_two_begins_in_no_direction_where_friction_holds_them() -> None:
+    contacts = drawn_contacts(1, EllipsoidalLaw(0.05, 0.01))
+    assert pair_resolver.patches_begin_to_slip(contacts.pair, 0.0) is None
+    mode = mode_on_two(contacts.tops, 0.0, (True, True))
+    automaton = Automaton(contacts.tops[0], "fly", 0.0)
+    after = automaton.slip_on_two(0.0, contacts.state, mode, BOTH)
+    assert after.next is Outcome.FAILED
+    assert after.detail.startswith(
+        "The direction in which slip, or rolling, begins on two surfaces cannot be found: no dir"
+    )
+
+
+def test_rolling_on_two_contacts_may_be_held_by_nothing_and_begin_neither_way() -> None:
+    """One contact slips on very rough ground, which presses it (Painleve's paradox)."""
+    with pytest.raises(Unsolved, match="nothing can hold the rolling of two contacts"):
+        drawn_contacts(2346, resistance=0.25).resolved()
+
+
+def test_patches_whose_direction_of_slip_is_not_found_are_not_held(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where moments cannot hold them either, the search is what has failed."""
+    contacts = drawn_contacts(4, EllipsoidalLaw(0.05, 0.01))
+    assert pair_resolver.patches_begin_to_slip(contacts.pair, 0.0) is not None
+
+    def fail(*_: Any) -> None:
+        raise Unsolved("none")
+
+    monkeypatch.setattr(pair_resolver, "directions", fail)
+    with pytest.raises(Unsolved, match="nothing holds two patches"):
+        pair_resolver.patches_begin_to_slip(contacts.pair, 0.0)
+
+
+def test_velocities_that_rounding_hides_are_not_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+    follow = slip_onset.follow_slip
+
+    def hidden(*arguments: Any, **keywords: Any) -> Any:
+        return follow(*arguments, **keywords)._replace(knots=[], rows=[])
+
+    monkeypatch.setattr(slip_onset, "follow_slip", hidden)
+    run = tt.simulate(SLIPPERY, 0.5, samples=3)
+    assert run.attrs["outcome"] == "failed"
+    assert UNSEEN in run.attrs["outcome_advice"]
+
+
+@pytest.mark.parametrize(
+    ("law", "resistance", "ends"),
+    [(CoulombLaw(0.6), None, "slip"), (ViscousLaw(0.6), RollingResistance(1e-3), "rolling")],
+    ids=["slip", "rolling"],
+)
+def test_what_ends_in_an_impact_on_two_surfaces_is_named(
+    law: Any, resistance: Any, ends: str
+) -> None:
+    """A rod falls flat, without turning and without slip."""
+    hull = Hull.of((SphereSurface(1.0, 1.0), SphereSurface(1.0, -1.0)))
+    top = Top(1.0, 0.5, 0.1, hull, law, 1.0, rolling_resistance=resistance)
+    falling = State((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), 1.0)
+    with pytest.raises(SlipEndsInImpact, match=f"^{ends} ends in an impact on two surfaces"):
+        impact(falling, 0.0, *top.each)
+
+
+def test_mistakes_in_the_use_of_the_mechanics_are_said() -> None:
+    with pytest.raises(ArithmeticError, match="disc that touches zero"):
+        Disc(1.0, 2.0) ** -1.0
+    with pytest.raises(AssertionError, match="coefficient 0 before"):
+        Series(unknown, PLAIN)[0]
+    falling = State((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), 1.0)
+    with pytest.raises(ValueError, match="must lie between 0 and 1, but is"):
+        impact(falling, 1.5, EGG)

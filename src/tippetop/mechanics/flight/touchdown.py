@@ -70,6 +70,9 @@ MOST_DISCS = 100_000
 number.
 """
 
+TURNS_LOST = "the body turns so often that its turns are lost in rounding of time"
+"""Why no touch of the table is found where a step of time is shorter than its rounding."""
+
 
 class Start(IntEnum):
     """How a flight starts: how many of gap, gap rate and gap acceleration are then zero by
@@ -139,11 +142,13 @@ def touchdown(
                 min(WIDEST, 2.0 * radius * tip.frequency),
                 min(horizon, time + 0.5 * radius),
             )
+            if end <= time and separation.at(time)[0] > 0.0:
+                raise Unsolved(TURNS_LOST)
             root = first_root(separation.at, time, end, 6.0 * spread / (0.75**4 * radius**3))
         if root is not None:
             return root
         if end <= time:
-            raise Unsolved("the body turns so often that its turns are lost in rounding of time")
+            raise Unsolved(TURNS_LOST)
         time = end
     raise Unsolved("the body turns too often so near the table")
 
