@@ -48,6 +48,18 @@ def oscillator():
     return Motion(lambda y, p: (y[1], -(p[0] ** 2) * y[0]), size=2, parameters=1)
 
 
+def test_a_motion_whose_coefficients_are_beyond_all_floats_is_followed_by_a_slower_clock():
+    frequency = 1e20
+    motion = Motion(lambda y, p: (p[0] * y[1], -p[0] * y[0]), size=2, parameters=1)
+    guarded = replace(motion, guards=(Guard("position", lambda y, _: y[0] + 0.5),))
+    for each, angle in ((motion, 10.0), (guarded, 2.0 * np.pi / 3.0)):
+        start = 0.0, np.array([1.0, 0.0])
+        arc = whole(taylor.Taylor().integrate(each, (frequency,), start, 10.0 / frequency))
+        assert arc.failure is None
+        assert arc.solution.end == pytest.approx(angle / frequency, rel=1e-13)
+        assert arc.end_state[0] == pytest.approx(np.cos(angle), abs=1e-13)
+
+
 def test_one_compilation_serves_all_values_of_the_parameters(compilations):
     motion, guards = oscillator(), (Guard("position", lambda y, _: y[0]),)
     frequencies = np.linspace(0.1, 3.0, 20)

@@ -4,7 +4,7 @@ import ctypes
 import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple
 
@@ -14,7 +14,7 @@ from tippetop.graph.llvm import llvm_source
 from tippetop.graph.llvm_series import room_size, series_source, with_choices
 from tippetop.graph.recording import Recorded, record, recordable
 from tippetop.graph.taylor_coefficients import NodeArithmetic
-from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Motion
+from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Guard, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.integrators.machine_code import loaded
 from tippetop.integrators.polynomial_minima import first_fall, looked_at, may_fall
@@ -36,6 +36,12 @@ in it.
 LEFT_OUT = 100.0
 """What the last terms of a step may add to a number, in tolerances of that number or of 1, the
 larger; beside huge slip or friction, to which they are compared too, the axis would go astray.
+"""
+
+SLOW_CLOCK = 2.0**-30
+"""Unit, in natural units of time, of the clock by which a motion is followed once its coefficients
+are too large for floats. In a motion that changes within 1e-10, those of order 20 are 1e200 times
+its numbers; by this clock they are of the numbers' size. A power of two does not round times.
 """
 
 GUARDED = 2.0**-5
@@ -201,14 +207,36 @@ class Taylor:
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
-        stepper = _stepper(motion, order_for(self.tolerance), self.tolerance)
-        if stepper is None:
+        if _recorded(motion) is None:
             from tippetop.integrators.scipy_methods import SciPy  # noqa: PLC0415 - slow to import
 
             yield from SciPy("dop853", TOLERANCES["dop853"]).integrate(
                 motion, parameters, start, end
             )
             return
+        for arc in self._arcs(motion, parameters, start, end):
+            if arc.failure != NOT_FINITE:
+                yield arc
+                continue
+            if arc.steps and len(arc.solution.terms):
+                yield replace(arc, failure=None)
+            yield from self._slowed_arcs(motion, parameters, arc, end)
+
+    def _slowed_arcs(
+        self, motion: Motion, parameters: Sequence[float], before: Arc, end: float
+    ) -> Iterator[Arc]:
+        """Follow a motion by the slower clock, from the end of an arc on."""
+        start = before.solution.end / SLOW_CLOCK, before.end_state
+        numbers = (*parameters, SLOW_CLOCK)
+        for arc in self._arcs(_slowed(motion), numbers, start, end / SLOW_CLOCK):
+            solution = DenseSolution(SLOW_CLOCK * arc.solution.knots, arc.solution.terms)
+            yield replace(arc, solution=solution)
+
+    def _arcs(
+        self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
+    ) -> Iterator[Arc]:
+        """Follow a motion that can be recorded."""
+        stepper = _stepper(motion, order_for(self.tolerance), self.tolerance)
         run = Run(stepper, parameters, start, end)
         while run.time < end:
             begin = run.time
@@ -474,10 +502,25 @@ class Run:
 
 
 @lru_cache(maxsize=64)
-def _stepper(motion: Motion, order: int, tolerance: float) -> CompiledSteps | None:
-    """Return the compiled steps of a motion; None where it cannot be recorded."""
+def _stepper(motion: Motion, order: int, tolerance: float) -> CompiledSteps:
+    """Return the compiled steps of a motion that can be recorded."""
     recorded = _recorded(motion)
-    return None if recorded is None else CompiledSteps(motion, recorded, order, tolerance)
+    assert recorded is not None
+    return CompiledSteps(motion, recorded, order, tolerance)
+
+
+@lru_cache(maxsize=64)
+def _slowed(motion: Motion) -> Motion:
+    """Return a motion by another clock, whose unit of time is the last parameter."""
+
+    def rates(y: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
+        return [p[motion.parameters] * rate for rate in motion.rates(y, p[: motion.parameters])]
+
+    def slowed(guard: Guard) -> Guard:
+        return replace(guard, value=lambda y, p: guard.value(y, p[: motion.parameters]))
+
+    guards = tuple([slowed(guard) for guard in motion.guards])
+    return replace(motion, rates=rates, parameters=motion.parameters + 1, guards=guards)
 
 
 @lru_cache(maxsize=64)
