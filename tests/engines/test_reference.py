@@ -24,7 +24,7 @@ WHOLE = [
     for case in CASES
 ]
 
-LONG = ("viscous", "flights", "stem")
+LONG = ("viscous", "flights", "stem", "stick-slip")
 AGAIN = [
     pytest.param(case.name, marks=pytest.mark.campaign)
     if case.name in LONG
