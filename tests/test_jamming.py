@@ -13,7 +13,9 @@ from scipy.optimize import brentq
 
 import tippetop as tt
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.mode import EventKind
+from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.guards import LIFT_OFF
+from tippetop.contact.mode import EventKind, ModeEnd
 from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.invariants import energy
@@ -340,6 +342,7 @@ def test_a_force_falls_by_zero_or_by_infinity_however_weak_what_presses(near: fl
             normal = sliding_contact(axis, momentum, velocity, top).normal_force
             assert falls_by_zero(normal, axis, momentum, top) == by_zero
             state = on_table(SlidingState(axis, momentum, velocity), top)
-            after = Automaton(top, "fly", 0.0).lift_off(top, 0.0, state, normal)
+            end = ModeEnd(LIFT_OFF, state)
+            after = Automaton(top, "fly", 0.0).lift_off(top, 0.0, ContactMode(top), end)
             kinds = [event.kind for event in after.events[:1]]
             assert (kinds == [EventKind.LIFT_OFF]) == by_zero

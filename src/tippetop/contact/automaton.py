@@ -7,6 +7,7 @@ contact (`Automaton.resolve`) or of two (`Automaton.resolve_two`).
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from tippetop.contact.collision import collision
@@ -39,7 +40,7 @@ from tippetop.contact.mode import (
 from tippetop.contact.settling_flat import FLAT, SettlingFlat, settling_flat
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.contact.slip_end_motion import JAMMED, OVERTAKEN, REACHED_ZERO, REOPENING
-from tippetop.contact.slip_end_on_two import SlipEndOnTwo, end_on_two
+from tippetop.contact.slip_end_on_two import SlipEndOnTwo, end_on_two, unpack_clock
 from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
 from tippetop.contact.slip_onset_on_two import SlipOnsetOnTwo
 from tippetop.contact.soonest_end import (
@@ -59,6 +60,7 @@ from tippetop.contact.touching import (
 from tippetop.contact.transient import Resting, TransientMode
 from tippetop.contact.two_closed import (
     BOTH_CLOSED,
+    FIRST_ALONE,
     NONE_CLOSED,
     SECOND_ALONE,
     Before,
@@ -91,10 +93,15 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
-from tippetop.mechanics.vectors import Row, Scalar
+from tippetop.mechanics.vectors import Scalar
 
 REST = 1e-13
 """Velocities and accelerations, in natural units, that are rounding in a body at rest."""
+
+STRUCK, UNDETERMINED = "struck", "undetermined"
+"""What follows where no set of contacts is chosen to stay closed: an impact without approach, or it
+is not known.
+"""
 
 MOST_IN_TURNS = 200
 """Impacts at one instant, now of one surface and now of another, after which a run is given up."""
@@ -184,7 +191,7 @@ class Automaton:
             failure = Transition((), Outcome.FAILED, state, end.detail)
             return self.jammed(contact, time, state) or failure
         if end.cause == LIFT_OFF:
-            return self.lift_off(contact, time, state, normal_force(mode, mode.numbers(state)))
+            return self.lift_off(contact, time, mode, end)
         if end.cause in (SLIP_SMALL, SLIP_LARGE):
             return Transition((), self.mode_for(contact, state, slips=True), state)
         if end.cause in (STOPPING, ROLLING_STOPPING):
@@ -194,7 +201,7 @@ class Automaton:
         assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
         wrench = mode.contact_forces(mode.numbers(state))[0].wrenches[0]
         if wrench.force[2] <= 0.0 and not self.pulls:
-            return self.lift_off(contact, time, state, wrench.force[2])
+            return self.lift_off(contact, time, mode, end)
         begins = SlipComponent(
             end.cause == SLIP, held=mode.prevents_rolling if end.cause == SLIP else mode.sticks[0]
         )
@@ -221,7 +228,7 @@ class Automaton:
         if end.cause == JAMMED:
             return self.jammed(contact, time, state) or self.inconsistent(contact, time, state, ())
         if end.cause == LIFT_OFF:
-            return self.lift_off(contact, time, state, normal_force(mode, end.numbers[:-2]))
+            return self.lift_off(contact, time, mode, end)
         if end.cause == REOPENING:
             stuck = not ending.slip and ending.held
             return Transition((), self.mode_for(contact, state, slips=not stuck), state)
@@ -248,8 +255,10 @@ class Automaton:
         if end.cause == OVERTAKEN:
             return Transition((), end_on_two(mode, 1), state)
         if end.cause == OPENING:
-            opens, stays = (mode.tops, mode.tops[::-1])[end.contact]
-            event = Event(EventKind.OPENING, time, surface=opens.active)
+            opening, stays = (mode.tops, mode.tops[::-1])[end.contact]
+            if not opens_by_zero(mode, end, opening):
+                return self.resolve_two(time, state, mode.tops, Before.of(mode), rolls)
+            event = Event(EventKind.OPENING, time, surface=opening.active)
             state = state._replace(momentum=mode.stilled(state.axis, state.momentum))
             slips = not mode.sticks[1 - end.contact]
             after = self.mode_for(off_branch(stays), state, slips=slips)
@@ -421,7 +430,7 @@ class Automaton:
         and an impact without approach takes as much slip away as it needs to, as Darboux and Keller
         propose. If it would open, the case is indeterminate: the contact may open, too, and the
         normal force -b / A is consistent as well, but the least disturbance grows without bound
-        under it.
+        under it. `_chosen` decides, for two contacts as for one.
         """
         if lies_flat(contact, state.axis):
             return Transition(events, Outcome.LYING_FLAT, state)
@@ -431,28 +440,48 @@ class Automaton:
         if stuck or held:
             return self.resolve(contact, time, state, (stuck, held), events=events)
         touch = sliding_contact(sliding.axis, sliding.momentum, sliding.velocity, contact)
-        if touch.delassus <= 0 and not self.pulls:
-            if touch.free_acceleration > 0:
-                event = Event(EventKind.INDETERMINATE, time, surface=contact.active)
-                events = (*events, event)
-                if self.indeterminate == "lift_off":
-                    return self._release(contact, time, state, events)
+        jammed, free = touch.delassus <= 0.0, touch.free_acceleration
+        consistent = [FIRST_ALONE] if (free > 0.0 if jammed else free < 0.0) else []
+        consistent += [NONE_CLOSED] if free > 0.0 or (free == 0.0 and not jammed) else []
+        chosen = FIRST_ALONE if self.pulls else self._chosen(consistent, jams=jammed)
+        events = (*events, *_indeterminate(contact, time, [] if self.pulls else consistent))
+        if chosen == STRUCK:
             return self.inconsistent(contact, time, state, events)
-        if touch.free_acceleration < 0 or self.pulls:
-            return Transition(events, self.mode_for(contact, state, slips=True), state)
-        return self._release(contact, time, state, events)
+        if chosen == NONE_CLOSED:
+            return self._release(contact, time, state, events)
+        return Transition(events, self.mode_for(contact, state, slips=True), state)
+
+    def _chosen(self, consistent: Sequence[str], *, jams: bool) -> str:
+        """Return the set of contacts that stays closed, or `STRUCK` or `UNDETERMINED`.
+
+        Parameters
+        ----------
+        consistent
+            The sets that may stay closed. Of one contact that slips it is the only one that may.
+        jams
+            Whether an impact without approach begins at one of the contacts. Under a force that is
+            consistent there, too, the least disturbance grows without bound.
+        """
+        if len(consistent) == 1:
+            return consistent[0]
+        may_lift_off = NONE_CLOSED in consistent
+        if may_lift_off and self.indeterminate == "lift_off":
+            return NONE_CLOSED
+        if jams:
+            return STRUCK
+        return BOTH_CLOSED if may_lift_off and BOTH_CLOSED in consistent else UNDETERMINED
 
     # Leaving the table, and impacts.
 
-    def lift_off(self, contact: Top, time: float, state: State, normal: Scalar) -> Transition:
+    def lift_off(self, contact: Top, time: float, mode: Mode, end: ModeEnd) -> Transition:
         """Leave the table, unless the normal force changed its sign by way of infinity.
 
         Then it is decided anew how contact goes on: Painleve's paradox begins, or the motion is so
         stiff that errors of an explicit method look like that.
         """
-        if falls_by_zero(normal, state.axis, state.momentum, contact):
-            return self._leave(contact, time, state, (), Start.LIFT_OFF)
-        return self.resting(contact, time, state)
+        if opens_by_zero(mode, end, contact):
+            return self._leave(contact, time, end.state, (), Start.LIFT_OFF)
+        return self.resting(contact, time, end.state)
 
     def _release(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
@@ -594,48 +623,42 @@ class Automaton:
         *,
         arrived: bool = False,
     ) -> Transition:
-        """Return what two contacts do, where the body rolls as signed, or not (0)."""
+        """Return what two contacts do, where the body rolls as signed, or not (0).
+
+        Friction may jam one contact, and the other, which it presses, lift it again. No impact
+        begins then: the force on both is finite and stable, and they stay closed where that is
+        consistent. Where no impact begins and each contact can carry the body alone, the run ends.
+        """
         contacts = TwoClosed.of(state, tops, rolls)
         try:
             resolved = contacts.resolved()
             consistent = contacts.consistent(resolved)
         except ArithmeticError as error:
             return failed("The forces on two surfaces that touch", error, state, events)
-        if len(consistent) != 1:
-            return self._without_unique_forces(contacts, time, consistent, events)
-        if consistent == [BOTH_CLOSED]:
+        jammed = contacts.jammed if len(consistent) != 1 else None
+        chosen = self._chosen(consistent, jams=jammed is not None)
+        events = (*events, *_indeterminate(contacts.tops[0], time, consistent))
+        if chosen == UNDETERMINED:
+            count = "more than one" if consistent else "no"
+            detail = f"{count} set of forces is consistent with two surfaces that touch"
+            if len(consistent) > 1 and NONE_CLOSED not in consistent:
+                detail = "each of two surfaces that touch can carry the body alone"
+            return Transition(events, Outcome.FAILED, contacts.state, detail)
+        if jammed is not None and chosen == STRUCK:
+            touching = on_table(along_table(contacts.state), jammed)
+            return self.inconsistent(jammed, time, touching, events)
+        if chosen == NONE_CLOSED and len(consistent) > 1:
+            return self._release(contacts.tops[0], time, contacts.state, events)
+        if chosen == BOTH_CLOSED:
             if arrived:
                 lost = float(energy(state, tops[0]) - energy(contacts.state, tops[0]))
                 event = Event(EventKind.DOUBLE_CONTACT, time, 0.0, lost, tops[0].active)
                 events = (*events, event)
             events = (*events, *contacts.changes(time, resolved, before))
             return replace(self._mode_on_two(contacts, resolved), events=events)
-        opens, stays = contacts.tops if consistent == [SECOND_ALONE] else contacts.tops[::-1]
+        opens, stays = contacts.tops if chosen == SECOND_ALONE else contacts.tops[::-1]
         events = (*events, Event(EventKind.OPENING, time, surface=opens.active))
         return self.resting_alone(stays, time, contacts.state, events)
-
-    def _without_unique_forces(
-        self, contacts: TwoClosed, time: float, consistent: list[str], events: tuple[Event, ...]
-    ) -> Transition:
-        """Return what follows where no set of forces on two contacts is consistent, or several are.
-
-        As on one contact (`resting_alone`), an impact without approach takes slip away where
-        friction jams one of them, the first if both; where several sets are consistent the body may
-        lift off, too. Where friction jams none the run ends.
-        """
-        state = contacts.state
-        if consistent:
-            surface = contacts.tops[0].active
-            events = (*events, Event(EventKind.INDETERMINATE, time, surface=surface))
-        if NONE_CLOSED in consistent and self.indeterminate == "lift_off":
-            return self._release(contacts.tops[0], time, state, events)
-        jammed = contacts.jammed
-        if jammed:
-            touching = on_table(along_table(state), jammed[0])
-            return self.inconsistent(jammed[0], time, touching, events)
-        count = "more than one" if consistent else "no"
-        detail = f"{count} set of forces is consistent with two surfaces that touch"
-        return Transition(events, Outcome.FAILED, state, detail)
 
     def slip_on_two(self, time: float, state: State, mode: ContactMode, contact: int) -> Transition:
         """Return the mode in which a contact of two begins to slip at the limit of what the table
@@ -707,17 +730,34 @@ class Automaton:
         return Transition((), mode, mode.state(begin))
 
 
+def _indeterminate(contact: Top, time: float, consistent: Sequence[str]) -> tuple[Event, ...]:
+    """Return the event of an indeterminate contact force, if several sets are consistent."""
+    if len(consistent) <= 1:
+        return ()
+    return (Event(EventKind.INDETERMINATE, time, surface=contact.active),)
+
+
 def _may_jam(mode: Mode) -> bool:
     """Return whether the integrator of a mode may fail because friction jams the contact."""
     return isinstance(mode, ContactMode) and mode.slides_freely
 
 
-def normal_force(mode: Mode, numbers: Row) -> Scalar:
-    """Return the normal force in a mode at its numbers, floats; infinite at a pole."""
+def opens_by_zero(mode: Mode, end: ModeEnd, contact: Top) -> bool:
+    """Return whether a normal force that changes its sign at the end of a mode does so by zero, so
+    that its contact opens, and not by way of infinity.
+    """
+    state, number = end.state, max(end.contact, 0)
     try:
-        return mode.reaction(numbers).force[2]
+        if isinstance(mode, SlipEndOnTwo):
+            now = unpack_clock(end.numbers, mode.drills)
+            normal = mode.forces(now).normal[number]
+        elif isinstance(mode, ContactMode):
+            normal = mode.contact_forces(mode.numbers(state))[0].normal[number]
+        else:
+            normal = mode.reaction(end.numbers[:-2]).force[2]
     except ArithmeticError:
-        return math.inf
+        return False
+    return bool(falls_by_zero(normal, state.axis, state.momentum, contact))
 
 
 def add_prior_impulse(

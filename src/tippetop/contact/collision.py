@@ -6,10 +6,11 @@ from tippetop.contact.striking import impact_of_patch
 from tippetop.contact.touching import SLOWEST_ROCKING, other_touching
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.flight.free_motion import gap_rate
-from tippetop.mechanics.impacts.impact import Impact, impact
+from tippetop.mechanics.impacts.impact import Impact, begins_without_approach, impact
 from tippetop.mechanics.impacts.impact_on_two import SlipEndsInImpact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.unsolved import Unsolved
 
 SLOWEST_REBOUND = 1e-6
 """Rebound velocity, in units of sqrt(g R), below which a rebound is none and the top stays on the
@@ -18,6 +19,10 @@ table.
 A rebound of this speed rises by half its square, 5e-13 radii. Without such an end, the bounces of a
 top with restitution between 0 and 1 would be infinitely many in a finite time.
 """
+
+
+OPEN = "slip ends on one of two surfaces that jam together, and what then holds it is open"
+"""Why the impulse of two contacts that jam together cannot be found."""
 
 
 class Collision(NamedTuple):
@@ -56,11 +61,15 @@ def _impact(state: State, restitution: float, top: Top, integrator: Integrator |
     if single is None:
         single = impact(state, restitution, top)
     for neighbour in other_touching(top, single.state):
-        pressed = gap_rate(single.state, neighbour) < -SLOWEST_ROCKING
+        # Two contacts may jam of which neither does alone.
+        jams = not single.impulse and begins_without_approach(state, top, neighbour)
+        pressed = jams or gap_rate(single.state, neighbour) < -SLOWEST_ROCKING
         if pressed and abs(gap_rate(state, neighbour)) <= SLOWEST_ROCKING:
             try:
                 both = impact(state, restitution, top, neighbour)
             except SlipEndsInImpact:
+                if not single.impulse and jams:
+                    raise Unsolved(OPEN) from None
                 return single
             return both._replace(steps=single.steps + both.steps)
     return single

@@ -29,9 +29,11 @@ from tippetop.mechanics.contacts.slip_onset import find_onset, resolve_onset
 from tippetop.mechanics.contacts.slip_variables import has_ended, is_rolling, slip_of
 from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.motion import along_table, sliding_contact
+from tippetop.mechanics.impacts.impact import begins_without_approach
+from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
+from tippetop.mechanics.unsolved import Unsolved
 
 FIRST_ALONE, SECOND_ALONE, BOTH_CLOSED, NONE_CLOSED = "first", "second", "both", "none"
 """Sets of contacts that may stay closed."""
@@ -147,7 +149,10 @@ class TwoClosed:
         elif point.free.point[2] >= 0.0:
             return IMPOSSIBLE
         else:
-            onset, _ = resolve_onset(point, slip, rolling)
+            try:
+                onset, _ = resolve_onset(point, slip, rolling)
+            except Unsolved:  # Friction jams the contact, whatever is held.
+                return IMPOSSIBLE
         if onset.wrench.force[2] <= 0.0:
             return IMPOSSIBLE
         if onset.rolling is None:
@@ -157,14 +162,13 @@ class TwoClosed:
         return OPENS if opens else IMPOSSIBLE
 
     @property
-    def jammed(self) -> list[Top]:
-        """The slipping contacts that friction presses more than their normal force opens them."""
-        sliding = along_table(self.state)
-        return [
-            top
-            for top, ended in zip(self.tops, self.ended, strict=True)
-            if not ended and sliding_contact(*sliding, top).delassus < 0.0
-        ]
+    def jammed(self) -> Top | None:
+        """The first slipping contact where an impact without approach begins; None if neither."""
+        for number, (top, beside) in enumerate((self.tops, self.tops[::-1])):
+            touching = on_table(along_table(self.state), top)
+            if not self.ended[number] and begins_without_approach(touching, top, beside):
+                return top
+        return None
 
     def slipping(self, contact: int | None) -> Resolution:
         """Return how slip begins at the limit of what the table can: on this of the contacts that

@@ -435,7 +435,9 @@ class Run:
         """Return the guard that is not positive where a step starts and was so a step before.
 
         Its own polynomial may not show that it falls: it leaves out as much as is left of the
-        guard, by rounding or at a loose tolerance.
+        guard, by rounding or at a loose tolerance. Of several, nothing tells which fell first: all
+        were positive throughout the step before and fall at its end, the same instant. The first by
+        number is returned.
         """
         fallen = self._were_positive & (self._guard_values <= 0.0)
         self._were_positive = self._guard_values > 0.0

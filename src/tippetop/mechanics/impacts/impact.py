@@ -36,7 +36,7 @@ Jellett's integral is conserved: P acts at the fixed arm, and a.(a x P) = 0.
 from typing import NamedTuple
 
 from tippetop.mechanics.impacts.dry_impact import DryProcess, is_dry
-from tippetop.mechanics.impacts.impact_on_two import ProcessOnTwo
+from tippetop.mechanics.impacts.impact_on_two import ProcessOnTwo, SlipEndsInImpact
 from tippetop.mechanics.impacts.process import ImpactProcess, SteppedProcess
 from tippetop.mechanics.impacts.struck_body import NORMAL, WORK, Goal, Impulse, StruckBody
 from tippetop.mechanics.impacts.viscous_impact import ViscousProcess
@@ -103,6 +103,19 @@ def impact(state: State, restitution: float, top: Top, beside: Top | None = None
         steps += further_steps
     lost = max(0.0, -body.work(impulse))
     return Impact(process.after(impulse), impulse[NORMAL], lost, compression, steps)
+
+
+def begins_without_approach(state: State, top: Top, beside: Top) -> bool:
+    """Return whether an impact begins at a contact without normal velocity that slips, while
+    another contact responds as `ProcessOnTwo` says.
+
+    Where slip has ended on the other contact, its response is left out.
+    """
+    body = StruckBody.of(state, top)
+    try:
+        return process_of(body, beside).is_struck
+    except SlipEndsInImpact:
+        return process_of(body, None).is_struck
 
 
 def process_of(body: StruckBody, beside: Top | None) -> ImpactProcess:

@@ -82,6 +82,21 @@ class ProcessOnTwo(SteppedProcess):
         """
         return -float(self.body.before[2]) or self.body.striking
 
+    @property
+    def is_struck(self) -> bool:
+        """Whether the contact point sinks into the table, or would, with the impulse that keeps the
+        other one closed.
+
+        With the Delassus matrix A of both, friction included, contact 1 sinks without approach
+        where A_11 < 0 and A_21 >= 0, which opens contact 2; where A_21 < 0, A_22 > 0 and A_11 A_22
+        < A_12 A_21, which holds it; or where A_21 < 0, A_22 <= 0 and A_12 < 0: both sink.
+        """
+        before = float(self.body.before[2])
+        if before != 0.0:
+            return before < 0.0
+        begin = self.begin
+        return self.body.approach(self.with_status(begin).slope(begin)) < 0.0
+
     def normal(self, impulse: Impulse) -> float:
         """Normal impulse of what strikes, N s."""
         return impulse[NORMAL] - impulse[OTHER]

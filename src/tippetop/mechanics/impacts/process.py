@@ -208,14 +208,16 @@ class SteppedProcess(ImpactProcess):
             taking, ends = step_from(impulse, slope, step, now.slope), now.ends(goal)
             error, reached = error_ratio(now, taking), max(end(taking.end) for end in ends) >= 0.0
             if (error > 1.0 and step > SHORTEST * longest) or (reached and waiting):
-                step *= min(0.5, max(0.1, 0.9 * error**POWER))
+                if step <= SHORTEST * longest:
+                    raise Unsolved("an impact without approach does not begin")
+                step *= min(0.5, step_factor(error))
                 continue
             impulse = reach(now, taking, ends) if reached else taking.end
             if reached and goal(impulse) >= max(end(impulse) for end in ends):
                 return impulse, steps + 1
             later, waiting = now.with_status(impulse), False
             slope = later.slope(impulse) if reached or later is not now else taking.new_slope
-            now, step = later, min(longest, step * min(5.0, 0.9 * max(error, 1e-10) ** POWER))
+            now, step = later, min(longest, step * min(5.0, step_factor(error)))
         raise Unsolved("an impact does not come to its end")
 
 
@@ -225,6 +227,11 @@ def slip_error(ends: Sequence[Slip], off: Slip, speed: float) -> float:
     """
     slip = max(NO_VELOCITY * speed, *[math.hypot(*end[:2]) for end in ends])
     return float(max(math.hypot(*off[:2]) / slip, abs(off[2]) / speed))
+
+
+def step_factor(error: float) -> float:
+    """Return by how much the next step may be longer, for a step's error over the tolerance."""
+    return float(max(0.1, 0.9 * max(error, 1e-10) ** POWER))
 
 
 def error_ratio(now: SteppedProcess, made: RungeKuttaStep) -> float:
