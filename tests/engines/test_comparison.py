@@ -281,7 +281,9 @@ def test_without_any_program_the_stored_results_are_shown_in_80_columns(monkeypa
     monkeypatch.setenv("COLUMNS", "80")
     shown = CliRunner().invoke(app, ["engines"])
     assert shown.exit_code == 0
-    assert "None of the programs is installed" in " ".join(shown.output.split())
+    shown_text = " ".join(shown.output.split())
+    assert "None of the programs is installed" in shown_text
+    assert "pip install 'tippetop[engines]'" in shown_text
     lines = shown.output.splitlines()
     assert max(map(len, lines)) <= 80
     for name, stored in comparison.stored().items():

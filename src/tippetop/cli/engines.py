@@ -37,6 +37,8 @@ def engines(
 
     Programs that are not installed are left out. Without any, the results of the package are shown.
     """
+    from rich.markup import escape  # noqa: PLC0415 - slow to import
+
     from tippetop.engines import comparison  # noqa: PLC0415 - slow to import
 
     if plot is not None:
@@ -67,7 +69,7 @@ def engines(
         show_json({"remark": remark, "results": results, "best": verdicts})
     else:
         tables = [_table(result, best) for result in results.values()]
-        show(*([remark] if remark else []), *tables, _LEGEND, files=[plot] if plot else [])
+        show(*([escape(remark)] if remark else []), *tables, _LEGEND, files=[plot] if plot else [])
 
 
 _LEGEND = (
