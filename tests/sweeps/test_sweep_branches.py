@@ -12,13 +12,13 @@ from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.motion import along_table, angular_velocity
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.sweeps.launch_arrays import Launches
-from tippetop.sweeps.taylor_step import LOOKS
+from tippetop.sweeps.taylor_step import PROBES
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
 
 
 def told(terms, span):
     with np.errstate(all="ignore"):
-        time, doubt = first_fall(list(terms), span, LOOKS, NumPyArithmetic())
+        time, doubt = first_fall(list(terms), span, PROBES, NumPyArithmetic())
     return time, doubt > 0.0
 
 

@@ -272,7 +272,7 @@ def test_lift_off_is_not_left_to_looks(monkeypatch):
     """
     sweep = lively("stop", 8, 4, tolerance=1e-9)
     usual = follow_cells(sweep, np.arange(32))
-    monkeypatch.setattr(taylor_step, "LOOKS", 1)
+    monkeypatch.setattr(taylor_step, "PROBES", 1)
     stepper.cache_clear()
     found = follow_cells(sweep, np.arange(32))
     stepper.cache_clear()

@@ -8,7 +8,7 @@ from tippetop.contact.mode import Segment
 from tippetop.contact.slip_clock import EndClock, follow_clock, segment_of
 from tippetop.contact.slip_end_motion import CLOCK_GUARDS, slip_end_motion, slip_end_state
 from tippetop.contact.surfaces import passes_flat
-from tippetop.contact.transient import LOOKS, TransientMode, pack_moment, straight
+from tippetop.contact.transient import PROBES_OF_SLIP_END, TransientMode, pack_moment, straight
 from tippetop.integrators.base import Integrator, Motion
 from tippetop.mechanics.contacts.forces import slip_length
 from tippetop.mechanics.contacts.slip_end import SlipEndState, rates_in_time
@@ -76,8 +76,8 @@ class SlipEnd(TransientMode):
         if arrival is None or now.time + arrival.time_left > longest:
             return None
         numbers = (*self.top.numbers, longest, 0.0)
-        for probe in range(LOOKS + 1):
-            later = arrival.at(probe / LOOKS or ALMOST)
+        for probe in range(PROBES_OF_SLIP_END + 1):
+            later = arrival.at(probe / PROBES_OF_SLIP_END or ALMOST)
             xi = tuple(later[6:])
             clock = (*later[:6], *scaled(1.0 / size(xi), xi), size(xi), now.time)
             if not all(
@@ -86,7 +86,7 @@ class SlipEnd(TransientMode):
                 if one.name not in CLOCK_GUARDS
             ):
                 return None
-        rows = [arrival.at(probe / LOOKS) for probe in range(LOOKS + 1)]
+        rows = [arrival.at(probe / PROBES_OF_SLIP_END) for probe in range(PROBES_OF_SLIP_END + 1)]
         return None if passes_flat(self.top, rows) else arrival
 
     def _clock(self, state: State) -> tuple[float, ...]:

@@ -27,9 +27,9 @@ AT_REST = "at rest"
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
 
-LOOKS = 16
-"""Looks along a moment at whether another surface touches, or the table would have to pull: else a
-mode with a guard takes over sooner.
+PROBES_OF_SLIP_END = 16
+"""Intervals of the end of slip at whose ends it is asked whether another surface touches, or the
+table would have to pull: then a mode with a guard takes over sooner.
 """
 
 SHORT = 1e-14

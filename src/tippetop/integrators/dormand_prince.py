@@ -46,7 +46,7 @@ ROWS = 21
 POWERS = 8
 """Coefficients of each of a step's polynomials."""
 
-LOOKS = 8
+GUARD_INTERVALS = 8
 """Parts of a step at whose ends guards are looked at."""
 
 STEADY, TIGHT = 1.25, 1e-6
@@ -84,13 +84,13 @@ def probe_guards(
     falls: only those at its middle and its end are there then.
     """
     within(terms, first, 0.5, y)
-    evaluate(guards, y, p, values[LOOKS // 2])
-    evaluate(guards, end, p, values[LOOKS])
+    evaluate(guards, y, p, values[GUARD_INTERVALS // 2])
+    evaluate(guards, end, p, values[GUARD_INTERVALS])
     if tight and are_steady(values):
         return False
-    for number in range(1, LOOKS):
-        if 2 * number != LOOKS:
-            within(terms, first, number / LOOKS, y)
+    for number in range(1, GUARD_INTERVALS):
+        if 2 * number != GUARD_INTERVALS:
+            within(terms, first, number / GUARD_INTERVALS, y)
             evaluate(guards, y, p, values[number])
     return True
 
@@ -98,7 +98,11 @@ def probe_guards(
 def are_steady(values: Array) -> bool:
     """Return whether all guards vary little from the start of a step to its middle and end."""
     for guard in range(len(values[0])):
-        begin, middle, end = values[0, guard], values[LOOKS // 2, guard], values[LOOKS, guard]
+        begin, middle, end = (
+            values[0, guard],
+            values[GUARD_INTERVALS // 2, guard],
+            values[GUARD_INTERVALS, guard],
+        )
         bound = STEADY * min(begin, middle, end)
         if not (begin < bound and middle < bound and end < bound):
             return False
@@ -191,18 +195,18 @@ def may_fall(values: Array, guard: int) -> bool:
     in between.
     """
     least, most = values[0, guard], values[0, guard]
-    for i in range(1, LOOKS + 1):
+    for i in range(1, GUARD_INTERVALS + 1):
         least = min(least, values[i, guard])
         most = max(most, values[i, guard])
     if least > 0.0 and 2.0 * least >= most:
         return False
-    for i in range(LOOKS + 1):
-        before, value, after = max(i - 1, 0), values[i, guard], min(i + 1, LOOKS)
+    for i in range(GUARD_INTERVALS + 1):
+        before, value, after = max(i - 1, 0), values[i, guard], min(i + 1, GUARD_INTERVALS)
         if value > 0.0:
             if values[after, guard] <= 0.0:
                 return True
             if value <= values[before, guard] and value <= values[after, guard]:
-                for j in range(max(i - 2, 0), min(i + 2, LOOKS) + 1):
+                for j in range(max(i - 2, 0), min(i + 2, GUARD_INTERVALS) + 1):
                     if 2.0 * value < values[j, guard]:
                         return True
     return False
@@ -214,12 +218,12 @@ def rises(
     """Return whether a guard that starts at zero, or by rounding below, rises before the first
     look.
     """
-    part = 1.0 / LOOKS
+    part = 1.0 / GUARD_INTERVALS
     while part > EARLIEST:
         part *= 0.5
         within(terms, first, part, y)
-        evaluate(guards, y, p, values[LOOKS + 1])
-        if values[LOOKS + 1, guard] > RISEN:
+        evaluate(guards, y, p, values[GUARD_INTERVALS + 1])
+        if values[GUARD_INTERVALS + 1, guard] > RISEN:
             return True
     return False
 
@@ -319,7 +323,10 @@ def advance(
     """
     y, lost, k = fixed(y), fixed(lost), fixed(k)
     moved, new, place = k[ROWS - 3], k[ROWS - 2], k[ROWS - 1]
-    values, room = np.empty((LOOKS + 2, count)), np.empty(LOOKS * (len(y) + count))
+    values, room = (
+        np.empty((GUARD_INTERVALS + 2, count)),
+        np.empty(GUARD_INTERVALS * (len(y) + count)),
+    )
     calls = 0
     if span[2] <= 0.0:
         trial = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size)
@@ -345,5 +352,5 @@ def advance(
             if suspect(guards, p, terms, first, y, place, values, room, tolerance[0] <= TIGHT):
                 return steps, calls, SUSPECT
             for guard in range(count):
-                values[0, guard] = values[LOOKS, guard]
+                values[0, guard] = values[GUARD_INTERVALS, guard]
     return steps, calls, REACHED

@@ -15,7 +15,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 
 from tippetop.integrators.base import Array
-from tippetop.integrators.dormand_prince import EARLIEST, LOOKS, RISEN
+from tippetop.integrators.dormand_prince import EARLIEST, GUARD_INTERVALS, RISEN
 from tippetop.mechanics.roots import crossing, dip
 
 Dense = Callable[[float], Array]
@@ -126,14 +126,16 @@ def _fall_along(
         return None
     first: tuple[int, float] | None = None
     start, end = step
-    probes = [start + probe / LOOKS * (end - start) for probe in range(LOOKS)] + [end]
+    probes = [
+        start + probe / GUARD_INTERVALS * (end - start) for probe in range(GUARD_INTERVALS)
+    ] + [end]
     states = [dense(time) for time in probes]
     for index, guard in enumerate(guards):
         values = [_value_of(guard, state) for state in states]
         value, exact = _along(guard, dense), _along(guard, advance)
         for low, high, function in brackets(probes, values, value, exact):
             time = crossing(function, low, high)
-            if values[LOOKS] > 0.0 and time - start < least * (end - start):
+            if values[GUARD_INTERVALS] > 0.0 and time - start < least * (end - start):
                 continue
             if first is None or time < first[1]:
                 first = index, time

@@ -24,7 +24,7 @@ from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import axis_sine
-from tippetop.sweeps.taylor_step import CLOSER_LOOKS, LOOKS, extremes, met, step_size
+from tippetop.sweeps.taylor_step import FINE_PROBES, PROBES, extremes, met, step_size
 from tippetop.sweeps.taylor_stepper import NODES, compiled, padded
 
 STATE, TIME, LEFT, VANISHING, WANTED, GIVEN = slice(10), 10, 11, 12, slice(13, 16), 16
@@ -90,12 +90,12 @@ def flight_part(top: Top, start: Sequence[Any], plain: Arithmetic) -> Piece:
     """Return the part of a flight that begins with these numbers."""
     motion = fly(State.unpack(start[STATE]), start[TIME], top, NodeFunctions())
     tip, gap, reach = flight_terms(motion, start[LEFT], top, plain)
-    zero, doubt = first_fall(divided(gap, start[VANISHING], plain), reach, CLOSER_LOOKS, plain)
+    zero, doubt = first_fall(divided(gap, start[VANISHING], plain), reach, FINE_PROBES, plain)
     touches = plain.below(zero, reach)
     span = plain.least(zero, reach)
     floor, ceiling = extremes(tip, span, plain)
     depth = [-term for term in gap]
-    highest = -least_value(depth, looked_at(depth, span, LOOKS), span, plain)
+    highest = -least_value(depth, looked_at(depth, span, PROBES), span, plain)
     if is_edge(top.surface):
         doubt += 1.0 - plain.below(0.0, reach)
     return Piece(

@@ -17,7 +17,7 @@ from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import Arithmetic, horner
 from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.launch_arrays import Indices
-from tippetop.sweeps.taylor_step import CLOSER_LOOKS, LANES, LOOKS, Jet, extremes, met, step_size
+from tippetop.sweeps.taylor_step import FINE_PROBES, LANES, PROBES, Jet, extremes, met, step_size
 from tippetop.sweeps.taylor_stepper import NODES, compiled, padded
 
 
@@ -91,7 +91,7 @@ def arc(
     span, fallen, doubt = full, 0.0 * full - 1.0, 0.0 * full
     for number, (terms, count) in enumerate(zip(falls, pauses, strict=False)):
         # Few looks are enough: what they leave in doubt is looked at closer.
-        fall, unsure = first_fall(terms, full, LOOKS, plain)
+        fall, unsure = first_fall(terms, full, PROBES, plain)
         earlier = (1.0 - plain.below(span, fall)) * count
         span, fallen = (
             plain.choose(earlier, fall, span),
@@ -101,5 +101,5 @@ def arc(
     after = [horner(terms, span) for terms in state]
     floor, ceiling = extremes(state[2], span, plain)
     doubt += met(floor, ceiling, pauses[len(falls) :], plain)
-    force = least_value(falls[0], looked_at(falls[0], span, CLOSER_LOOKS), span, plain)
+    force = least_value(falls[0], looked_at(falls[0], span, FINE_PROBES), span, plain)
     return [*after, force, floor, -ceiling, full, span, fallen, doubt]

@@ -33,7 +33,7 @@ from tippetop.integrators.polynomial_minima import (
 from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.vectors import Scalar
 
-LOOKS, CLOSER_LOOKS = 12, 32
+PROBES, FINE_PROBES = 12, 32
 """Intervals of a step at whose ends n_z and guards are looked at, and of what may be longer than a
 step.
 """
@@ -152,7 +152,7 @@ def stride(
     length, changes, events = later_guards(falls, counts, (full, layout.branch), plain)
     floor, ceiling = extremes(state[2], length, plain)
     events += met(floor, ceiling, band, plain)
-    pressing = looked_at(falls[0], length, LOOKS)
+    pressing = looked_at(falls[0], length, PROBES)
     events += may_fall(falls[0], pressing, length, plain) * counts[0]
     moves = plain.below(0.0, length)
     pause = events * moves
@@ -169,7 +169,7 @@ def stride(
 
 def extremes(tip: Sequence[Scalar], length: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:
     """Return the least and the largest n_z in a step, from its polynomial."""
-    heights, upside = looked_at(tip, length, LOOKS), [-term for term in tip]
+    heights, upside = looked_at(tip, length, PROBES), [-term for term in tip]
     floor = least_value(tip, heights, length, plain)
     return floor, -least_value(upside, [-height for height in heights], length, plain)
 
@@ -206,7 +206,7 @@ def later_guards(
             continue
         need, (change, doubt) = (
             near * plain.below(0.0, full),
-            first_fall(terms, full, LOOKS, plain),
+            first_fall(terms, full, PROBES, plain),
         )
         shorter, usual = (
             (plain.least(change, full), plain.below(change, full), doubt),

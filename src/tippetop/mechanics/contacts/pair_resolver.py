@@ -19,6 +19,11 @@ from tippetop.mechanics.vectors import scale
 CUTS = 50
 """Bounds of the rolling at which patches slip, at most: a few find it to rounding."""
 
+LEAST_SPARE = 1e-3
+"""Friction along e that is left beside the force across it, per unit normal force, at least: it
+bounds the first guess of the direction in which slip begins, from which the search goes on.
+"""
+
 
 class Resolution(NamedTuple):
     """How two contacts go on."""
@@ -165,7 +170,7 @@ def against(held: ContactForces) -> Slip:
     ratios = []
     for number in (0, 1):
         across_force = held.needed(number)
-        spare = max(held.sticking_reserve(number), (1e-3 * held.normal[number]) ** 2)
+        spare = max(held.sticking_reserve(number), (LEAST_SPARE * held.normal[number]) ** 2)
         ratios.append(across_force / spare**0.5)
     # Forces S_i e + T_i t act against v_e (e + T_i / S_i t), where S_i has the sign of S.
     v = plus(scaled(sign, along[:2]), scaled(-ratios[0], across[:2]))

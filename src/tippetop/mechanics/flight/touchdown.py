@@ -60,9 +60,9 @@ from tippetop.mechanics.unsolved import Unsolved
 START = 10.0 ** (-16.0 / (DEGREE + 1))
 """Fraction of its disc on which that polynomial is used: its tail is below round-off there."""
 
-LOOKS = 10.0
-"""Looks for the highest gap per radian that the axis turns; between them, its rate is searched for
-a zero.
+PROBES_PER_RADIAN = 10.0
+"""Instants per radian that the axis turns at which the gap is evaluated for its highest value;
+where its rate falls through zero between two, that zero is found.
 """
 
 MOST_DISCS = 100_000
@@ -184,7 +184,7 @@ def highest_gap(state: State, top: Top, duration: float) -> float:
     gap = everywhere[0].at if len(everywhere) == 1 else lowest
     summit = min(max(state.velocity[2] / top.gravity, 0.0), duration)
     first, last = max(summit - tip.period, 0.0), min(summit + tip.period, duration)
-    count = 2 + int(LOOKS * (last - first) * tip.frequency)
+    count = 2 + int(PROBES_PER_RADIAN * (last - first) * tip.frequency)
     step = (last - first) / count
     # At the start of a flight the rate may vanish.
     times = [first + step * max(j, 1e-3) for j in range(count + 1)]

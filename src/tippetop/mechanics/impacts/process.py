@@ -48,6 +48,11 @@ NO_VELOCITY = 1e-9
 and slip that is less has ended. It is what steps leave out of slip, `TOLERANCE`.
 """
 
+ZERO_SLIP = 1e-12
+"""Slip, per initial speed of the contact point, at which a law's friction per unit slip stands for
+that at zero slip: far below slip at which a law bends, far above where its square underflows.
+"""
+
 SHORTEST = 1e-12
 """Step, relative to the longest, that is taken whatever its error: at a jump of the law."""
 
@@ -153,7 +158,7 @@ class SteppedProcess(ImpactProcess):
         """
         slip, grip = math.hypot(velocity[0], velocity[1]), math.hypot(unit[0], unit[1])
         if slip == 0.0:
-            slip = 1e-12 * self.speed
+            slip = ZERO_SLIP * self.speed
             grip = math.hypot(*self.friction((slip, 0.0, *velocity[2:]))[:2])
         return grip / slip
 
