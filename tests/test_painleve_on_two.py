@@ -9,18 +9,23 @@ from scipy.optimize import brentq
 from tippetop.contact.automaton import Automaton, opens_by_zero
 from tippetop.contact.contact_mode import ContactMode, sliding_on_two
 from tippetop.contact.flight import Flight
-from tippetop.contact.guards import OPENING
+from tippetop.contact.guards import OPENING, SLIP
 from tippetop.contact.mode import EventKind, ModeEnd, Outcome, Transition
+from tippetop.contact.trajectory import Trajectory
 from tippetop.contact.two_closed import Before
+from tippetop.integrators import make_integrator
+from tippetop.mechanics.contacts.branches import off_branch
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.pair import Tops
+from tippetop.mechanics.contacts.wrench import Wrench
 from tippetop.mechanics.impacts.impact import begins_without_approach
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.laws.coulomb import CoulombLaw
-from tippetop.mechanics.motion import along_table, on_table
+from tippetop.mechanics.motion import along_table, on_table, sliding_contact
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.surfaces.surface import SphereSurface
-from tippetop.mechanics.top import Top
+from tippetop.mechanics.top import Top, natural, natural_state, natural_units
 
 SETS = {(True, True): "both", (True, False): "first", (False, True): "second", (False, False): ""}
 
@@ -256,3 +261,55 @@ def test_a_normal_force_of_two_falls_by_zero_or_by_infinity() -> None:
             counts[by_zero] += 1
             end = ModeEnd(OPENING, state, 0)
             assert opens_by_zero(one, end, one.top) == by_zero
+
+
+def test_two_contacts_that_let_go_lift_off_though_friction_would_jam_one_alone() -> None:
+    """Without forces both gaps open, and the first contact alone would close the second."""
+    random, found = np.random.default_rng(9), 0
+    while found < 2:
+        case = drawn(random)
+        if case is None:
+            continue
+        tops = tuple(one._replace(friction=CoulombLaw(8.0)) for one in case[0])
+        touch = sliding_contact(*along_table(case[1]), tops[0])
+        alone = consistent_sets(tops, case[1]).keys() == {""}
+        if not (alone and touch.delassus < 0.0 < touch.free_acceleration):
+            continue
+        found += 1
+        after = resolved(tops, case[1], "impact")
+        assert isinstance(after.next, Flight)
+        assert after.state == case[1]
+        assert [event.kind for event in after.events] == [EventKind.LIFT_OFF]
+
+
+def test_a_contact_that_friction_alone_holds_closed_opens_at_the_limit_of_friction() -> None:
+    """It would open without a force; slip would begin against itself, as A < 0 along it."""
+    random, found = np.random.default_rng(1), 0
+    while found < 2:
+        case = drawn(random)
+        if case is None:
+            continue
+        tops = tuple(one._replace(friction=CoulombLaw(4.0)) for one in case[0])
+        if consistent_sets(tops, case[1]):
+            continue
+        top, state = natural(tops[0]), natural_state(case[1], natural_units(tops[0]))
+        automaton = Automaton(top, "fly", 0.0)
+        run = Trajectory(automaton, automaton.launch(state), 0.2, make_integrator("taylor"))
+        for segment in run.segments():
+            mode, end = segment.mode, segment.mode_end
+            if not (isinstance(mode, ContactMode) and end.cause == SLIP and mode.is_single):
+                continue
+            contact, state = off_branch(mode.top), end.state
+            force = np.array(mode.contact_forces(mode.numbers(state))[0].wrenches[0].force)
+            level = np.hypot(*force[:2])
+            assert level == pytest.approx(4.0 * force[2], rel=1e-9)
+            along = ContactPoint.of(state.axis, state.momentum, contact).response(
+                Wrench(tuple(force / force[2]), (0.0, 0.0, 0.0))
+            )
+            free = ContactPoint.of(state.axis, state.momentum, contact).free.point[2]
+            assert (along.point[2] < 0.0) == (free > 0.0)
+            if free > 0.0:
+                found += 1
+                after = automaton.follow(mode, end, 0.0)
+                assert isinstance(after.next, Flight)
+                assert after.state == state

@@ -315,10 +315,25 @@ class Automaton:
         begins: SlipComponent,
         wrench: Wrench | None = None,
     ) -> Transition:
-        """Return the mode in which slip, or rolling, begins from the limit of what can be held."""
+        """Return what follows at the limit of what can be held: slip, or rolling, begins.
+
+        Or the contact opens, if strong friction alone has held it closed.
+        """
+        if self._opens_if_let_go(contact, state):
+            return self._release(contact, time, state, ())
         kind = EventKind.SLIP if begins.slip else EventKind.ROLL
         event = Event(kind, time, surface=contact.active)
         return Transition((event,), SlipOnset(contact, begins, self.pulls, wrench), state)
+
+    def _opens_if_let_go(self, contact: Top, state: State) -> bool:
+        """Return whether a contact whose slip, or rolling, is at its limit opens.
+
+        Where the contact would open without a force (b > 0) friction alone holds it closed. Slip
+        would need N = -b / A > 0, hence A < 0, and be driven against its own direction as soon as
+        the limit is passed: no force but none is left.
+        """
+        free = ContactPoint.of(state.axis, state.momentum, contact).free.point[2]
+        return bool(free > 0.0) and not self.pulls
 
     def resolve(
         self,
@@ -343,6 +358,9 @@ class Automaton:
         try:
             resolved, begins = resolve_onset(point, slip, rolling)
         except ArithmeticError as error:
+            jams = not ended[0] and sliding_contact(*along_table(state), contact).delassus <= 0.0
+            if jams and not self.pulls:
+                return self.inconsistent(contact, time, state, events)
             return failed("The force that holds the contact", error, state, events)
         events = (*events, *self._changes(contact, time, new, begins))
         return self._after_resolving(contact, time, state, resolved, begins, ended, events)
@@ -359,6 +377,8 @@ class Automaton:
     ) -> Transition:
         """Return the mode of a contact of which is resolved what is held and what begins."""
         if resolved.wrench.force[2] <= 0.0 and not self.pulls:
+            return self._release(contact, time, state, events)
+        if any(begins) and self._opens_if_let_go(contact, state):
             return self._release(contact, time, state, events)
         if any(begins):
             both = all(begins)
@@ -536,7 +556,7 @@ class Automaton:
         """
         struck = sum(event.kind is EventKind.IMPACT for event in events)
         if self.liftoff == "fly" and struck <= 1:
-            return self._collide(contact, time, state, events, 0.0)
+            return self._collide(contact, time, state, events, 0.0, approaches=False)
         detail = "no contact force is consistent with the friction"
         if any(event.kind is EventKind.INDETERMINATE for event in events):
             detail = "the impact that contact.indeterminate names needs contact.liftoff = fly"
@@ -550,6 +570,8 @@ class Automaton:
         events: tuple[Event, ...],
         restitution: float,
         integrator: Integrator | None = None,
+        *,
+        approaches: bool = True,
     ) -> Transition:
         try:
             struck, rebounds = collision(state, restitution, contact, integrator)
@@ -559,16 +581,22 @@ class Automaton:
         hit = Event(EventKind.IMPACT, time, impulse, lost, contact.active, struck.steps)
         if not struck.impulse:
             # Nothing but rounding kept the contact from being a resting one.
-            return self._untouched(contact, time, struck.state, events)
+            return self._untouched(contact, time, struck.state, events, approaches=approaches)
         if rebounds:
             return Transition((*events, hit), Flight(contact, Start.REBOUND), struck.state)
         return self.resting(contact, time, struck.state, (*events, hit))
 
     def _untouched(
-        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+        self,
+        contact: Top,
+        time: float,
+        state: State,
+        events: tuple[Event, ...],
+        *,
+        approaches: bool,
     ) -> Transition:
-        """Go on where an impact had no impulse."""
-        if isinstance(contact.surface, Hull):
+        """Go on where an impact had no impulse; one without approach is not tried again."""
+        if isinstance(contact.surface, Hull) and approaches:
             return self.resting(contact, time, state, events)
         slip = slip_of(*along_table(state), contact)
         slips = not is_set_valued(contact.friction) or inner(slip, slip) > 0.0
@@ -647,7 +675,7 @@ class Automaton:
         if jammed is not None and chosen == STRUCK:
             touching = on_table(along_table(contacts.state), jammed)
             return self.inconsistent(jammed, time, touching, events)
-        if chosen == NONE_CLOSED and len(consistent) > 1:
+        if chosen == NONE_CLOSED and (len(consistent) > 1 or not contacts.holds):
             return self._release(contacts.tops[0], time, contacts.state, events)
         if chosen == BOTH_CLOSED:
             if arrived:

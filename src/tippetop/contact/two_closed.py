@@ -106,6 +106,11 @@ class TwoClosed:
         return self.tops[0].resists_rolling and not self.rolls
 
     @property
+    def holds(self) -> bool:
+        """Whether slip has ended on a contact, or rolling has."""
+        return any(self.ended) or self.stopped
+
+    @property
     def xi(self) -> Slip:
         """How they slip."""
         if self.ended[0]:
