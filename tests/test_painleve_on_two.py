@@ -265,8 +265,8 @@ def test_a_normal_force_of_two_falls_by_zero_or_by_infinity() -> None:
 
 def test_two_contacts_that_let_go_lift_off_though_friction_would_jam_one_alone() -> None:
     """Without forces both gaps open, and the first contact alone would close the second."""
-    random, found = np.random.default_rng(9), 0
-    while found < 2:
+    random, seen = np.random.default_rng(9), 0
+    for _ in range(2000):
         case = drawn(random)
         if case is None:
             continue
@@ -275,17 +275,18 @@ def test_two_contacts_that_let_go_lift_off_though_friction_would_jam_one_alone()
         alone = consistent_sets(tops, case[1]).keys() == {""}
         if not (alone and touch.delassus < 0.0 < touch.free_acceleration):
             continue
-        found += 1
+        seen += 1
         after = resolved(tops, case[1], "impact")
         assert isinstance(after.next, Flight)
         assert after.state == case[1]
         assert [event.kind for event in after.events] == [EventKind.LIFT_OFF]
+    assert seen
 
 
 def test_a_contact_that_friction_alone_holds_closed_opens_at_the_limit_of_friction() -> None:
     """It would open without a force; slip would begin against itself, as A < 0 along it."""
-    random, found = np.random.default_rng(1), 0
-    while found < 2:
+    random, seen = np.random.default_rng(1), 0
+    for _ in range(400):
         case = drawn(random)
         if case is None:
             continue
@@ -309,7 +310,10 @@ def test_a_contact_that_friction_alone_holds_closed_opens_at_the_limit_of_fricti
             free = ContactPoint.of(state.axis, state.momentum, contact).free.point[2]
             assert (along.point[2] < 0.0) == (free > 0.0)
             if free > 0.0:
-                found += 1
+                seen += 1
                 after = automaton.follow(mode, end, 0.0)
                 assert isinstance(after.next, Flight)
                 assert after.state == state
+        if seen >= 2:
+            break
+    assert seen >= 2

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-import xarray as xr
 from scipy.optimize import brentq
 
 import tippetop as tt
@@ -95,20 +94,15 @@ FALLING = tt.Problem(
 )
 
 
-def leave_out(left_out: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the law of the end take over where it is wrong by a time, in natural units."""
-    for module in (guards, settling_flat, slip_end_motion):
-        monkeypatch.setattr(module, "LEFT_OUT", left_out)
-    for cached in (contact_mode.motion_of, slip_end_motion.slip_end_motion):
-        cached.cache_clear()
-
-
 def test_the_end_does_not_depend_on_where_the_law_takes_over(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     ends, energies = list[float](), list[float]()
     for left_out in (1e-7, 1e-9, 1e-10):
-        leave_out(left_out, monkeypatch)
+        for module in (guards, settling_flat, slip_end_motion):
+            monkeypatch.setattr(module, "LEFT_OUT", left_out)
+        for cached in (contact_mode.motion_of, slip_end_motion.slip_end_motion):
+            cached.cache_clear()
         run = tt.simulate(FALLING, 2.0, samples=2)
         assert run.attrs["outcome"] == "lying_flat"
         ends.append(float(run["end_time"]))
@@ -116,61 +110,6 @@ def test_the_end_does_not_depend_on_where_the_law_takes_over(
     assert ends[0] == pytest.approx(ends[2], abs=1e-8)
     assert ends[1] == pytest.approx(ends[2], abs=1e-9)
     assert energies == pytest.approx(3 * [energies[2]], abs=1e-14)
-
-
-ROCKING = tt.Problem(
-    body=tt.Body(
-        mass=0.08897658772110256,
-        shape=(
-            tt.Sphere(radius=0.01677246976327678, center=0.014565985688189625),
-            tt.Ring(
-                radius=0.02775652572653345, center=-0.028983578986356565, tube=0.004638060784748975
-            ),
-        ),
-        I1=2.7557751877162744e-05,
-        I3=1.1669979044596196e-05,
-    ),
-    friction=tt.ContensouFriction(
-        mu=0.5804310991557721, patch_radius=0.0027477702991522152, pressure="hertz"
-    ),
-    launch=tt.Launch(
-        tilt=0.03934268710223797,
-        spin=-3.9719661822510237,
-        azimuth=-2.220014718052661,
-        tilt_rate=1.1145606186066122,
-    ),
-    gravity=9.8,
-    contact=tt.Contact(liftoff="fly"),
-)
-
-
-def times_of_largest_tilt(run: xr.Dataset) -> np.ndarray:
-    """Return the times of the maxima of a run's tilt, by parabolas through three samples."""
-    time, tilt = run["time"].values, run["theta"].values
-    inner = tilt[1:-1]
-    places = np.flatnonzero((inner > tilt[:-2]) & (inner >= tilt[2:])) + 1
-    step = time[1] - time[0]
-    rise, fall = tilt[places] - tilt[places - 1], tilt[places] - tilt[places + 1]
-    return np.asarray(time[places] + 0.5 * step * (rise - fall) / (rise + fall))
-
-
-def test_a_rocking_body_lies_flat_where_the_times_of_its_rocks_add_up(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Each rock is the one before, times a factor: the times of largest tilt are geometric."""
-    leave_out(1e-7, monkeypatch)
-    early = tt.simulate(ROCKING, 0.5, samples=2, integrator="taylor", tolerance=1e-12)
-    rocks = float(early["end_time"]) - np.linspace(2.2e-4, 1.1e-4, 1001)
-    leave_out(1e-9, monkeypatch)
-    run = tt.simulate(ROCKING, 0.5, times=rocks, integrator="taylor", tolerance=1e-14)
-    assert run.attrs["outcome"] == "lying_flat"
-    assert float(run["energy_error"]) < 1e-12
-    first, second, third = times_of_largest_tilt(run)[-3:]
-    ratio = (third - second) / (second - first)
-    assert 0.0 < ratio < 1.0
-    summed = third + (third - second) * ratio / (1.0 - ratio)
-    assert float(early["end_time"]) == pytest.approx(summed, abs=1e-7)
-    assert float(run["end_time"]) == pytest.approx(summed, abs=1e-9)
 
 
 def test_the_end_does_not_depend_on_the_tolerance() -> None:

@@ -58,6 +58,8 @@ def test_a_motion_whose_coefficients_are_beyond_all_floats_is_followed_by_a_slow
         assert arc.failure is None
         assert arc.solution.end == pytest.approx(angle / frequency, rel=1e-13)
         assert arc.end_state[0] == pytest.approx(np.cos(angle), abs=1e-13)
+        times = np.linspace(0.0, arc.solution.end, 9)
+        np.testing.assert_allclose(arc.solution(times)[:, 0], np.cos(frequency * times), atol=1e-13)
 
 
 def test_one_compilation_serves_all_values_of_the_parameters(compilations):

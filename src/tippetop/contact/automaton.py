@@ -256,11 +256,11 @@ class Automaton:
             return Transition((), end_on_two(mode, 1), state)
         if end.cause == OPENING:
             opening, stays = (mode.tops, mode.tops[::-1])[end.contact]
-            if not opens_by_zero(mode, end, opening):
+            slips = not mode.sticks[1 - end.contact]
+            if not opens_by_zero(mode, end, opening) or (slips and _jams_alone(stays, state)):
                 return self.resolve_two(time, state, mode.tops, Before.of(mode), rolls)
             event = Event(EventKind.OPENING, time, surface=opening.active)
             state = state._replace(momentum=mode.stilled(state.axis, state.momentum))
-            slips = not mode.sticks[1 - end.contact]
             after = self.mode_for(off_branch(stays), state, slips=slips)
             return Transition((event,), after, state)
         if end.cause == BRANCH:
@@ -319,18 +319,19 @@ class Automaton:
 
         Or the contact opens, if strong friction alone has held it closed.
         """
-        if self._opens_if_let_go(contact, state):
+        rolls = rolls_freely(contact, state)
+        if begins.slip and rolls and self._opens_without_force(contact, state):
             return self._release(contact, time, state, ())
         kind = EventKind.SLIP if begins.slip else EventKind.ROLL
         event = Event(kind, time, surface=contact.active)
         return Transition((event,), SlipOnset(contact, begins, self.pulls, wrench), state)
 
-    def _opens_if_let_go(self, contact: Top, state: State) -> bool:
-        """Return whether a contact whose slip, or rolling, is at its limit opens.
+    def _opens_without_force(self, contact: Top, state: State) -> bool:
+        """Return whether a contact would open without a force, b > 0, if the table cannot pull.
 
-        Where the contact would open without a force (b > 0) friction alone holds it closed. Slip
-        would need N = -b / A > 0, hence A < 0, and be driven against its own direction as soon as
-        the limit is passed: no force but none is left.
+        Then friction alone holds one that sticks closed. Where it reaches its limit and nothing
+        resists rolling, slip would need N = -b / A > 0, hence A < 0, and would at once be driven
+        against its own direction: the contact opens.
         """
         free = ContactPoint.of(state.axis, state.momentum, contact).free.point[2]
         return bool(free > 0.0) and not self.pulls
@@ -358,8 +359,9 @@ class Automaton:
         try:
             resolved, begins = resolve_onset(point, slip, rolling)
         except ArithmeticError as error:
-            jams = not ended[0] and sliding_contact(*along_table(state), contact).delassus <= 0.0
-            if jams and not self.pulls:
+            if not ended[0] and not self.pulls and _jams_alone(contact, state):
+                if self._opens_without_force(contact, state):
+                    return self._release(contact, time, state, events)
                 return self.inconsistent(contact, time, state, events)
             return failed("The force that holds the contact", error, state, events)
         events = (*events, *self._changes(contact, time, new, begins))
@@ -378,7 +380,8 @@ class Automaton:
         """Return the mode of a contact of which is resolved what is held and what begins."""
         if resolved.wrench.force[2] <= 0.0 and not self.pulls:
             return self._release(contact, time, state, events)
-        if any(begins) and self._opens_if_let_go(contact, state):
+        rolls = not (ended[1] and contact.resists_rolling)
+        if begins[0] and rolls and self._opens_without_force(contact, state):
             return self._release(contact, time, state, events)
         if any(begins):
             both = all(begins)
@@ -460,11 +463,13 @@ class Automaton:
         if stuck or held:
             return self.resolve(contact, time, state, (stuck, held), events=events)
         touch = sliding_contact(sliding.axis, sliding.momentum, sliding.velocity, contact)
+        if self.pulls:
+            return Transition(events, self.mode_for(contact, state, slips=True), state)
         jammed, free = touch.delassus <= 0.0, touch.free_acceleration
         consistent = [FIRST_ALONE] if (free > 0.0 if jammed else free < 0.0) else []
         consistent += [NONE_CLOSED] if free > 0.0 or (free == 0.0 and not jammed) else []
-        chosen = FIRST_ALONE if self.pulls else self._chosen(consistent, jams=jammed)
-        events = (*events, *_indeterminate(contact, time, [] if self.pulls else consistent))
+        chosen = self._chosen(consistent, jams=jammed)
+        events = (*events, *_indeterminate(contact, time, consistent))
         if chosen == STRUCK:
             return self.inconsistent(contact, time, state, events)
         if chosen == NONE_CLOSED:
@@ -477,7 +482,7 @@ class Automaton:
         Parameters
         ----------
         consistent
-            The sets that may stay closed. Of one contact that slips it is the only one that may.
+            The sets that may stay closed, of one contact `FIRST_ALONE` and `NONE_CLOSED`.
         jams
             Whether an impact without approach begins at one of the contacts. Under a force that is
             consistent there, too, the least disturbance grows without bound.
@@ -655,21 +660,22 @@ class Automaton:
 
         Friction may jam one contact, and the other, which it presses, lift it again. No impact
         begins then: the force on both is finite and stable, and they stay closed where that is
-        consistent. Where no impact begins and each contact can carry the body alone, the run ends.
+        consistent. Where no impact begins the run ends if each contact can carry the body alone,
+        and if no set is consistent.
         """
         contacts = TwoClosed.of(state, tops, rolls)
         try:
             resolved = contacts.resolved()
             consistent = contacts.consistent(resolved)
+            jammed = contacts.jammed if len(consistent) != 1 else None
         except ArithmeticError as error:
             return failed("The forces on two surfaces that touch", error, state, events)
-        jammed = contacts.jammed if len(consistent) != 1 else None
         chosen = self._chosen(consistent, jams=jammed is not None)
         events = (*events, *_indeterminate(contacts.tops[0], time, consistent))
         if chosen == UNDETERMINED:
             count = "more than one" if consistent else "no"
             detail = f"{count} set of forces is consistent with two surfaces that touch"
-            if len(consistent) > 1 and NONE_CLOSED not in consistent:
+            if FIRST_ALONE in consistent and SECOND_ALONE in consistent:
                 detail = "each of two surfaces that touch can carry the body alone"
             return Transition(events, Outcome.FAILED, contacts.state, detail)
         if jammed is not None and chosen == STRUCK:
@@ -684,6 +690,7 @@ class Automaton:
                 events = (*events, event)
             events = (*events, *contacts.changes(time, resolved, before))
             return replace(self._mode_on_two(contacts, resolved), events=events)
+        # Strong friction may hold the first closed though it would open, as `resolve` tries.
         opens, stays = contacts.tops if chosen == SECOND_ALONE else contacts.tops[::-1]
         events = (*events, Event(EventKind.OPENING, time, surface=opens.active))
         return self.resting_alone(stays, time, contacts.state, events)
@@ -763,6 +770,11 @@ def _indeterminate(contact: Top, time: float, consistent: Sequence[str]) -> tupl
     if len(consistent) <= 1:
         return ()
     return (Event(EventKind.INDETERMINATE, time, surface=contact.active),)
+
+
+def _jams_alone(contact: Top, state: State) -> bool:
+    """Return whether friction jams a contact that slips, whatever else touches: A <= 0."""
+    return bool(sliding_contact(*along_table(state), contact).delassus <= 0.0)
 
 
 def _may_jam(mode: Mode) -> bool:

@@ -21,7 +21,7 @@ top with restitution between 0 and 1 would be infinitely many in a finite time.
 """
 
 
-OPEN = "slip ends on one of two surfaces that jam together, and what then holds it is open"
+UNKNOWN_HOLD = "slip ends on one of two surfaces that jam together, and what then holds it is open"
 """Why the impulse of two contacts that jam together cannot be found."""
 
 
@@ -68,8 +68,8 @@ def _impact(state: State, restitution: float, top: Top, integrator: Integrator |
             try:
                 both = impact(state, restitution, top, neighbour)
             except SlipEndsInImpact:
-                if not single.impulse and jams:
-                    raise Unsolved(OPEN) from None
+                if jams:
+                    raise Unsolved(UNKNOWN_HOLD) from None
                 return single
             return both._replace(steps=single.steps + both.steps)
     return single

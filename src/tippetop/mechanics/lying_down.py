@@ -35,18 +35,6 @@ an arm that falls with s.
 T is wrong by as much as the motion departs from that form: relatively by s, and by the size of a
 nutation: the difference of the tilt's rate from -2 s / T, and its acceleration. Where the contact
 slips, the departure is taken to be 1.
-
-With a large nutation the body **rocks** down. A motion times (q^2, q, 1/q), as above, is still a
-motion of the same body where friction depends on the directions of its velocities alone, so that
-each rock is the one before with a factor q on its time, and a finite sum of times is left. Near the
-least tilt of a rock the table may push with hundreds of weights, where P is as many times its mean
-and has either sign. P is proportional to the normal force, whose mean is the weight, and at the
-weight it is at most the friction on the fastest slip that Q allows, so that
-
-    T >= c sqrt(I1 Q) / (mu m g R), with c of order 1.
-
-So P at the weight gives T by order of magnitude at every instant, and the motion is followed until
-that is left out.
 """
 
 from typing import NamedTuple
@@ -63,8 +51,7 @@ from tippetop.mechanics.vectors import Scalar, Vector, dot, power
 LEFT_OUT = 1e-9
 """Time, in natural units, that the time left may be wrong by where a wobble is followed no further:
 below 1e-9 s on any body smaller than 9 m. Far above it the end of a run would show it; far below,
-slip that begins in so short a time is rounding. To a body that rocks down, up to some thirty times
-as long is left.
+slip that begins in so short a time is rounding.
 """
 
 SLAP = 1e-6
@@ -118,8 +105,6 @@ class Wobble(NamedTuple):
     """Power P that the table takes from it, W."""
     departure: Scalar
     """Square of its departure from the form that it keeps, relatively."""
-    pressing: Scalar
-    """Normal force, in weights of the body: 1 on the mean of a nutation."""
 
     @classmethod
     def of(
@@ -166,8 +151,7 @@ class Wobble(NamedTuple):
         pace = top.mass * top.gravity * arm / top.transverse_inertia
         nutation = (drifting * circling / (energy * pace)) ** 2 + (tipping / pace) ** 2
         departure = sine * sine + nutation
-        pressing = wrench.force[2] / (top.mass * top.gravity)
-        return cls(energy, loss, departure if slip is None else departure + 1.0, pressing)
+        return cls(energy, loss, departure if slip is None else departure + 1.0)
 
     @property
     def time_left(self) -> Scalar:
@@ -175,14 +159,9 @@ class Wobble(NamedTuple):
         return 2.0 * self.energy / self.loss
 
     def reserve(self, left_out: Scalar) -> Scalar:
-        """Falls through zero where the time left is known to within a time, s; in J.
-
-        The power is divided by sqrt((1 + p^2) / 2), with p of `pressing`. That is 1 in a steady
-        wobble, p / sqrt(2) where the table pushes hard, and not zero where the body lifts off.
-        """
+        """Falls through zero where the time left is known to within a time, s; in J."""
         share = self.departure / (1.0 + self.departure)
-        mean_loss = self.loss * power(0.5 + 0.5 * self.pressing * self.pressing, -0.5)
-        return 2.0 * self.energy * power(share, 0.5) - left_out * mean_loss
+        return 2.0 * self.energy * power(share, 0.5) - left_out * self.loss
 
 
 def slap_guard(axis: Vector, momentum: Vector, top: Top) -> Scalar:

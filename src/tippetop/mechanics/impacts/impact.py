@@ -109,7 +109,7 @@ def begins_without_approach(state: State, top: Top, beside: Top) -> bool:
     """Return whether an impact begins at a contact without normal velocity that slips, while
     another contact responds as `ProcessOnTwo` says.
 
-    Where slip has ended on the other contact, its response is left out.
+    Where slip, or rolling, has ended, the other contact's response is left out.
     """
     body = StruckBody.of(state, top)
     try:

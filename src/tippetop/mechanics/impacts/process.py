@@ -235,7 +235,7 @@ def slip_error(ends: Sequence[Slip], off: Slip, speed: float) -> float:
 
 
 def step_factor(error: float) -> float:
-    """Return by how much the next step may be longer, for a step's error over the tolerance."""
+    """Return the ratio of the next step to one with this error over the tolerance."""
     return float(max(0.1, 0.9 * max(error, 1e-10) ** POWER))
 
 
