@@ -1,6 +1,7 @@
 """Painleve's paradox on two contacts: several sets of forces are consistent, or none is."""
 
 from collections import Counter
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -50,6 +51,15 @@ def drawn(random: np.random.Generator) -> tuple[Tops, State] | None:
     return (first, second), on_table(start, first)
 
 
+def draws(seed: int, count: int) -> Iterator[tuple[Tops, State]]:
+    """Draw so often, and leave out what is no body on two spheres."""
+    random = np.random.default_rng(seed)
+    for _ in range(count):
+        case = drawn(random)
+        if case is not None:
+            yield case
+
+
 def acceleration(state: State, top: Top, force: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Second derivatives of the gaps of both surfaces, m/s^2, under a force and gravity, by
     differentiating z - r + zeta n_z twice.
@@ -62,21 +72,26 @@ def acceleration(state: State, top: Top, force: np.ndarray, at: np.ndarray) -> n
     )
 
 
-def consistent_sets(tops: Tops, state: State) -> Counter[str]:
-    """All sets of contacts with positive forces beside which no other gap closes."""
+def delassus(tops: Tops, state: State) -> np.ndarray:
+    """Accelerations of both gaps per unit normal force of each contact, friction included."""
+    columns, top = [], tops[0]
     n, L = np.array(state.axis), np.array(state.momentum)
-    top, mu = tops[0], tops[0].friction.mu
     excess = (1.0 / top.axial_inertia - 1.0 / top.transverse_inertia) * (L @ n)
     omega = L / top.transverse_inertia + excess * n
     free = acceleration(state, top, np.zeros(3), np.zeros(3))
-    columns = []
     for one in tops:
         slope, height = one.surface.slope(n[2]), one.surface.height(n[2])
         arm = -slope * (n - np.array([0.0, 0.0, n[2]])) - np.array([0.0, 0.0, height])
         slip = (np.array(state.velocity) + np.cross(omega, arm))[:2]
-        force = np.array([*(-mu * slip / np.hypot(*slip)), 1.0])
+        force = np.array([*(-top.friction.mu * slip / np.hypot(*slip)), 1.0])
         columns.append(acceleration(state, top, force, arm) - free)
-    matrix, sets = np.array(columns).T, Counter[str]()
+    return np.array(columns).T
+
+
+def consistent_sets(tops: Tops, state: State) -> Counter[str]:
+    """All sets of contacts with positive forces beside which no other gap closes."""
+    free = acceleration(state, tops[0], np.zeros(3), np.zeros(3))
+    matrix, sets = delassus(tops, state), Counter[str]()
     for closed, name in SETS.items():
         which, normal = np.flatnonzero(closed), np.zeros(2)
         normal[which] = np.linalg.solve(matrix[np.ix_(which, which)], -free[which])
@@ -140,22 +155,6 @@ def test_where_tops_cannot_fly_indeterminate_forces_end_the_run(choice: str) -> 
     else:
         assert after.next is Outcome.FAILED
         assert "contact.indeterminate names needs contact.liftoff = fly" in after.detail
-
-
-def delassus(tops: Tops, state: State) -> np.ndarray:
-    """Accelerations of both gaps per unit normal force of each contact, friction included."""
-    columns, top = [], tops[0]
-    n, L = np.array(state.axis), np.array(state.momentum)
-    excess = (1.0 / top.axial_inertia - 1.0 / top.transverse_inertia) * (L @ n)
-    omega = L / top.transverse_inertia + excess * n
-    free = acceleration(state, top, np.zeros(3), np.zeros(3))
-    for one in tops:
-        slope, height = one.surface.slope(n[2]), one.surface.height(n[2])
-        arm = -slope * (n - np.array([0.0, 0.0, n[2]])) - np.array([0.0, 0.0, height])
-        slip = (np.array(state.velocity) + np.cross(omega, arm))[:2]
-        force = np.array([*(-top.friction.mu * slip / np.hypot(*slip)), 1.0])
-        columns.append(acceleration(state, top, force, arm) - free)
-    return np.array(columns).T
 
 
 def grows_on_springs(matrix: np.ndarray, stiffness: tuple[float, float]) -> bool:
@@ -265,35 +264,29 @@ def test_a_normal_force_of_two_falls_by_zero_or_by_infinity() -> None:
 
 def test_two_contacts_that_let_go_lift_off_though_friction_would_jam_one_alone() -> None:
     """Without forces both gaps open, and the first contact alone would close the second."""
-    random, seen = np.random.default_rng(9), 0
-    for _ in range(2000):
-        case = drawn(random)
-        if case is None:
-            continue
-        tops = tuple(one._replace(friction=CoulombLaw(8.0)) for one in case[0])
-        touch = sliding_contact(*along_table(case[1]), tops[0])
-        alone = consistent_sets(tops, case[1]).keys() == {""}
+    seen = 0
+    for smoother, state in draws(9, 2000):
+        tops = tuple(one._replace(friction=CoulombLaw(8.0)) for one in smoother)
+        touch = sliding_contact(*along_table(state), tops[0])
+        alone = consistent_sets(tops, state).keys() == {""}
         if not (alone and touch.delassus < 0.0 < touch.free_acceleration):
             continue
         seen += 1
-        after = resolved(tops, case[1], "impact")
+        after = resolved(tops, state, "impact")
         assert isinstance(after.next, Flight)
-        assert after.state == case[1]
+        assert after.state == state
         assert [event.kind for event in after.events] == [EventKind.LIFT_OFF]
     assert seen
 
 
 def test_a_contact_that_friction_alone_holds_closed_opens_at_the_limit_of_friction() -> None:
     """It would open without a force; slip would begin against itself, as A < 0 along it."""
-    random, seen = np.random.default_rng(1), 0
-    for _ in range(400):
-        case = drawn(random)
-        if case is None:
+    seen = 0
+    for others, start in draws(1, 400):
+        tops = tuple(one._replace(friction=CoulombLaw(4.0)) for one in others)
+        if consistent_sets(tops, start):
             continue
-        tops = tuple(one._replace(friction=CoulombLaw(4.0)) for one in case[0])
-        if consistent_sets(tops, case[1]):
-            continue
-        top, state = natural(tops[0]), natural_state(case[1], natural_units(tops[0]))
+        top, state = natural(tops[0]), natural_state(start, natural_units(tops[0]))
         automaton = Automaton(top, "fly", 0.0)
         run = Trajectory(automaton, automaton.launch(state), 0.2, make_integrator("taylor"))
         for segment in run.segments():

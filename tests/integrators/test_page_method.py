@@ -150,10 +150,8 @@ def test_a_guard_is_looked_at_closely_unless_it_hardly_varies(name):
         looks.append(y[0])
         out[0] = along(y[0])
 
-    terms, values = (
-        np.zeros(dormand_prince.POWERS),
-        np.zeros((dormand_prince.GUARD_INTERVALS + 2, 1)),
-    )
+    terms = np.zeros(dormand_prince.POWERS)
+    values = np.zeros((dormand_prince.GUARD_INTERVALS + 2, 1))
     terms[1], values[0] = 1.0, along(0.0)
     room, tight = np.zeros(0), tolerance <= dormand_prince.TIGHT
     end, place = np.ones(1), np.zeros(1)
@@ -214,10 +212,8 @@ def test_a_guard_that_is_negative_in_the_state_at_the_end_may_fall(tight):
     def guards(y, p, out):
         out[0] = y[0]
 
-    terms, values = (
-        np.zeros(dormand_prince.POWERS),
-        np.zeros((dormand_prince.GUARD_INTERVALS + 2, 1)),
-    )
+    terms = np.zeros(dormand_prince.POWERS)
+    values = np.zeros((dormand_prince.GUARD_INTERVALS + 2, 1))
     terms[0] = values[0] = 1e-17
     for end, falls in ((1e-17, False), (-1e-17, True)):
         state, place, room = np.array([end]), np.zeros(1), np.zeros(0)

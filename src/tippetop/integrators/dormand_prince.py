@@ -98,11 +98,8 @@ def probe_guards(
 def are_steady(values: Array) -> bool:
     """Return whether all guards vary little from the start of a step to its middle and end."""
     for guard in range(len(values[0])):
-        begin, middle, end = (
-            values[0, guard],
-            values[GUARD_INTERVALS // 2, guard],
-            values[GUARD_INTERVALS, guard],
-        )
+        begin, end = values[0, guard], values[GUARD_INTERVALS, guard]
+        middle = values[GUARD_INTERVALS // 2, guard]
         bound = STEADY * min(begin, middle, end)
         if not (begin < bound and middle < bound and end < bound):
             return False
@@ -323,10 +320,8 @@ def advance(
     """
     y, lost, k = fixed(y), fixed(lost), fixed(k)
     moved, new, place = k[ROWS - 3], k[ROWS - 2], k[ROWS - 1]
-    values, room = (
-        np.empty((GUARD_INTERVALS + 2, count)),
-        np.empty(GUARD_INTERVALS * (len(y) + count)),
-    )
+    values = np.empty((GUARD_INTERVALS + 2, count))
+    room = np.empty(GUARD_INTERVALS * (len(y) + count))
     calls = 0
     if span[2] <= 0.0:
         trial = first_step(rates, p, y, k, place, span[1] - span[0], tolerance, size)

@@ -39,10 +39,10 @@ larger; beside huge slip or friction, to which they are compared too, the axis w
 """
 
 SLOW_CLOCK = 2.0**-30
-"""Unit, in natural units of time, of the clock by which a motion is followed once its coefficients
-or products of them, are too large for floats. In a motion that changes within 1e-10, those of order
-20 are 1e200 times its numbers; by this clock they are far smaller. A power of two does not round
-times.
+"""Unit, in natural units of time, of the clock by which a motion is followed once its
+coefficients, or products of them, are too large for floats. In a motion that changes within 1e-10,
+those of order 20 are 1e200 times its numbers; by this clock they are far smaller. A power of two
+does not round times.
 """
 
 GUARDED = 2.0**-5
