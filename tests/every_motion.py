@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_motion
-from tippetop.contact.slip_end_motion import slip_end_motion
-from tippetop.contact.slip_end_on_two import end_on_two
+from tippetop.contact.slip_end import SlipEnd
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.slip_end import SlipComponent
@@ -62,13 +61,14 @@ def sliding_motions(top):
         top.resists_rolling,
     )
     yield "sliding", sliding_motion(kind, True), numbers
-    endings = [SlipComponent(slip=False)] if rolls else []
+    free, held = (ContactMode(top, prevents_rolling=still) for still in (False, True))
+    ends = [SlipEnd.of(free, SlipComponent(slip=False))] if rolls else []
     if rolls:
         yield "held", sliding_motion(kind, True, held=True), numbers
     if is_set_valued(law):
-        endings += [SlipComponent(slip=True, held=held) for held in (False, True)[: 1 + rolls]]
-    for ending in endings:
-        yield f"closing {ending}", slip_end_motion(kind, ending, True), (*numbers, 1e9, 1e-3)
+        ends += [SlipEnd.of(mode, SlipComponent(slip=True)) for mode in (free, held)[: 1 + rolls]]
+    for end in ends:
+        yield end.form, end.motion, (*numbers, 1e9, 1e-3)
     if isinstance(surface, Hull):
         other = top._replace(surface=surface._replace(active=1))
         statuses = {"": (False, False)}
@@ -82,22 +82,20 @@ def sliding_motions(top):
                 mode = mode_on_two((top, other), way, sticks, sense=-1.0)
                 yield f"two {way}{told}", mode.motion, mode.parameters
             if is_set_valued(law):
-                end = end_on_two(mode_on_two((top, other), way), 0)
-                yield f"two {way} closing", end.clock_motion, (*end.parameters, 1e9, 1e-3)
+                end = SlipEnd.of(mode_on_two((top, other), way), SlipComponent(slip=True))
+                parameters = (*end.contact_mode.parameters, 1e9, 1e-3)
+                yield f"two {way} closing", end.motion, parameters
 
 
 def sticking_motions(top):
     """Every motion of a top in which it sticks."""
-    kind, numbers, rolls = top.kind, top.numbers, top.resists_rolling
+    numbers, rolls = top.numbers, top.resists_rolling
     for held in (False, True)[: 1 + rolls]:
         mode = ContactMode(top, sticks=(True,), prevents_rolling=held)
         yield mode.status, mode.motion, numbers
     if rolls:
-        yield (
-            "sticking closing",
-            slip_end_motion(kind, SlipComponent(False, True), True),
-            (*numbers, 1e9, 1e-3),
-        )
+        end = SlipEnd.of(ContactMode(top, sticks=(True,)), SlipComponent(slip=False))
+        yield "sticking closing", end.motion, (*numbers, 1e9, 1e-3)
 
 
 CASES = [

@@ -54,8 +54,8 @@ SITES: list[tuple[str, tt.Problem, str]] = [
     ("flight.touchdown", THROWN, "The end of the flight"),
     ("collision.impact", THROWN, "The impulse of the impact"),
     ("automaton.resolve_onset", SLIPPERY, "The force that holds the contact"),
-    ("slip_onset.find_onset", SLIPPERY, "The direction in which slip begins"),
-    ("slip_onset.find_onset", BRAKED, "The direction in which slip and rolling begin"),
+    ("automaton.find_onset", SLIPPERY, "The direction in which slip begins"),
+    ("automaton.find_onset", BRAKED, "The direction in which slip and rolling begin"),
     ("two_closed.TwoClosed.resolved", TWO, "The forces on two surfaces that touch"),
 ]
 

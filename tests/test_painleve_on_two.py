@@ -245,7 +245,7 @@ def test_a_normal_force_of_two_falls_by_zero_or_by_infinity() -> None:
 
         def normal(gravity: float, case: tuple[Tops, State] = case) -> float:
             one = mode(gravity, 0.1, *case)
-            return float(one.contact_forces(one.numbers(case[1]))[0].normal[0])
+            return float(one.contacts(one.numbers(case[1])).normal(0))
 
         def determinant(mu: float, case: tuple[Tops, State] = case) -> float:
             tops = tuple(one._replace(friction=CoulombLaw(mu)) for one in case[0])
@@ -294,7 +294,7 @@ def test_a_contact_that_friction_alone_holds_closed_opens_at_the_limit_of_fricti
             if not (isinstance(mode, ContactMode) and end.cause == SLIP and mode.is_single):
                 continue
             contact, state = off_branch(mode.top), end.state
-            force = np.array(mode.contact_forces(mode.numbers(state))[0].wrenches[0].force)
+            force = np.array(mode.contacts(mode.numbers(state)).forces.wrenches[0].force)
             level = np.hypot(*force[:2])
             assert level == pytest.approx(4.0 * force[2], rel=1e-9)
             along = ContactPoint.of(state.axis, state.momentum, contact).response(

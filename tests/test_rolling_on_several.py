@@ -11,7 +11,7 @@ import moreau
 import tippetop as tt
 from campaigns import among
 from lying import R, lying, resisted
-from tippetop.contact import slip_clock
+from tippetop.contact import slip_end
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
@@ -188,7 +188,7 @@ def test_rolling_that_slip_held_up_begins_when_that_ends(monkeypatch: pytest.Mon
     }
     found = []
     for horizon in (3e-8, 1e-11):
-        monkeypatch.setattr(slip_clock, "LANDING", (horizon, 1e-16))
+        monkeypatch.setattr(slip_end, "LANDING", (horizon, 1e-16))
         run = followed(body.replace(launch), 0.004)
         (sticks,), (*_, one, other) = events(run, "stick"), events(run, "rolling starts")
         assert one == other == sticks
@@ -350,3 +350,29 @@ def test_sweeps_find_what_runs_find() -> None:
                 float(run[name]), rel=1e-9, abs=1e-11 * size
             ), name
     assert rested == [False, True]
+
+
+def test_rolling_may_begin_while_slip_on_two_contacts_ends() -> None:
+    """Two balls on a stick, lying: what friction takes is what is lost, and in the end nothing
+    moves.
+    """
+    shape = [tt.Sphere(radius=0.005, center=0.02), tt.Sphere(radius=0.005, center=-0.01)]
+    interrupted = 0
+    launches = [(0.2293, 0.01033, -0.003323), (-0.1138, 0.002861, -0.002138)]
+    for precession, along, across in launches:
+        problem = tt.Problem(
+            body=tt.Body(mass=0.01, shape=shape, I1=2e-6, I3=1.25e-7),
+            friction=tt.CoulombFriction(mu=0.2215),
+            rolling_resistance=5.3272e-4,
+            launch=tt.Launch(
+                tilt=np.pi / 2, spin=0.0, precession=precession, velocity=(along, across, 0.0)
+            ),
+        )
+        run = followed(problem, 0.5, samples=2)
+        assert run.attrs["outcome"] == "at_rest"
+        begins, ends = events(run, "rolling starts"), events(run, "stick")
+        interrupted += len(begins) > 0 and begins[0] < ends[-1]
+        taken = sum(losses(run)) + float(run["impact_energy_lost"])
+        lost = float(run["energy"][0] - run["energy"][-1])
+        assert taken == pytest.approx(lost, abs=1e-12 * float(run["energy"][0]))
+    assert interrupted == len(launches)

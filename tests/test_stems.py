@@ -11,7 +11,7 @@ from tippetop.contact import automaton, collision, touching
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import sliding_on_two
 from tippetop.contact.mode import EventKind, Mode
-from tippetop.contact.slip_end_on_two import SlipEndOnTwo
+from tippetop.contact.slip_end import SlipEnd
 from tippetop.contact.transient import Resting
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contacts.contact_point import contact_points
@@ -333,7 +333,7 @@ def test_what_hardly_slips_on_two_surfaces_rests(velocity: float) -> None:
     following, end = automaton.resting(automaton.top, 0.0, state), 0.0
     if velocity:
         mode, method = following.next, make_integrator("dop853", 3e-14)
-        assert isinstance(mode, SlipEndOnTwo)
+        assert isinstance(mode, SlipEnd)
         (segment,) = mode.segments(0.0, following.state, 1.0, method)
         assert segment.mode_end is not None
         end = segment.solution.end

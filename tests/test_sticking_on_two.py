@@ -12,10 +12,10 @@ import xarray as xr
 import tippetop as tt
 from campaigns import among
 from lying import lying, resisted
-from tippetop.contact import slip_clock
+from tippetop.contact import slip_end
 from tippetop.contact.contact_mode import ContactMode, mode_on_two
 from tippetop.contact.natural_launch import automaton_of
-from tippetop.contact.slip_onset_on_two import SlipOnsetOnTwo
+from tippetop.contact.slip_onset import SlipOnset
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contacts.contact_forces import forces_on_two
@@ -67,7 +67,7 @@ def test_the_end_of_slip_on_two_converges_as_its_last_moments_are_followed_neare
     for problem, duration, contacts in ((resisted(31), 0.2, 1), (resisted(56), 0.1, 2)):
         found = []
         for horizon in (1e-6, 3e-8, 1e-10):
-            monkeypatch.setattr(slip_clock, "LANDING", (horizon, 1e-16))
+            monkeypatch.setattr(slip_end, "LANDING", (horizon, 1e-16))
             run = followed_by_steps(problem, duration)
             found.append([*times(run, "stick"), *run["angular_momentum"].values[-1] * 1e3])
             assert len(times(run, "stick")) == contacts
@@ -220,32 +220,35 @@ def test_energy_balances_over_all_transitions_and_stays_while_both_stick() -> No
 
 def test_slip_that_begins_at_the_limit_grows_with_the_square_of_time() -> None:
     segments = followed(SLIPS_AGAIN)
-    number = next(i for i, s in enumerate(segments) if isinstance(s.mode, SlipOnsetOnTwo))
+    number = next(i for i, s in enumerate(segments) if isinstance(s.mode, SlipOnset))
     begin, before = segments[number], segments[number - 1]
     assert before.mode.sticks == (True, False)
     start = begin.solution.knots[0]
     after = np.array([2e-3, 4e-3, 8e-3])
-    speeds = np.hypot(*begin.solution(start + after).T[6:8])
+    speeds = np.hypot(*begin.solution(start + after).T[8:10])
     assert speeds[1:] / speeds[:-1] == pytest.approx([4.0, 4.0], rel=0.02)
 
 
 @pytest.mark.parametrize("seed", [SLIPS_AGAIN, BEYOND_THE_LIMIT])
 def test_slip_that_begins_solves_the_equations_of_sliding(seed: int) -> None:
     """From early in its first step on, by an implicit method and in other numbers."""
-    begin = next(segment for segment in followed(seed) if isinstance(segment.mode, SlipOnsetOnTwo))
+    begin = next(segment for segment in followed(seed) if isinstance(segment.mode, SlipOnset))
     knots = begin.solution.knots
     early, late = (knots[0] + part * (knots[-1] - knots[0]) for part in (0.3, 0.9))
     mode, (first, last) = begin.mode, begin.solution(np.array([early, late])).tolist()
-    slides = mode_on_two(mode.tops, mode.rolls)
+    slides = mode_on_two(mode.tops, mode.contact_mode.rolls)
     start = early, np.array(slides.numbers(mode.state(first)))
     (arc,) = make_integrator("collocation").integrate(slides.motion, slides.parameters, start, late)
     assert arc.end_state == pytest.approx(slides.numbers(mode.state(last)), abs=1e-11)
     part = (late - knots[-2]) / (knots[-1] - knots[-2])
-    assert mode.contact_forces(last)[0].rate == pytest.approx(
+    (component,), count = mode.components, mode.contact_mode.count
+    velocities = mode.split_velocities(last[count:])
+    rate = mode.contacts(last[:count], velocities, velocities).rate_of(component)
+    assert rate == pytest.approx(
         [
             np.polynomial.polynomial.polyval(part, np.polynomial.polynomial.polyder(row))
             / (knots[-1] - knots[-2])
-            for row in begin.solution.terms[-1, 6:]
+            for row in begin.solution.terms[-1, count:]
         ],
         abs=1e-10,
     )

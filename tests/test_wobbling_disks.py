@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 import tippetop as tt
-from tippetop.contact import contact_mode, guards, settling_flat, slip_end_motion
+from tippetop.contact import contact_mode, guards, settling_flat, slip_end_motion, slip_onset
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import forces_and_accelerations
 from tippetop.mechanics.contacts.slip_variables import slip_of
@@ -99,9 +99,13 @@ def test_the_end_does_not_depend_on_where_the_law_takes_over(
 ) -> None:
     ends, energies = list[float](), list[float]()
     for left_out in (1e-7, 1e-9, 1e-10):
-        for module in (guards, settling_flat, slip_end_motion):
+        for module in (guards, settling_flat):
             monkeypatch.setattr(module, "LEFT_OUT", left_out)
-        for cached in (contact_mode.motion_of, slip_end_motion.slip_end_motion):
+        for cached in (
+            contact_mode.motion_of,
+            slip_end_motion.slip_end_motion,
+            slip_onset.onset_motion,
+        ):
             cached.cache_clear()
         run = tt.simulate(FALLING, 2.0, samples=2)
         assert run.attrs["outcome"] == "lying_flat"

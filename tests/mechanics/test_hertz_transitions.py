@@ -9,8 +9,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dry_runs import DryRun
+from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.mode import split
-from tippetop.contact.slip_end_motion import slip_end_state
+from tippetop.contact.slip_end_motion import pack_clock, rates_in_time, unpack_clock
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import (
@@ -19,7 +20,7 @@ from tippetop.mechanics.contacts.forces import (
     velocity_without_slip,
     without_drilling,
 )
-from tippetop.mechanics.contacts.slip_end import SlipComponent, rates_in_time, slip_end_rates
+from tippetop.mechanics.contacts.slip_end import SlipComponent, slip_end_rates
 from tippetop.mechanics.contacts.slip_variables import size, velocity_of
 from tippetop.mechanics.laws.contensou_hertz import BRANCH_TORQUE, HertzLaw
 from tippetop.mechanics.laws.coulomb import CoulombLaw
@@ -51,18 +52,18 @@ def test_slip_ends_on_the_branch_its_direction_turns_to(seed):
     top, axis, momentum, slip = about_to_stick(np.random.default_rng(seed))
 
     def rates(_, y):
-        state = slip_end_state(y.tolist(), SLIP)
-        rate = slip_end_rates(state, rates_in_time(state, SLIP, top))
-        return [*rate.axis, *rate.momentum, *rate.direction, rate.speed, rate.time]
+        state = unpack_clock(y.tolist(), 8)
+        return pack_clock(slip_end_rates(state, rates_in_time(state, ContactMode(top), SLIP)))
 
-    start = [*axis, *momentum, *(x / size(slip) for x in slip), size(slip), 0.0]
+    velocity = velocity_of(axis, momentum, slip, top)
+    direction = [x / size(slip) for x in slip]
+    start = [*axis, *momentum, *velocity, *direction, size(slip), 0.0]
     whole = solve_ivp(rates, (0.0, 25.0), start, "Radau", rtol=1e-8, atol=1e-11).y
-    drills = np.abs(whole[8]) > np.hypot(whole[6], whole[7])
+    drills = np.abs(whole[10]) > np.hypot(whole[8], whole[9])
     assert drills.any(), "it turns from one branch to the other"
     assert not drills.all(), "it turns from one branch to the other"
-    velocity = velocity_of(axis, momentum, slip, top)
-    run = DryRun(top, axis, momentum, velocity).follow(whole[10, -1] * 1.5)
-    assert run.times("stick")[:1] == pytest.approx([whole[10, -1]], abs=1e-9)
+    run = DryRun(top, axis, momentum, velocity).follow(whole[12, -1] * 1.5)
+    assert run.times("stick")[:1] == pytest.approx([whole[12, -1]], abs=1e-9)
 
 
 @pytest.mark.parametrize("slip", [1e-6, 1e-9, 1e-12])

@@ -252,5 +252,5 @@ def test_slip_is_watched_by_how_fast_it_falls_along_the_motion(slide, law):
         + abs(falls)
         + scale_of(top, ContactPoint.of(*state[:2], top)) ** 2
     )
-    found = ContactMode(top).slip_left(state.pack())
+    found = ContactMode(top).contacts(state.pack()).slip_left()
     assert found == pytest.approx(guard_of_end(slipping, falls), abs=1e-11 * scale)

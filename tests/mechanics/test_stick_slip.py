@@ -14,12 +14,13 @@ from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.guards import SLIP
 from tippetop.contact.mode import EventKind, split
-from tippetop.contact.onset_motion import SLIP_AND_ROLLING, onset_motion
 from tippetop.contact.slip_end import SlipEnd
-from tippetop.contact.slip_onset import SlipOnset
+from tippetop.contact.slip_end_motion import rates_in_time
+from tippetop.contact.slip_onset import SlipOnset, onset_motion
 from tippetop.contact.slip_phase import follow_slip
 from tippetop.contact.slip_step import SlipStep
 from tippetop.contact.trajectory import Trajectory
+from tippetop.contact.transient import SLIP_AND_ROLLING
 from tippetop.integrators import make_integrator
 from tippetop.integrators.scipy_methods import SciPy
 from tippetop.mechanics.contacts.contact_point import ContactPoint
@@ -32,7 +33,6 @@ from tippetop.mechanics.contacts.gauss_points import PARTS, STAGES
 from tippetop.mechanics.contacts.slip_end import (
     SlipComponent,
     SlipEndState,
-    rates_in_time,
     reopening_guard,
 )
 from tippetop.mechanics.contacts.slip_onset import find_onset
@@ -261,10 +261,16 @@ def at_the_limit(family, shape=SPHERE):
 
 def began(top, axis, momentum, direction, length):
     """A step of slip that begins in a direction."""
-    step = SlipStep(onset_motion(top.kind, (SlipComponent(slip=True),), False), top.numbers)
-    none = [0.0 for _ in direction]
-    assert step.solve([*axis, *momentum, *none], [direction], length)
+    motion = beginning(top, (SlipComponent(slip=True),))
+    step, none = SlipStep(motion, top.numbers), [0.0 for _ in direction]
+    velocity = velocity_without_slip(axis, momentum, top)
+    assert step.solve([*axis, *momentum, *velocity, *none], [direction], length)
     return step
+
+
+def beginning(top, components):
+    """The equations of motion of velocities of a sliding top that begin, on a table that pulls."""
+    return onset_motion(ContactMode(top, pulls=True).without_tops(), (top.kind,), components)
 
 
 def starting(family, power, shape=SPHERE):
@@ -287,10 +293,12 @@ class Followed:
     """The first step of velocities that begin, as functions of time, and its direction."""
 
     def __init__(self, top, axis, momentum, directions, begins):
-        motion = onset_motion(top.kind, begins, False)
+        motion = beginning(top, begins)
         none = [0.0 for way in directions for _ in way]
-        self.begin = np.array([*axis, *momentum, *none])
-        phase = follow_slip(motion, top, (self.begin.tolist(), directions), 1e9)
+        velocity = velocity_without_slip(axis, momentum, top)
+        self.begin = np.array([*axis, *momentum, *velocity, *none])
+        start = self.begin.tolist(), directions
+        phase = follow_slip(motion, top, start, 1e9, numbers=top.numbers)
         assert len(phase.knots) == PARTS + 1
         self.end, self.last = phase.knots[-1], phase.last
         self.terms = phase.rows[0].reshape(PARTS, len(self.begin), STAGES)
@@ -319,11 +327,15 @@ def test_the_beginning_of_slip_solves_the_equations(family, power, shape):
     assert begun.end > 0.01
     for part in (1e-3, 0.02, 0.3, 0.5, 0.77, 0.99):
         numbers, rates = begun(part)
-        n, L, zeta = (tuple(row.tolist()) for row in np.split(numbers, [3, 6]))
+        n, L, u, zeta = (tuple(row.tolist()) for row in np.split(numbers, [3, 6, 8]))
         true = creep_rates(n, L, zeta, top)
-        assert rates == pytest.approx([*true.axis, *true.momentum, *true.slip], abs=1e-8)
+        drawn = np.split(rates, [6, 8])
+        assert [*drawn[0], *drawn[2]] == pytest.approx(
+            [*true.axis, *true.momentum, *true.slip], abs=1e-8
+        )
+        assert u == pytest.approx(velocity_of(n, L, zeta, top), abs=1e-14)
         slip = size(zeta)
-        assert slip / size(begun(2.0 * part if part < 0.01 else part)[0][6:].tolist()) == (
+        assert slip / size(begun(2.0 * part if part < 0.01 else part)[0][8:].tolist()) == (
             pytest.approx(0.5**power, rel=0.1 if power == 2 else 0.05) if part < 0.01 else 1.0
         )
 
@@ -339,13 +351,16 @@ def test_slip_and_rolling_begin_together(family):
     count = len(begin.slip)
     for part in (1e-3, 0.1, 0.5, 0.9):
         numbers, rates = begun(part)
-        n, L, zeta, rolling = (tuple(row.tolist()) for row in np.split(numbers, [3, 6, 6 + count]))
+        n, L, _, zeta, rolling = (
+            tuple(row.tolist()) for row in np.split(numbers, [3, 6, 8, 8 + count])
+        )
         assert rolling == pytest.approx(angular_velocity(n, L, top)[:2], abs=1e-15)
         here = ContactPoint.of(n, L, top)
         wrench, acceleration = forces_and_accelerations(here, zeta, rolling)
         change = SlipComponent(slip=True).rate(acceleration, top)
+        drawn = scaled(1.0 / top.mass, wrench.force[:2])
         assert rates[3:] == pytest.approx(
-            [*here.moment(wrench), *change, *acceleration.turning[:2]], abs=1e-9
+            [*here.moment(wrench), *drawn, *change, *acceleration.turning[:2]], abs=1e-9
         )
 
 
@@ -365,16 +380,17 @@ def test_the_last_moments_of_slip_are_told_up_to_its_end(mode, monkeypatch):
     solution = segment.solution
     left = np.geomspace(1e-1, 1e-12, 23) * (solution.end - solution.knots[0])
     numbers = solution(np.append(solution.end - left, solution.end))
-    slip = np.hypot(*numbers[:, 6:].T)
+    slip = np.hypot(*numbers[:, 8:].T)
     times = solution.end - np.append(solution.end - left, solution.end)
     near = times < 1e-8
     assert near.sum() > 5
     rate = size(
-        creep_rates(*split(numbers[-1]), tuple(numbers[near][0, 6:] / slip[near][0]), top).slip
+        creep_rates(*split(numbers[-1]), tuple(numbers[near][0, 8:] / slip[near][0]), top).slip
     )
     assert slip[near] == pytest.approx(rate * times[near], rel=1e-6, abs=1e-15)
     last = segment.end_state
-    np.testing.assert_allclose(numbers[-1, :6], (*last.axis, *last.momentum), rtol=0, atol=1e-15)
+    numbers_at_end = (*last.axis, *last.momentum, *last.velocity[:2])
+    np.testing.assert_allclose(numbers[-1, :8], numbers_at_end, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -383,11 +399,11 @@ def test_the_table_pulls_from_the_first_instant_on_as_it_does_where_slip_begins(
     top, axis, momentum = starting(family, 1)
     velocity = velocity_without_slip(axis, momentum, top)
     state = on_table(SlidingState(axis, momentum, velocity), top)
-    (segment,) = SlipOnset(top, SlipComponent(slip=True), pulls=True).segments(
-        0.0, state, 1.0, make_integrator()
-    )
     point = ContactPoint.of(axis, momentum, top)
-    true = find_onset(point, None, point.turning[:2], (True, False)).wrench
+    begin = find_onset(point, None, point.turning[:2], (True, False))
+    true = begin.wrench
+    onset = SlipOnset.of(ContactMode(top, pulls=True), (SlipComponent(slip=True),), (begin.slip,))
+    (segment,) = onset.segments(0.0, state, 1.0, make_integrator())
     y = segment.solution(np.array([0.0, 1e-14, 1e-11, 1e-9]))
     found = segment.mode.reaction(y.T)
     for i in range(3):
@@ -410,10 +426,11 @@ def test_the_clock_of_slips_end_is_left_where_slip_outlasts_twice_what_it_begins
             (math.sin(tilt), 0.0, math.cos(tilt)),
             (math.cos(angle), math.sin(angle)),
         )
-        now = SlipEndState(axis, momentum, (), direction, speed, 0.0)
-        rates = rates_in_time(now, ending, top)
+        velocity = velocity_of(axis, momentum, scaled(speed, direction), top)
+        now = SlipEndState((*axis, *momentum, *velocity), direction, speed, 0.0)
+        rates = rates_in_time(now, ContactMode(top), ending)
         left = time_to_end(scaled(speed, direction), rates.xi)
-        guard = reopening_guard(now, rates, top)
+        guard = reopening_guard(now, rates)
         if left < HORIZON:
             counts["begins"] += 1
             assert guard > 0.0
@@ -432,7 +449,7 @@ def test_slip_starts_against_the_force_that_held_it():
     force = forces_and_accelerations(ContactPoint.of(axis, momentum, top), None)[0].force[:2]
     assert direction == pytest.approx(scaled(-1.0 / size(force), force), abs=1e-12)
     # Slip grows as t^2: twice the time, four times the slip.
-    short, long = (size(began(top, axis, momentum, direction, t).changes[6:]) for t in (1e-6, 2e-6))
+    short, long = (size(began(top, axis, momentum, direction, t).changes[8:]) for t in (1e-6, 2e-6))
     assert long / short == pytest.approx(4.0, rel=1e-5)
 
 
@@ -443,7 +460,8 @@ def test_where_the_first_step_ends_does_not_matter():
     ends = []
     for length in (0.02, 0.05, 0.1):
         step = began(top, axis, momentum, direction, length)
-        begin = np.array([*axis, *momentum, 0.0, 0.0]) + step.changes
+        changes = np.delete(step.changes, [6, 7])
+        begin = np.array([*axis, *momentum, 0.0, 0.0]) + changes
 
         def rates(_, y):
             r = creep_rates(tuple(y[:3]), tuple(y[3:6]), tuple(y[6:]), top)

@@ -6,15 +6,17 @@ rest normally on the table goes through `Automaton.resting`, and from there to t
 contact (`Automaton.resolve`) or of two (`Automaton.resolve_two`).
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
+from tippetop.contact.closed_contacts import ClosedContacts
 from tippetop.contact.collision import collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.guards import (
     BRANCH,
+    ENDING,
     LIFT_OFF,
     LIMIT_BRANCH,
     OPENING,
@@ -38,17 +40,16 @@ from tippetop.contact.mode import (
     failed,
 )
 from tippetop.contact.settling_flat import FLAT, SettlingFlat, settling_flat
-from tippetop.contact.slip_end import SlipEnd
-from tippetop.contact.slip_end_motion import JAMMED, OVERTAKEN, REACHED_ZERO, REOPENING
-from tippetop.contact.slip_end_on_two import SlipEndOnTwo, end_on_two, unpack_clock
-from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
-from tippetop.contact.slip_onset_on_two import SlipOnsetOnTwo
-from tippetop.contact.soonest_end import (
-    on_present_branch,
-    rolls_freely,
-    soonest_end,
-    soonest_end_on_two,
+from tippetop.contact.slip_end import SlipEnd, clock_at
+from tippetop.contact.slip_end_motion import (
+    JAMMED,
+    OVERTAKEN,
+    REACHED_ZERO,
+    REOPENING,
+    contacts_in_clock,
 )
+from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset, clause_of
+from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
 from tippetop.contact.surfaces import FACE, TOUCH, WOBBLE, lands_flat, lies_flat
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
@@ -57,7 +58,7 @@ from tippetop.contact.touching import (
     outermost,
     stays_closed,
 )
-from tippetop.contact.transient import Resting, TransientMode
+from tippetop.contact.transient import AT_REST, SLIP_AND_ROLLING, Resting, TransientMode
 from tippetop.contact.two_closed import (
     BOTH_CLOSED,
     FIRST_ALONE,
@@ -68,13 +69,18 @@ from tippetop.contact.two_closed import (
     rolling_of,
 )
 from tippetop.integrators.base import Integrator
-from tippetop.mechanics.contacts.branches import off_branch, on_branch, on_other_branch
+from tippetop.mechanics.contacts.branches import (
+    off_branch,
+    on_branch,
+    on_limit_branch,
+    on_other_branch,
+)
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.pair import Tops, slips_of, without_tilting
-from tippetop.mechanics.contacts.pair_resolver import Resolution
+from tippetop.mechanics.contacts.pair_resolver import Resolution, rolling_direction
 from tippetop.mechanics.contacts.slip_end import SlipComponent
-from tippetop.mechanics.contacts.slip_onset import Onset, resolve_onset
+from tippetop.mechanics.contacts.slip_onset import Onset, find_onset, resolve_onset
 from tippetop.mechanics.contacts.slip_variables import (
     HORIZON,
     come_to_rest,
@@ -150,30 +156,53 @@ class Automaton:
         """Return what follows the end of a mode; the integrator may follow an impact, too."""
         if end.cause == COMPLETED:
             return Transition((), Outcome.COMPLETED, end.state)
-        contact = off_branch(mode.top)
-        if end.cause == FAILURE and not _may_jam(mode):
-            return Transition((), Outcome.FAILED, end.state, end.detail)
+        if end.cause == FAILURE:
+            return self._after_failure(mode, end, time)
         if end.cause == FLAT:
             return Transition((), Outcome.LYING_FLAT, end.state)
-        if end.cause in (FACE, WOBBLE):
-            contact_mode = mode.reported_mode if isinstance(mode, TransientMode) else mode
-            assert isinstance(contact_mode, ContactMode)
-            settling = SettlingFlat(mode.top, contact_mode, slaps=end.cause == FACE)
-            return Transition((), settling, end.state)
+        if end.cause == AT_REST:
+            return Transition((), Outcome.AT_REST, end.state)
+        contact = off_branch(mode.top)
         if isinstance(mode, Flight):
             return self._after_flight(contact, end, time, integrator)
         if end.cause == TOUCH:
             return self.touch(contact, end.contact, time, end.state)
-        if isinstance(mode, Resting):
-            return Transition((), Outcome.AT_REST, end.state)
-        if isinstance(mode, SlipOnset):
-            return self._after_onset(contact, mode, end, time)
-        if isinstance(mode, SlipEnd):
-            return self._after_clock(contact, mode, end, time)
-        assert isinstance(mode, ContactMode), f"nothing follows {mode.name}"
-        if mode.is_single:
-            return self._after_one(contact, mode, end, time)
-        return self._after_two(mode, end, time)
+        moving = mode.contact_mode if isinstance(mode, TransientMode) else mode
+        assert isinstance(moving, ContactMode), f"nothing follows {mode.name}"
+        if end.cause in (FACE, WOBBLE):
+            settling = SettlingFlat(moving.top, moving, slaps=end.cause == FACE)
+            return Transition((), settling, end.state)
+        if end.cause == LIFT_OFF:
+            return self.lift_off(contact, time, mode, end)
+        if end.cause == OPENING:
+            return self._open_one(moving, mode, end, time)
+        if end.cause in (BRANCH, LIMIT_BRANCH):
+            return self._on_other_branch(moving, mode, end)
+        if end.cause == JAMMED:
+            return self._after_jam(moving, end, time)
+        if end.cause == OVERTAKEN:
+            assert isinstance(mode, SlipEnd)
+            return Transition((), mode.of_second(), end.state)
+        if end.cause in (SLIP_SMALL, SLIP_LARGE, REOPENING, ONSET_OVER):
+            return self._go_on(moving, end)
+        if end.cause in (STOPPING, ROLLING_STOPPING):
+            return self._follow_to_end(moving, end, time)
+        if end.cause in (REACHED_ZERO, ENDED):
+            assert isinstance(mode, TransientMode)
+            return self._after_end(moving, mode, end, time)
+        if moving.is_single:
+            return self._begins_on_one(moving, mode, end, time)
+        return self._begins_on_two(moving, end, time)
+
+    def _after_failure(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where a mode cannot be followed: friction that turns may have jammed
+        the contact, where no step is short enough.
+        """
+        failure = Transition((), Outcome.FAILED, end.state, end.detail)
+        moving = mode.contact_mode if isinstance(mode, SlipEnd) else mode
+        if isinstance(moving, ContactMode) and moving.slides_freely:
+            return self.jammed(off_branch(mode.top), time, end.state) or failure
+        return failure
 
     def _after_flight(
         self, contact: Top, end: ModeEnd, time: float, integrator: Integrator | None
@@ -183,100 +212,100 @@ class Automaton:
             return self.touchdown(contact, time, end.state, integrator)
         return self.touch(contact, end.contact, time, end.state, integrator)
 
-    def _after_one(self, contact: Top, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
-        """Return what follows on one contact that slips or sticks."""
-        state, slips = end.state, not mode.sticks[0]
-        if end.cause == FAILURE:
-            # Friction that turns may have jammed the contact: no step is short enough then.
-            failure = Transition((), Outcome.FAILED, state, end.detail)
-            return self.jammed(contact, time, state) or failure
-        if end.cause == LIFT_OFF:
-            return self.lift_off(contact, time, mode, end)
-        if end.cause in (SLIP_SMALL, SLIP_LARGE):
-            return Transition((), self.mode_for(contact, state, slips=True), state)
-        if end.cause in (STOPPING, ROLLING_STOPPING):
-            return self._follow_to_end(contact, state, slips=slips)
-        if end.cause in (BRANCH, LIMIT_BRANCH):
-            return Transition((), replace(mode, top=on_other_branch(mode.top)), state)
-        assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
-        wrench = mode.contact_forces(mode.numbers(state))[0].wrenches[0]
-        if wrench.force[2] <= 0.0 and not self.pulls:
-            return self.lift_off(contact, time, mode, end)
-        begins = SlipComponent(
-            end.cause == SLIP, held=mode.prevents_rolling if end.cause == SLIP else mode.sticks[0]
-        )
-        return self._begin(contact, time, state, begins, wrench)
-
-    def _after_onset(self, contact: Top, mode: SlipOnset, end: ModeEnd, time: float) -> Transition:
-        """Return what follows the first moments of slip, or of rolling, or slip that has ended."""
-        if end.cause == ENDED:
-            resolved = self.resolve(contact, time, end.state, new=(True, False))
-            return self._with_other_surfaces(contact, time, resolved)
-        state = end.state
+    def _go_on(self, mode: ContactMode, end: ModeEnd) -> Transition:
+        """Return the contact mode as it goes on, near an end of its velocities or not."""
         try:
-            return Transition((), self.mode_for(contact, state, slips=not mode.stuck), state)
+            if mode.is_single:
+                slips = not mode.sticks[0]
+                following = self.mode_for(off_branch(mode.top), end.state, slips=slips)
+            else:
+                following = self._slides_on_two(end.state, mode.tops, mode.rolls)
         except ArithmeticError:
-            return Transition((), Outcome.FAILED, state, UNSEEN)
+            return Transition((), Outcome.FAILED, end.state, UNSEEN)
+        return Transition((), following, end.state)
 
-    def _after_clock(self, contact: Top, mode: SlipEnd, end: ModeEnd, time: float) -> Transition:
-        """Return what follows where a velocity has ended, or is no longer about to."""
-        state, ending = end.state, mode.component
-        if end.cause == REACHED_ZERO:
-            new = ending.slip, not ending.slip
-            resolved = self.resolve(contact, time, state, new, held=ending.held)
-            return self._with_other_surfaces(contact, time, resolved)
-        if end.cause == JAMMED:
-            return self.jammed(contact, time, state) or self.inconsistent(contact, time, state, ())
-        if end.cause == LIFT_OFF:
-            return self.lift_off(contact, time, mode, end)
-        if end.cause == REOPENING:
-            stuck = not ending.slip and ending.held
-            return Transition((), self.mode_for(contact, state, slips=not stuck), state)
-        if end.cause == OVERTAKEN:
-            second = replace(mode, component=SlipComponent(not ending.slip), begin=())
-            return Transition((), second, state)
-        if end.cause in (BRANCH, LIMIT_BRANCH):
-            top, begin = on_other_branch(mode.top), (*end.numbers[:-1], 0.0)
-            return Transition((), replace(mode, top=top, begin=begin), state)
-        assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
-        return self._begin(contact, time, state, SlipComponent(slip=end.cause == SLIP))
+    def _follow_to_end(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
+        """Return the clock of the velocity that ends first; where a guard was touched by rounding,
+        none does.
 
-    def _after_two(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
-        """Return what follows a guard of two contacts: one opens, or slip or rolling begins or
-        ends.
+        The rolling of two contacts ends as its guard says.
         """
-        state, rolls = end.state, mode.rolls
-        if end.cause in (ONSET_OVER, REOPENING):
-            return Transition((), self._slides_on_two(state, mode.tops, rolls), state)
-        if end.cause == STOPPING:
-            ending, time_left = soonest_end_on_two(mode, state)
-            following = end_on_two(mode, ending) if time_left < math.inf else mode
-            return Transition((), following, state)
-        if end.cause == OVERTAKEN:
-            return Transition((), end_on_two(mode, 1), state)
-        if end.cause == OPENING:
-            opening, stays = (mode.tops, mode.tops[::-1])[end.contact]
-            slips = not mode.sticks[1 - end.contact]
-            if not opens_by_zero(mode, end, opening) or (slips and _jams_alone(stays, state)):
-                return self.resolve_two(time, state, mode.tops, Before.of(mode), rolls)
-            event = Event(EventKind.OPENING, time, surface=opening.active)
-            state = state._replace(momentum=mode.stilled(state.axis, state.momentum))
-            after = self.mode_for(off_branch(stays), state, slips=slips)
-            return Transition((event,), after, state)
-        if end.cause == BRANCH:
-            tops = list(mode.tops)
-            tops[end.contact] = on_other_branch(tops[end.contact])
-            after = mode.with_tops(tops, mode.further)
-            if isinstance(after, SlipEndOnTwo):
-                after = replace(after, begin=(*end.numbers[:-1], 0.0))
-            return Transition((), after, state)
+        if not mode.is_single and end.cause == ROLLING_STOPPING:
+            return self.resolve_two(time, end.state, mode.tops, Before.of(mode), 0.0)
+        if mode.is_single:
+            mode = self._contact_mode(off_branch(mode.top), end.state, slips=not mode.sticks[0])
+        ending, _ = soonest_end(mode, end.state)
+        return self._go_on(mode, end) if ending is None else Transition((), ending, end.state)
+
+    def _after_end(
+        self, mode: ContactMode, transient: TransientMode, end: ModeEnd, time: float
+    ) -> Transition:
+        """Return what follows where a velocity has ended."""
+        if not mode.is_single:
+            return self.resolve_two(time, end.state, mode.tops, Before.of(mode), mode.rolls)
+        contact, slip = off_branch(mode.top), transient.components[0].slip
+        held = mode.prevents_rolling if slip else mode.sticks[0]
+        resolved = self.resolve(contact, time, end.state, (slip, not slip), held=held)
+        return self._with_other_surfaces(contact, time, resolved)
+
+    def _after_jam(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where friction has jammed contacts that slip."""
+        contact, state = off_branch(mode.top), end.state
+        if mode.is_single:
+            return self.jammed(contact, time, state) or self._strike(contact, time, state)
+        jammed = TwoClosed.of(state, mode.tops, mode.rolls).jammed or contact
+        return self.inconsistent(jammed, time, on_table(along_table(state), jammed), ())
+
+    def _on_other_branch(self, mode: ContactMode, ended: Mode, end: ModeEnd) -> Transition:
+        """Return the mode on the branch of the law, or of its limit surface, that takes over."""
+        tops = list(mode.tops)
+        number = max(end.contact, 0)
+        tops[number] = on_other_branch(tops[number])
+        following = mode.with_tops(tops, mode.further)
+        if isinstance(ended, SlipEnd):
+            clock = SlipEnd.of(following, ended.component, clock_at(end))
+            return Transition((), clock, end.state)
+        return Transition((), following, end.state)
+
+    def _open_one(self, mode: ContactMode, ended: Mode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where the normal force of one of two contacts changes its sign."""
+        opening, stays = (mode.tops, mode.tops[::-1])[end.contact]
+        state, slips = end.state, not mode.sticks[1 - end.contact]
+        if not opens_by_zero(ended, end, opening) or (slips and _jams_alone(stays, state)):
+            return self.resolve_two(time, state, mode.tops, Before.of(mode), mode.rolls)
+        event = Event(EventKind.OPENING, time, surface=opening.active)
+        state = state._replace(momentum=mode.stilled(state.axis, state.momentum))
+        return Transition((event,), self.mode_for(off_branch(stays), state, slips=slips), state)
+
+    def _begins_on_one(
+        self, mode: ContactMode, ended: Mode, end: ModeEnd, time: float
+    ) -> Transition:
+        """Return what follows where the table can no longer hold slip, or rolling, on one
+        contact.
+        """
+        assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
+        contact, state = off_branch(mode.top), end.state
+        wrench: Wrench | None = None
+        if ended is mode:
+            wrench = mode.contacts(mode.numbers(state)).forces.wrenches[0]
+            if wrench.force[2] <= 0.0 and not self.pulls:
+                return self.lift_off(contact, time, mode, end)
+        begins = SlipComponent(end.cause == SLIP)
+        held = mode.prevents_rolling if begins.slip else mode.sticks[0]
+        # A velocity that was about to end goes on beside one that begins.
+        return self._begin(contact, time, state, begins, held and ended is mode, wrench)
+
+    def _begins_on_two(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where the table can no longer hold slip, or rolling, on two
+        contacts.
+        """
+        assert end.cause in (SLIP, ROLLING, ENDING), f"nothing follows {end.cause}"
         if end.cause == SLIP:
-            return self.slip_on_two(time, state, mode, end.contact)
-        if end.cause == ROLLING_STOPPING:
-            rolls = 0.0
-        elif end.cause == ROLLING:
-            rolls = mode.rolling_direction(state)
-        return self.resolve_two(time, state, mode.tops, Before.of(mode), rolls)
+            return self.slip_on_two(time, end.state, mode, end.contact)
+        rolls = mode.rolls
+        if end.cause == ROLLING:
+            rolls = rolling_direction(mode.contacts(mode.numbers(end.state)).forces)
+        return self.resolve_two(time, end.state, mode.tops, Before.of(mode), rolls)
 
     # One contact.
 
@@ -285,27 +314,19 @@ class Automaton:
 
         Where the end of slip, or of rolling, is near already, that is followed in its clock.
         """
+        mode = self._contact_mode(contact, state, slips=slips)
+        settling = settling_flat(mode, state) if is_edge(mode.top.surface) else None
+        if settling is not None:
+            return settling
+        ending, time_left = soonest_end(mode, state)
+        return ending if ending is not None and time_left <= HORIZON else mode
+
+    def _contact_mode(self, contact: Top, state: State, *, slips: bool) -> ContactMode:
+        """Return the mode of one contact that slips or sticks, on the present branch of its law."""
         top = on_present_branch(contact, state, slips)
         rolls = rolls_freely(contact, state)
         near = slips and is_set_valued(top.friction) and bool(is_near(along_table(state), top))
-        mode = ContactMode(top, (not slips,), not rolls, near, self.pulls and slips)
-        settling = settling_flat(mode, state) if is_edge(top.surface) else None
-        if settling is not None:
-            return settling
-        ending, time_left = soonest_end(contact, state, slips)
-        if ending is not None and time_left <= HORIZON:
-            return SlipEnd(top, ending, self.pulls)
-        return mode
-
-    def _follow_to_end(self, contact: Top, state: State, *, slips: bool) -> Transition:
-        """Return the clock of what ends first; where a guard was touched by rounding, nothing
-        does.
-        """
-        ending, _ = soonest_end(contact, state, slips)
-        if ending is None:
-            return Transition((), self.mode_for(contact, state, slips=slips), state)
-        top = on_present_branch(contact, state, slips)
-        return Transition((), SlipEnd(top, ending, self.pulls), state)
+        return ContactMode(top, (not slips,), not rolls, near, self.pulls and slips)
 
     def _begin(
         self,
@@ -313,9 +334,11 @@ class Automaton:
         time: float,
         state: State,
         begins: SlipComponent,
-        wrench: Wrench | None = None,
+        held: bool,
+        wrench: Wrench | None,
     ) -> Transition:
-        """Return what follows at the limit of what can be held: slip, or rolling, begins.
+        """Return what follows at the limit of what can be held: slip, or rolling, begins while the
+        other goes on or is held.
 
         Or the contact opens, if strong friction alone has held it closed.
         """
@@ -324,7 +347,44 @@ class Automaton:
             return self._release(contact, time, state, ())
         kind = EventKind.SLIP if begins.slip else EventKind.ROLL
         event = Event(kind, time, surface=contact.active)
-        return Transition((event,), SlipOnset(contact, begins, self.pulls, wrench), state)
+        return self._onset(contact, state, (begins,), held, (event,), wrench)
+
+    def _onset(
+        self,
+        contact: Top,
+        state: State,
+        components: tuple[SlipComponent, ...],
+        held: bool,
+        events: tuple[Event, ...],
+        wrench: Wrench | None = None,
+    ) -> Transition:
+        """Return the mode in which velocities of one contact begin; `held` says whether the other
+        is held, if only one begins, and `wrench` what held it, if that is known.
+        """
+        slip_begins, rolling_begins = (
+            any(component.slip for component in components),
+            not all(component.slip for component in components),
+        )
+        sticks, still = held and not slip_begins, held and not rolling_begins
+        point = ContactPoint.of(state.axis, state.momentum, contact)
+        slip = None if slip_begins or sticks else slip_of(*along_table(state), contact)
+        rolling = None if rolling_begins or still else point.turning[:2]
+        begins = slip_begins, rolling_begins
+        try:
+            onset = find_onset(point, slip, rolling, begins, held=wrench)
+        except ArithmeticError as error:
+            what = f"The direction in which {clause_of(components)}"
+            return failed(what, error, state, events)
+        top = (
+            on_limit_branch(contact, onset.wrench)
+            if onset.slip is None
+            else on_branch(contact, onset.slip)
+        )
+        both: tuple[Any, Any] = onset.slip, onset.rolling
+        directions = [both[0] if component.slip else both[1] for component in components]
+        held_rolling = still and contact.resists_rolling
+        mode = ContactMode(top, (sticks,), held_rolling, pulls=self.pulls and not sticks)
+        return Transition(events, SlipOnset.of(mode, components, directions), state)
 
     def _opens_without_force(self, contact: Top, state: State) -> bool:
         """Return whether a contact would open without a force, b > 0, if the table cannot pull.
@@ -384,12 +444,9 @@ class Automaton:
         if begins[0] and rolls and self._opens_without_force(contact, state):
             return self._release(contact, time, state, events)
         if any(begins):
-            both = all(begins)
-            held = not both and (ended[1] if begins[0] else ended[0])
-            onset = SlipOnset(
-                contact, SlipComponent(begins[0], held), self.pulls, with_rolling=both
-            )
-            return Transition(events, onset, state)
+            components = SLIP_AND_ROLLING if all(begins) else (SlipComponent(begins[0]),)
+            held = not all(begins) and (ended[1] if begins[0] else ended[0])
+            return self._onset(contact, state, components, held, events)
         mode = self.mode_for(contact, state, slips=not ended[0])
         at, turning = resolved.acceleration
         if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
@@ -619,12 +676,16 @@ class Automaton:
         if past is None:
             return None
         beyond, *prior = past
-        following = self.inconsistent(contact, time, beyond, ())
-        if not following.events and isinstance(following.next, Mode):
-            # Slip is so little that by rounding nothing strikes, and slipping on it would jam at
-            # once.
-            following = self.resolve(contact, time, stuck_at_once(beyond, contact), (True, False))
-        return add_prior_impulse(following, state, *prior)
+        return add_prior_impulse(self._strike(contact, time, beyond), state, *prior)
+
+    def _strike(self, contact: Top, time: float, state: State) -> Transition:
+        """Collide without approach where friction has jammed a contact, or stick where slip is so
+        little that by rounding nothing strikes: slipping on, it would jam at once.
+        """
+        following = self.inconsistent(contact, time, state, ())
+        if following.events or not isinstance(following.next, Mode):
+            return following
+        return self.resolve(contact, time, stuck_at_once(state, contact), (True, False))
 
     # Two contacts.
 
@@ -729,11 +790,11 @@ class Automaton:
             (), self._turning(contacts.tops, contacts.xi[2], contacts.rolls), contacts.state
         )
 
-    def _slides_on_two(self, state: State, tops: Tops, rolls: float) -> ContactMode:
+    def _slides_on_two(self, state: State, tops: Tops, rolls: float) -> Mode:
         """Return the mode of two contacts that slip; where that is about to end, in its clock."""
         mode = sliding_on_two(state, tops, rolls)
-        ending, time_left = soonest_end_on_two(mode, state)
-        return end_on_two(mode, ending) if time_left <= HORIZON else mode
+        ending, time_left = soonest_end(mode, state)
+        return ending if ending is not None and time_left <= HORIZON else mode
 
     def _turning(self, tops: Tops, zeta: float, rolls: float) -> ContactMode:
         """Return the mode in which the first contact sticks, and the second slips so."""
@@ -747,22 +808,17 @@ class Automaton:
             tops = contacts.tops if resolved.sticks[0] else contacts.tops[::-1]
             sign = begins[2] if resolved.sticks[0] else -begins[2]
             return Transition((), self._turning(tops, sign, contacts.rolls), contacts.state)
-        begin = (*contacts.state.axis, *contacts.state.momentum, 0.0, 0.0, contacts.xi[2])
         slips = slips_of(contacts.pair, begins)
         first, second = (
             on_branch(top, slip) for top, slip in zip(contacts.tops, slips, strict=True)
         )
-        direction = begins if all(contacts.ended) else begins[:2]
-        mode = SlipOnsetOnTwo(
-            first,
-            (False, False),
-            contacts.stopped,
-            beside=(second,),
-            rolls=contacts.rolls,
-            begin=begin,
-            direction=direction,
+        both = all(contacts.ended)
+        onset = SlipOnset.of(
+            mode_on_two((first, second), contacts.rolls),
+            (SlipComponent(slip=True, turns=both),),
+            (begins if both else begins[:2],),
         )
-        return Transition((), mode, mode.state(begin))
+        return Transition((), onset, contacts.state)
 
 
 def _indeterminate(contact: Top, time: float, consistent: Sequence[str]) -> tuple[Event, ...]:
@@ -777,27 +833,25 @@ def _jams_alone(contact: Top, state: State) -> bool:
     return bool(sliding_contact(*along_table(state), contact).delassus <= 0.0)
 
 
-def _may_jam(mode: Mode) -> bool:
-    """Return whether the integrator of a mode may fail because friction jams the contact."""
-    return isinstance(mode, ContactMode) and mode.slides_freely
-
-
 def opens_by_zero(mode: Mode, end: ModeEnd, contact: Top) -> bool:
     """Return whether a normal force that changes its sign at the end of a mode does so by zero, so
     that its contact opens, and not by way of infinity.
     """
-    state, number = end.state, max(end.contact, 0)
+    state = end.state
     try:
-        if isinstance(mode, SlipEndOnTwo):
-            now = unpack_clock(end.numbers, mode.drills)
-            normal = mode.forces(now).normal[number]
-        elif isinstance(mode, ContactMode):
-            normal = mode.contact_forces(mode.numbers(state))[0].normal[number]
-        else:
-            normal = mode.reaction(end.numbers[:-2]).force[2]
+        normal = _contacts_at(mode, end).normal(max(end.contact, 0))
     except ArithmeticError:
         return False
     return bool(falls_by_zero(normal, state.axis, state.momentum, contact))
+
+
+def _contacts_at(mode: Mode, end: ModeEnd) -> ClosedContacts:
+    """Return the closed contacts where a mode has ended."""
+    if isinstance(mode, SlipEnd):
+        now = mode.state_in_clock(end.numbers)
+        return contacts_in_clock(now, mode.contact_mode, mode.component)
+    assert isinstance(mode, ContactMode)
+    return mode.contacts(mode.numbers(end.state))
 
 
 def add_prior_impulse(

@@ -9,15 +9,14 @@ up to the end: one step of collocation goes from a known speed to zero, with its
 import math
 from dataclasses import dataclass
 
-from tippetop.contact.onset_motion import onset_motion
 from tippetop.contact.slip_step import SlipStep
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.contacts.gauss_points import PARTS, STAGES
-from tippetop.mechanics.contacts.slip_end import SlipComponent, SlipEndState, rates_in_time
+from tippetop.mechanics.contacts.slip_collocation import SlipMotion
+from tippetop.mechanics.contacts.slip_end import SlipEndRates, SlipEndState
 from tippetop.mechanics.contacts.slip_variables import inner, scaled, size
 from tippetop.mechanics.series import horner
-from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
 
 SMOOTH = 1e-11
@@ -44,7 +43,9 @@ class CollocatedEnd:
     time_left: float
     """The time until slip ends."""
     start: list[Scalar]
-    """Axis, angular momentum and slip now."""
+    """The numbers of the mode and the slip now."""
+    free: int
+    """How many of them come before the slip."""
     terms: Array
     """Coefficients of their polynomials, as of `SlipStep.pieces`."""
 
@@ -60,7 +61,8 @@ class CollocatedEnd:
                 elapsed = min(place - earlier, 1.0)
                 value = value + elapsed * horner(terms[first : first + STAGES], elapsed)
             numbers.append(value)
-        return numbers if part > 0.0 else [*numbers[:6], *[0.0 for _ in numbers[6:]]]
+        zeros = [0.0 for _ in numbers[self.free :]]
+        return numbers if part > 0.0 else [*numbers[: self.free], *zeros]
 
     def solution(self, time: float) -> DenseSolution:
         """Return the numbers as polynomials in time from an instant on."""
@@ -71,31 +73,32 @@ class CollocatedEnd:
 
 
 def collocated_end(
-    state: SlipEndState, ending: SlipComponent, top: Top, tolerance: float
+    state: SlipEndState,
+    rates: SlipEndRates,
+    motion: SlipMotion,
+    parameters: tuple[float, ...],
+    tolerance: float,
 ) -> CollocatedEnd | None:
     """Return the end of slip from a state on; None where its direction has not come to rest.
 
     Parameters
     ----------
-    state
-        The state.
-    ending
-        The slip, beside which nothing else ends.
-    top
-        The body, on the branch of its law that holds.
+    state, rates
+        The state, and its rates in time.
+    motion, parameters
+        The equations of motion while slip begins or ends, and their parameters.
     tolerance
         Error of the directions that an integrator has left.
     """
-    along = inner(rates_in_time(state, ending, top).xi, state.direction)
+    along = inner(rates.xi, state.direction)
     if along >= 0.0:
         return None
-    motion = onset_motion(top.kind, (ending,), True)
-    step = SlipStep(motion, top.numbers, from_end=True)
-    now = [*state.axis, *state.momentum]
+    step = SlipStep(motion, parameters, from_end=True)
+    now, free = [*state.numbers], len(state.numbers)
     start, guess = [*now, *[0.0 for _ in state.direction]], [-state.speed / along]
     if not step.solve(start, [state.direction], state.speed, guess):
         return None
-    slip = tuple([-change for change in step.changes[6:]])
+    slip = tuple([-change for change in step.changes[free:]])
     aside = math.dist(state.direction, scaled(1.0 / size(slip), slip))
     steady = aside * step.length < max(STEADY, tolerance)
     if not (steady or aside * state.speed < STATE_ROUNDING):
@@ -103,4 +106,4 @@ def collocated_end(
     smooth = step.error < (SMOOTH * max(state.speed, SLOWEST)) ** 2
     if not smooth or step.least_speed <= 0.0:
         return None
-    return CollocatedEnd(step.length, [*now, *slip], step.pieces(float(PARTS)))
+    return CollocatedEnd(step.length, [*now, *slip], free, step.pieces(float(PARTS)))

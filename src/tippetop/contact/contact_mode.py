@@ -5,29 +5,22 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar, Self
 
+from tippetop.contact.closed_contacts import NONE_DIRECTED, ClosedContacts, Directed
 from tippetop.contact.guards import GuardValue, guards_on_one, guards_on_two
-from tippetop.contact.mode import BOTH, IntegratedMode, Reaction, split
+from tippetop.contact.mode import IntegratedMode, Reaction, split
 from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.contacts.branches import is_branched, on_numbered_branch
-from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_one, forces_on_two
-from tippetop.mechanics.contacts.contact_point import contact_points, flat
 from tippetop.mechanics.contacts.forces import (
-    Slips,
-    directions_of,
-    slip_length,
     velocity_without_slip,
     without_drilling,
     without_rolling,
 )
-from tippetop.mechanics.contacts.pair import Tops, slip_apart, slips_of
-from tippetop.mechanics.contacts.pair_resolver import rolling_direction
-from tippetop.mechanics.contacts.slip_variables import remaining, scaled, slip_of, slip_part
-from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.lying_down import Wobble
-from tippetop.mechanics.motion import along_table, axis_rate, on_table, sliding_rates
+from tippetop.mechanics.contacts.pair import Tops
+from tippetop.mechanics.contacts.slip_variables import slip_of
+from tippetop.mechanics.motion import along_table, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
+from tippetop.mechanics.vectors import Row, Scalar, Vector
 
 SLIPS, STICKS = "sliding", "sticking"
 """Status of a contact in the names of modes."""
@@ -121,6 +114,12 @@ class ContactMode(IntegratedMode):
         return (self.top, *self.beside)
 
     @property
+    def swapped(self) -> Self:
+        """The mode with its two contacts in the other order, of which both slip or both stick."""
+        (second,) = self.beside
+        return replace(self, top=second, beside=(self.top,))
+
+    @property
     def further(self) -> tuple[Scalar, ...]:
         """What the status needs beside the numbers of the tops."""
         if self.is_single or not any(self.sticks):
@@ -136,6 +135,10 @@ class ContactMode(IntegratedMode):
         """Return the mode without its tops and parameters."""
         no_top: Any = None
         return replace(self, top=no_top, beside=(), sense=1.0, slowest_rolling=0.0)
+
+    def on_tops(self, tops: Sequence[Top]) -> Self:
+        """Return the mode of tops of the same kinds with other numbers."""
+        return self.with_tops(tops, self.further)
 
     def with_tops(self, tops: Sequence[Top], further: Sequence[Scalar]) -> Self:
         """Return the mode with tops, and with further parameters."""
@@ -180,69 +183,19 @@ class ContactMode(IntegratedMode):
 
     # Forces and rates.
 
-    def contact_forces(self, y: Row) -> tuple[ContactForces, Slips]:
-        """Return the forces and accelerations, and the slip of each contact, from the numbers.
-
-        The slip of one contact that sticks is None, and that of two is zero.
-        """
-        points = contact_points(*split(y), self.tops)
-        if self.is_single:
-            slip = None if self.sticks[0] else slip_of(*split(y), (y[6], y[7]), self.top)[:2]
-            rolling = None if self.prevents_rolling else points[0].turning[:2]
-            return forces_on_one(points[0], slip, rolling), (slip,)
-        if self.is_mixed:
-            zeta = slip_apart(points)
-            direction = scaled(self.sense, directions_of(points[0].axis)[1][:2])
-            slips = slips_of(points, (0.0 * zeta, 0.0 * zeta, zeta))
-            return forces_on_two(points, (None, direction), self.rolls), slips
-        if self.sticks[0]:
-            return forces_on_two(points, (None, None), self.rolls), ((0.0, 0.0), (0.0, 0.0))
-        first, second = (slip_of(*SlidingState.unpack(y), top) for top in self.tops)
-        return forces_on_two(points, (first, second), self.rolls), (first, second)
+    def contacts(self, y: Row, directed: Directed = NONE_DIRECTED) -> ClosedContacts:
+        """Return the closed contacts at its numbers, of which velocities begin or end."""
+        return ClosedContacts(self, y, directed)
 
     def rates(self, y: Row) -> tuple[Scalar, ...]:
         """Rates of axis and angular momentum, and of the velocity if nothing sticks."""
         if self.slides_freely:
             return sliding_rates(SlidingState.unpack(y), self.top).pack()
-        forces = self.contact_forces(y)[0]
-        drawn = () if any(self.sticks) else scaled(1.0 / self.top.mass, forces.force[:2])
-        return (*axis_rate(*split(y), self.top), *forces.moment, *drawn)
+        return self.contacts(y).rates()
 
     def reaction(self, y: Row) -> Reaction:
         """Force of all contacts, and their torque about the first contact point."""
-        forces, slips = self.contact_forces(y)
-        power = dot(forces.couple, forces.points[0].turning)
-        for slip, wrench in zip(slips, forces.wrenches, strict=True):
-            if slip is not None:
-                power = power + (wrench.force[0] * slip[0] + wrench.force[1] * slip[1])
-        return Reaction(forces.force, forces.torque, power, forces.couple)
-
-    def slip_left(self, y: Row) -> Scalar:
-        """Positive while slip on one contact goes on for a while."""
-        acceleration = self.contact_forces(y)[0].acceleration(0)
-        change = slip_part(flat(acceleration), slip_length(self.top.friction))
-        return remaining(slip_of(*SlidingState.unpack(y), self.top), change)
-
-    def slip_and_rate(self, y: Row, number: int) -> tuple[Slip, Slip]:
-        """Return the slip of one of two contacts that slip, or xi of both (-1), and its rate."""
-        forces, slips = self.contact_forces(y)
-        if number == BOTH:
-            first: Any = slips[0]
-            return (first[0], first[1], slip_apart(forces.points)), forces.rate
-        slip: Any = slips[number]
-        return slip, forces.rates.points[number][:2]
-
-    def wobble(self, y: Row) -> Wobble:
-        """Return the wobble of a body on an edge."""
-        forces, slips = self.contact_forces(y)
-        sliding, acceleration = along_table(self.state(y)), forces.acceleration(0)
-        return Wobble.of(sliding, self.top, forces.wrenches[0], acceleration, slips[0])
-
-    def rolling_direction(self, state: State) -> float:
-        """Return the sign of omega_e with which rolling begins on two contacts that can be held no
-        longer.
-        """
-        return rolling_direction(self.contact_forces(self.numbers(state))[0])
+        return self.contacts(y).reaction()
 
     def guard_values(self) -> list[GuardValue]:
         """Return the guards."""
@@ -254,23 +207,38 @@ def motion_of(form: Any, kinds: tuple[Kind, ...]) -> Motion:
     """Equations of motion of a mode without tops, for tops of these kinds."""
 
     def mode(numbers: Sequence[Scalar]) -> Any:
-        tops, first = list[Top](), 0
-        for kind in kinds:
-            tops.append(kind.top(tuple(numbers[first : first + kind.numbers])))
-            first += kind.numbers
-        return form.with_tops(tops, numbers[first:])
+        return mode_with(form, kinds, numbers)
 
-    def guard(name: str, value: Callable[[Any, Row], Scalar]) -> Guard:
-        return Guard(name, lambda y, numbers: value(mode(numbers), y))
+    def guard(name: str, value: Callable[[ClosedContacts], Scalar]) -> Guard:
+        return Guard(name, lambda y, numbers: value(mode(numbers).contacts(y)))
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
         values: tuple[Scalar, ...] = mode(numbers).rates(y)
         return values
 
-    example = form.with_tops([kind.example for kind in kinds], form.further)
-    guards = tuple(guard(name, value) for name, value in example.guard_values())
-    count = sum(kind.numbers for kind in kinds) + len(form.further)
-    return Motion(rates, form.count, count, guards, form.lasting)
+    guards = tuple(guard(name, value) for name, value in example_of(form, kinds).guard_values())
+    return Motion(rates, form.count, parameter_count(form, kinds), guards, form.lasting)
+
+
+def mode_with(form: Any, kinds: Sequence[Kind], numbers: Sequence[Scalar]) -> Any:
+    """Return a mode from one without tops, kinds of tops, and numbers that begin with its
+    parameters.
+    """
+    tops, first = list[Top](), 0
+    for kind in kinds:
+        tops.append(kind.top(tuple(numbers[first : first + kind.numbers])))
+        first += kind.numbers
+    return form.with_tops(tops, numbers[first : first + len(form.further)])
+
+
+def example_of(form: Any, kinds: Sequence[Kind]) -> Any:
+    """Return some mode of these kinds of tops, to ask what is common to all."""
+    return form.with_tops([kind.example for kind in kinds], form.further)
+
+
+def parameter_count(form: Any, kinds: Sequence[Kind]) -> int:
+    """Return how many parameters such modes have."""
+    return sum([kind.numbers for kind in kinds]) + len(form.further)
 
 
 def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:

@@ -1,22 +1,17 @@
 """Guards of contact modes, by the status of each contact: their names and values.
 
-A guard is a function of a mode and its numbers, which falls through zero where the mode ends.
+A guard is a function of the closed contacts at an instant, which falls through zero where the mode
+ends.
 """
 
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
-from tippetop.contact.mode import BOTH, numbered, split
+from tippetop.contact.closed_contacts import ClosedContacts
+from tippetop.contact.mode import NUMBER_SIGN, numbered, split
 from tippetop.contact.surfaces import WOBBLE, SurfaceGuard, surface_guards
 from tippetop.mechanics.contacts.branches import has_limit_branches, is_branched, limit_guard
-from tippetop.mechanics.contacts.contact_forces import ContactForces
-from tippetop.mechanics.contacts.contact_point import contact_points
-from tippetop.mechanics.contacts.forces import (
-    is_set_valued,
-    rolling_reserve,
-    slip_length,
-    slip_reserve,
-)
+from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
 from tippetop.mechanics.contacts.pair import slip_apart
 from tippetop.mechanics.contacts.slip_variables import (
     branch_guard,
@@ -29,7 +24,7 @@ from tippetop.mechanics.contacts.slip_variables import (
 from tippetop.mechanics.lying_down import LEFT_OUT
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.hull import is_edge
-from tippetop.mechanics.vectors import Row, Scalar
+from tippetop.mechanics.vectors import Scalar
 
 LIFT_OFF, OPENING = "lift-off", "opening"
 """The normal force of the only contact, or of one of two, falls to zero."""
@@ -50,8 +45,8 @@ SLIP_SMALL, SLIP_LARGE = "slip small", "slip large"
 BRANCH, LIMIT_BRANCH = "branch", "limit branch"
 """Another branch of the law, or of its limit surface, takes over."""
 
-GuardValue: TypeAlias = tuple[str, Callable[[Any, Row], Scalar]]
-"""Name of a guard, and its value from a mode and the numbers of that."""
+GuardValue: TypeAlias = tuple[str, Callable[[ClosedContacts], Scalar]]
+"""Name of a guard, and its value at an instant."""
 
 
 def guards_on_one(mode: Any) -> list[GuardValue]:
@@ -60,61 +55,56 @@ def guards_on_one(mode: Any) -> list[GuardValue]:
     """
     guards = _sticking_on_one(mode) if mode.sticks[0] else _slipping_on_one(mode)
     if mode.prevents_rolling:
-        guards.append((ROLLING, _rolling_reserve))
+        guards.append((ROLLING, lambda now: now.rolling_reserve()))
     elif mode.top.resists_rolling:
         guards.append((ROLLING_STOPPING, _rolling_left))
     if is_edge(mode.top.surface):
-        guards.append((WOBBLE, lambda mode, y: mode.wobble(y).reserve(LEFT_OUT)))
+        guards.append((WOBBLE, lambda now: now.wobble().reserve(LEFT_OUT)))
     return guards + [(name, _of_top(value)) for name, value in surface_guards(mode.top)]
 
 
 def _sticking_on_one(mode: Any) -> list[GuardValue]:
-    guards: list[GuardValue] = [
-        (SLIP, lambda mode, y: slip_reserve(mode.top, _forces(mode, y).wrenches[0]))
-    ]
+    guards: list[GuardValue] = [(SLIP, lambda now: now.slip_reserve())]
     if has_limit_branches(mode.top.friction):
-        guards.append(
-            (LIMIT_BRANCH, lambda mode, y: limit_guard(mode.top, _forces(mode, y).wrenches[0]))
-        )
+        guards.append((LIMIT_BRANCH, lambda now: limit_guard(now.mode.top, now.forces.wrenches[0])))
     return guards
 
 
 def _slipping_on_one(mode: Any) -> list[GuardValue]:
     law, guards = mode.top.friction, list[GuardValue]()
     if not mode.pulls:
-        guards.append((LIFT_OFF, _normal(0)))
+        guards.append((LIFT_OFF, lambda now: now.normal(0)))
     if is_set_valued(law) and mode.near:
-        guards.append((STOPPING, lambda mode, y: mode.slip_left(y)))
-        guards.append((SLIP_LARGE, lambda mode, y: parting_guard(SlidingState.unpack(y), mode.top)))
+        guards.append((STOPPING, lambda now: now.slip_left()))
+        guards.append((SLIP_LARGE, lambda now: parting_guard(_sliding(now), now.mode.top)))
     elif is_set_valued(law):
-        guards.append((SLIP_SMALL, lambda mode, y: nearing_guard(SlidingState.unpack(y), mode.top)))
+        guards.append((SLIP_SMALL, lambda now: nearing_guard(_sliding(now), now.mode.top)))
     if hasattr(law, "branch_guard"):
         guards.append((BRANCH, _branch_on_one))
     return guards
 
 
-def _branch_on_one(mode: Any, y: Row) -> Scalar:
-    """Positive as long as the branch of the law holds."""
-    return branch_guard(slip_of(*SlidingState.unpack(y), mode.top), mode.top)
+def _sliding(now: ClosedContacts) -> SlidingState:
+    return SlidingState.unpack(now.numbers)
 
 
-def _rolling_reserve(mode: Any, y: Row) -> Scalar:
-    """Positive while the table can exert the couple that holds rolling."""
-    forces, slips = mode.contact_forces(y)
-    return rolling_reserve(forces.points[0], forces.wrenches[0], slips[0])
+def _branch_on_one(now: ClosedContacts) -> Scalar:
+    """Return what is positive as long as the branch of the law holds."""
+    direction, top = now.directed.slip, now.mode.top
+    return branch_guard(slip_of(*_sliding(now), top) if direction is None else direction, top)
 
 
-def _rolling_left(mode: Any, y: Row) -> Scalar:
-    """Positive while rolling goes on for a while."""
+def _rolling_left(now: ClosedContacts) -> Scalar:
+    """Return what is positive while rolling goes on for a while."""
+    mode = now.mode
     if mode.slides_freely:
-        rates = SlidingState.unpack(mode.rates(y))
-        return rolling_stopping_guard(SlidingState.unpack(y), rates, mode.top)
-    forces = _forces(mode, y)
-    return remaining(forces.points[0].turning[:2], forces.rates.turning[:2])
+        rates = SlidingState.unpack(mode.rates(now.numbers))
+        return rolling_stopping_guard(_sliding(now), rates, mode.top)
+    return remaining(now.forces.points[0].turning[:2], now.forces.rates.turning[:2])
 
 
-def _of_top(value: SurfaceGuard) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: value(mode.top, *split(y))
+def _of_top(value: SurfaceGuard) -> Callable[[ClosedContacts], Scalar]:
+    return lambda now: value(now.mode.top, *split(now.numbers))
 
 
 def guards_on_two(mode: Any) -> list[GuardValue]:
@@ -126,9 +116,9 @@ def guards_on_two(mode: Any) -> list[GuardValue]:
     """
     guards: list[GuardValue] = [(numbered(OPENING, number), _normal(number)) for number in (0, 1)]
     if mode.prevents_rolling:
-        guards.append((ROLLING, lambda mode, y: _forces(mode, y).rolling_reserve))
+        guards.append((ROLLING, lambda now: now.rolling_reserve()))
     elif mode.top.resists_rolling:
-        guards.append((ROLLING_STOPPING, lambda mode, y: mode.rolls * _forces(mode, y).rolling))
+        guards.append((ROLLING_STOPPING, lambda now: now.mode.rolls * now.forces.rolling))
     if mode.is_mixed:
         return [*_turning_on_two(), *guards]
     return guards + (_sticking_on_two(mode) if mode.sticks[0] else _slipping_on_two(mode))
@@ -137,11 +127,8 @@ def guards_on_two(mode: Any) -> list[GuardValue]:
 def _turning_on_two() -> list[GuardValue]:
     """Return the guards of what holds the first contact, and of slip on the second."""
     return [
-        (numbered(SLIP, 0), lambda mode, y: _forces(mode, y).reserve(0)),
-        (
-            ENDING,
-            lambda mode, y: mode.sense * slip_apart(contact_points(*split(y), mode.tops)),
-        ),
+        (numbered(SLIP, 0), lambda now: now.forces.reserve(0)),
+        (ENDING, lambda now: now.mode.sense * slip_apart(now.points)),
     ]
 
 
@@ -149,14 +136,14 @@ def _sticking_on_two(mode: Any) -> list[GuardValue]:
     """Return the guards of what holds both contacts."""
     if slip_length(mode.top.friction) is None:
         return [
-            (numbered(SLIP, 0), lambda mode, y: _forces(mode, y).sticking_reserve(0)),
-            (numbered(SLIP, 1), lambda mode, y: _forces(mode, y).sticking_reserve(1)),
-            (SLIP, lambda mode, y: _forces(mode, y).both_reserve),
+            (numbered(SLIP, 0), lambda now: now.forces.sticking_reserve(0)),
+            (numbered(SLIP, 1), lambda now: now.forces.sticking_reserve(1)),
+            (SLIP, lambda now: now.forces.both_reserve),
         ]
     if not mode.rolls:
         return []
     return [
-        (SLIP, lambda mode, y: mode.rolls * _forces(mode, y).rolling - mode.slowest_rolling),
+        (SLIP, lambda now: now.mode.rolls * now.forces.rolling - now.mode.slowest_rolling),
     ]
 
 
@@ -166,7 +153,7 @@ def _slipping_on_two(mode: Any) -> list[GuardValue]:
     """
     law, guards = mode.top.friction, list[GuardValue]()
     if slip_length(law) is not None:
-        guards.append((STOPPING, lambda mode, y: remaining(*mode.slip_and_rate(y, BOTH))))
+        guards.append((STOPPING, lambda now: now.slip_left()))
     elif is_set_valued(law):
         guards += [(numbered(STOPPING, number), _slip_left(number)) for number in (0, 1)]
     if is_branched(law):
@@ -174,18 +161,28 @@ def _slipping_on_two(mode: Any) -> list[GuardValue]:
     return guards
 
 
-def _forces(mode: Any, y: Row) -> ContactForces:
-    forces: ContactForces = mode.contact_forces(y)[0]
-    return forces
+def _normal(number: int) -> Callable[[ClosedContacts], Scalar]:
+    return lambda now: now.normal(number)
 
 
-def _normal(number: int) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: _forces(mode, y).wrenches[number].force[2]
+def _slip_left(number: int) -> Callable[[ClosedContacts], Scalar]:
+    return lambda now: now.slip_left(number)
 
 
-def _slip_left(number: int) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: remaining(*mode.slip_and_rate(y, number))
+def _branch(number: int) -> Callable[[ClosedContacts], Scalar]:
+    def guard_value(now: ClosedContacts) -> Scalar:
+        slip: Any = now.slips[number]
+        return branch_guard(slip, now.mode.tops[number])
+
+    return guard_value
 
 
-def _branch(number: int) -> Callable[[Any, Row], Scalar]:
-    return lambda mode, y: branch_guard(mode.contact_forces(y)[1][number], mode.tops[number])
+def lasting_guards(mode: Any) -> list[GuardValue]:
+    """Return the guards of a mode that hold, too, while one of its velocities begins or ends.
+
+    Those of the ends of velocities do not: at its beginning or end a velocity has other ones.
+    """
+    ends = [SLIP_SMALL, SLIP_LARGE, STOPPING]
+    if mode.is_single:
+        ends.append(ROLLING_STOPPING)
+    return [guard for guard in mode.guard_values() if guard[0].split(NUMBER_SIGN)[0] not in ends]

@@ -277,6 +277,10 @@ class Mode(ABC):
         """
         return (self.top,)
 
+    def on_tops(self, tops: Sequence[Top]) -> Self:
+        """Return the mode of tops of the same kinds with other numbers."""
+        return replace(self, top=tops[0])
+
     @property
     def status(self) -> str:
         """Name of the motion in a result, without the surfaces that touch."""

@@ -1,7 +1,6 @@
 """What is read off the numbers of a mode, at many instants at once: by arrays, or compiled."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple, TypeAlias
 
@@ -180,6 +179,6 @@ def _of_kind(reading: Reading, form: Any, kind: Kind) -> Rows:
 
     def values(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
         top = kind.top(tuple(numbers[: kind.numbers]))
-        return reading(replace(form, top=top), y, *numbers[kind.numbers :])
+        return reading(form.on_tops((top,)), y, *numbers[kind.numbers :])
 
     return values

@@ -66,7 +66,7 @@ class SettlingFlat(Mode):
         if self.slaps:
             return float(time_to_slap(state.axis, state.momentum, self.top))
         mode = self.reported_mode
-        return float(mode.wobble(mode.numbers(state)).time_left)
+        return float(mode.contacts(mode.numbers(state)).wobble().time_left)
 
     def _numbers_at(self, state: State, elapsed: Scalar, duration: float) -> Row:
         """Return the numbers of the reported mode after a time.
@@ -86,6 +86,6 @@ def settling_flat(mode: ContactMode, state: State) -> SettlingFlat | None:
     """Return the mode in which a body on an edge comes to lie flat; None if it does not soon."""
     if slap_guard(state.axis, state.momentum, mode.top) <= 0.0:
         return SettlingFlat(mode.top, mode, slaps=True)
-    if mode.wobble(mode.numbers(state)).reserve(LEFT_OUT) <= 0.0:
+    if mode.contacts(mode.numbers(state)).wobble().reserve(LEFT_OUT) <= 0.0:
         return SettlingFlat(mode.top, mode, slaps=False)
     return None

@@ -5,31 +5,21 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from tippetop.contact.guards import BRANCH, LIFT_OFF, LIMIT_BRANCH, ROLLING, SLIP
-from tippetop.contact.mode import split
-from tippetop.contact.surfaces import WOBBLE, SurfaceGuard, surface_guards
+from tippetop.contact.closed_contacts import ClosedContacts, Directed, has_second
+from tippetop.contact.contact_mode import example_of, mode_with, parameter_count
+from tippetop.contact.guards import lasting_guards
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
-from tippetop.mechanics.contacts.branches import has_limit_branches, limit_guard
-from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.contacts.forces import is_set_valued, rolling_reserve, slip_reserve
+from tippetop.mechanics.contacts.forces import slip_length
 from tippetop.mechanics.contacts.slip_end import (
     SlipComponent,
     SlipEndRates,
     SlipEndState,
-    jamming_guard,
     overtaking_guard,
-    rates_in_time,
     reopening_guard,
-    slip_beside,
     slip_end_rates,
     zero_guard,
 )
-from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled, velocity_of
-from tippetop.mechanics.contacts.wrench import Wrench
-from tippetop.mechanics.lying_down import LEFT_OUT, Wobble
-from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.surfaces.hull import is_edge
-from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Row, Scalar
 
 REOPENING, REACHED_ZERO, TIME = "reopening", "zero", "time"
@@ -86,107 +76,96 @@ def slip_end_arcs(
 
 
 @lru_cache
-def slip_end_motion(kind: Kind, ending: SlipComponent, guarded: bool) -> Motion:
-    """Equations of motion in the clock of `slip_end` where a velocity is about to end; time is the
-    last number.
+def slip_end_motion(form: Any, kinds: tuple[Kind, ...], ending: SlipComponent) -> Motion:
+    """Return the equations of motion in the clock of `slip_end` where a velocity of a mode without
+    tops is about to end, for tops of these kinds; time is the last number.
 
     The last parameters are when the run ends, and how long before its end the velocity is left to
     `landed`.
     """
+    example = example_of(form, kinds)
+    numbers_first = numbers_in_clock(example)
 
-    def top_of(numbers: Sequence[Scalar]) -> Top:
-        return kind.top(tuple(numbers[: kind.numbers]))
+    def mode_of(numbers: Sequence[Scalar]) -> Any:
+        return mode_with(form, kinds, numbers)
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        state = slip_end_state(y, ending)
-        return pack_clock(slip_end_rates(state, rates_in_time(state, ending, top_of(numbers))))
+        state = unpack_clock(y, numbers_first)
+        return pack_clock(slip_end_rates(state, rates_in_time(state, mode_of(numbers), ending)))
 
-    def guard(name: str, value: Callable[[SlipEndState, Top, Sequence[Scalar]], Scalar]) -> Guard:
+    def clock_guard(
+        name: str, value: Callable[[SlipEndState, SlipEndRates, Sequence[Scalar]], Scalar]
+    ) -> Guard:
+        def guard_value(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+            state = unpack_clock(y, numbers_first)
+            return value(state, rates_in_time(state, mode_of(numbers), ending), numbers)
+
+        return Guard(name, guard_value)
+
+    def guard(name: str, value: Callable[[ClosedContacts], Scalar]) -> Guard:
         return Guard(
-            name, lambda y, numbers: value(slip_end_state(y, ending), top_of(numbers), numbers)
+            name,
+            lambda y, numbers: value(
+                contacts_in_clock(unpack_clock(y, numbers_first), mode_of(numbers), ending)
+            ),
         )
 
-    def rates_of(state: SlipEndState, top: Top) -> SlipEndRates:
-        return rates_in_time(state, ending, top)
-
-    def held_by(state: SlipEndState, top: Top) -> Wrench:
-        return rates_of(state, top).wrench
-
-    def on_branch_still(state: SlipEndState, top: Top, _: Sequence[Scalar]) -> Scalar:
-        """Return the guard of the law's branch, by the slip that goes on, or else that ends."""
-        return branch_guard(slip_beside(state, ending, top) or state.direction, top)
+    def overtaking(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        state = unpack_clock(y, numbers_first)
+        now = contacts_in_clock(state, mode_of(numbers), ending)
+        second: Any = now.beside(ending)
+        return overtaking_guard(state, now.rate_of(ending), *second)
 
     guards = [
-        guard(REOPENING, lambda state, top, _: reopening_guard(state, rates_of(state, top), top)),
-        guard(
-            REACHED_ZERO,
-            lambda state, top, numbers: zero_guard(state, rates_of(state, top), top, numbers[-1]),
+        clock_guard(REOPENING, lambda state, rates, _: reopening_guard(state, rates)),
+        clock_guard(
+            REACHED_ZERO, lambda state, rates, numbers: zero_guard(state, rates, numbers[-1])
         ),
-        guard(TIME, lambda state, _, numbers: numbers[-2] - state.time),
+        Guard(TIME, lambda y, numbers: numbers[-2] - y[len(y) - 1]),
     ]
-    top = kind.example
-    law, stuck = top.friction, not ending.slip and ending.held
-    if guarded:
-        guards.append(guard(LIFT_OFF, lambda state, top, _: held_by(state, top).force[2]))
-    if not ending.held:
-        guards.append(guard(JAMMED, lambda state, top, _: jamming_guard(state, ending, top)))
-    if not ending.held and top.resists_rolling and is_set_valued(law):
-        guards.append(guard(OVERTAKEN, lambda state, top, _: overtaking_guard(state, ending, top)))
-    if ending.held:
-        held = ROLLING if ending.slip else SLIP
-        guards.append(guard(held, lambda state, top, _: held_reserve(state, ending, top)))
-    if (ending.slip or ending.moves) and hasattr(law, "branch_guard"):
-        guards.append(guard(BRANCH, on_branch_still))
-    if stuck and has_limit_branches(law):
-        guards.append(
-            guard(LIMIT_BRANCH, lambda state, top, _: limit_guard(top, held_by(state, top)))
-        )
-    if is_edge(top.surface):
-        guards.append(guard(WOBBLE, lambda state, top, _: wobble_reserve(state, ending, top)))
-    guards += [guard(name, _of_axis(value)) for name, value in surface_guards(top)]
-    size = (10 if ending.moves else 8) + len(ending.wrenches(top))
-    return Motion(rates, size, kind.numbers + 2, tuple(guards), lasting=False)
+    if not any(example.sticks) and not example.prevents_rolling:
+        guards.append(guard(JAMMED, lambda now: now.jamming_margin()))
+    if has_second(example, ending):
+        guards.append(Guard(OVERTAKEN, overtaking))
+    guards += [guard(name, value) for name, value in lasting_guards(example)]
+    size = numbers_first + ending.count(example.top) + 2
+    return Motion(rates, size, parameter_count(form, kinds) + 2, tuple(guards), lasting=False)
 
 
-def _of_axis(value: SurfaceGuard) -> Callable[[SlipEndState, Top, Any], Scalar]:
-    return lambda state, top, _: value(top, state.axis, state.momentum)
-
-
-def wobble_reserve(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar:
-    """Positive until the body on an edge wobbles so little that the rest is known."""
-    axis, momentum, slip = state.axis, state.momentum, slip_beside(state, ending, top)
+def contacts_in_clock(state: SlipEndState, mode: Any, ending: SlipComponent) -> ClosedContacts:
+    """Return the closed contacts where a velocity is about to end."""
+    numbers, beside = state.numbers[: mode.count], state.numbers[mode.count :]
+    directed = Directed(rolling=state.direction)
     if ending.slip:
-        slip = scaled(state.speed, state.direction)
-    velocity = velocity_of(axis, momentum, slip or (0.0, 0.0), top)
-    rates = rates_in_time(state, ending, top)
-    sliding = SlidingState(axis, momentum, velocity)
-    return Wobble.of(sliding, top, rates.wrench, rates.acceleration, slip).reserve(LEFT_OUT)
+        zeta = beside[0] if len(beside) > 0 else None
+        directed = Directed(state.direction, state.xi, zeta=zeta)
+    return ClosedContacts(mode, numbers, directed)
 
 
-def held_reserve(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar:
-    """Positive while the table can hold what is held beside a velocity that ends."""
-    wrench = rates_in_time(state, ending, top).wrench
-    if ending.slip:
-        point = ContactPoint.of(state.axis, state.momentum, top)
-        return rolling_reserve(point, wrench, state.direction)
-    return slip_reserve(top, wrench)
+def numbers_in_clock(mode: Any) -> int:
+    """Return how many numbers come before the direction of what ends: those of the mode, and zeta
+    where the slip of the first of two contacts ends and that of the second with it or later.
+    """
+    ends_alone = not mode.is_single and slip_length(mode.top.friction) is None
+    return int(mode.count) + int(ends_alone)
 
 
-def slip_end_state(y: Row, ending: SlipComponent) -> SlipEndState:
-    """Return the state of a velocity that is about to end, from its numbers."""
-    count, free = len(y), 8 if ending.moves else 6
-    return SlipEndState(
-        *split(y), tuple(y[6:free]), tuple(y[free : count - 2]), y[count - 2], y[count - 1]
-    )
+def rates_in_time(state: SlipEndState, mode: Any, ending: SlipComponent) -> SlipEndRates:
+    """Return the rates in time of what the clock follows."""
+    now = contacts_in_clock(state, mode, ending)
+    turning = now.forces.points[0].turning
+    beside = now.forces.rate[2:] if len(state.numbers) > mode.count else ()
+    return SlipEndRates((*now.rates(), *beside), now.rate_of(ending), turning)
+
+
+def unpack_clock(y: Row, count: int) -> SlipEndState:
+    """Return the state in the clock from its numbers, so many of which come before the
+    direction.
+    """
+    last = len(y) - 2
+    return SlipEndState(tuple(y[:count]), tuple(y[count:last]), y[last], y[last + 1])
 
 
 def pack_clock(state: SlipEndState) -> tuple[Scalar, ...]:
     """Return the numbers of a state, or of rates, in the clock."""
-    return (
-        *state.axis,
-        *state.momentum,
-        *state.velocity,
-        *state.direction,
-        state.speed,
-        state.time,
-    )
+    return (*state.numbers, *state.direction, state.speed, state.time)

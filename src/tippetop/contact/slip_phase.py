@@ -99,7 +99,7 @@ def follow_slip(
     *,
     to_end: bool = False,
     longest_step: LongestStep | None = None,
-    numbers: tuple[float, ...] | None = None,
+    numbers: tuple[float, ...],
 ) -> SlipPhase:
     """Follow velocities that begin: for one step, or as far as the method goes.
 
@@ -120,9 +120,9 @@ def follow_slip(
     longest_step
         How long a step may be at most.
     numbers
-        The parameters of the motion, if they are not the numbers of the top.
+        The parameters of the motion.
     """
-    step = SlipStep(motion, top.numbers if numbers is None else numbers)
+    step = SlipStep(motion, numbers)
     now, directions, length = [*start[0]], [*start[1]], FIRST_LENGTH
     first, count = motion.velocities[0]
     knots, rows, ended = [0.0], list[Array](), False

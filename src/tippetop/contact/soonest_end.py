@@ -1,12 +1,13 @@
-"""Which velocity ends first at present rates, and how soon: slip or rolling of one contact, or the
-slip of one of two.
-"""
+"""Which velocity of a contact mode ends first at present rates, and how soon."""
 
+import math
+
+from tippetop.contact.closed_contacts import has_second
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.contact.mode import BOTH
+from tippetop.contact.slip_end import SlipEnd
 from tippetop.mechanics.contacts.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
-from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued, slip_length
+from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
 from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import is_rolling, slip_of, time_to_end
 from tippetop.mechanics.motion import along_table
@@ -30,39 +31,30 @@ def on_present_branch(top: Top, state: State, slips: bool) -> Top:
     return on_limit_branch(top, forces_and_accelerations(point, None, rolling)[0])
 
 
-def soonest_end(top: Top, state: State, slips: bool) -> tuple[SlipComponent | None, float]:
-    """Return which velocity ends first at present rates, and the time left.
+def soonest_end(mode: ContactMode, state: State) -> tuple[SlipEnd | None, float]:
+    """Return the end of the velocity that ends first at present rates, and the time left.
 
-    None, and infinity, where all grow or none can end.
+    None, and infinity, where all grow or none can end. Of two contacts that slip, that of which
+    slip ends comes first in the mode that is returned.
     """
-    rolls, ends = rolls_freely(top, state), slips and is_set_valued(top.friction)
-    possible = [SlipComponent(slip=True, held=not rolls)] if ends else []
-    possible += [SlipComponent(slip=False, held=not slips)] if rolls and top.resists_rolling else []
-    if not possible:
-        return None, float("inf")
-    sliding, branched = along_table(state), on_present_branch(top, state, slips)
-    point = ContactPoint.of(state.axis, state.momentum, branched)
-    slip = slip_of(*sliding, branched) if slips else None
-    acceleration = forces_and_accelerations(point, slip, point.turning[:2] if rolls else None)[1]
-    soonest, least = None, float("inf")
-    for ending in possible:
-        xi = ending.of(*sliding, branched)
-        time_left = time_to_end(xi, ending.rate(acceleration, branched))
+    soonest: SlipEnd | None = None
+    least = math.inf
+    for ending in possible_ends(mode):
+        contacts = ending.contact_mode.contacts(ending.contact_mode.numbers(state))
+        component = ending.component
+        time_left = time_to_end(contacts.velocity_of(component), contacts.rate_of(component))
         if time_left < least:
             soonest, least = ending, time_left
     return soonest, least
 
 
-def soonest_end_on_two(mode: ContactMode, state: State) -> tuple[int, float]:
-    """Return on which of two contacts that slip it ends first at present rates, and the time left.
-
-    On both (-1) where the law resists drilling. The time is infinite where none can end.
-    """
-    law = mode.top.friction
-    if not is_set_valued(law):
-        return BOTH, float("inf")
-    numbers = mode.numbers(state)
-    contacts = [BOTH] if slip_length(law) is not None else [0, 1]
-    times = [time_to_end(*mode.slip_and_rate(numbers, number)) for number in contacts]
-    soonest = times.index(min(times))
-    return contacts[soonest], times[soonest]
+def possible_ends(mode: ContactMode) -> list[SlipEnd]:
+    """Return the ends of all velocities of a mode that friction can end."""
+    slips = not any(mode.sticks) and is_set_valued(mode.top.friction)
+    ends = [SlipEnd.of(mode, SlipComponent(slip=True))] if slips else []
+    rolls = mode.is_single and mode.top.resists_rolling and not mode.prevents_rolling
+    if rolls:
+        ends.append(SlipEnd.of(mode, SlipComponent(slip=False)))
+    elif slips and has_second(mode, SlipComponent(slip=True)):
+        ends.append(ends[0].of_second())
+    return ends

@@ -1,5 +1,6 @@
 """Which surfaces of a body touch the table beside the active one, and whether they stay closed."""
 
+import math
 from collections.abc import Sequence
 
 from tippetop.contact.flight import TOUCHING
@@ -25,10 +26,32 @@ of reach of rounding.
 """
 
 
+SAME_POINT = 1e-6
+"""Distance between the points of two surfaces, in sizes, up to which they touch as one contact. Two
+that touch at the pole are as far apart where their gaps differ by the square, the gap up to which a
+surface touches.
+"""
+
+
 def other_touching(top: Top, state: State) -> list[Top]:
-    """Return the top with each other surface active that touches, the fastest sinking first."""
-    others = [each for each in top.each if each != top and gap(state, each) <= TOUCHING]
+    """Return the top with each other surface active that touches, the fastest sinking first.
+
+    One that touches at the point of the active surface is no contact of its own.
+    """
+    place, nearest = _place(top, state), SAME_POINT * top.surface.size
+    others = [
+        each
+        for each in top.each
+        if each != top
+        and gap(state, each) <= TOUCHING
+        and abs(_place(each, state) - place) > nearest
+    ]
     return sorted(others, key=lambda each: float(gap_rate(state, each)))
+
+
+def _place(top: Top, state: State) -> float:
+    """Return how far the active surface touches from under the centre of mass, along the axis."""
+    return float(support_at(state.axis, top.surface)[1]) * math.hypot(*state.axis[:2])
 
 
 def stays_closed(top: Top, beside: Top, state: State) -> bool:

@@ -1,36 +1,22 @@
 """The moments in which slip, or rolling, ends or begins, under friction that is set-valued."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
+from tippetop.contact.closed_contacts import ClosedContacts, Directed
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment, split
+from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
-from tippetop.mechanics.contacts.forces import velocity_without_slip, without_rolling
-from tippetop.mechanics.contacts.slip_end import (
-    SlipComponent,
-    SlipEndState,
-    rates_in_time,
-    slip_beside,
-)
-from tippetop.mechanics.contacts.slip_variables import scaled, velocity_of
+from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.motion import angular_velocity, on_table
-from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Row
 
 AT_REST = "at rest"
 """Cause of the end of `Resting`."""
-
-SETTLED = 1e-14
-"""Error of the instant at which slip ends, in natural units, that counts as none."""
-
-PROBES_OF_SLIP_END = 16
-"""Intervals of the end of slip at whose ends it is asked whether another surface touches, or the
-table would have to pull: then a mode with a guard takes over sooner.
-"""
 
 SHORT = 1e-14
 """How long a top at rest is followed, in natural units of time or relative to the time."""
@@ -38,64 +24,105 @@ SHORT = 1e-14
 DEGREE = 14
 """Degree of the polynomials that stand for the last moments in a solution."""
 
+SLIP_AND_ROLLING = (SlipComponent(slip=True), SlipComponent(slip=False))
+"""Slip and rolling, which begin together."""
+
 
 @dataclass(frozen=True)
 class TransientMode(Mode):
-    """A moment between two modes; a result reports the one of them in which something moves."""
+    """A moment between two modes, in which velocities of a contact mode begin or end.
 
-    component: SlipComponent
-    """The velocity xi that ends or begins, and whether the other is held."""
-    pulls: bool = False
-    """Whether the table may pull."""
+    Its numbers are those of the contact mode, and then these velocities: the state has few digits
+    of them. Of two contacts that slip it is the slip of the first, or of both where the law resists
+    drilling.
+    """
+
+    contact_mode: ContactMode
+    """The mode in which they move, which a result reports."""
+    components: tuple[SlipComponent, ...]
+    """The velocities that begin or end."""
 
     name: ClassVar[str] = "passing"
 
     @property
-    def reported_mode(self) -> ContactMode:
-        """The mode that a result reports for it."""
-        slip, held = self.component
-        return ContactMode(self.top, (not slip and held,), slip and held)
+    def tops(self) -> tuple[Top, ...]:
+        """The top with each surface active that touches."""
+        return self.contact_mode.tops
+
+    def on_tops(self, tops: Sequence[Top]) -> Self:
+        """Return the mode of tops of the same kinds with other numbers."""
+        return replace(self, top=tops[0], contact_mode=self.contact_mode.on_tops(tops))
 
     @property
     def label(self) -> str:
-        """The name of the reported mode."""
-        return self.reported_mode.label
+        """The name of the contact mode."""
+        return self.contact_mode.label
 
     @property
     def form(self) -> str:
         """What ends or begins decides how its numbers are read."""
-        return f"{self.name}: slip {self.component.slip}, held {self.component.held}"
+        names = ["slip" if component.slip else "rolling" for component in self.components]
+        return f"{self.name}: {' and '.join(names)}, {self.contact_mode.form}"
 
     def state(self, y: Row) -> State:
-        """Return the state from axis, momentum, velocity where it is free, and xi."""
-        axis, momentum, velocity, xi = self._parts(y)
-        if self.component.slip:
-            velocity = velocity_of(axis, momentum, xi, self.top)
-            momentum = (
-                without_rolling(axis, momentum, self.top) if self.component.held else momentum
-            )
-        elif self.component.held:
-            velocity = velocity_without_slip(axis, momentum, self.top)
-        return on_table(SlidingState(axis, momentum, (velocity[0], velocity[1])), self.top)
+        """Return the state as the contact mode has it."""
+        return self.contact_mode.state(y)
 
     def reaction(self, y: Row) -> Reaction:
-        """Return the contact force and torque, from xi, of which a state has few digits."""
-        axis, momentum, velocity, xi = self._parts(y)
-        now = SlipEndState(axis, momentum, velocity, xi, 0.0, 0.0)
-        force, torque = rates_in_time(now, self.component, self.top).wrench
-        power = dot(torque, angular_velocity(axis, momentum, self.top))
-        slip = xi if self.component.slip else slip_beside(now, self.component, self.top)
-        if slip is not None:
-            power = power + (force[0] * slip[0] + force[1] * slip[1])
-        return Reaction(force, torque, power)
+        """Return the contact force and torque."""
+        count = self.contact_mode.count
+        velocities = self.split_velocities(y[count:])
+        return self.contacts(y[:count], velocities, velocities).reaction()
 
-    @property
-    def free(self) -> int:
-        """How many numbers come before what ends or begins."""
-        return 8 if self.component.moves else 6
+    def split_velocities(self, numbers: Row) -> list[Slip]:
+        """Return the velocities that begin or end, or their directions, from their numbers."""
+        velocities, first = list[Slip](), 0
+        for component in self.components:
+            last = first + component.count(self.top)
+            velocities.append(tuple(numbers[first:last]))
+            first = last
+        return velocities
 
-    def _parts(self, y: Row) -> tuple[Vector, Vector, Slip, Slip]:
-        return *split(y), tuple(y[6 : self.free]), tuple(y[self.free :])
+    def contacts(
+        self, numbers: Row, directions: Sequence[Slip], velocities: Sequence[Slip]
+    ) -> ClosedContacts:
+        """Return the closed contacts at the numbers of the contact mode, where the velocities that
+        begin or end have some directions.
+        """
+        return directed_contacts(
+            self.contact_mode, self.components, numbers, directions, velocities
+        )
+
+
+def directed_contacts(
+    mode: ContactMode,
+    components: Sequence[SlipComponent],
+    numbers: Row,
+    directions: Sequence[Slip],
+    velocities: Sequence[Slip],
+) -> ClosedContacts:
+    """Return the closed contacts of a mode of which some velocities have directions of their own.
+
+    Parameters
+    ----------
+    mode
+        The mode.
+    components
+        The velocities that begin or end.
+    numbers
+        The numbers of the mode.
+    directions, velocities
+        Direction of each of these velocities, and itself.
+    """
+    slip: Slip | None = None
+    velocity: Slip = ()
+    rolling: Slip | None = None
+    for number, component in enumerate(components):
+        if component.slip:
+            slip, velocity = directions[number], velocities[number]
+        else:
+            rolling = directions[number]
+    return mode.contacts(numbers, Directed(slip, velocity, rolling))
 
 
 @dataclass(frozen=True)
@@ -124,18 +151,5 @@ def straight(
     begin: Sequence[float], last: Sequence[float], start: float, end: float
 ) -> DenseSolution:
     """Numbers that go from some to others in a straight line."""
-    rows = [[a, b - a] for a, b in zip(begin, last, strict=True)]
-    return in_one_step(rows, 0.0, 1.0).moved(start, end)
-
-
-def in_one_step(rows: Sequence[list[Scalar]], start: float, lasts: float) -> DenseSolution:
-    """Numbers by coefficients in powers of the time since some time, for as long as that."""
-    terms = [[*row, *[0.0] * (DEGREE + 1 - len(row))] for row in rows]
-    return DenseSolution.in_time([0.0, lasts], [terms]).moved(start, start + lasts)
-
-
-def pack_moment(now: SlipEndState) -> tuple[Scalar, ...]:
-    """Return the numbers of a moment that passes: axis, momentum, velocity where it is free, and
-    xi.
-    """
-    return (*now.axis, *now.momentum, *now.velocity, *scaled(now.speed, now.direction))
+    terms = [[a, b - a, *[0.0] * (DEGREE - 1)] for a, b in zip(begin, last, strict=True)]
+    return DenseSolution.in_time([0.0, 1.0], [terms]).moved(start, end)

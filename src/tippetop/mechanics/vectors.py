@@ -84,3 +84,20 @@ def solve(matrix: list[list[Scalar]], right: list[Scalar]) -> list[Scalar]:
             value = value - rows[i][j] * rows[j][count]
         rows[i][count] = value / rows[i][i]
     return [row[count] for row in rows]
+
+
+def determinant(matrix: list[list[Scalar]]) -> Scalar:
+    """Return the determinant of a few linear equations, of whose first pivots, all but two, none is
+    zero.
+    """
+    rows, product = [[*row] for row in matrix], 1.0
+    while len(rows) > 2:
+        pivot, *others = rows
+        product = product * pivot[0]
+        rows = [
+            [a - row[0] / pivot[0] * b for a, b in zip(row[1:], pivot[1:], strict=True)]
+            for row in others
+        ]
+    if len(rows) == 1:
+        return product * rows[0][0]
+    return product * (rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0])

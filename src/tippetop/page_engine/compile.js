@@ -9,7 +9,7 @@ import {
   unrolled,
   within,
 } from "./mechanics.js";
-import { add, cached, mul, neg, replace, sub } from "./runtime.js";
+import { add, cached, mul, neg, sub } from "./runtime.js";
 
 /** A function (y, p) => numbers in plain operators as code (y, p, out). */
 export const compiled = (function_, size, parameters) =>
@@ -140,10 +140,7 @@ function readerOf(mode, size) {
   const codes = codesOf(mode.form, kinds, size);
   const parameters = Float64Array.of(...numbers, 0);
   const last = numbers.length;
-  const values = (of) => (y, p) => {
-    const [top, ...beside] = topsOf(kinds, p);
-    return [...of(replace(mode, beside.length ? { top, beside } : { top }), y, p[last])];
-  };
+  const values = (of) => (y, p) => [...of(mode.on_tops(topsOf(kinds, p)), y, p[last])];
   return (of, count) => {
     if (!codes.has(of)) codes.set(of, compiled(values(of), size, parameters.length));
     const code = codes.get(of);

@@ -223,6 +223,6 @@ def slips(state: State, top: Top, *, far: bool = False) -> Flags:
     if not is_set_valued(top.friction):
         return count
     y = along_table(state)
-    lasting = ContactMode(top).slip_left(y.pack()) > 0.0
+    lasting = ContactMode(top).contacts(y.pack()).slip_left() > 0.0
     flags: Flags = count & is_slipping(*y, top) & lasting
     return flags & ~is_near(y, top) if far else flags

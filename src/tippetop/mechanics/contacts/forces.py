@@ -16,15 +16,32 @@ from tippetop.mechanics.contacts.system import (
     Component,
     Constraint,
     ConstraintSolution,
+    delassus_matrix,
     free_rates,
     rates_added,
+    responses_to,
     solve_constraints,
 )
 from tippetop.mechanics.contacts.wrench import DRILLING, EAST, FORCES, NORTH, Slip, Wrench
 from tippetop.mechanics.laws.friction import NO_TORQUE, FrictionLaw
 from tippetop.mechanics.motion import angular_velocity, contact_swing
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import VERTICAL, Horizontal, Scalar, Vector, add, dot, scale
+from tippetop.mechanics.vectors import (
+    VERTICAL,
+    Horizontal,
+    Scalar,
+    Vector,
+    add,
+    determinant,
+    dot,
+    scale,
+)
+
+JAMMING = 1e-8
+"""Determinant of the Delassus matrix of contacts that slip, over that without friction, at which
+they jam: the time that is left falls as its square, and is rounding then. The slip that friction
+still takes before the jam is as small a fraction of what the impact takes.
+"""
 
 Slips: TypeAlias = Sequence[Slip | None]
 """Slip of every contact, or its direction; None where the contact sticks."""
@@ -172,6 +189,25 @@ def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | 
 def pressing_wrench(point: ContactPoint, slip: Slip | None, rolling: Slip | None) -> Wrench:
     """Return a unit normal force with the friction, and the rolling couple, that go with it."""
     return normal_wrench(point, slip, rolling_couple((point,), rolling))
+
+
+def jamming_margin(points: Sequence[ContactPoint], slips: Slips, rolling: Slip | None) -> Scalar:
+    """Fall through zero where normal forces grow beyond all bounds: Painleve's paradox begins.
+
+    Friction that turns is about to press the contacts as much as their normal forces open them.
+    There slip changes as fast, and would seem to end, however much of it is left.
+
+    The arguments are those of `solve_contacts`; every contact slips.
+    """
+    held = rolling_constraints(points, rolling)
+
+    def determinant_with(normal: Sequence[Constraint]) -> Scalar:
+        constraints = [*held, *normal]
+        return determinant(delassus_matrix(constraints, responses_to(points, constraints)))
+
+    frictionless = normal_constraints(points, [None for _ in points], None)
+    pressed = determinant_with(normal_constraints(points, slips, rolling))
+    return pressed - JAMMING * determinant_with(frictionless)
 
 
 def normal_wrench(point: ContactPoint, slip: Slip | None, couple: Vector | None = None) -> Wrench:

@@ -115,6 +115,25 @@ def moment_of(points: Sequence[ContactPoint], wrenches: Sequence[At]) -> Vector:
     return total
 
 
+def responses_to(
+    points: Sequence[ContactPoint], constraints: Sequence[Constraint]
+) -> list[ContactRates]:
+    """Return the rates that the wrench of each constraint adds."""
+    return [
+        rates_added(points, constraint.component.contact, constraint.wrench)
+        for constraint in constraints
+    ]
+
+
+def delassus_matrix(
+    constraints: Sequence[Constraint], responses: Sequence[ContactRates]
+) -> list[list[Scalar]]:
+    """Return the matrix D_rc of the system, from the responses to the constraints' wrenches."""
+    return [
+        [constraint.component.rate(column) for column in responses] for constraint in constraints
+    ]
+
+
 def solve_constraints(
     points: Sequence[ContactPoint], constraints: Sequence[Constraint], rates: ContactRates
 ) -> ConstraintSolution:
@@ -130,13 +149,8 @@ def solve_constraints(
     rates
         ContactRates without the wrenches; or velocities, for impulses that end the components.
     """
-    responses = [
-        rates_added(points, constraint.component.contact, constraint.wrench)
-        for constraint in constraints
-    ]
-    matrix = [
-        [constraint.component.rate(column) for column in responses] for constraint in constraints
-    ]
+    responses = responses_to(points, constraints)
+    matrix = delassus_matrix(constraints, responses)
     right = [-constraint.component.rate(rates) for constraint in constraints]
     wrenches = list[At]()
     for size, constraint, column in zip(solve(matrix, right), constraints, responses, strict=True):

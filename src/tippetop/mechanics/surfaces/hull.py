@@ -5,6 +5,16 @@ from typing import Any, NamedTuple
 from tippetop.mechanics.surfaces.surface import Support, Surface, gap_guard, support_at
 from tippetop.mechanics.vectors import Scalar, Vector
 
+SAME_HEIGHT = 1e-12
+"""Difference of the heights of two surfaces, in sizes, up to which both are lowest: the gap up to
+which a surface touches.
+"""
+
+UPRIGHT = 1e-12
+"""Difference of |c| from 1 up to which the axis is vertical: there the gaps of surfaces that touch
+the table at one point, a few of it, do not tell which is lowest beside.
+"""
+
 
 class Hull(NamedTuple):
     """The surfaces of a body: a `Surface` that stands for the active one."""
@@ -139,5 +149,19 @@ def outer_height(surface: Surface, c: Scalar) -> Scalar:
 
 
 def lowest_surface(surface: Surface, c: float) -> Surface:
-    """Return the surface that reaches lowest at this c, active; the first of several; of floats."""
-    return max(each_surface(surface), key=lambda one: float(one.height(c)))
+    """Return the surface that reaches lowest at this c, active; the first of several; of floats.
+
+    Where the axis is vertical several surfaces may reach lowest at one point. At any other tilt the
+    bluntest is the lowest of them, of which the height grows fastest.
+    """
+    every = each_surface(surface)
+    lowest = max(every, key=lambda one: float(one.height(c)))
+    if abs(c) < 1.0 - UPRIGHT:
+        return lowest
+    level = lowest.height(c) - SAME_HEIGHT * surface.size
+    sense = 1.0 if c > 0.0 else -1.0
+    at = sense * (1.0 - UPRIGHT)
+    return max(
+        [one for one in every if one.height(c) >= level],
+        key=lambda one: -sense * float(one.slope(at)),
+    )
