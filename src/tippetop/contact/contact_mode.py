@@ -23,7 +23,6 @@ from tippetop.mechanics.contacts.pair import Tops, slip_apart, slips_of
 from tippetop.mechanics.contacts.pair_resolver import rolling_direction
 from tippetop.mechanics.contacts.slip_variables import remaining, scaled, slip_of, slip_part
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.lying_down import Wobble
 from tippetop.mechanics.motion import along_table, axis_rate, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Kind, Top
@@ -232,11 +231,9 @@ class ContactMode(IntegratedMode):
         slip: Any = slips[number]
         return slip, forces.rates.points[number][:2]
 
-    def wobble(self, y: Row) -> Wobble:
-        """Return the wobble of a body on an edge."""
-        forces, slips = self.contact_forces(y)
-        sliding, acceleration = along_table(self.state(y)), forces.acceleration(0)
-        return Wobble.of(sliding, self.top, forces.wrenches[0], acceleration, slips[0])
+    def normal_if_stuck(self, y: Row) -> Scalar | None:
+        """Return the normal force of one contact that sticks; None where it slips."""
+        return self.contact_forces(y)[0].normal[0] if self.sticks[0] else None
 
     def rolling_direction(self, state: State) -> float:
         """Return the sign of omega_e with which rolling begins on two contacts that can be held no

@@ -26,7 +26,7 @@ from tippetop.mechanics.contacts.slip_variables import (
     rolling_stopping_guard,
     slip_of,
 )
-from tippetop.mechanics.lying_down import LEFT_OUT
+from tippetop.mechanics.lying_down import wobble_guard
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.vectors import Row, Scalar
@@ -64,7 +64,7 @@ def guards_on_one(mode: Any) -> list[GuardValue]:
     elif mode.top.resists_rolling:
         guards.append((ROLLING_STOPPING, _rolling_left))
     if is_edge(mode.top.surface):
-        guards.append((WOBBLE, lambda mode, y: mode.wobble(y).reserve(LEFT_OUT)))
+        guards.append((WOBBLE, _wobble_on_one))
     return guards + [(name, _of_top(value)) for name, value in surface_guards(mode.top)]
 
 
@@ -111,6 +111,11 @@ def _rolling_left(mode: Any, y: Row) -> Scalar:
         return rolling_stopping_guard(SlidingState.unpack(y), rates, mode.top)
     forces = _forces(mode, y)
     return remaining(forces.points[0].turning[:2], forces.rates.turning[:2])
+
+
+def _wobble_on_one(mode: Any, y: Row) -> Scalar:
+    """Positive until the time left to the wobble of a body on an edge is known."""
+    return wobble_guard(*split(y), mode.normal_if_stuck(y), mode.top)
 
 
 def _of_top(value: SurfaceGuard) -> Callable[[Any, Row], Scalar]:

@@ -16,7 +16,9 @@ from tippetop.mechanics.contacts.forces import (
 from tippetop.mechanics.contacts.slip_collocation import SlipMotion
 from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled, slip_of
+from tippetop.mechanics.lying_down import wobble_guard
 from tippetop.mechanics.motion import axis_rate
+from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Scalar
 
@@ -31,7 +33,7 @@ def onset_motion(kind: Kind, begins: tuple[SlipComponent, ...], guarded: bool) -
     Their numbers are axis, angular momentum, the horizontal velocity of the centre of mass where
     that is free, and the velocities that begin. Their margins are what would end the mode in which
     that happens: if `guarded`, the normal force; a reserve of what is held; the branch of the law;
-    and the gaps of other surfaces.
+    the wobble of a body on an edge; and the gaps of other surfaces.
 
     Parameters
     ----------
@@ -50,7 +52,7 @@ def onset_motion(kind: Kind, begins: tuple[SlipComponent, ...], guarded: bool) -
     holds_slip = not first.slip and first.held
     branches = not holds_slip and hasattr(top.friction, "branch_guard")
     limits = holds_slip and has_limit_branches(top.friction)
-    surfaces = surface_guards(top)
+    wobbles, surfaces = is_edge(top.surface), surface_guards(top)
 
     def rates(
         numbers: Sequence[Scalar], ways: Sequence[Any], parameters: Sequence[Scalar]
@@ -82,8 +84,12 @@ def onset_motion(kind: Kind, begins: tuple[SlipComponent, ...], guarded: bool) -
             margins.append(branch_guard(slip, body))
         if limits:
             margins.append(limit_guard(body, wrench))
+        if wobbles:
+            normal = wrench.force[2] if holds_slip else None
+            margins.append(wobble_guard(axis, momentum, normal, body))
         margins += [value(body, axis, momentum) for _, value in surfaces]
         return changes, margins
 
-    count = sum([guarded, prevents_rolling, holds_slip, branches, limits]) + len(surfaces)
+    margins = [guarded, prevents_rolling, holds_slip, branches, limits, wobbles]
+    count = sum(margins) + len(surfaces)
     return SlipMotion(rates, free + sum(counts), velocities, kind.numbers, count)

@@ -9,10 +9,11 @@ from tippetop.contact.mode import COMPLETED, Mode, ModeEnd, Segment
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.lying_down import (
-    LEFT_OUT,
+    Wobble,
     scaled_wobble,
     slap_guard,
     time_to_slap,
+    wobble_guard,
 )
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
@@ -66,7 +67,8 @@ class SettlingFlat(Mode):
         if self.slaps:
             return float(time_to_slap(state.axis, state.momentum, self.top))
         mode = self.reported_mode
-        return float(mode.wobble(mode.numbers(state)).time_left)
+        normal = mode.normal_if_stuck(mode.numbers(state))
+        return float(Wobble.of(state.axis, state.momentum, normal, self.top).time_left)
 
     def _numbers_at(self, state: State, elapsed: Scalar, duration: float) -> Row:
         """Return the numbers of the reported mode after a time.
@@ -86,6 +88,7 @@ def settling_flat(mode: ContactMode, state: State) -> SettlingFlat | None:
     """Return the mode in which a body on an edge comes to lie flat; None if it does not soon."""
     if slap_guard(state.axis, state.momentum, mode.top) <= 0.0:
         return SettlingFlat(mode.top, mode, slaps=True)
-    if mode.wobble(mode.numbers(state)).reserve(LEFT_OUT) <= 0.0:
+    normal = mode.normal_if_stuck(mode.numbers(state))
+    if wobble_guard(state.axis, state.momentum, normal, mode.top) <= 0.0:
         return SettlingFlat(mode.top, mode, slaps=False)
     return None

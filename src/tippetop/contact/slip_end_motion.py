@@ -24,10 +24,9 @@ from tippetop.mechanics.contacts.slip_end import (
     slip_end_rates,
     zero_guard,
 )
-from tippetop.mechanics.contacts.slip_variables import branch_guard, scaled, velocity_of
+from tippetop.mechanics.contacts.slip_variables import branch_guard
 from tippetop.mechanics.contacts.wrench import Wrench
-from tippetop.mechanics.lying_down import LEFT_OUT, Wobble
-from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.lying_down import wobble_guard
 from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar
@@ -153,14 +152,10 @@ def _of_axis(value: SurfaceGuard) -> Callable[[SlipEndState, Top, Any], Scalar]:
 
 
 def wobble_reserve(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar:
-    """Positive until the body on an edge wobbles so little that the rest is known."""
-    axis, momentum, slip = state.axis, state.momentum, slip_beside(state, ending, top)
-    if ending.slip:
-        slip = scaled(state.speed, state.direction)
-    velocity = velocity_of(axis, momentum, slip or (0.0, 0.0), top)
-    rates = rates_in_time(state, ending, top)
-    sliding = SlidingState(axis, momentum, velocity)
-    return Wobble.of(sliding, top, rates.wrench, rates.acceleration, slip).reserve(LEFT_OUT)
+    """Positive until the time left to the wobble of a body on an edge is known."""
+    sticks = not ending.slip and ending.held
+    normal = rates_in_time(state, ending, top).wrench.force[2] if sticks else None
+    return wobble_guard(state.axis, state.momentum, normal, top)
 
 
 def held_reserve(state: SlipEndState, ending: SlipComponent, top: Top) -> Scalar:
