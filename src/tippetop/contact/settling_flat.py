@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.contact.mode import COMPLETED, Mode, ModeEnd, Segment
+from tippetop.contact.mode import COMPLETED, Mode, ModeEnd, Segment, split
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.lying_down import (
@@ -64,10 +64,11 @@ class SettlingFlat(Mode):
 
     def _duration(self, state: State) -> float:
         """Return the time until the body lies flat."""
+        mode, numbers = self.reported_mode, self.reported_mode.numbers(state)
         if self.slaps:
-            return float(time_to_slap(state.axis, state.momentum, self.top))
-        mode = self.reported_mode
-        normal = mode.normal_if_stuck(mode.numbers(state))
+            moment = split(mode.rates(numbers))[1]
+            return float(time_to_slap(state.axis, state.momentum, moment, self.top))
+        normal = mode.normal_if_stuck(numbers)
         return float(Wobble.of(state.axis, state.momentum, normal, self.top).time_left)
 
     def _numbers_at(self, state: State, elapsed: Scalar, duration: float) -> Row:

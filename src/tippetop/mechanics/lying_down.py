@@ -69,9 +69,6 @@ TURNING = 1e6
 is a millionth of the present one.
 """
 
-TURNING_FLOOR = 1e-12
-"""An omega_e, in natural units, that is rounding."""
-
 
 class Tilting(NamedTuple):
     """Angular velocity of a body on an edge, by its parts, rad/s."""
@@ -166,17 +163,32 @@ def wobble_guard(axis: Vector, momentum: Vector, normal: Scalar | None, top: Top
 def slap_guard(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     """Falls through zero where a face slaps onto the table within `SLAP`.
 
-    That is s (s + `SLAP` (s' + `TURNING` |omega_e|)) with s' = c omega_t.
+    That is s (s + `SLAP` s') + (`SLAP` `TURNING` omega_e)^2 with s' = c omega_t.
     """
     sine, along, across, _ = Tilting.of(axis, momentum, top)
-    turning = TURNING * power(along * along + TURNING_FLOOR * TURNING_FLOOR, 0.5)
-    return sine * (sine + SLAP * (axis[2] * across + turning))
+    turning = SLAP * TURNING * along
+    return sine * (sine + SLAP * axis[2] * across) + turning * turning
 
 
-def time_to_slap(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Time until a face slaps onto the table, at the present rate of the tilt, s."""
-    sine, _, across, _ = Tilting.of(axis, momentum, top)
-    return sine / abs(across)
+def time_to_slap(axis: Vector, momentum: Vector, moment: Vector, top: Top) -> Scalar:
+    """Time until a face slaps onto the table, at the present acceleration of the tilt, s.
+
+    Parameters
+    ----------
+    axis, momentum
+        Axis, and angular momentum, kg m^2/s.
+    moment
+        Rate of the angular momentum, N m.
+    top
+        The body.
+    """
+    rate, (x, y, _) = axis_rate(axis, momentum, top), axis
+    driven, carried = axis_rate(axis, moment, top), axis_rate(rate, momentum, top)
+    sine = power(x * x + y * y, 0.5)
+    falling = -(x * rate[0] + y * rate[1]) / sine
+    bent = x * (driven[0] + carried[0]) + y * (driven[1] + carried[1])
+    square = rate[0] * rate[0] + rate[1] * rate[1]
+    return 2.0 * sine / (falling + power(3.0 * falling * falling - 2.0 * (bent + square), 0.5))
 
 
 def scaled_wobble(state: SlidingState, part: Scalar, sticks: bool, top: Top) -> SlidingState:
