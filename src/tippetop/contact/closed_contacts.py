@@ -23,8 +23,7 @@ from tippetop.mechanics.contacts.pair import slip_apart, slips_of
 from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import remaining, scaled, slip_of
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.lying_down import Wobble
-from tippetop.mechanics.motion import along_table, axis_rate
+from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
 
@@ -221,14 +220,9 @@ class ClosedContacts:
         slip = SlipComponent(slip=True)
         return remaining(self.velocity_of(slip), self.rate_of(slip))
 
-    def wobble(self) -> Wobble:
-        """Return the wobble of a body on an edge."""
-        forces, slip = self.forces, self.slips[0]
-        if self.directed.slip is not None:
-            slip = self.directed.velocity
-        sliding = along_table(self.mode.state(self.numbers))
-        wrench, acceleration = forces.wrenches[0], forces.acceleration(0)
-        return Wobble.of(sliding, self.mode.top, wrench, acceleration, slip)
+    def normal_if_stuck(self) -> Scalar | None:
+        """Return the normal force of the only contact if it sticks; None where it slips."""
+        return self.normal(0) if self.mode.sticks[0] else None
 
 
 def has_second(mode: Any, component: SlipComponent) -> bool:

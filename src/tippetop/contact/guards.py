@@ -21,7 +21,7 @@ from tippetop.mechanics.contacts.slip_variables import (
     rolling_stopping_guard,
     slip_of,
 )
-from tippetop.mechanics.lying_down import LEFT_OUT
+from tippetop.mechanics.lying_down import wobble_guard
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.vectors import Scalar
@@ -59,7 +59,7 @@ def guards_on_one(mode: Any) -> list[GuardValue]:
     elif mode.top.resists_rolling:
         guards.append((ROLLING_STOPPING, _rolling_left))
     if is_edge(mode.top.surface):
-        guards.append((WOBBLE, lambda now: now.wobble().reserve(LEFT_OUT)))
+        guards.append((WOBBLE, _wobble_on_one))
     return guards + [(name, _of_top(value)) for name, value in surface_guards(mode.top)]
 
 
@@ -101,6 +101,11 @@ def _rolling_left(now: ClosedContacts) -> Scalar:
         rates = SlidingState.unpack(mode.rates(now.numbers))
         return rolling_stopping_guard(_sliding(now), rates, mode.top)
     return remaining(now.forces.points[0].turning[:2], now.forces.rates.turning[:2])
+
+
+def _wobble_on_one(now: ClosedContacts) -> Scalar:
+    """Return what is positive until the time left to the wobble of a body on an edge is known."""
+    return wobble_guard(*split(now.numbers), now.normal_if_stuck(), now.mode.top)
 
 
 def _of_top(value: SurfaceGuard) -> Callable[[ClosedContacts], Scalar]:

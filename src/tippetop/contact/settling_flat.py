@@ -5,14 +5,15 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.contact.mode import COMPLETED, Mode, ModeEnd, Segment
+from tippetop.contact.mode import COMPLETED, Mode, ModeEnd, Segment, split
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.lying_down import (
-    LEFT_OUT,
+    Wobble,
     scaled_wobble,
     slap_guard,
     time_to_slap,
+    wobble_guard,
 )
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State
@@ -63,10 +64,12 @@ class SettlingFlat(Mode):
 
     def _duration(self, state: State) -> float:
         """Return the time until the body lies flat."""
+        mode, numbers = self.reported_mode, self.reported_mode.numbers(state)
         if self.slaps:
-            return float(time_to_slap(state.axis, state.momentum, self.top))
-        mode = self.reported_mode
-        return float(mode.contacts(mode.numbers(state)).wobble().time_left)
+            moment = split(mode.rates(numbers))[1]
+            return float(time_to_slap(state.axis, state.momentum, moment, self.top))
+        normal = mode.contacts(numbers).normal_if_stuck()
+        return float(Wobble.of(state.axis, state.momentum, normal, self.top).time_left)
 
     def _numbers_at(self, state: State, elapsed: Scalar, duration: float) -> Row:
         """Return the numbers of the reported mode after a time.
@@ -86,6 +89,7 @@ def settling_flat(mode: ContactMode, state: State) -> SettlingFlat | None:
     """Return the mode in which a body on an edge comes to lie flat; None if it does not soon."""
     if slap_guard(state.axis, state.momentum, mode.top) <= 0.0:
         return SettlingFlat(mode.top, mode, slaps=True)
-    if mode.contacts(mode.numbers(state)).wobble().reserve(LEFT_OUT) <= 0.0:
+    normal = mode.contacts(mode.numbers(state)).normal_if_stuck()
+    if wobble_guard(state.axis, state.momentum, normal, mode.top) <= 0.0:
         return SettlingFlat(mode.top, mode, slaps=False)
     return None

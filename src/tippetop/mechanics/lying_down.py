@@ -9,49 +9,53 @@ is s / |omega_t|. A little of omega_e turns the body round instead: e turns at t
 omega_z - c omega_e / s, with c the cosine of the tilt, and s has a least value near s omega_e /
 omega_t.
 
-It **wobbles** down (Euler's disk) where omega_t is small beside omega_e. Near s = 0 the motion
-keeps its form if s, the velocities and Omega are multiplied by q^2, q and 1/q, and time by q. The
-energy of the wobble,
+It **wobbles** down (Euler's disk) where omega_t is small beside omega_e, or where the body rocks
+from side to side and turns round near s = 0 every time. Near s = 0 the motion keeps its form if s,
+the velocities and Omega are multiplied by q^2, q and 1/q, and time by q. The energy of the wobble,
 
-    Q = m g R s + 1/2 I1 (omega_e^2 + omega_t^2) + 1/2 m z'^2,
+    Q = m g R s + 1/2 I (omega_e^2 + omega_t^2) + 1/2 m z'^2,
 
 without those of the spin about the vertical and of the motion along the table, falls as the square
-of the time left. The table takes the power P = -Q' from it, and the time left is
+of the time left. I is I1, and where the contact sticks I1 + m h^2, with the height h of the centre
+of mass, which then swings above the contact. The table takes the power P = -Q' from the wobble, and
+the time left is
 
     T = 2 Q / P.
 
-There is an end where P falls as sqrt(Q), so that the table resists the wobble with a torque that
-does not end with it:
+Rolling resistance eps takes P = N eps |omega|, with the horizontal angular velocity omega. On a
+thin disk without slip, I1 = m R^2 / 4, this is s = [(2/3) (eps / R) sqrt(g / R) T]^2. T is wrong
+by as much as the motion departs from its form: relatively by s, and by the size of a nutation: the
+difference of the tilt's rate from -2 s / T, and that of N from the weight. Where the contact slips,
+friction takes some power, too, and the departure is taken to be 1. Whether T is short enough is
+asked with the weight in place of N, which has no bound where a body that rocks turns round.
 
-- Rolling resistance eps: P = m g eps |omega_e|. On a thin disk without slip, I1 = m R^2 / 4, this
-  is s = [(2/3) (eps / R) sqrt(g / R) T]^2.
-- Friction on the slip R omega_z of a body that goes on spinning, at the depth H below its centre of
-  mass: P is as with eps = -+ H f(R omega_z), as friction slows the wobble down or speeds it up.
-
-Where P falls faster than sqrt(Q), T grows, and there is no end: without loss; where the contact
-sticks without rolling resistance; and on a thin disk without rolling resistance, whose friction has
-an arm that falls with s.
-
-T is wrong by as much as the motion departs from that form: relatively by s, and by the size of a
-nutation: the difference of the tilt's rate from -2 s / T, and its acceleration. Where the contact
-slips, the departure is taken to be 1.
+Without rolling resistance there is an end where friction on the slip R omega_z of a body that goes
+on spinning, at the depth H below its centre of mass, slows the wobble down: then P is as with eps =
+H f(R omega_z). Friction that speeds the wobble up makes the body rise. Elsewhere P falls faster
+than sqrt(Q), T grows, and there is no end: without loss; where the contact sticks; and on a thin
+disk, whose friction has an arm that falls with s.
 """
 
 from typing import NamedTuple
 
-from tippetop.mechanics.contacts.contact_point import Acceleration
 from tippetop.mechanics.contacts.forces import spun_up
-from tippetop.mechanics.contacts.wrench import Slip, Wrench
 from tippetop.mechanics.motion import angular_velocity, axis_rate
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import POLE, support_at
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar, Vector, dot, power
+from tippetop.mechanics.vectors import Scalar, Vector, power
 
 LEFT_OUT = 1e-9
 """Time, in natural units, that the time left may be wrong by where a wobble is followed no further:
 below 1e-9 s on any body smaller than 9 m. Far above it the end of a run would show it; far below,
 slip that begins in so short a time is rounding.
+"""
+
+FRICTION_ARM = 0.1
+"""Arm of the couple that stands for friction in the power without rolling resistance, over the
+edge's radius. Friction's own arm may have either sign and changes with every nutation. With this
+one a wobble that lasts a tenth of `LEFT_OUT` counts as none. A smaller one follows rounding, and a
+larger one ends a wobble that friction still lifts.
 """
 
 SLAP = 1e-6
@@ -64,9 +68,6 @@ TURNING = 1e6
 """Ratio of the tilt's rate to omega_e from which a face slaps, so that the least s it could come to
 is a millionth of the present one.
 """
-
-TURNING_FLOOR = 1e-12
-"""An omega_e, in natural units, that is rounding."""
 
 
 class Tilting(NamedTuple):
@@ -102,82 +103,92 @@ class Wobble(NamedTuple):
     energy: Scalar
     """Energy Q of the wobble, J."""
     loss: Scalar
-    """Power P that the table takes from it, W."""
+    """Power P that the table takes from it, W, where it presses with the weight."""
+    pressing: Scalar
+    """Normal force over the weight; 1 where the contact slips."""
     departure: Scalar
     """Square of its departure from the form that it keeps, relatively."""
 
     @classmethod
-    def of(
-        cls,
-        state: SlidingState,
-        top: Top,
-        wrench: Wrench,
-        acceleration: Acceleration,
-        slip: Slip | None,
-    ) -> "Wobble":
-        """Return the wobble in a state.
+    def of(cls, axis: Vector, momentum: Vector, normal: Scalar | None, top: Top) -> "Wobble":
+        """Return the wobble for an axis and an angular momentum.
 
         Parameters
         ----------
-        state
-            Axis, angular momentum, and horizontal velocity of the centre of mass.
+        axis, momentum
+            Axis, and angular momentum, kg m^2/s.
+        normal
+            Normal force of the table where the contact sticks, N; None where it slips.
         top
             The body; its active surface is an edge.
-        wrench, acceleration
-            What the table does, and how the contact accelerates.
-        slip
-            The slip; None where the contact sticks.
         """
-        tilting = Tilting.of(state.axis, state.momentum, top)
-        sine, along, across, circling = tilting
-        turning = angular_velocity(state.axis, state.momentum, top)
-        slope = support_at(state.axis, top.surface)[1]
-        arm = power(slope * slope * (sine * sine), 0.5)
+        sine, along, across, circling = Tilting.of(axis, momentum, top)
+        height, slope, _ = support_at(axis, top.surface)
+        arm, weight = power(slope * slope * (sine * sine), 0.5), top.mass * top.gravity
+        square = along * along + across * across
+        inertia = top.transverse_inertia
+        if normal is not None:
+            inertia = inertia + top.mass * (height * height)
         sinking = arm * across
-        u, v = state.velocity
-        energy = top.mass * top.gravity * arm * sine + 0.5 * (
-            top.transverse_inertia * (along * along + across * across)
-            + top.mass * sinking * sinking
-        )
-        gained = dot(wrench.torque, turning) - (wrench.force[0] * u + wrench.force[1] * v)
-        if slip is not None:
-            gained = gained + wrench.force[0] * slip[0] + wrench.force[1] * slip[1]
-        spun = top.axial_inertia * turning[2] * acceleration.turning[2]
-        loss = spun - gained
-        inverse = power(sine * sine + POLE, -0.5)
-        x, y = state.axis[0] * inverse, state.axis[1] * inverse
-        tipping = acceleration.turning[1] * x - acceleration.turning[0] * y - circling * along
-        drifting = across * energy + state.axis[2] * sine * loss
-        pace = top.mass * top.gravity * arm / top.transverse_inertia
-        nutation = (drifting * circling / (energy * pace)) ** 2 + (tipping / pace) ** 2
-        departure = sine * sine + nutation
-        return cls(energy, loss, departure if slip is None else departure + 1.0)
+        energy = weight * arm * sine + 0.5 * (inertia * square + top.mass * (sinking * sinking))
+        if top.rolling_resistance is None:
+            fastest = power(2.0 * energy / top.transverse_inertia, 0.5)
+            return cls(energy, weight * (FRICTION_ARM * arm) * fastest, 1.0, 1.0)
+        loss = weight * top.rolling_resistance.length * power(square + POLE, 0.5)
+        if normal is None:
+            return cls(energy, loss, 1.0, 1.0)
+        pressing = normal / weight
+        drifting = across * energy + axis[2] * sine * loss
+        pace = weight * arm / top.transverse_inertia
+        nutation = (drifting * circling / (energy * pace)) ** 2 + (pressing - 1.0) ** 2
+        return cls(energy, loss, pressing, sine * sine + nutation)
 
     @property
     def time_left(self) -> Scalar:
         """Time T until the body lies flat, s."""
-        return 2.0 * self.energy / self.loss
+        return 2.0 * self.energy / (self.loss * self.pressing)
 
-    def reserve(self, left_out: Scalar) -> Scalar:
-        """Falls through zero where the time left is known to within a time, s; in J."""
-        share = self.departure / (1.0 + self.departure)
-        return 2.0 * self.energy * power(share, 0.5) - left_out * self.loss
+
+def wobble_guard(axis: Vector, momentum: Vector, normal: Scalar | None, top: Top) -> Scalar:
+    """Falls through zero where the time left to a wobble is known to within `LEFT_OUT`, natural
+    units.
+
+    The arguments are those of `Wobble.of`.
+    """
+    wobble = Wobble.of(axis, momentum, normal, top)
+    share = wobble.departure / (1.0 + wobble.departure)
+    return 2.0 * wobble.energy * power(share, 0.5) - LEFT_OUT * wobble.loss
 
 
 def slap_guard(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     """Falls through zero where a face slaps onto the table within `SLAP`.
 
-    That is s (s + `SLAP` (s' + `TURNING` |omega_e|)) with s' = c omega_t.
+    That is s (s + `SLAP` s') + (`SLAP` `TURNING` omega_e)^2 with s' = c omega_t.
     """
     sine, along, across, _ = Tilting.of(axis, momentum, top)
-    turning = TURNING * power(along * along + TURNING_FLOOR * TURNING_FLOOR, 0.5)
-    return sine * (sine + SLAP * (axis[2] * across + turning))
+    turning = SLAP * TURNING * along
+    return sine * (sine + SLAP * axis[2] * across) + turning * turning
 
 
-def time_to_slap(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Time until a face slaps onto the table, at the present rate of the tilt, s."""
-    sine, _, across, _ = Tilting.of(axis, momentum, top)
-    return sine / abs(across)
+def time_to_slap(axis: Vector, momentum: Vector, moment: Vector, top: Top) -> Scalar:
+    """Time until a face slaps onto the table, at the present acceleration of the tilt, s.
+
+    Parameters
+    ----------
+    axis, momentum
+        Axis, and angular momentum, kg m^2/s.
+    moment
+        Rate of the angular momentum, N m.
+    top
+        The body.
+    """
+    rate, (x, y, _) = axis_rate(axis, momentum, top), axis
+    driven, carried = axis_rate(axis, moment, top), axis_rate(rate, momentum, top)
+    sine = power(x * x + y * y, 0.5)
+    falling = -(x * rate[0] + y * rate[1]) / sine
+    bent = x * (driven[0] + carried[0]) + y * (driven[1] + carried[1])
+    square = rate[0] * rate[0] + rate[1] * rate[1]
+    return 2.0 * sine / (falling + power(3.0 * falling * falling - 2.0 * (bent + square), 0.5))
 
 
 def scaled_wobble(state: SlidingState, part: Scalar, sticks: bool, top: Top) -> SlidingState:
