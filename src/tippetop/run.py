@@ -201,7 +201,9 @@ def simulate(
                 ),
             )
         ),
-        **_method_attributes([method, *run_metrics.methods.values()], units),
+        **_method_attributes(
+            [one or method for one in run_metrics.methods.values()], method, units
+        ),
         "tippetop_version": __version__,
     }
     readers = recorder, run_metrics
@@ -323,11 +325,18 @@ def _flight_arrays(
     }
 
 
-def _method_attributes(methods: Sequence[Integrator], units: Units) -> dict[str, str | float]:
-    """Return the names of the methods that took steps, and their step or largest tolerance."""
+def _method_attributes(
+    methods: Sequence[Integrator], asked: Integrator, units: Units
+) -> dict[str, str | float]:
+    """Return the names of the methods that took steps, and their step or largest tolerance.
+
+    A run that needed no steps names the method that was asked for.
+    """
+    methods = methods or [asked]
     settings: dict[str, str | float] = {"integrator": ", ".join(method.name for method in methods)}
-    if hasattr(methods[0], "step"):
-        settings["step"] = float(methods[0].step) * units.time
+    steps = [float(method.step) for method in methods if hasattr(method, "step")]
+    if steps:
+        settings["step"] = max(steps) * units.time
     tolerances = [float(method.tolerance) for method in methods if hasattr(method, "tolerance")]
     if tolerances:
         settings["tolerance"] = max(tolerances)

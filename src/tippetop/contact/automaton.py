@@ -94,6 +94,7 @@ from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Scalar
+from tippetop.support.errors import Described, InvalidInput
 
 REST = 1e-13
 """Velocities and accelerations, in natural units, that are rounding in a body at rest."""
@@ -170,7 +171,14 @@ class Automaton:
             return self._after_onset(contact, mode, end, time)
         if isinstance(mode, SlipEnd):
             return self._after_clock(contact, mode, end, time)
-        assert isinstance(mode, ContactMode), f"nothing follows {mode.name}"
+        if not isinstance(mode, ContactMode):  # one that a user defined
+            raise InvalidInput(
+                "contact",
+                Described(f"the mode {mode.name}, ended by '{end.cause}',"),
+                "",
+                "has no rule for what follows",
+                "return a Transition for this guard from the automaton's method follow",
+            )
         if mode.is_single:
             return self._after_one(contact, mode, end, time)
         return self._after_two(mode, end, time)
