@@ -19,7 +19,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 
-LANDING = (3e-8, 1e-16)
+LAST_STEPS = (3e-8, 1e-16)
 """How long before its end the rest of a velocity may be taken in one step, in natural units of
 time: if its direction has come to rest by then, and in any case.
 """
@@ -78,7 +78,7 @@ def follow_clock(clock: EndClock, begin: Row, longest: float, integrator: Integr
     """Follow a velocity in its clock until it lands, or to where it is no longer about to end."""
     now, start, arcs = clock.unpack(begin), (0.0, as_array(begin)), list[Arc]()
     arrival, last = clock.collocated(now) if clock.tries_at_once else None, now
-    for horizon in LANDING:
+    for horizon in LAST_STEPS:
         if arrival is not None or (zero_guard(now, clock.rates(now), clock.top, horizon) <= 0.0):
             continue
         for arc in slip_end_arcs(
