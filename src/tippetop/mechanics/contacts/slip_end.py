@@ -207,8 +207,8 @@ def zero_guard(state: SlipEndState, rates: SlipEndRates, top: Top, horizon: Scal
     by itself.
 
     That is s + horizon R Q / (Q + |A|), in natural units, with an acceleration Q that takes the
-    body's own velocities, (1 + omega^2)^(1/2), in the time 1 / `QUICK`: where xi changes faster than
-    that, there may be much of it left for so short a time.
+    body's own velocities, (1 + omega^2)^(1/2), in the time 1 / `QUICK`: where xi changes faster
+    than that, there may be much of it left for so short a time.
     """
     rate, turning = rates.xi, angular_velocity(state.axis, state.momentum, top)
     quick = QUICK * (1.0 + dot(turning, turning)) ** 0.5
