@@ -13,7 +13,6 @@ from tippetop.contact.natural_launch import NaturalLaunch
 from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
 from tippetop.graph.own_parts import require_recordable
 from tippetop.integrators import Integrator, make_integrator
-from tippetop.integrators.base import NOT_FINITE
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.units import Units
@@ -242,7 +241,8 @@ def read_off(
     """
     recorder, run_metrics = readers
     top, units, state = start.top, start.units, start.state
-    early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
+    is_finite = bool(np.all(np.isfinite(trajectory.state.pack())))
+    early = outcome is not Outcome.COMPLETED and is_finite
     sampled = recorder.finish(trajectory.time, trajectory.state, early)
     ends = run_metrics.ends(
         trajectory.state, trajectory.time, outcome, trajectory.events, recorder.sums

@@ -186,7 +186,7 @@ class Run {
       name: trusted.name.toLowerCase(),
       advice: [trusted.value, detail, m.ambiguity_of(trajectory.events)].filter(Boolean).join(" "),
     };
-    this.early = trusted !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
+    this.early = trusted !== m.Outcome.COMPLETED && state.pack().every(Number.isFinite);
     const completed = outcome === m.Outcome.COMPLETED;
     this.endTime = completed ? this.duration : trajectory.time * units.time;
     const events = trajectory.events.map((event) => m.event_in_si(event, units));
