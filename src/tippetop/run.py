@@ -185,6 +185,7 @@ def simulate(
         if callback is not None:
             callback(trajectory.time / trajectory.end)
     outcome = recorder.outcome_of(trajectory)
+    breach = recorder.breach_of(trajectory) if outcome is Outcome.INACCURATE else ""
     attributes = {
         "title": "Motion of a spinning top on a table",
         "problem": problem.to_json(),
@@ -195,6 +196,7 @@ def simulate(
                 (
                     outcome.value,
                     trajectory.detail,
+                    breach,
                     ambiguity_of(trajectory.events),
                     method.caution,
                 ),

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar, Self
 
+from tippetop.contact.conditions import held_reserve, least
 from tippetop.contact.guards import GuardValue, guards_on_one, guards_on_two
 from tippetop.contact.mode import BOTH, IntegratedMode, Reaction, split
 from tippetop.integrators.base import Guard, Motion
@@ -215,7 +216,9 @@ class ContactMode(IntegratedMode):
         for slip, wrench in zip(slips, forces.wrenches, strict=True):
             if slip is not None:
                 power = power + (wrench.force[0] * slip[0] + wrench.force[1] * slip[1])
-        return Reaction(forces.force, forces.torque, power, forces.couple)
+        pressing = None if self.is_single else least(forces.normal)
+        held = held_reserve(self, forces, slips)
+        return Reaction(forces.force, forces.torque, power, forces.couple, pressing, held)
 
     def slip_left(self, y: Row) -> Scalar:
         """Positive while slip on one contact goes on for a while."""

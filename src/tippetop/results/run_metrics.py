@@ -111,7 +111,7 @@ class RunMetrics:
         # at them.
         near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
         places, transform, to_powers = chebyshev(FORCE_DEGREE)
-        unit = to_powers @ (transform @ Rates(*group.at(places, near)).force)
+        unit = to_powers @ (transform @ group.force_at(places, near))
         self._pressed.append(Polynomials.of_unit(unit, group.spans[near]))
 
     def ends(
