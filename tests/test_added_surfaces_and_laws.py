@@ -122,6 +122,50 @@ class GroovedFriction(tt.Friction):
         return GroovedLaw(self.mu_x, self.mu_y)
 
 
+class PearSurface(NamedTuple):
+    """A sphere with a blunt end: h = r - bump c^3."""
+
+    radius: Scalar
+    """Radius r, m."""
+    bump: Scalar
+    """Height of the blunt end, m."""
+
+    def height(self, c: Scalar) -> Scalar:
+        return self.radius - self.bump * c**3
+
+    def slope(self, c: Scalar) -> Scalar:
+        return -3.0 * self.bump * c**2
+
+    def curvature(self, c: Scalar) -> Scalar:
+        return -6.0 * self.bump * c
+
+    @property
+    def spherical(self) -> bool:
+        return False
+
+    @property
+    def size(self) -> Scalar:
+        return self.radius
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        return (self.bump / self.radius,)
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
+        return cls(1.0, *proportions)
+
+
+class Pear(tt.Shape):
+    kind: Literal["pear"] = "pear"
+    radius: Positive
+    bump: float
+
+    @property
+    def surface(self) -> Surface:
+        return PearSurface(self.radius, self.bump)
+
+
 CONE = ConeSurface(0.006, 0.012, 0.026, 0.001)
 BODY = tt.Body(
     mass=0.02,
@@ -176,3 +220,20 @@ def test_friction_is_that_of_the_grooved_table() -> None:
     np.testing.assert_allclose(
         force[:, :2], -force[:, 2:] * [0.1, 0.4] * slip, rtol=1e-9, atol=1e-9
     )
+
+
+@pytest.mark.parametrize("upwards", [0.0, 0.1])
+def test_whole_powers_are_smooth_where_the_axis_is_level(upwards: float) -> None:
+    """The axis is level at launch, on the table or thrown upwards: c = 0 divides nothing."""
+    problem = tt.Problem(
+        body=tt.Body(mass=0.02, I1=3.5e-6, I3=3.2e-6, shape=Pear(radius=0.02, bump=1e-3)),
+        friction=tt.ViscousFriction(mu=0.3),
+        launch=tt.Launch(
+            tilt=np.pi / 2, spin=20.0, precession=3.0, tilt_rate=-8.0, velocity=(0.01, 0.0, upwards)
+        ),
+    )
+    run = tt.simulate(problem, 0.1, samples=11)
+    assert run.attrs["outcome"] == "completed", run.attrs["outcome_advice"]
+    assert float(run["energy_error"]) < 1e-12
+    assert float(run["gap"].min()) > -1e-14
+    assert int(run["flights"]) >= (upwards > 0.0)

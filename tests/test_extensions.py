@@ -6,7 +6,7 @@ import math
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
@@ -300,6 +300,83 @@ def test_the_law_is_the_one_defined() -> None:
     # At launch slip is zero: what is left of it is rounding of 3 m/s, which the law multiplies by
     # 0.3 / 0.05.
     np.testing.assert_allclose(force, expected, rtol=1e-9, atol=6.0 * np.spacing(3.0))
+
+
+class ForgottenAutomaton(PinAutomaton):
+    """Of which nobody said what follows the release."""
+
+    def follow(
+        self, mode: Mode, end: ModeEnd, time: float, integrator: Integrator | None = None
+    ) -> Transition:
+        return Automaton.follow(self, mode, end, time, integrator)
+
+
+class ForgottenPin(tt.Contact):
+    kind: Literal["forgotten_pin"] = "forgotten_pin"
+    until: Annotated[Positive, Quantity("s", "when the pin is drawn")]
+
+    def rules(self, top: Top, units: Units) -> ForgottenAutomaton:
+        return ForgottenAutomaton(top, self.liftoff, self.restitution, left=self.until / units.time)
+
+
+def test_a_mode_that_nothing_follows_is_named_in_one_sentence() -> None:
+    problem = REPORT.model_copy(update={"contact": ForgottenPin(until=0.1)})
+    with pytest.raises(InvalidInput) as caught:
+        tt.simulate(problem, 0.2)
+    assert str(caught.value) == (
+        "contact: the mode pinned, ended by 'released', has no rule for what follows (return a"
+        " Transition for this guard from the automaton's method follow)"
+    )
+    swept = tt.sweep(problem, {"launch.spin": [155.0]}, duration=0.2, workers=1)
+    assert swept["outcome"].values.tolist() == ["failed"]
+
+
+@dataclass(frozen=True)
+class OddlyPinned(Pinned):
+    """The same with equations that ask what only numbers have: they cannot be recorded."""
+
+    @property
+    def motion(self) -> Motion:
+        rates = pinned_motion(self.top.kind).rates
+
+        def of_floats(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
+            return [float(rate) for rate in rates(y, numbers)]
+
+        return replace(pinned_motion(self.top.kind), rates=of_floats)
+
+
+@dataclass(frozen=True)
+class OddAutomaton(PinAutomaton):
+    """Entered by that mode."""
+
+    def launch(self, state: State) -> Transition:
+        return Transition((), OddlyPinned(self.top, self.left), state)
+
+
+class OddlyPinnedAtFirst(tt.Contact):
+    kind: Literal["oddly_pinned_at_first"] = "oddly_pinned_at_first"
+    until: Annotated[Positive, Quantity("s", "when the pin is drawn")]
+
+    def rules(self, top: Top, units: Units) -> OddAutomaton:
+        return OddAutomaton(top, self.liftoff, self.restitution, left=self.until / units.time)
+
+
+@pytest.mark.parametrize(
+    ("duration", "settings", "names", "tolerance"),
+    [
+        (0.05, {}, "dop853", 1e-12),
+        (0.05, {"integrator": "taylor", "tolerance": 1e-8}, "dop853", 1e-8),
+        (0.2, {}, "dop853, taylor", 1e-12),
+    ],
+)
+def test_a_run_says_who_followed_what_cannot_be_recorded(
+    duration: float, settings: dict[str, Any], names: str, tolerance: float
+) -> None:
+    """Taylor's method leaves it to Dormand and Prince's, whose numbers are as inexact as that."""
+    problem = REPORT.model_copy(update={"contact": OddlyPinnedAtFirst(until=0.1)})
+    run = tt.simulate(problem, duration, samples=5, **settings)
+    assert run.attrs["outcome"] == "completed"
+    assert (run.attrs["integrator"], run.attrs["tolerance"]) == (names, tolerance)
 
 
 def test_a_law_of_a_function_is_that_of_a_class() -> None:

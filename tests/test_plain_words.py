@@ -39,8 +39,17 @@ def test_names_and_docstrings_that_say_nothing_are_found(
     assert len(list(tool.faults_of(Path("a.py"), ast.parse(code)))) == faults
 
 
-def test_constants_with_several_values_in_a_folder_are_found(tool: ModuleType) -> None:
-    texts = {"a/b.py": "LOOKS = 3", "a/c.py": "LOOKS = 4", "d/e.py": "LOOKS = 5\nFEW = 1"}
+@pytest.mark.parametrize(
+    "second",
+    [
+        "LOOKS = 4",
+        "FEW, LOOKS = 1, 4",
+        "LOOKS: int = 4",
+        "(FEW, LOOKS), MANY = (1, 4), 9",
+    ],
+)
+def test_constants_with_several_values_in_a_folder_are_found(tool: ModuleType, second: str) -> None:
+    texts = {"a/b.py": "LOOKS, FEW = 3, 1", "a/c.py": second, "d/e.py": "LOOKS = 5\nFEW = 1"}
     trees = {Path(path): ast.parse(text) for path, text in texts.items()}
     assert list(tool.clashes(trees)) == ["a: LOOKS is 3 and 4"]
 

@@ -237,7 +237,7 @@ def test_a_sweep_counts_its_implausible_cells(over, count, said):
 
 
 def test_a_sweep_of_more_cells_than_are_looked_at_says_so(monkeypatch):
-    monkeypatch.setattr("tippetop.sweeps.implausible_cells.MOST_CELLS", 10)
+    monkeypatch.setattr("tippetop.sweeps.implausible_cells.CELLS_EXAMINED", 10)
     spins = {"launch.spin": {"from": 0.0, "to": 2e4, "count": 100}}
     (warning,) = warned(lambda: tt.sweep(REPORT, spins, duration=0.001, workers=1))
     assert str(warning.message).startswith("5 of 10 cells looked at are implausible; the first:")

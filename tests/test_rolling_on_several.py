@@ -188,7 +188,7 @@ def test_rolling_that_slip_held_up_begins_when_that_ends(monkeypatch: pytest.Mon
     }
     found = []
     for horizon in (3e-8, 1e-11):
-        monkeypatch.setattr(slip_end, "LANDING", (horizon, 1e-16))
+        monkeypatch.setattr(slip_end, "LAST_STEPS", (horizon, 1e-16))
         run = followed(body.replace(launch), 0.004)
         (sticks,), (*_, one, other) = events(run, "stick"), events(run, "rolling starts")
         assert one == other == sticks

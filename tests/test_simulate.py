@@ -19,6 +19,7 @@ import tippetop as tt
 from campaigns import examples
 from strategies import numbers
 from tippetop.integrators import make_integrator
+from tippetop.integrators.base import NOT_FINITE
 from tippetop.problem.presets import REPORT, report_problem
 from tippetop.results.catalogue import SAMPLED
 
@@ -870,8 +871,8 @@ class Quitter:
 
     name, caution = "quitter", ""
 
-    def __init__(self, patience):
-        self.patience = patience
+    def __init__(self, patience, words="it was tired"):
+        self.patience, self.words = patience, words
         self.spans = []
 
     def integrate(self, motion, parameters, start, end):
@@ -879,7 +880,7 @@ class Quitter:
         last = min(self.patience, end)
         for arc in make_integrator("dop853", 1e-10).integrate(motion, parameters, start, last):
             tired = arc.solution.end >= last < end
-            yield replace(arc, failure="it was tired" if tired else None, evaluations=7)
+            yield replace(arc, failure=self.words if tired else None, evaluations=7)
 
 
 class Nameless:
@@ -923,11 +924,13 @@ def test_any_integrator_can_be_passed_in():
     assert patient.spans == [(0.0, pytest.approx(0.5 / UNIT))]
 
 
-def test_failed_run_has_all_that_was_computed_before_it_failed():
-    run = tt.simulate(report(), 1.0, samples=11, integrator=Quitter(0.57 / UNIT))
+@pytest.mark.parametrize("words", ["it was tired", NOT_FINITE])
+def test_failed_run_has_all_that_was_computed_before_it_failed(words):
+    """Whatever the integrator's words are: a last state that is finite is a sample."""
+    run = tt.simulate(report(), 1.0, samples=11, integrator=Quitter(0.57 / UNIT, words))
     whole = tt.simulate(report(), 1.0, samples=11, integrator="dop853", tolerance=1e-10)
     assert run.attrs["outcome"] == "failed"
-    assert "it was tired" in run.attrs["outcome_advice"]
+    assert words in run.attrs["outcome_advice"]
     assert "\n" not in run.attrs["outcome_advice"]
     np.testing.assert_allclose(run.time, [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.57], rtol=1e-14)
     np.testing.assert_allclose(run.theta[:-1], whole.theta[:6], rtol=0, atol=1e-9)

@@ -67,7 +67,7 @@ def test_the_end_of_slip_on_two_converges_as_its_last_moments_are_followed_neare
     for problem, duration, contacts in ((resisted(31), 0.2, 1), (resisted(56), 0.1, 2)):
         found = []
         for horizon in (1e-6, 3e-8, 1e-10):
-            monkeypatch.setattr(slip_end, "LANDING", (horizon, 1e-16))
+            monkeypatch.setattr(slip_end, "LAST_STEPS", (horizon, 1e-16))
             run = followed_by_steps(problem, duration)
             found.append([*times(run, "stick"), *run["angular_momentum"].values[-1] * 1e3])
             assert len(times(run, "stick")) == contacts

@@ -84,15 +84,31 @@ def clashes(trees: dict[Path, ast.Module]) -> Iterator[str]:
     values: dict[tuple[Path, str], dict[str, Path]] = defaultdict(dict)
     for path, tree in trees.items():
         for node in tree.body:
-            if not (isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)):
-                continue
-            for target in node.targets:
-                if isinstance(target, ast.Name) and target.id.isupper():
-                    places = values[path.parent, target.id]
-                    places.setdefault(repr(node.value.value), path)
+            for name, value in _assigned(node):
+                if name.isupper():
+                    values[path.parent, name].setdefault(ast.unparse(value), path)
     for (folder, name), places in values.items():
         if len(places) > 1:
             yield f"{folder}: {name} is {' and '.join(sorted(places))}"
+
+
+def _assigned(node: ast.stmt) -> Iterator[tuple[str, ast.expr]]:
+    """Yield the names that a statement assigns to, each with its value: several, of tuples."""
+    match node:
+        case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
+            yield name, value
+        case ast.Assign(targets=targets, value=value):
+            for target in targets:
+                yield from _paired(target, value)
+
+
+def _paired(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:
+    match target, value:
+        case ast.Name(id=name), _:
+            yield name, value
+        case ast.Tuple(elts=names), ast.Tuple(elts=parts):
+            for name, part in zip(names, parts, strict=False):
+                yield from _paired(name, part)
 
 
 def main() -> int:

@@ -13,7 +13,6 @@ from tippetop.contact.natural_launch import NaturalLaunch
 from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
 from tippetop.graph.own_parts import require_recordable
 from tippetop.integrators import Integrator, make_integrator
-from tippetop.integrators.base import NOT_FINITE
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.units import Units
@@ -186,6 +185,7 @@ def simulate(
         if callback is not None:
             callback(trajectory.time / trajectory.end)
     outcome = recorder.outcome_of(trajectory)
+    breach = recorder.breach_of(trajectory) if outcome is Outcome.INACCURATE else ""
     attributes = {
         "title": "Motion of a spinning top on a table",
         "problem": problem.to_json(),
@@ -196,12 +196,15 @@ def simulate(
                 (
                     outcome.value,
                     trajectory.detail,
+                    breach,
                     ambiguity_of(trajectory.events),
                     method.caution,
                 ),
             )
         ),
-        **_method_attributes([method, *run_metrics.methods.values()], units),
+        **_method_attributes(
+            [one or method for one in run_metrics.methods.values()], method, units
+        ),
         "tippetop_version": __version__,
     }
     readers = recorder, run_metrics
@@ -240,7 +243,8 @@ def read_off(
     """
     recorder, run_metrics = readers
     top, units, state = start.top, start.units, start.state
-    early = outcome is not Outcome.COMPLETED and trajectory.detail != NOT_FINITE
+    is_finite = bool(np.all(np.isfinite(trajectory.state.pack())))
+    early = outcome is not Outcome.COMPLETED and is_finite
     sampled = recorder.finish(trajectory.time, trajectory.state, early)
     ends = run_metrics.ends(
         trajectory.state, trajectory.time, outcome, trajectory.events, recorder.sums
@@ -323,11 +327,18 @@ def _flight_arrays(
     }
 
 
-def _method_attributes(methods: Sequence[Integrator], units: Units) -> dict[str, str | float]:
-    """Return the names of the methods that took steps, and their step or largest tolerance."""
+def _method_attributes(
+    methods: Sequence[Integrator], asked: Integrator, units: Units
+) -> dict[str, str | float]:
+    """Return the names of the methods that took steps, and their step or largest tolerance.
+
+    A run that needed no steps names the method that was asked for.
+    """
+    methods = methods or [asked]
     settings: dict[str, str | float] = {"integrator": ", ".join(method.name for method in methods)}
-    if hasattr(methods[0], "step"):
-        settings["step"] = float(methods[0].step) * units.time
+    steps = [float(method.step) for method in methods if hasattr(method, "step")]
+    if steps:
+        settings["step"] = max(steps) * units.time
     tolerances = [float(method.tolerance) for method in methods if hasattr(method, "tolerance")]
     if tolerances:
         settings["tolerance"] = max(tolerances)

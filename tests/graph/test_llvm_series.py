@@ -122,3 +122,12 @@ def test_where_a_law_has_another_branch_a_step_ends():
     np.testing.assert_allclose(arc.end_state, [0.0, 1.0], rtol=0, atol=1e-11)
     for time in np.pi / stiff**0.5 + period * np.arange(25):
         assert np.abs(arc.solution.knots - time).min() < 1e-11
+
+
+def test_a_whole_power_of_a_number_that_passes_zero_has_coefficients() -> None:
+    """y = t and z' = y^18 from zero: z = t^19 / 19, where the recurrence would divide by y."""
+    motion = Motion(lambda y, p: (1.0, y[0] ** 18), 2, 0)
+    found, _ = compiled(motion)([0.0, 0.0], [])
+    expected = np.zeros((2, ORDER + 1))
+    expected[0, 1], expected[1, 19] = 1.0, 1.0 / 19.0
+    np.testing.assert_allclose(found, expected, rtol=1e-15)

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.lathe.files import read_with_remarks
+from tippetop.theory.overview import outlook
 
 R = 20.0
 HALF = R / math.sqrt(2.0)
@@ -82,6 +83,17 @@ def test_points_along_a_ball_are_a_ball(count, digits):
     assert piece.fit.edges == 2
     apart = max(abs(math.hypot(*point) - 15.0) for point in points)
     assert piece.fit.deviation <= 2.0 * apart + 1e-12
+
+
+@pytest.mark.parametrize("count", [12, 24, 60])
+def test_a_ball_has_no_eccentricity_of_rounding(count):
+    """A body whose centre of mass is in the middle belongs to no group of tippe tops."""
+    body = tt.Body.turned(along_ball(count, 15), 700.0, unit="mm")
+    assert body.shape.center == 0.0
+    problem = tt.Problem(
+        body=body, friction=tt.ViscousFriction(mu=0.3), launch=tt.Launch(tilt=0.1, spin=100.0)
+    )
+    assert outlook(problem).group is None
 
 
 @pytest.mark.parametrize("count", [3, 6])

@@ -44,6 +44,16 @@ def test_powers_of_series_are_those_of_their_values():
         assert horner(found, time) == pytest.approx(horner(terms, time) ** power, rel=1e-14)
 
 
+@pytest.mark.parametrize("exponent", [1, 2, 3.0, 5, 20])
+def test_a_whole_power_of_a_series_that_starts_at_zero_is_a_product(exponent):
+    """(t + t^2)^n = t^n (1 + t)^n: the recurrence that divides by the base has no coefficients."""
+    power = series([np.zeros(1), np.ones(1), np.ones(1)]) ** exponent
+    expected = [
+        math.comb(int(exponent), k - int(exponent)) if k >= exponent else 0 for k in range(26)
+    ]
+    assert np.ravel(terms_of(power, 26)).tolist() == expected
+
+
 def test_solution_of_a_harmonic_oscillator_is_a_circle():
     y = solved(
         [Series(unknown, PLAIN) for _ in range(2)],

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import tippetop as tt
-from tippetop.theory.advice import HALVINGS, STEPS, Size, advice, standing_spin
+from tippetop.theory.advice import BISECTIONS, STEPS, Size, advice, standing_spin
 
 REACH = 240.0
 """Spins that are within reach, rad/s."""
@@ -29,7 +29,7 @@ def test_the_least_eccentricity_is_where_the_groups_meet() -> None:
     size = Size("eccentricity", 0.02, 0.01, 0.5)
     (found,) = advice(lambda _, value: eccentric(value), [size], 1e6)
     least = 1.0 - REPORT.I1 / REPORT.I3
-    within = (size.high - size.value) / STEPS / 2**HALVINGS
+    within = (size.high - size.value) / STEPS / 2**BISECTIONS
     assert found.value == pytest.approx(least, abs=1.01 * within)
     assert found.value > least
     assert standing_spin(eccentric(least - within)) == math.inf
@@ -39,7 +39,7 @@ def test_a_top_stands_with_the_change_and_not_with_less() -> None:
     size = Size("stem", 0.002, 0.001, 0.012)
     (found,) = advice(lambda _, value: with_stem(value), [size], REACH)
     assert standing_spin(with_stem(found.value)) == found.spin <= REACH
-    within = (size.high - size.value) / STEPS / 2**HALVINGS
+    within = (size.high - size.value) / STEPS / 2**BISECTIONS
     assert standing_spin(with_stem(found.value - within)) > REACH
 
 

@@ -23,7 +23,7 @@ from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.files import place_for, require_ending
 
-ENDINGS = {
+FILE_ENDINGS = {
     "plot": DRAWINGS,
     "stl": (".stl",),
     "3mf": (".3mf",),
@@ -99,7 +99,7 @@ def body(
     requested = {"plot": plot, "stl": stl, "3mf": three_mf, "mjcf": mjcf, "urdf": urdf}
     files = {kind: path for kind, path in requested.items() if path is not None}
     for kind, path in files.items():
-        require_ending(f"--{kind}", path, ENDINGS[kind])
+        require_ending(f"--{kind}", path, FILE_ENDINGS[kind])
         place_for(path, force)
     options = {
         "density": number_of("--density", density, "kg m-3"),
@@ -242,12 +242,12 @@ def _write(
 ) -> tuple[Sequence[Path], Sequence[str]]:
     """Write a file; return the written files, and remarks on what their format cannot express."""
     ending = path.suffix.lower()
-    if ending in (*ENDINGS["mjcf"], *ENDINGS["urdf"]):
+    if ending in (*FILE_ENDINGS["mjcf"], *FILE_ENDINGS["urdf"]):
         patch = tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal")
         body = tt.Body.turned(workpiece, whole=whole)
         problem = tt.Problem(body=body, friction=patch, launch=tt.Launch(tilt=0.1, spin=155.0))
         return (tt.write_mjcf if ending == ".xml" else tt.write_urdf)(problem, path, force)
-    if ending in ENDINGS["plot"]:
+    if ending in FILE_ENDINGS["plot"]:
         from tippetop.figures.section import section  # noqa: PLC0415 - slow to import
 
         write_figure(section(workpiece), path, force)

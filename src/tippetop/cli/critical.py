@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from tippetop.theory.stability import Spectrum
     from tippetop.theory.steady import SteadyState
 
-FIELDS = (
+QUANTITIES = (
     *("inertia_ratio", "eccentricity", "group", "lambda_up", "lambda_down", "jellett", "swings"),
     *("mu_flip_time", "flip_time", "flip_time_needs", "standing_time", "surface", "tilts"),
     *("creeps", "sticks", "standing", "lying", "resting_center"),
@@ -45,7 +45,7 @@ def _plain(outlook: "Outlook") -> dict[str, Any]:
     final = stays.state if stays else prediction and prediction.final
     possible = [stays.state] if stays else prediction and prediction.reachable
     return {
-        **{name: getattr(outlook, name) for name in FIELDS},
+        **{name: getattr(outlook, name) for name in QUANTITIES},
         "group_description": outlook.group and outlook.group.description,
         "omega_c1": outlook.critical_spins and outlook.critical_spins.upright,
         "omega_c2": outlook.critical_spins and outlook.critical_spins.inverted,

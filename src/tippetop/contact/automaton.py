@@ -100,6 +100,7 @@ from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Scalar
+from tippetop.support.errors import Described, InvalidInput
 
 REST = 1e-13
 """Velocities and accelerations, in natural units, that are rounding in a body at rest."""
@@ -168,7 +169,14 @@ class Automaton:
         if end.cause == TOUCH:
             return self.touch(contact, end.contact, time, end.state)
         moving = mode.contact_mode if isinstance(mode, TransientMode) else mode
-        assert isinstance(moving, ContactMode), f"nothing follows {mode.name}"
+        if not isinstance(moving, ContactMode):  # one that a user defined
+            raise InvalidInput(
+                "contact",
+                Described(f"the mode {mode.name}, ended by '{end.cause}',"),
+                "",
+                "has no rule for what follows",
+                "return a Transition for this guard from the automaton's method follow",
+            )
         if end.cause in (FACE, WOBBLE):
             settling = SettlingFlat(moving.top, moving, slaps=end.cause == FACE)
             return Transition((), settling, end.state)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.mode import Mode, Segment
-from tippetop.contact.readings import Rates, instants, read
+from tippetop.contact.readings import Rates, instants, is_compiled, normal_force, read
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, evaluated
 from tippetop.mechanics.state import State
@@ -24,6 +24,9 @@ NODES, WEIGHTS = (
 """Gauss's points and weights in [0, 1]. A step is short beside the radius of convergence: eight are
 exact.
 """
+
+FORCE = Rates._fields.index("force")
+"""Place of the normal force in `Rates`."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ class ModeSteps:
 
     @cached_property
     def nodes(self) -> Array:
-        """`Rates` at Gauss's points, shape (8, 8, k)."""
+        """`Rates` at Gauss's points, shape (9, 8, k)."""
         return self.at(NODES)
 
     @property
@@ -48,10 +51,19 @@ class ModeSteps:
         """The charts in which these have the angle about the axis, shape (k,)."""
         return nearer_pole(Rates(*self.nodes).axis)
 
-    def at(self, fractions: Array, some: NDArray[np.intp] | slice = slice(None)) -> Array:
-        """`Rates` at fractions of the steps, or of some of them, shape (m,); of shape (8, m, k)."""
-        y = at_fractions(self.terms[some], fractions)
+    def at(self, fractions: Array) -> Array:
+        """`Rates` at fractions of the steps, shape (m,); of shape (9, m, k)."""
+        y = at_fractions(self.terms, fractions)
         return read(Rates.of, self.mode, y, nearer_pole(y[2]), total=len(NODES) * len(self.which))
+
+    def force_at(self, fractions: Array, some: NDArray[np.intp]) -> Array:
+        """Return the normal force at fractions of some steps, shape (m,); of shape (m, k)."""
+        y, total = at_fractions(self.terms[some], fractions), len(NODES) * len(self.which)
+        if is_compiled(self.mode, total):  # by the function of `nodes`, which is compiled already
+            force = read(Rates.of, self.mode, y, nearer_pole(y[2]), total=total)[FORCE]
+        else:
+            force = read(normal_force, self.mode, y)[0]
+        return np.asarray(force)
 
     @property
     def start_numbers(self) -> Array:

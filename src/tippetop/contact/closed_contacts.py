@@ -7,6 +7,7 @@ friction is a function: the numbers have few digits of it.
 
 from typing import Any, NamedTuple
 
+from tippetop.contact.conditions import held_reserve, least
 from tippetop.contact.mode import BOTH, Reaction, split
 from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_one, forces_on_two
 from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points
@@ -185,7 +186,9 @@ class ClosedContacts:
         for slip, wrench in zip(self.slips, forces.wrenches, strict=True):
             if slip is not None:
                 power = power + (wrench.force[0] * slip[0] + wrench.force[1] * slip[1])
-        return Reaction(forces.force, forces.torque, power, forces.couple)
+        pressing = None if self.mode.is_single else least(forces.normal)
+        held = held_reserve(self.mode, forces, self.slips)
+        return Reaction(forces.force, forces.torque, power, forces.couple, pressing, held)
 
     def slip_reserve(self) -> Scalar:
         """Return what is positive while the table can hold the only contact, which sticks."""

@@ -202,6 +202,12 @@ class Reaction(NamedTuple):
     """Power of the contact force and torque."""
     couple: Vector | None = None
     """Torque of drilling and rolling friction alone; None if that is all of the torque."""
+    pressing: Scalar | None = None
+    """Least normal force of several contacts; None of one."""
+    reserve: Scalar | None = None
+    """Least reserve of what friction holds (see `tippetop.contact.conditions`), N^2; None where it
+    holds nothing. Where it is negative, the table exerts more than it can.
+    """
 
     @property
     def resistance(self) -> Vector:

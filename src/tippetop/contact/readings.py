@@ -6,15 +6,16 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from tippetop.contact.conditions import least
 from tippetop.contact.lowest_surface import lowest_contact_vector
-from tippetop.contact.mode import IntegratedMode, Mode
+from tippetop.contact.mode import IntegratedMode, Mode, Reaction
 from tippetop.integrators.base import Array, Rows
 from tippetop.integrators.evaluation import Evaluation, compiled_evaluation
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.quadratures import quadrature_rates, resistance_powers
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.hull import Hull, lowest_gap
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector, dot
 from tippetop.mechanics.view import precession_rate, slip_along_tilt, tilt_rate
@@ -40,6 +41,8 @@ class Rates(NamedTuple):
     """n_z."""
     force: Scalar
     """Normal force."""
+    margin: Scalar
+    """Least of `conditions`."""
 
     @classmethod
     def of(cls, mode: Mode, y: Row, pole: Scalar) -> "Rates":
@@ -51,7 +54,27 @@ class Rates(NamedTuple):
         drilling = rolling = 0.0
         if not mode.top.torque_free:
             drilling, rolling = resistance_powers(state, reaction.resistance, mode.top)
-        return cls(east, north, turn, work, drilling, rolling, state.axis[2], reaction.force[2])
+        quadratures = east, north, turn, work, drilling, rolling
+        margin = least([one for one in conditions_of(mode, state, reaction) if one is not None])
+        return cls(*quadratures, state.axis[2], reaction.force[2], margin)
+
+
+def conditions_of(mode: Mode, state: State, reaction: Reaction) -> tuple[Scalar | None, ...]:
+    """Return what is nowhere negative while a mode goes on.
+
+    That is the gap of the lowest surface, where it may be below the table; the least normal force
+    of several contacts; and the least reserve of what friction holds. None where there is none.
+    """
+    surface = mode.top.surface
+    may_sink = not mode.touching or isinstance(surface, Hull)
+    gap = lowest_gap(state.axis, state.height, surface) if may_sink else None
+    return gap, reaction.pressing, reaction.reserve
+
+
+def conditions(mode: Mode, y: Row) -> tuple[Scalar, ...]:
+    """Return `conditions_of` the numbers of a mode, 0 where there is none."""
+    values = conditions_of(mode, mode.state(y), mode.reaction(y))
+    return tuple([0.0 if value is None else value for value in values])
 
 
 class Instants(NamedTuple):
@@ -120,6 +143,11 @@ Reading: TypeAlias = Callable[..., Sequence[Scalar]]
 """From a mode, its numbers and further ones to numbers, in plain operators."""
 
 
+def normal_force(mode: Mode, y: Row) -> tuple[Scalar]:
+    """Return the normal force."""
+    return (mode.reaction(y).force[2],)
+
+
 def instants(mode: Mode, y: Row) -> tuple[Scalar, ...]:
     """Return the numbers of `Instants`."""
     return Instants.of(mode, y).pack()
@@ -148,7 +176,8 @@ def read(reading: Reading, mode: Mode, y: Array, *others: Scalar, total: int = 0
     ndarray
         Shape (numbers, ...).
     """
-    evaluation = _compiled(reading, mode, len(y), len(others)) if total >= WORTH else None
+    is_worth = is_compiled(mode, total)
+    evaluation = _compiled(reading, mode, len(y), len(others)) if is_worth else None
     if evaluation is not None:
         return evaluation(y, (*mode.top.numbers, *others))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -160,12 +189,16 @@ def read(reading: Reading, mode: Mode, y: Array, *others: Scalar, total: int = 0
 
 
 # translate: skip
-def _compiled(reading: Reading, mode: Mode, size: int, others: int) -> Evaluation | None:
-    """Return the compiled reading of modes of this kind; None where it is not compiled."""
-    if not isinstance(mode, IntegratedMode) or not mode.lasting:
-        return None
-    if len(mode.tops) > 1 or isinstance(mode.top.surface, Hull):
-        return None
+def is_compiled(mode: Mode, total: int) -> bool:
+    """Return whether readings of a mode at so many instants are compiled."""
+    if total < WORTH or not isinstance(mode, IntegratedMode) or not mode.lasting:
+        return False
+    return len(mode.tops) == 1 and not isinstance(mode.top.surface, Hull)
+
+
+# translate: skip
+def _compiled(reading: Reading, mode: Any, size: int, others: int) -> Evaluation | None:
+    """Return the compiled reading of modes of this kind; None where it cannot be compiled."""
     kind = mode.top.kind
     return compiled_evaluation(
         _of_kind(reading, mode.without_tops(), kind), size, kind.numbers + others

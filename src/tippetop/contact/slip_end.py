@@ -52,7 +52,7 @@ with that guard takes over sooner.
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
 
-LANDING = (3e-8, 1e-16)
+LAST_STEPS = (3e-8, 1e-16)
 """How long before its end the rest of a velocity may be taken in one step, in natural units of
 time: if its direction has come to rest by then, and in any case.
 """
@@ -173,7 +173,7 @@ class SlipEnd(TransientMode):
         drills = slip_length(self.top.friction) is not None
         arrival = self._arrival(now, longest, tolerance) if drills else None
         last = now
-        for horizon in LANDING:
+        for horizon in LAST_STEPS:
             if arrival is not None or zero_guard(now, self._rates(now), horizon) <= 0.0:
                 continue
             for arc in slip_end_arcs(integrator, motion, (*parameters, longest, horizon), start):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tippetop.mechanics.series import Series, is_exactly
+from tippetop.mechanics.vectors import whole_power
 
 STATE, PARAMETER, CONSTANT = "y", "p", "constant"
 SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
@@ -20,7 +21,9 @@ gives every lane the value of one of them, and `TOTAL` gives every lane their su
 """
 
 LARGEST_POWER = 16
-"""Whole powers up to this are products."""
+"""Largest exponent, a number of halves or quarters, of a power that is made of roots and
+products.
+"""
 
 
 NO_CHOICE = "a choice that depends on the numbers is to be made by select"
@@ -165,18 +168,18 @@ class Graph:
         return self.node(QUOTIENT, (self.as_node(a), self.as_node(b)))
 
     def power(self, base: Node, exponent: Any) -> Any:
-        """Return a power: products and roots if the exponent is a whole number of quarters."""
+        """Return a power: products if the exponent is whole, and roots of halves and quarters."""
         if not isinstance(exponent, (int, float)):
             raise NotRecordable("exponents are numbers")
+        fraction, integer = exponent % 1.0, exponent // 1.0
+        if fraction == 0.0:
+            power = whole_power(base, abs(integer))
+            return power if exponent >= 0.0 else self.quotient(1.0, power)
         if (4.0 * exponent) % 1.0 != 0.0 or abs(exponent) > LARGEST_POWER:
             return self.node(POWER, (base, self.as_node(exponent)))
         if exponent < 0.0:
             return self.quotient(1.0, self.power(base, -exponent))
-        fraction, integer = exponent % 1.0, exponent // 1.0
-        if fraction > 0.0:
-            return self.power(self.node(ROOT, (base,)), 2.0 * fraction) * self.power(base, integer)
-        half = self.power(base, integer // 2.0) if integer > 1.0 else 1.0
-        return half * half * base if integer % 2.0 == 1.0 else half * half
+        return self.power(self.node(ROOT, (base,)), 2.0 * fraction) * whole_power(base, integer)
 
     def select(self, condition: Any, a: Any, b: Any) -> Any:
         """Return the first where a condition is not 0, else the second."""

@@ -26,7 +26,7 @@ SMALL_POWER = "{t} = call {v} @small_power({v} {0}, {v} {1})"
 CHOICE = "{t} = select <{n} x i1> {0}_flag, {v} {1}, {v} {2}"
 """One of two numbers, by flags that are there already."""
 
-SPREAD = """\
+SPREAD_FIRST = """\
   {t}_first = insertelement {v} poison, double {t}_one, i64 0
   {t} = shufflevector {v} {t}_first, {v} poison, <{n} x i32> zeroinitializer"""
 """One number for all."""
@@ -46,10 +46,10 @@ SPELLINGS = {
     graph.POWER: "{t} = call {v} @llvm.pow.v{n}f64({v} {0}, {v} {1})",
     graph.LESS: "{t}_flag = fcmp ogt {v} {1}, {0}\n  {t} = uitofp <{n} x i1> {t}_flag to {v}",
     graph.SELECT: "{t}_flag = fcmp une {v} {0}, zeroinitializer\n  " + CHOICE.replace("{0}", "{t}"),
-    graph.SPREAD: "{t}_one = extractelement {v} {0}, i64 {row}\n" + SPREAD,
+    graph.SPREAD: "{t}_one = extractelement {v} {0}, i64 {row}\n" + SPREAD_FIRST,
     graph.TOTAL: (
         "{t}_one = call reassoc double @llvm.vector.reduce.fadd.v{n}f64(double 0.0, {v} {0})\n"
-        + SPREAD
+        + SPREAD_FIRST
     ),
 }
 """What makes {t} of {0}, {1}, ..."""

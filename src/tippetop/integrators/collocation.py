@@ -36,12 +36,12 @@ FLAT, FALLING = 0.1, (2, 6)
 and which of the first tell how they do.
 """
 
-NEWTON, SETTLED, ROUGH = 10, 1e-15, 1e-9
+STAGE_CORRECTIONS, SETTLED, ROUGH = 10, 1e-15, 1e-9
 """Newton's iterations; the correction, relatively, after which there is none; and the largest
 correction by rounding alone, which does not get smaller any more.
 """
 
-SLOWER, FASTER, SAFETY = 0.25, 3.0, 0.8
+SLOWER, FASTER, STEP_SAFETY = 0.25, 3.0, 0.8
 """How much shorter or longer the next step may be, and how much shorter it is than it should."""
 
 FIRST = 1e-3
@@ -138,13 +138,13 @@ class Collocation(StepByStep):
         sizes = np.max(np.abs(step.terms) / scale(np.vstack((start[1], states))), axis=1) + TINY
         error = float(np.max(sizes[-LAST:]))
         if error > self.tolerance:
-            return None, max(SAFETY * (self.tolerance / error) ** (1.0 / STAGES), SLOWER)
+            return None, max(STEP_SAFETY * (self.tolerance / error) ** (1.0 / STAGES), SLOWER)
         if error > FLAT * float(np.max(sizes[-2 * LAST : -LAST])):
             # Rounding, that is, in stiff motion: the first ones tell how they would fall off but
             # for that.
             (low, a), (high, b) = ((k, float(sizes[k])) for k in FALLING)
             error = min(error, b * (b / a) ** ((STAGES - high) / (high - low)) + TINY)
-        return step, min(SAFETY * (self.tolerance / error) ** (1.0 / STAGES), FASTER)
+        return step, min(STEP_SAFETY * (self.tolerance / error) ** (1.0 / STAGES), FASTER)
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ def solved(rates: RightHandSide, start: Array, span: float, guess: Array) -> Arr
     does not converge.
     """
     integrals, size, states, last = span * radau_points().integrals, len(start), guess, np.inf
-    for _ in range(NEWTON):
+    for _ in range(STAGE_CORRECTIONS):
         values, slopes = rates.linearized(states)
         if not (np.all(np.isfinite(values)) and np.all(np.isfinite(slopes))):
             return None

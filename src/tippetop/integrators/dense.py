@@ -19,10 +19,10 @@ Array: TypeAlias = NDArray[np.float64]
 ELEMENTARY: Functions = np
 """Elementary functions of what is asked for here: of times."""
 
-NEWTON = 6
+TIME_CORRECTIONS = 6
 """Improvements of a time at which a component has some value."""
 
-EXACT = 3e-9
+TIME_FOUND = 3e-9
 """Improvement of a time by Newton's method, as part of a step, at which the method stops: the next
 one, of the order of its square, would be rounding.
 """
@@ -124,12 +124,12 @@ class DenseSolution:
         step = np.clip(np.searchsorted(begins, values, side="right") - 1, 0, len(begins) - 1)
         terms, part = self.terms[step, number], (values - begins[step]) / lasts[step]
         slopes = terms[:, 1:] * np.arange(1, terms.shape[1])
-        for _ in range(NEWTON):
+        for _ in range(TIME_CORRECTIONS):
             places = powers(part, terms.shape[1])
             error = values - np.einsum("mk,mk->m", terms, places)
             better = np.clip(part + error / np.einsum("mk,mk->m", slopes, places[:, :-1]), 0.0, 1.0)
             moved, part = np.abs(better - part).max(initial=0.0), better
-            if moved <= EXACT:
+            if moved <= TIME_FOUND:
                 break
         times: Array = self.knots[step] + part * (self.knots[step + 1] - self.knots[step])
         return times

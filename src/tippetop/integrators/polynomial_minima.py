@@ -10,12 +10,12 @@ from collections.abc import Sequence
 from tippetop.mechanics.series import Arithmetic, horner
 from tippetop.mechanics.vectors import Scalar
 
-NEWTON, BRACKETED = 3, 8
+PLACE_CORRECTIONS, BRACKETED = 3, 8
 """Improvements of a least value, by Newton's method from the least look, which cube its small
 distance, and of a zero between two looks.
 """
 
-NEAR = 1e-9
+CONVERGED = 1e-9
 """Last improvement of a zero, over it, beyond which it is not found: the next would be the square
 of that.
 """
@@ -96,7 +96,7 @@ def first_fall(
     nearest = plain.choose(rises, plain.least(before, nearest), nearest)
     before_fall = nearest - slack(terms, length, count, plain)
     least = plain.choose(falls, before_fall, least_value(terms, values, length, plain))
-    begins, converged = plain.below(values[0], TINY), plain.below(moved, NEAR * place)
+    begins, converged = plain.below(values[0], TINY), plain.below(moved, CONVERGED * place)
     fall = plain.choose(falls * (1.0 - begins), place, math.inf + 0.0 * length)
     return fall, begins + plain.below(least, TINY) + falls * (1.0 - converged)
 
@@ -118,7 +118,7 @@ def least_value(
     slopes = [float(k) * terms[k] for k in range(1, len(terms))]
     bends = [float(k) * slopes[k] for k in range(1, len(slopes))]
     low, high = -plain.least(0.0 * part, part - place), plain.least(place + part, length)
-    for _ in range(NEWTON):
+    for _ in range(PLACE_CORRECTIONS):
         bend = horner(bends, place)
         better = place - horner(slopes, place) / bend
         better = plain.choose(plain.below(0.0, bend), better, place)

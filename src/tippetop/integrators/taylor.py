@@ -196,7 +196,8 @@ stop:
 class Taylor:
     """Adaptive Taylor series, accurate to rounding at its default tolerance.
 
-    A motion that cannot be recorded (see `tippetop.graph.recording`) is left to SciPy.
+    A motion that cannot be recorded (see `tippetop.graph.recording`) is left to SciPy's Dormand and
+    Prince of order 8: its arcs say so.
     """
 
     tolerance: float = TOLERANCES["taylor"]
@@ -211,9 +212,9 @@ class Taylor:
         if _recorded(motion) is None:
             from tippetop.integrators.scipy_methods import SciPy  # noqa: PLC0415 - slow to import
 
-            yield from SciPy("dop853", TOLERANCES["dop853"]).integrate(
-                motion, parameters, start, end
-            )
+            method = SciPy("dop853", max(self.tolerance, TOLERANCES["dop853"]))
+            for arc in method.integrate(motion, parameters, start, end):
+                yield replace(arc, method=method)
             return
         for arc in self._arcs(motion, parameters, start, end):
             if arc.failure != NOT_FINITE:

@@ -32,7 +32,7 @@ from tippetop.lathe.rounding import unrounded, usual_rounding
 TOLERANCE = 1e-4
 """Default distance of the fitted profile from the points, in sizes of the profile."""
 
-COARSEST = math.radians(29.0)
+SHARP_TURN = math.radians(29.0)
 """Largest angle between edges that stand for an arc, rad: a polygon of 12 edges or fewer stays
 one.
 """
@@ -187,7 +187,7 @@ class Polyline:
         # The directions of short edges scatter with the errors of their ends.
         is_long = np.minimum(lengths[1:], lengths[:-1]) > 10.0 * within
         self.is_sharp = np.full(len(points), False)
-        self.is_sharp[1:-1] = (np.abs(turns) > COARSEST) & is_long
+        self.is_sharp[1:-1] = (np.abs(turns) > SHARP_TURN) & is_long
 
     def sections(self) -> list[Section]:
         """Return the sections in their order."""
@@ -253,7 +253,7 @@ class Polyline:
 
     def _arc_at_axis(self, points: Array, is_sharp: np.ndarray) -> Section | None:
         # On the axis the line continues as its mirror image.
-        if points[0].real or 2.0 * abs(_slope(points[1] - points[0])) > COARSEST:
+        if points[0].real or 2.0 * abs(_slope(points[1] - points[0])) > SHARP_TURN:
             return None
 
         def circle(end: int, within: float) -> Circle | None:
@@ -324,7 +324,7 @@ class Polyline:
             return False
         steps = np.angle(arms[1:] * arms[:-1].conjugate())
         forward = steps if steps.sum() > 0.0 else -steps
-        return bool(forward.min() > -2.0 * within / radius and forward.max() <= COARSEST)
+        return bool(forward.min() > -2.0 * within / radius and forward.max() <= SHARP_TURN)
 
     def _line_from(self, begin: int, end: int) -> Section | None:
         """Return the longest straight line of several edges from a point, or None."""
@@ -440,7 +440,7 @@ def _with_poles(points: Array) -> Array:
         width = 2.0 * abs(chords[0])
         is_even = 0.5 * width <= abs(chords[1]) <= 2.0 * width
         largest = turns.max()
-        if is_even and 1e-3 < largest <= min(COARSEST, 2.0 * turns.min()):
+        if is_even and 1e-3 < largest <= min(SHARP_TURN, 2.0 * turns.min()):
             circle = circle_on_axis(line[1:3])
             if circle is not None:
                 center, radius = circle

@@ -21,7 +21,7 @@ from tippetop.support.installation import install_command
 NOT_ROUND = 0.01
 """Largest distance of a surface from one of revolution, in sizes of the body."""
 
-LARGEST = 2**28
+LARGEST_FILE = 2**28
 """Largest file that is read, bytes."""
 
 SLIVER = 1e-7
@@ -96,8 +96,8 @@ def _mesh(path: Path, name: str) -> Any:
         )
     import trimesh  # noqa: PLC0415 - optional
 
-    if path.stat().st_size > LARGEST:
-        raise InvalidInput("STL", name, f"a file of at most {LARGEST:,} bytes")
+    if path.stat().st_size > LARGEST_FILE:
+        raise InvalidInput("STL", name, f"a file of at most {LARGEST_FILE:,} bytes")
     try:
         mesh = trimesh.load_mesh(path, file_type="stl")
     except Exception:  # noqa: BLE001 - trimesh raises what its parsers do

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from operator import mul
 from typing import Any, Protocol
 
-from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.vectors import Scalar, whole_power
 
 
 class Sums(Protocol):
@@ -156,9 +156,9 @@ class Series:
         quotient = self._made(rule)
         return quotient
 
-    def __pow__(self, exponent: float) -> "Series":
-        if exponent == 2:
-            return self._squared()
+    def __pow__(self, exponent: float) -> Any:
+        if exponent >= 0.0 and exponent % 1.0 == 0.0:
+            return whole_power(self, exponent)  # the rule below divides by the base
         if exponent in (0.5, -0.5, 0.25):
             return self._root() if exponent == 0.5 else self._root() ** (2.0 * exponent)
         inverse: list[Scalar] = []

@@ -64,6 +64,14 @@ def power(base: Scalar, exponent: float) -> Scalar:
     return nan if isinstance(base, (int, float)) and base < 0.0 else base**exponent
 
 
+def whole_power(base: Scalar, exponent: float) -> Scalar:
+    """Return a power by products, exponent 0, 1, 2, ...: analytic where the base is zero, too."""
+    if exponent == 0.0:
+        return 1.0
+    half = whole_power(base, exponent // 2.0)
+    return half * half * base if exponent % 2.0 == 1.0 else half * half
+
+
 def solve(matrix: list[list[Scalar]], right: list[Scalar]) -> list[Scalar]:
     """Solution of a few linear equations, by elimination without pivots: nearly symmetric and
     definite.

@@ -23,8 +23,9 @@ const HEIGHT = 9;
 const rates = (mode, y, pole) => m.Rates.of(mode, y, pole);
 const RATES = m.Rates.fields.length;
 const FORCE = m.Rates.fields.indexOf("force");
+const MARGIN = m.Rates.fields.indexOf("margin");
 const conserved = (mode, y) => m.monitored_quantities(mode.state(y), mode.top);
-const CONSERVED = 5;
+const CONSERVED = 3;
 
 // Places of what is summed up along a run, in the order of `RunSums`.
 const SUMS = m.RunSums.fields.length;
@@ -77,7 +78,7 @@ class Run {
     this.steps = 0;
     this.rolls = false;
     this.firstHorizontal = NaN;
-    this.monitor = new m.Monitor(this.top, this.start);
+    this.monitor = new m.Monitor(this.top, this.start, automaton.pulls);
     this.flightRecord = new m.Flights();
     this.leastForce = new LeastValue();
     this.leastAxisZ = new LeastValue();
@@ -105,7 +106,7 @@ class Run {
     const watchesForce = mode.touching && !this.flightRecord.rows.length;
     for (let step = 0; step < solution.count; step += 1) {
       const values = readConserved(segment.numbersAt(step, 0));
-      this.monitor.check(values[0], values[1], values[2], values[3], values[4], this.sums[WORK]);
+      this.monitor.check(values[0], values[1], values[2], this.sums[WORK]);
       this.integrate(segment, step);
       if (watchesForce) this.includeForce(segment, step);
       this.includeAxis(solution, step);
@@ -142,6 +143,14 @@ class Run {
       for (let k = 0; k < m.INTEGRALS; k += 1) sums[k] += weight * gains[k];
       lowest = Math.min(lowest, gains[FORCE]);
       highest = Math.max(highest, gains[FORCE]);
+      if (segment.checksForce) this.monitor.check_force(gains[FORCE]);
+      if (!(gains[MARGIN] >= m.NEGATIVE)) {
+        const numbers = segment.numbersAt(step, part * nodes[i]);
+        const [gap, pressing, reserve] = m.conditions(segment.mode, numbers);
+        this.monitor.check_gap(gap);
+        this.monitor.check_force(pressing);
+        this.monitor.check_reserve(reserve);
+      }
     }
     this.lowestForce = lowest;
     this.highestForce = highest;
@@ -182,11 +191,14 @@ class Run {
     const { trajectory, units } = this;
     const { outcome, detail, state } = trajectory;
     const trusted = this.monitor.final_outcome(outcome, state, this.sums[WORK], this.tolerance);
+    const breach = trusted === m.Outcome.INACCURATE ? this.monitor.breach(this.tolerance) : "";
     this.outcome = {
       name: trusted.name.toLowerCase(),
-      advice: [trusted.value, detail, m.ambiguity_of(trajectory.events)].filter(Boolean).join(" "),
+      advice: [trusted.value, detail, breach, m.ambiguity_of(trajectory.events)]
+        .filter(Boolean)
+        .join(" "),
     };
-    this.early = trusted !== m.Outcome.COMPLETED && detail !== m.NOT_FINITE;
+    this.early = trusted !== m.Outcome.COMPLETED && state.pack().every(Number.isFinite);
     const completed = outcome === m.Outcome.COMPLETED;
     this.endTime = completed ? this.duration : trajectory.time * units.time;
     const events = trajectory.events.map((event) => m.event_in_si(event, units));
@@ -332,6 +344,8 @@ class Run {
 /** A solution in a contact mode, and what is read off its numbers. */
 class SegmentReader {
   constructor(mode, solution, label) {
+    this.mode = mode;
+    this.checksForce = mode instanceof m.ContactMode || mode instanceof m.TransientMode;
     this.solution = solution;
     this.label = label;
     this.read = reader(mode, solution.size);

@@ -23,6 +23,13 @@ OVAL_DEVIATION = 1e-3
 """Largest distance of an oval from the curve that it replaces, in sizes of the body."""
 
 
+CENTRED = 1e-12
+"""Distance of a surface's centre from the centre of mass, in sizes of the body, up to which they
+are one: integrals over a profile round by 1e-16 and more, and no drawing has as many digits. A ball
+whose eccentricity is rounding would belong to a group.
+"""
+
+
 class TurnedFields(NamedTuple):
     """Fields of the body that a workpiece makes."""
 
@@ -51,12 +58,12 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
     `completed`, it also raises if one of them, continued beyond its part of the body, would reach
     out of it.
     """
-    center, hull = workpiece.mass_properties.center, workpiece.hull
+    hull = workpiece.hull
     reach = allowance(workpiece)
     spheroid = hull.spheroid(reach) if len(hull.zones) > 2 else None
     if spheroid is not None:
         across, along, height = spheroid
-        return [Spheroid(across=across, along=along, center=height - center)]
+        return [Spheroid(across=across, along=along, center=_above(height, workpiece))]
     smooth = hull.smooth_parts(reach)
     ovals = [_oval(workpiece, *part, completed) for part in smooth]
 
@@ -72,7 +79,7 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
             "has too many",
             "draw arcs rather than many short edges",
         )
-    shapes = [_shape(zone, zone.height - center) for zone in zones]
+    shapes = [_shape(zone, _above(zone.height, workpiece)) for zone in zones]
     for zone in zones:
         if hull.protrusion(zone)[0] > reach and not completed:
             part = Described(
@@ -82,11 +89,17 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
     if ovals:
         distinct = [shape for k, shape in enumerate(shapes) if shape not in shapes[:k]]
         return [*ovals, *distinct]
-    outer = [_shape(zone, zone.height - center) for zone in hull.complete_surfaces(reach)]
+    outer = [_shape(zone, _above(zone.height, workpiece)) for zone in hull.complete_surfaces(reach)]
     first = outer[0]
     if len(outer) == 1 and isinstance(first, Sphere) and 0.0 < first.center < first.radius:
         return [EccentricSphere(radius=first.radius, eccentricity=first.center / first.radius)]
     return outer
+
+
+def _above(height: float, workpiece: Workpiece) -> float:
+    """Return how far above the centre of mass a height is, m; 0 where that is rounding."""
+    above = height - workpiece.mass_properties.center
+    return 0.0 if abs(above) <= CENTRED * workpiece.outline.size else above
 
 
 def allowance(workpiece: Workpiece) -> float:

@@ -9,7 +9,7 @@ from tippetop.results.sampling import sample_count
 from tippetop.run import simulate
 from tippetop.support.errors import Unavailable
 
-SPIN, DURATION = 175.0, 9.0
+PLAYED_SPIN, DURATION = 175.0, 9.0
 """Spin of the launch, rad/s, and length of the run, s: until the top spins inverted."""
 
 
@@ -19,12 +19,12 @@ def playable(quick: bool) -> dict[str, str] | None:
         player = player_packed()
     except Unavailable:
         return None
-    problem = unilateral(report_problem(SPIN))
+    problem = unilateral(report_problem(PLAYED_SPIN))
     samples = sample_count(problem, DURATION)
     run = simulate(problem, DURATION, samples=samples // 2 if quick else samples)
     return {
         "headline": describe(run).headline,
-        "spin": f"{SPIN:g}",
+        "spin": f"{PLAYED_SPIN:g}",
         "player": player,
         "run": packed(pack_run(run)),
         "loader": LOADER,

@@ -1,4 +1,6 @@
-"""Monitoring of conserved quantities, which tells whether a run can be trusted."""
+"""Monitoring of what every motion keeps, which tells whether a run can be trusted: conserved
+quantities, gaps that are not negative, normal forces that press, friction within its bounds.
+"""
 
 import numpy as np
 
@@ -6,7 +8,7 @@ from tippetop.contact.lowest_surface import lowest_jellett
 from tippetop.contact.mode import Outcome
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull, outer_height
+from tippetop.mechanics.surfaces.hull import lowest_gap, outer_height
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, length
 
@@ -16,8 +18,25 @@ used: below it the drift is rounding.
 """
 
 LARGEST_ERROR, ERROR_PER_TOLERANCE = 1e-6, 1e4
-"""Largest relative error of conserved quantities in a run that is trusted: the first, or the second
-times the tolerance of the steps. Correct runs stay well below both, defects exceed them.
+"""Largest error of what a motion keeps in a run that is trusted: the first, or the second times
+the tolerance of the steps. Correct runs stay well below both, defects exceed them. Errors of
+conserved quantities are relative; gaps are compared with the size, and forces with the weight or
+the largest normal force.
+"""
+
+BREACHES = (
+    ("The energy differs from that at launch and the work of the table by", "of itself"),
+    ("The axis is no unit vector: its length is off by", "of itself"),
+    ("Jellett's integral, which the motion keeps, drifts by", "of itself"),
+    ("The body sinks into the table by", "of its size"),
+    ("A contact stays closed though the table would have to pull with", "of the weight"),
+    ("What friction holds needs more than it can exert, by", "of N^2"),
+)
+"""Sentences that name each of `Monitor.errors`, before and after its number."""
+
+NEGATIVE = -1e-12
+"""Least of `tippetop.contact.readings.conditions`, in natural units, from which on it is rounding,
+and which of them it is does not matter.
 """
 
 OUTCOMES_OF_MOTION = (
@@ -32,27 +51,30 @@ say why a run failed.
 """
 
 
-def monitored_quantities(state: State, top: Top) -> tuple[Scalar, Scalar, Scalar, Scalar, Scalar]:
-    """Return |n|, n_z, the height, the energy and Jellett's integral of a state."""
-    return (
-        length(state.axis),
-        state.axis[2],
-        state.height,
-        energy(state, top),
-        lowest_jellett(state, top),
-    )
+def monitored_quantities(state: State, top: Top) -> tuple[Scalar, Scalar, Scalar]:
+    """Return |n|, the energy and Jellett's integral of a state."""
+    return length(state.axis), energy(state, top), lowest_jellett(state, top)
 
 
 class Monitor:
-    """Monitor of conserved quantities of one launch, or of n with arrays, in natural units."""
+    """Monitor of one launch, or of n with arrays, in natural units.
 
-    def __init__(self, top: Top, start: State) -> None:
-        self.top = top
+    Parameters
+    ----------
+    top, start
+        The top, and the state at launch.
+    pulls
+        Whether the table may pull.
+    """
+
+    def __init__(self, top: Top, start: State, pulls: bool = False) -> None:
+        self.top, self.pulls = top, pulls
         jellett = lowest_jellett(start, top)
         self._energy = energy(start, top)
         self._moment = length(start.momentum) * outer_height(top.surface, start.axis[2])
         self._imbalance, self._least, self._most = 0.0, jellett, jellett
-        self._largest, self._off_unit, self._sunk = abs(self._energy), 0.0, 0.0
+        self._largest, self._off_unit = abs(self._energy), 0.0
+        self._sunk, self._pulled, self._overdrawn, self._heaviest = 0.0, 0.0, 0.0, 1.0
 
     # translate: skip
     @property
@@ -66,17 +88,37 @@ class Monitor:
         return (self._most - self._least) / np.where(self._moment > 0.0, self._moment, np.nan)
 
     @property
-    def inaccuracy(self) -> Scalar:
-        """Largest relative error of energy and work, |n|, lambda and penetration; nan if one is."""
+    def errors(self) -> tuple[Scalar, ...]:
+        """Errors of energy and work, |n| and Jellett's integral, depth in the table, pull, and
+        friction beyond its bounds; nan if one is.
+        """
         is_large = self._moment > LEAST_MOMENT
         drift = np.where(is_large, self.jellett_drift, 0.0) if self.top.conserves_jellett else 0.0
         with np.errstate(invalid="ignore"):
             imbalance = self._imbalance / self._largest
-        return np.maximum(np.maximum(imbalance, self._off_unit), np.maximum(drift, self._sunk))
+        pulled = self._pulled / self._heaviest
+        overdrawn = self._overdrawn / self._heaviest**2
+        return imbalance, self._off_unit, drift, self._sunk, pulled, overdrawn
+
+    @property
+    def inaccuracy(self) -> Scalar:
+        """Largest of the errors; nan if one is."""
+        first, *others = self.errors
+        for error in others:
+            first = np.maximum(first, error)
+        return first
 
     def is_trusted(self, tolerance: float) -> Scalar:
         """Return whether the inaccuracy is small enough for steps of a relative tolerance."""
         return self.inaccuracy <= max(LARGEST_ERROR, ERROR_PER_TOLERANCE * tolerance)
+
+    def breach(self, tolerance: float) -> str:
+        """Return a sentence that names what one launch did not keep; empty if it kept all."""
+        allowed = max(LARGEST_ERROR, ERROR_PER_TOLERANCE * tolerance)
+        for error, (subject, predicate) in zip(self.errors, BREACHES, strict=True):
+            if not error <= allowed:
+                return f"{subject} {float(error):.2g} {predicate}."
+        return ""
 
     def trusted_outcome(self, outcome: Outcome, tolerance: float) -> Outcome:
         """Return the outcome of one launch, or INACCURATE if its run cannot be trusted."""
@@ -92,21 +134,14 @@ class Monitor:
         """Return `trusted_outcome` after checking the last state with all work since launch."""
         if outcome in OUTCOMES_OF_MOTION:
             self.check(*monitored_quantities(state, self.top), work)
+            self.check_gap(lowest_gap(state.axis, state.height, self.top.surface))
         return self.trusted_outcome(outcome, tolerance)
 
-    def check(
-        self,
-        size: Scalar,
-        cosine: Scalar,
-        height: Scalar,
-        energy: Scalar,
-        jellett: Scalar,
-        work: Scalar,
-    ) -> None:
-        """Update the largest errors by the quantities at some instants.
+    def check(self, size: Scalar, energy: Scalar, jellett: Scalar, work: Scalar) -> None:
+        """Update the largest errors of conserved quantities by those at some instants.
 
-        `size` is |n|, `cosine` n_z, and `work` all work since launch. All are numbers, or arrays
-        of one shape whose first axis is that of the instants.
+        `size` is |n|, and `work` all work since launch. All are numbers, or arrays of one shape
+        whose first axis is that of the instants.
         """
         imbalance = np.max(np.abs(energy - self._energy - work), 0)
         self._imbalance = np.maximum(self._imbalance, imbalance)
@@ -114,8 +149,17 @@ class Monitor:
         self._off_unit = np.maximum(self._off_unit, np.max(np.abs(size - 1.0), 0))
         self._least = np.minimum(self._least, np.min(jellett, 0))
         self._most = np.maximum(self._most, np.max(jellett, 0))
-        if isinstance(self.top.surface, Hull):
-            # The axis is a unit vector only to rounding, so that |n_z| may exceed 1.
-            cosine = np.minimum(np.maximum(cosine, -1.0), 1.0)
-            sunk = outer_height(self.top.surface, cosine) - height
-            self._sunk = np.maximum(self._sunk, np.max(sunk, 0))
+
+    def check_gap(self, gap: Scalar) -> None:
+        """Update the greatest depth by the gaps of the lowest surface at some instants."""
+        self._sunk = np.maximum(self._sunk, -np.min(gap, 0))
+
+    def check_force(self, force: Scalar) -> None:
+        """Update the greatest pull by the normal forces at some instants."""
+        if not self.pulls:
+            self._pulled = np.maximum(self._pulled, -np.min(force, 0))
+        self._heaviest = np.maximum(self._heaviest, np.max(force, 0))
+
+    def check_reserve(self, reserve: Scalar) -> None:
+        """Update by how much friction is beyond its bounds, by its reserves at some instants."""
+        self._overdrawn = np.maximum(self._overdrawn, -np.min(reserve, 0))

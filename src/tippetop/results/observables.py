@@ -5,19 +5,20 @@ from typing import Self
 import numpy as np
 from numpy.polynomial.legendre import Legendre, leg2poly
 
-from tippetop.contact.block import NODES, WEIGHTS, Block
-from tippetop.contact.contact_mode import SLIPS
+from tippetop.contact.block import NODES, WEIGHTS, Block, ModeSteps
+from tippetop.contact.contact_mode import SLIPS, ContactMode
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Mode, Outcome
 from tippetop.contact.natural_launch import NaturalLaunch, initial_mode
-from tippetop.contact.readings import TOLD, Instants, instants, read
+from tippetop.contact.readings import TOLD, Instants, Rates, conditions, instants, read
 from tippetop.contact.trajectory import Trajectory
+from tippetop.contact.transient import TransientMode
 from tippetop.integrators.base import Array
-from tippetop.integrators.dense import parts_of, powers
+from tippetop.integrators.dense import at_fractions, parts_of, powers
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
-from tippetop.results.monitor import Monitor, monitored_quantities
+from tippetop.results.monitor import NEGATIVE, Monitor, monitored_quantities
 from tippetop.results.samples import Samples
 from tippetop.results.sums import INTEGRALS, RunSums
 
@@ -58,10 +59,18 @@ class Recorder:
         Increasing sample times, shape (k,).
     lost
         Energy lost in an impact at launch.
+    pulls
+        Whether the table may pull.
     """
 
     def __init__(
-        self, top: Top, start: State, azimuth: float, times: Array, lost: float = 0.0
+        self,
+        top: Top,
+        start: State,
+        azimuth: float,
+        times: Array,
+        lost: float = 0.0,
+        pulls: bool = False,
     ) -> None:
         self.top, self.times = top, times
         self._parts: list[Array] = []
@@ -72,12 +81,13 @@ class Recorder:
         # A law without torque does no work by drilling or rolling.
         self._integrals = 1 + WORK if top.torque_free else INTEGRALS
         self._sums = np.array(RunSums.at_launch(self._pole * azimuth, lost))
-        self.monitor = Monitor(top, start)
+        self.monitor = Monitor(top, start, pulls)
 
     @classmethod
     def of(cls, launch: NaturalLaunch, times: Array) -> Self:
         """Return the recorder of a launch; times increase, in natural units, shape (k,)."""
-        return cls(launch.top, launch.state, launch.azimuth, times, launch.first.energy_lost)
+        lost, pulls = launch.first.energy_lost, launch.automaton.pulls
+        return cls(launch.top, launch.state, launch.azimuth, times, lost, pulls)
 
     def take(self, block: Block) -> None:
         """Take the samples in a block."""
@@ -101,10 +111,13 @@ class Recorder:
         monitor.
         """
         assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
-        tolerance = getattr(trajectory.integrator, "tolerance", 0.0)
         return self.monitor.final_outcome(
-            trajectory.outcome, trajectory.state, self._sums[WORK], tolerance
+            trajectory.outcome, trajectory.state, self._sums[WORK], tolerance_of(trajectory)
         )
+
+    def breach_of(self, trajectory: Trajectory) -> str:
+        """Return a sentence that names what a trajectory that has ended did not keep."""
+        return self.monitor.breach(tolerance_of(trajectory))
 
     def finish(self, end: float, state: State, early: bool) -> Samples:
         """Return all samples of a launch that has ended; the last is its end if it ended early."""
@@ -182,12 +195,33 @@ class Recorder:
         values[STRUCK] += np.cumsum(lost)
         self._sums, self._pole = values[:, -1], float(poles[-1])
         for group in block.groups:
-            size, cosine, height, energy, jellett = read(
+            size, energy, jellett = read(
                 monitored_in, group.mode, group.start_numbers, total=len(group.which)
             )
             with np.errstate(invalid="ignore"):  # edges have nan where the axis is vertical
-                self.monitor.check(size, cosine, height, energy, jellett, values[WORK, group.which])
+                self.monitor.check(size, energy, jellett, values[WORK, group.which])
+            self._check_conditions(group)
         return rates, values[:, :-1], poles
+
+    def _check_conditions(self, group: ModeSteps) -> None:
+        """Have the monitor check what is nowhere negative at Gauss's points of the steps.
+
+        What the table does in a mode of a user is that mode's affair.
+        """
+        at_nodes = Rates(*group.nodes)
+        if isinstance(group.mode, (ContactMode, TransientMode)):
+            self.monitor.check_force(at_nodes.force.ravel())
+        if not at_nodes.margin.min() >= NEGATIVE:
+            y = at_fractions(group.terms, NODES)
+            gap, pressing, reserve = read(conditions, group.mode, y).reshape(3, -1)
+            self.monitor.check_gap(gap)
+            self.monitor.check_force(pressing)
+            self.monitor.check_reserve(reserve)
+
+
+def tolerance_of(trajectory: Trajectory) -> float:
+    """Return the relative tolerance of a trajectory's steps; 0 of a method that has none."""
+    return float(getattr(trajectory.integrator, "tolerance", 0.0))
 
 
 def evenly_summed(gains: Array) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 from tippetop.contact.block import Block, ModeSteps
 from tippetop.contact.contact_mode import STICKS
 from tippetop.contact.flights import Flights
-from tippetop.contact.mode import Event, Outcome
+from tippetop.contact.mode import Event, IntegratedMode, Outcome
 from tippetop.contact.readings import Rates
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import chebyshev
@@ -57,7 +57,8 @@ class RunMetrics:
         self._lowest_begin = list[Array]()
         self._turned = np.nan
         self.steps = self.evaluations = 0
-        self.methods = dict[str, Integrator]()
+        self.methods = dict[str, Integrator | None]()
+        """Who took the steps of equations of motion, by name: None, by "", who was asked to."""
         self.peak = self._tilt_at(float(start.axis[2])), 0.0
         """Largest tilt, rad, and its first time; set by `ends`."""
         self.settled_since = math.nan
@@ -68,8 +69,9 @@ class RunMetrics:
         self.steps += sum(segment.steps for segment in block.segments)
         self.evaluations += sum(segment.evaluations for segment in block.segments)
         for segment in block.segments:
-            if segment.method is not None and segment.method.name not in self.methods:
-                self.methods[segment.method.name] = segment.method
+            if isinstance(segment.mode, IntegratedMode):
+                method = segment.method
+                self.methods.setdefault("" if method is None else method.name, method)
             if not segment.mode.touching:
                 self.flights.take(segment)
         for segment in block.segments[-1:]:
@@ -109,7 +111,7 @@ class RunMetrics:
         # at them.
         near = np.flatnonzero(least - 0.2 * (force.max(axis=0) - least) <= least.min())
         places, transform, to_powers = chebyshev(FORCE_DEGREE)
-        unit = to_powers @ (transform @ Rates(*group.at(places, near)).force)
+        unit = to_powers @ (transform @ group.force_at(places, near))
         self._pressed.append(Polynomials.of_unit(unit, group.spans[near]))
 
     def ends(

@@ -14,6 +14,7 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import on_table, sliding_contact
 from tippetop.mechanics.quadratures import resistance_powers
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surfaces.hull import lowest_gap
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
@@ -98,16 +99,18 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
 
 
 def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
-    """Mark launches as inaccurate whose conserved quantities differ at the end from those at
-    launch.
+    """Mark launches as inaccurate that did not keep what a motion keeps.
 
-    Only the end is checked, since an error of a conserved quantity stays. The energy that is lost
-    counts as the work of friction, so that its balance shows no error; the length of the axis shows
-    errors first.
+    Conserved quantities are checked at the end only, since an error of theirs stays, gaps there,
+    too, and normal forces by the least of each launch. The energy that is lost counts as the work
+    of friction, so that its balance shows no error; the length of the axis shows errors first.
     """
     top, end = launches.top, ends.state
-    monitor, gone = Monitor(top, launches.state), energy(end, top) - energy(launches.state, top)
+    monitor = Monitor(top, launches.state, launches.liftoff == "ignore")
+    gone = energy(end, top) - energy(launches.state, top)
     monitor.check(*(number[None] for number in (*monitored_quantities(end, top), gone)))
+    monitor.check_gap(lowest_gap(end.axis, end.height, top.surface)[None])
+    monitor.check_force(np.nan_to_num(ends.least_force)[None])
     is_reported = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in OUTCOMES_OF_MOTION])
     ends.outcome[is_reported & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
 

@@ -9,7 +9,7 @@ from tippetop.sweeps.cells import put
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import Draws
 
-MOST_CELLS, MOST_SHAPES = 100_000, 256
+CELLS_EXAMINED, MOST_SHAPES = 100_000, 256
 """Cells that are looked at; and where every cell has a shape of its own, whose outside takes 0.1 ms
 to measure.
 """
@@ -18,12 +18,12 @@ to measure.
 def implausible_cells(sweep: Sweep) -> str:
     """Return how many cells of a sweep are implausible, and what is of the first; "" if none is.
 
-    Of a sweep with more cells than `MOST_CELLS`, or `MOST_SHAPES`, so many are looked at: the first
-    draws, or cells evenly spaced over the axes.
+    Of a sweep with more cells than `CELLS_EXAMINED`, or `MOST_SHAPES`, so many are looked at: the
+    first draws, or cells evenly spaced over the axes.
     """
     first = sweep.grid.values(np.arange(1))
     shapes = any(field.startswith("body.shape.") for field in first)
-    count = min(sweep.cells, MOST_SHAPES if shapes else MOST_CELLS)
+    count = min(sweep.cells, MOST_SHAPES if shapes else CELLS_EXAMINED)
     last = count if isinstance(sweep.grid, Draws) else sweep.cells
     values = sweep.grid.values(np.linspace(0, last - 1, count).astype(np.intp))
     filled = put(sweep.problem, values)

@@ -80,7 +80,7 @@ def follow(
     run_metrics = RunMetrics(top, launched or state)
     segments, recorder = (
         trajectory.segments(),
-        Recorder(top, state, 0.0, np.empty(0), start.energy_lost),
+        Recorder(top, state, 0.0, np.empty(0), start.energy_lost, automaton.pulls),
     )
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
     for block in in_blocks(segments):

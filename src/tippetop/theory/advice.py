@@ -11,7 +11,7 @@ from tippetop.theory.prospects import prospects
 STEPS = 16
 """Sizes tried between the present one and either bound, before halving refines them."""
 
-HALVINGS = 10
+BISECTIONS = 10
 """Halvings between a size that does not suffice and the next that does."""
 
 
@@ -101,7 +101,7 @@ def _least_changes(
     for step in range(1, STEPS + 1):
         enough = size.value + (bound - size.value) * step / STEPS
         if spin_with(size.name, enough) <= reach:
-            for _ in range(HALVINGS):
+            for _ in range(BISECTIONS):
                 middle = 0.5 * (short + enough)
                 if spin_with(size.name, middle) <= reach:
                     enough = middle

@@ -134,8 +134,10 @@ def reopening_guard(state: SlipEndState, rates: SlipEndRates) -> Scalar:
     """Falls through zero where xi outlasts twice the `HORIZON` of `remaining`, by more than what
     rounding of its direction in a state makes of it.
 
-    A state has xi to `DIGITS` of the velocities it is made of, and so the rate R to that part of
+    A state has xi to `DIGITS` of a velocity U that it is made of, and so the rate R to `DIGITS` U
     |A| / s: a velocity that is not more than rounding stays in the clock until it ends or grows.
+    All is in natural units, where U^2 = g size + (omega size)^2 is 1 + omega^2; the value is a
+    velocity squared, as that of `remaining` is, of rolling an angular velocity squared.
     """
     rate = rates.xi
     doubt = DIGITS * (_square(rates) * inner(rate, rate)) ** 0.5
@@ -144,11 +146,12 @@ def reopening_guard(state: SlipEndState, rates: SlipEndRates) -> Scalar:
 
 
 def zero_guard(state: SlipEndState, rates: SlipEndRates, horizon: Scalar) -> Scalar:
-    """Falls through zero where xi, at its present rate, ends within the horizon (s), and is small
+    """Falls through zero where xi, at its present rate, ends within the horizon, and is small
     by itself.
 
-    That is s + horizon R V / (V + |A|) with a velocity V that is `QUICK` times the body's own:
-    where xi changes faster than that, there may be much of it left for so short a time.
+    That is s + horizon R Q / (Q + |A|), in natural units, with an acceleration Q that takes the
+    body's own velocities, (1 + omega^2)^(1/2), in the time 1 / `QUICK`: where xi changes faster
+    than that, there may be much of it left for so short a time.
     """
     rate, quick = rates.xi, QUICK * _square(rates) ** 0.5
     share = quick / (quick + inner(rate, rate) ** 0.5)

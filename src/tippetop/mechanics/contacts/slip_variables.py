@@ -121,19 +121,25 @@ def slip_part(accelerations: Sequence[Scalar], reach: Scalar | None) -> Slip:
 
 
 def nearing_guard(state: SlidingState, top: Top) -> Scalar:
-    """Falls through zero where slip becomes so small that its end is to be guarded, (m/s)^2."""
+    """Falls through zero where slip becomes so small that its end is to be guarded; slip squared,
+    in natural units as `NEAR` is.
+    """
     slip = slip_of(*state, top)
     return inner(slip, slip) - NEAR * NEAR
 
 
 def parting_guard(state: SlidingState, top: Top) -> Scalar:
-    """Falls through zero where slip is so large again that its end need not be guarded, (m/s)^2."""
+    """Falls through zero where slip is so large again that its end need not be guarded; slip
+    squared, in natural units as `APART` is.
+    """
     slip = slip_of(*state, top)
     return APART * APART - inner(slip, slip)
 
 
 def is_near(state: SlidingState, top: Top) -> Scalar:
-    """Return whether slip is near its end, so that its end is guarded; of floats or arrays."""
+    """Return whether slip is near its end, so that its end is guarded; of floats or arrays, in
+    natural units.
+    """
     slip = slip_of(*state, top)
     return inner(slip, slip) < NEAR * APART
 

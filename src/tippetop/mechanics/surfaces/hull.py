@@ -148,6 +148,16 @@ def outer_height(surface: Surface, c: Scalar) -> Scalar:
     return height
 
 
+def lowest_gap(axis: Vector, height: Scalar, surface: Surface) -> Scalar:
+    """Height of the lowest of all surfaces above the table, for that of the centre of mass, m."""
+    first, *others = each_surface(surface)
+    gap = height - support_at(axis, first)[0]
+    for surface_beside in others:
+        gap_beside = height - support_at(axis, surface_beside)[0]
+        gap = 0.5 * (gap + gap_beside - abs(gap - gap_beside))
+    return gap
+
+
 def lowest_surface(surface: Surface, c: float) -> Surface:
     """Return the surface that reaches lowest at this c, active; the first of several; of floats.
 

@@ -30,7 +30,7 @@ MAP_WINDOW = 6.0
 SPIN = 100.0
 """Spin of the launches that are compared with viscous friction, rad/s."""
 
-FRICTIONS = (0.1, 0.2, 0.4)
+PATCH_FRICTIONS = (0.1, 0.2, 0.4)
 """Friction coefficients of the patches that are compared with viscous friction."""
 
 ALONE = LEINE.replace({"body": LEINE_GLOCKER.model_dump()})
@@ -81,7 +81,7 @@ def _viscous(quick: bool) -> xr.Dataset:
 
     times = [
         [turning(patch(mu, viscous_coefficient(mu, float(c), SPIN))) for c in coefficients]
-        for mu in FRICTIONS
+        for mu in PATCH_FRICTIONS
     ]
     smooth = [turning(ViscousFriction(mu=float(c))) for c in coefficients]
     load, radius = base.body.mass * base.gravity, float(base.top.surface.size)
@@ -93,7 +93,7 @@ def _viscous(quick: bool) -> xr.Dataset:
     ratios = "growth rate of a patch over that of viscous friction"
     return dataset(
         {
-            "mu": (list(FRICTIONS), "1", "friction coefficient of the patch"),
+            "mu": (list(PATCH_FRICTIONS), "1", "friction coefficient of the patch"),
             "coefficient": (coefficients, "s m-1", "viscous coefficient at launch"),
             "material": list(MATERIALS),
             "pressure": list(CREEP),
