@@ -2,6 +2,7 @@
 
 import base64
 import gzip
+import re
 from functools import cache
 from pathlib import Path
 
@@ -12,6 +13,9 @@ BUILT = Path(__file__).parent / "built"
 
 LOADER = Path(__file__).with_name("loader.js").read_text(encoding="utf-8")
 """JavaScript that unpacks the player from the element "player-code" of a page."""
+
+
+_NOTICES = re.compile(r"/\*!\n(.*?)\n\*/\n", re.DOTALL)
 
 
 @cache
@@ -30,6 +34,16 @@ def built(name: str) -> str:
 def player_packed() -> str:
     """Return the built player as compressed base64; raise `Unavailable` if it is not built."""
     return packed(built("player.js").encode())
+
+
+def player_notices() -> str:
+    """Return the licences of the npm packages in the player, which stand at its beginning.
+
+    Raises `Unavailable` if the player is not built.
+    """
+    notices = _NOTICES.match(built("player.js"))
+    assert notices is not None, "the player begins with the licences of what it contains"
+    return notices[1]
 
 
 def packed(content: bytes) -> str:
