@@ -81,6 +81,7 @@ dist: $(BUILT) $(VENV)/.installed-release ## Build the sdist, and the wheel from
 	rm -rf dist
 	$(BIN)/python -m build
 	$(BIN)/python -m zipfile -l dist/*.whl | grep -q export/built/lab.html
+	$(BIN)/python -m zipfile -l dist/*.whl | grep -q licenses/web/notices.txt
 	$(BIN)/twine check --strict dist/*
 
 review: $(VENV)/.installed-release ## Review the repository as the Scientific Python guide asks
