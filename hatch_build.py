@@ -48,10 +48,15 @@ class BrowserBuildHook(BuildHookInterface):
 
 
 def is_current(root: Path) -> bool:
-    """Return whether the page is there and newer than everything that it is built from."""
+    """Return whether the page is there and newer than everything that it is built from.
+
+    The page of an sdist was built with it: unpacking need not keep the times of its files.
+    """
     page = root / BUILT / "lab.html"
     if not page.exists():
         return False
+    if (root / "PKG-INFO").exists():
+        return True
     made = {"built", "node_modules", "__pycache__"}
     sources = [
         path

@@ -72,6 +72,8 @@ def test_the_page_is_built_again_only_where_a_source_is_newer(hook, tmp_path):
     assert hook.is_current(tmp_path)
     os.utime(source, (3, 3))
     assert not hook.is_current(tmp_path)
+    (tmp_path / "PKG-INFO").touch()
+    assert hook.is_current(tmp_path), "an sdist has the page that was built with it"
 
 
 class Warned:
