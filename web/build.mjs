@@ -4,6 +4,7 @@ import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 import { deflateRawSync } from "node:zlib";
 import { build } from "esbuild";
+import { checkedLicences, noticeOf, packagesOf } from "./notices.mjs";
 
 const HERE = new URL(".", import.meta.url);
 const OUT = new URL("../src/tippetop/export/built/", HERE);
@@ -15,7 +16,8 @@ const COMMON = {
   minify: true,
   write: false,
   outdir: "out",
-  legalComments: "none",
+  metafile: true,
+  legalComments: "none", // instead of them, the whole licences: see notices.mjs
   target: "es2022",
   charset: "utf8",
   logLevel: "warning",
@@ -29,10 +31,14 @@ const COMMON = {
 };
 
 async function bundled(entry, options) {
-  const { outputFiles, warnings } = await build({ ...COMMON, entryPoints: [entry], ...options });
+  const { outputFiles, warnings, metafile } = await build({
+    ...COMMON,
+    entryPoints: [entry],
+    ...options,
+  });
   if (warnings.length) throw new Error(`${entry}: esbuild warns, see above`);
   const text = (ending) => outputFiles.find(({ path }) => path.endsWith(ending))?.text ?? "";
-  return { script: text(".js"), style: text(".css") };
+  return { script: text(".js"), style: text(".css"), metafile };
 }
 
 // Makes the code of the workers, which a page from a file can start from its own text only, a module: packed.
@@ -52,16 +58,23 @@ async function put(name, text) {
   console.log(`${name}: ${(Buffer.byteLength(text) / 1024).toFixed(0)} KiB`);
 }
 
-await mkdir(OUT, { recursive: true });
 const player = await bundled("src/player/index.js", { format: "esm" });
-await put("player.js", player.script);
 const worker = await bundled("src/lab/worker.js", { format: "iife" });
 const page = await bundled("src/lab/main.jsx", {
   format: "esm",
   plugins: [workers(worker.script)],
 });
+const ofPage = packagesOf(page.metafile, worker.metafile);
+const ofPlayer = packagesOf(player.metafile);
+const licences = await checkedLicences([...new Set([...ofPlayer, ...ofPage])]);
+
+await mkdir(OUT, { recursive: true });
+await put("player.js", `/*!\n${noticeOf(ofPlayer, licences)}\n*/\n${player.script}`);
 const template = await readFile(new URL("src/lab/page.html", HERE), "utf8");
 await put(
   "lab.html",
-  template.replace("%STYLE%", () => page.style).replace("%SCRIPT%", () => page.script),
+  template
+    .replace("%STYLE%", () => page.style)
+    .replace("%SCRIPT%", () => page.script)
+    .replace("%NOTICES%", () => noticeOf(ofPage, licences)),
 );

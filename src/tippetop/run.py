@@ -98,7 +98,8 @@ def simulate(
     samples
         Number of equally spaced samples from launch to end.
     times
-        Sample times instead, s: increasing, from 0 to `duration`.
+        Sample times instead, s, or texts such as "50 ms", or quantities of pint: increasing, from
+        0 to `duration`.
     events
         Functions of the state (see `tippetop.extend.MotionState`) by the names of their events:
         each change of sign of a function is an event, located to rounding on the dense solution and
@@ -118,7 +119,7 @@ def simulate(
     tolerance
         Relative error per step; None for the integrator's default. Only for an integrator by name.
     step
-        Step size, s; only for "rk4".
+        Step size, s, or a text such as "1 ms", or a quantity of pint; only for "rk4".
     phase_limit
         Number of contact modes, such as sliding and flight, after which the run ends early.
     step_limit
@@ -144,8 +145,6 @@ def simulate(
     ------
     InvalidInput
         If an argument is not accepted, or a function of `events` returns no finite number.
-    Unavailable
-        If the integrator is not installed.
 
     Examples
     --------
@@ -169,6 +168,7 @@ def simulate(
     require_limits(duration, units.time, phase_limit, step_limit)
     duration = float(duration)
     grid = sample_times(duration, samples, times)
+    step = number_in("step", step, "s")
     search = EventSearch(events, until, units)
     method = integrator_of(integrator, tolerance, step, units)
     warn_if_implausible(problem)

@@ -91,6 +91,39 @@ def test_a_wrong_number_does_not_agree(monkeypatch):
     assert not suite.reference(case).agrees
 
 
+@pytest.fixture(scope="module")
+def agreed():
+    """A case on which both methods agree."""
+    return suite.reference(suite.case_of("painleve"))
+
+
+@pytest.mark.parametrize(
+    ("name", "apart", "code"),
+    [("painleve", 2e-10, 1), ("painleve", 0.9e-10, 0), ("stem", 5e-7, 0), ("stem", 2e-6, 1)],
+)
+def test_the_command_fails_beyond_the_limits_that_it_lists(
+    monkeypatch, tmp_path, agreed, name, apart, code
+):
+    """A sequence of rebounds that is cut off allows more than 1e-10 s."""
+    found = agreed._replace(case=suite.case_of(name), events=((0.1, "impact", 0, apart),))
+    monkeypatch.setattr(suite, "write_suite", lambda *_: [found])
+    words = ["reference", "--out", str(tmp_path / "suite")]
+    done = CliRunner().invoke(app, [*words, "--json"])
+    assert done.exit_code == code
+    told = json.loads(done.stdout)["cases"][name]
+    assert (told["event_agreement"] > told["event_limit"]) == bool(code)
+    shown = CliRunner().invoke(app, words, env={"COLUMNS": "200"})
+    assert shown.exit_code == code
+    assert f"{apart:.0e} of {told['event_limit']:.0e}" in shown.stdout
+
+
+def test_the_limits_are_those_of_the_text():
+    for name, event, state in [("viscous", 1e-10, 1e-8), ("stem", 1.0001e-6, 1.001e-5)]:
+        one = suite.Reference(suite.case_of(name), None, (), "", 0.0, 0.0, "")
+        assert one.event_limit == pytest.approx(event, rel=1e-12)
+        assert one.state_limit == pytest.approx(state, rel=1e-12)
+
+
 def test_every_case_has_its_independent_numbers():
     for case in CASES:
         stored = suite.independent(case)

@@ -311,11 +311,12 @@ def limited(size):
 FULL = """
 import resource, signal, sys
 import tippetop as tt
+from tippetop.export import bundle
 from tippetop.export.tables import write_csv
 from tippetop.export.glb import write_glb
 from tippetop.export.html import write_html
 from tippetop.export.movie import write_movie
-sys.modules[write_html.__module__].player_packed = lambda: "the player"
+bundle.built = lambda name: "/*!\\nnotices\\n*/\\nplayer"
 run = tt.simulate(tt.presets.report_problem(), 0.2, samples=101)
 writers = {"nc": tt.write_run, "csv": write_csv, "glb": write_glb}
 writers |= {"html": write_html}

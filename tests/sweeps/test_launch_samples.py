@@ -89,6 +89,8 @@ def test_a_sweep_of_samples_is_stored_and_read_back_with_its_seed(tmp_path):
         ({"samples": {"launch.spinn": [1.0]}}, "launch.spin"),
         ({}, "one of them"),
         ({"over": {SPIN: [1.0]}, "samples": {SPIN: [1.0]}}, "one of them"),
+        ({"over": {SPIN: [1.0]}, "n": 2}, "n: 2 is for samples, and over is given"),
+        ({"over": {SPIN: [1.0]}, "seed": 0}, "seed: 0 is for samples, and over is given"),
     ],
     ids=[
         "no count",
@@ -101,6 +103,8 @@ def test_a_sweep_of_samples_is_stored_and_read_back_with_its_seed(tmp_path):
         "field",
         "nothing",
         "both",
+        "number of axes",
+        "seed of axes",
     ],
 )
 def test_samples_that_cannot_be_are_refused_in_a_sentence(arguments, words):

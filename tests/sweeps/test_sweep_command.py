@@ -130,6 +130,33 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
     assert sweep.duration == 0.1
 
 
+def test_a_file_of_samples_is_swept_resumed_and_swept_over_axes_instead(tmp_path):
+    (tmp_path / "top.toml").write_text(report_problem(spin=77.0).to_toml())
+    (tmp_path / "sweep.toml").write_text(
+        'problem = "top.toml"\nduration = 0.1\n[samples]\ncount = 3\nseed = 4\n[samples.fields]\n'
+        'launch.spin = { law = "normal", mean = 150, std = 5 }\nfriction.mu = [0.1, 0.2, 0.3]\n'
+    )
+    alone = ("--workers", 1, "--no-maps", "--out")
+    run(tmp_path / "sweep.toml", *alone, tmp_path / "a.zarr")
+    stored = tt.read_sweep(tmp_path / "a.zarr")
+    assert stored["mu"].values.tolist() == [0.1, 0.2, 0.3]
+    spins = tt.sweep(
+        report_problem(),
+        samples={"launch.spin": {"law": "normal", "mean": 150, "std": 5}},
+        n=3,
+        seed=4,
+        duration=0.01,
+        workers=1,
+    )["spin"]
+    assert stored["spin"].values.tolist() == spins.values.tolist()
+    whole = json.loads(run(*alone, tmp_path / "a.zarr", "--resume", "--json"))
+    assert (whole["cells"], whole["computed"]) == (3, 0)
+    run(tmp_path / "sweep.toml", "--axis", "launch.spin=10,20", *alone, tmp_path / "b.zarr")
+    sweep = Store.resume(tmp_path / "b.zarr").sweep
+    assert sweep.samples is None
+    assert sweep.grid.shape == (2,)
+
+
 def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path):
     """Where a stem strikes, and after how long it does, by its length and the launch."""
     problem = report_problem(tilt=2.3, spin=40.0).replace({"body": tt.presets.REPORT_STEM})

@@ -91,8 +91,8 @@ def simulate(
         str | None,
         typer.Option(
             help=(
-                "taylor, collocation, compiled, dop853, rk45, radau, bdf, lsoda, rk4; the best"
-                " installed."
+                "taylor, collocation, dop853, rk45, radau, bdf, lsoda, rk4; by default taylor, and"
+                " collocation where friction is stiff."
             )
         ),
     ] = None,

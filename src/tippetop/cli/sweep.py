@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 SweepFile = Annotated[
     Path | None,
     typer.Argument(
-        help="Sweep (.toml with axes or draws), or problem; by default the report's top."
+        help="Sweep (.toml with axes, draws or samples), or problem; by default the report's top."
     ),
 ]
 Axes = Annotated[
@@ -176,12 +176,13 @@ def _chosen_sweep(
 ) -> "Sweep":
     """Return the sweep of the file, or of the store to be resumed, with the options."""
     from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps.definition import GRIDS  # noqa: PLC0415
 
     file = choice.file
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else stored
     stated = {name: limit for name, limit in limits.items() if limit is not None}
     if base is not None:
-        cells = {"axes": None, "draws": None, "grid": grid or base.grid}
+        cells = {**dict.fromkeys(GRIDS), "grid": grid or base.grid}
         return base.model_copy(update={"problem": choice.changed(base.problem), **cells, **stated})
     problem = choice.problem()
     if grid is None:

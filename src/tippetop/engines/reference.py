@@ -25,7 +25,9 @@ INDEPENDENT_FOLDER = "independent"
 """Where the numbers of the independent solver are, in this package."""
 
 EVENT_LIMIT, STATE_LIMIT = 1e-10, 1e-8
-"""Largest differences of the two methods: of events, s, and of states, relative to their scale."""
+"""Largest differences of the two methods where a case allows no more: of events, s, and of states,
+relative to their scale.
+"""
 
 RATE_AFTER_CUT_OFF = 10.0
 """Change of a state's number a second of delay, over the largest of its kind, 1/s."""
@@ -92,17 +94,23 @@ class Reference(NamedTuple):
         return max(errors)
 
     @property
-    def agrees(self) -> bool:
-        """Whether both methods agree within `EVENT_LIMIT` and `STATE_LIMIT`.
+    def event_limit(self) -> float:
+        """The largest difference of an event's time with which the methods agree, s.
 
-        After an infinite sequence of rebounds, events and states know the time it is cut off.
+        Events after an infinite sequence of rebounds are late by the time it is cut off before.
         """
-        late, cut = self.event_agreement, self.case.cut_off
-        spread = cut * RATE_AFTER_CUT_OFF
-        return (
-            not late > EVENT_LIMIT + cut + self.case.added_up
-            and self.state_agreement <= STATE_LIMIT + spread
-        )
+        return EVENT_LIMIT + self.case.cut_off + self.case.added_up
+
+    @property
+    def state_limit(self) -> float:
+        """The largest difference of a state's number with which the methods agree, relative."""
+        return STATE_LIMIT + self.case.cut_off * RATE_AFTER_CUT_OFF
+
+    @property
+    def agrees(self) -> bool:
+        """Whether both methods agree within the limits."""
+        late = self.event_agreement > self.event_limit
+        return not late and self.state_agreement <= self.state_limit
 
 
 def case_of(name: str) -> Case:
@@ -299,6 +307,8 @@ def record(one: Reference) -> dict[str, Any]:
             "second_method": one.method,
             "energy_error": one.energy_error,
             "jellett_drift": None if math.isnan(one.jellett_drift) else one.jellett_drift,
+            "event_limit": one.event_limit,
+            "state_limit": one.state_limit,
         },
     }
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import xarray as xr
 
 from tippetop import __version__
-from tippetop.export.bundle import LOADER, packed, player_packed
+from tippetop.export.bundle import LOADER, packed, player_notices, player_packed
 from tippetop.export.track import pack_run, unpack_header
 from tippetop.results.dataset import require_run
 from tippetop.support.files import written_beside
@@ -42,6 +42,7 @@ def write_html(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pa
             run=packed(block),
             player=player_packed(),
             loader=LOADER,
+            notices=player_notices(),
         )
         beside.write_text(page, encoding="utf-8")
     return Path(path)

@@ -35,9 +35,6 @@ SEALED = re.compile(rf"{PREFIX}[0-9a-f]{{32}}")
 MAKING = re.compile(rf"{PREFIX}[0-9a-f]{{32}}-([0-9]{{1,9}})-[a-z0-9_]{{8}}")
 """Names of those that are not yet whole: with the number of the process that makes them."""
 
-OLD = "cache.db*", "making-*"
-"""What else earlier versions kept in the user's folder."""
-
 
 def cached_folder(made: object, use: Callable[[Path | None], Found]) -> Found:
     """Return what `use` makes of a folder of compiled code.
@@ -124,15 +121,9 @@ def _clear(place: Path) -> None:
     # A folder that the variable names may hold anything: only what is surely of this package goes.
     folders = [folder for folder in place.iterdir() if folder.is_dir() and _is_own(folder)]
     size, held = 0, [folder for folder in folders if SEALED.fullmatch(folder.name)]
-    for pattern in OLD if place == users_folder() else ():
-        held += place.glob(pattern)
     for number, old in enumerate(sorted(held, key=os.path.getmtime, reverse=True), 1):
         size += _size(old)
-        if number < MOST and size <= LARGEST:
-            continue
-        if not old.is_dir():
-            old.unlink(missing_ok=True)
-        elif not SEALED.fullmatch(old.name) or _seal(old) is not None:
+        if (number >= MOST or size > LARGEST) and _seal(old) is not None:
             shutil.rmtree(old, ignore_errors=True)
     for folder in folders:
         process = MAKING.fullmatch(folder.name)
@@ -140,11 +131,9 @@ def _clear(place: Path) -> None:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def _size(place: Path) -> int:
-    """Bytes in the files of a folder, or in a file."""
-    if not place.is_dir():
-        return place.stat().st_size
-    with os.scandir(place) as entries:
+def _size(folder: Path) -> int:
+    """Return the bytes in the files of a folder."""
+    with os.scandir(folder) as entries:
         return sum(entry.stat().st_size for entry in entries if entry.is_file())
 
 

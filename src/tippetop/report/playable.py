@@ -1,6 +1,6 @@
 """Run that plays on the page itself: the launch that the report calls abnormal."""
 
-from tippetop.export.bundle import LOADER, packed, player_packed
+from tippetop.export.bundle import LOADER, packed, player_notices, player_packed
 from tippetop.export.track import pack_run
 from tippetop.problem.presets import report_problem
 from tippetop.report.experiments.runs import unilateral
@@ -28,4 +28,5 @@ def playable(quick: bool) -> dict[str, str] | None:
         "player": player,
         "run": packed(pack_run(run)),
         "loader": LOADER,
+        "notices": player_notices(),
     }

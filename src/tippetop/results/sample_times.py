@@ -1,11 +1,14 @@
 """Validation of sample times."""
 
+from typing import Any
+
 import numpy as np
 import psutil
 from numpy.typing import ArrayLike
 
 from tippetop.integrators.base import Array
 from tippetop.support.errors import InvalidInput, is_whole
+from tippetop.support.units import has_unit, number_in
 
 BYTES_PER_SAMPLE = 1600
 """Largest memory of a sample while a result is made, bytes."""
@@ -21,8 +24,9 @@ def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Arra
             raise InvalidInput("samples", samples, "a whole number, at least 2")
         _check_memory(samples)
         return np.linspace(0.0, duration, int(samples))
+    seconds = _in_seconds(times)
     try:
-        grid = np.array(times, dtype=float)
+        grid = np.array(seconds, dtype=float)
     except Exception:  # noqa: BLE001 - conversion of an object may raise anything
         raise InvalidInput("times", times, "a list of increasing finite numbers") from None
     if (
@@ -36,6 +40,17 @@ def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Arra
         raise InvalidInput("times", times, f"times from 0 to the duration, {duration:g} s")
     _check_memory(len(grid))
     return grid
+
+
+def _in_seconds(times: ArrayLike) -> Any:
+    """Return times in s: those of a quantity, or of a list with texts or quantities in it."""
+    if has_unit(times):
+        return number_in("times", times, "s")
+    if isinstance(times, np.ndarray) and times.dtype.kind in "OU":
+        times = times.tolist()
+    if isinstance(times, list | tuple):
+        return [number_in(f"times.{place}", time, "s") for place, time in enumerate(times)]
+    return times
 
 
 def _check_memory(samples: int) -> None:

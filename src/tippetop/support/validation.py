@@ -32,7 +32,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from tippetop.support.accepted_values import refusal_of
-from tippetop.support.errors import MISSING, InvalidInput, is_whole
+from tippetop.support.errors import MISSING, InvalidInput, is_whole, short
 from tippetop.support.field_paths import part_at
 from tippetop.support.suggestions import not_one_of, unknown_field
 from tippetop.support.units import DIGITS, KINDS, has_unit, in_si, number_hint
@@ -244,10 +244,18 @@ class Part(BaseModel):
             try:
                 super().__setattr__(name, value)
             except ValidationError:
-                hint = "make a copy with model_copy(update={...})"
-                raise InvalidInput(
-                    name, value, "", "cannot be set: parts are frozen", hint
-                ) from None
+                fault, hint = "cannot be set: parts are frozen", self._copying(name, value)
+                raise InvalidInput(name, value, "", fault, hint) from None
+
+        def _copying(self, name: str, value: Any) -> str:
+            """Return how to make a copy with another value of a field."""
+            shown = repr(value) if isinstance(value, str) else short(value)
+            copy = f"model_copy(update={{'{name}': {shown}}})"
+            place = self.places.get(name)
+            if place is None:
+                return f"make a changed copy by {copy}"
+            of_part = f", or of this part alone by {copy}" if "." in place else ""
+            return f"make a changed copy by problem.replace({{'{place}': {shown}}}){of_part}"
 
     def quantity(self, field: str) -> Quantity:
         """Return the quantity of a field by its dotted name; one without a unit if none is

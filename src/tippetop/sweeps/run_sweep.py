@@ -122,7 +122,7 @@ def sweep(
     *,
     samples: Any = None,
     n: int | None = None,
-    seed: int = 0,
+    seed: int | None = None,
     duration: float = 20.0,
     tolerance: float = DEFAULT_TOLERANCE,
     settled: float | None = None,
@@ -155,7 +155,8 @@ def sweep(
     n
         How many samples; left out where values are listed.
     seed
-        What random samples follow from: a sample does not depend on how many there are.
+        What random samples follow from, 0 if left out: a sample does not depend on how many there
+        are.
     duration
         Length of every run, s.
     tolerance
@@ -195,7 +196,8 @@ def sweep(
     ------
     InvalidInput
         If there is no such field, or it cannot have such values; if `overwrite` or `resume` is
-        asked for without `out`, or both are; if `out` ends as the name of another kind of file.
+        asked for without `out`, or both are; if `n` or `seed` is given without `samples`; if `out`
+        ends as the name of another kind of file.
     FileTrouble
         If there is something at `out` already, or it cannot be written.
 
@@ -213,8 +215,13 @@ def sweep(
         stated = MISSING if over is None else "both"
         raise InvalidInput("over, samples", stated, "one of them")
     if samples is not None:
-        grid: Product | Draws | LaunchSamples = LaunchSamples.of(samples, n, seed)
+        grid: Product | Draws | LaunchSamples
+        grid = LaunchSamples.of(samples, n, 0 if seed is None else seed)
     else:
+        for field, number in {"n": n, "seed": seed}.items():
+            if number is not None:
+                fault = "is for samples, and over is given"
+                raise InvalidInput(field, number, "none", fault, "leave it out, or give samples")
         grid = over if isinstance(over, Draws) else Product.of(over)
     chosen = Sweep(problem, grid, duration, tolerance, settled)
     require_callback("callback", callback)
