@@ -141,7 +141,7 @@ def alone(laws: list[tt.Friction], rounds: int) -> list[tuple[float, float, floa
             run = tt.simulate(problem.replace({"friction": law}), DURATION, samples=2)
             # The first turn compiles.
             least[i] = min(least[i], time.process_time() - began if turn else math.inf)
-            told[i] = float(run["steps"]), float(run["turns_over"])
+            told[i] = float(run["steps"]), float(run["turnover_time"])
     return [(used, *more) for used, more in zip(least, told, strict=True)]
 
 

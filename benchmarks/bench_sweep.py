@@ -156,7 +156,7 @@ def exact(spins: Array) -> Array:
     tilts = engine(spins, EXACT)
     for k in np.linspace(0, len(spins) - 1, CHECKED).astype(int):
         run = tt.simulate(problem().replace({"launch.spin": spins[k]}), DURATION, samples=2)
-        if abs(tilts[k] - float(run["theta"][-1])) > CLOSE:
+        if abs(tilts[k] - float(run["tilt"][-1])) > CLOSE:
             raise SystemExit(f"the engine and a single run differ at {spins[k]:g} rad/s")
     return tilts
 

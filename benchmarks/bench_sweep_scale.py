@@ -58,7 +58,7 @@ class Cost:
 def sweep_by_command(liftoff: str, side: int, workers: int) -> Cost:
     """Carry out a sweep by the command line, and watch it."""
     with tempfile.TemporaryDirectory() as folder:
-        axes = ["--axis", f"launch.spin=0:250:{side}", "--axis", f"friction.mu=0.05:1:{side}"]
+        axes = ["--over", f"launch.spin=0:250:{side}", "--over", f"friction.mu=0.05:1:{side}"]
         limits = ["--duration", str(DURATION), "--liftoff", liftoff, "--workers", str(workers)]
         call = [sys.executable, *COMMAND_LINE, "sweep", *axes, *limits]
         call += ["--out", f"{folder}/sweep.zarr", "--json", "--no-maps"]

@@ -41,7 +41,7 @@ def engine(spins: Array, tolerance: float) -> Array:
     """The engine of sweeps, with all observables."""
     axis = Axis.of("launch.spin", spins.tolist())
     sweep = Sweep(problem(), Product((axis,)), DURATION, tolerance)
-    found: Array = follow_cells(sweep, np.arange(len(spins)))["final_theta"].astype(float)
+    found: Array = follow_cells(sweep, np.arange(len(spins)))["final_tilt"].astype(float)
     return found
 
 

@@ -5,7 +5,7 @@ contact go.
 import math
 
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.mode import EventKind, Outcome
+from tippetop.contact.mode import EventKind, Status
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.taylor import Taylor
 from tippetop.mechanics.contacts.forces import velocity_without_slip
@@ -35,7 +35,7 @@ class DryRun:
                 break
             self.state = segment.end_state
         else:
-            assert trajectory.outcome is Outcome.COMPLETED, trajectory.detail
+            assert trajectory.status is Status.COMPLETED, trajectory.detail
         self.events = [(event.kind.value, event.time) for event in trajectory.events]
         self.axis, self.momentum = self.state.axis, self.state.momentum
         self.slip = slip_of(self.axis, self.momentum, self.state.velocity[:2], self.top)

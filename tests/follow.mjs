@@ -10,7 +10,7 @@ function followed({ problem, times, ...options }) {
     const run = simulate(problem, options);
     const track = run.track(times.filter((time) => time <= run.endTime));
     return {
-      outcome: run.outcome,
+      status: run.status,
       end: run.endTime,
       events: run.events,
       flights: run.flights,

@@ -16,7 +16,14 @@ from tippetop.engines.cases import CASES, Case
 FOLDER = Path(engines.__file__).parent / "independent"
 
 COLUMNS = (
-    *("axis_x", "axis_y", "axis_z", "omega_x", "omega_y", "omega_z"),
+    *(
+        "axis_x",
+        "axis_y",
+        "axis_z",
+        "angular_velocity_x",
+        "angular_velocity_y",
+        "angular_velocity_z",
+    ),
     *("velocity_x", "velocity_y", "velocity_z", "height"),
 )
 

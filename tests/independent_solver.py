@@ -493,7 +493,7 @@ class Solver:
                 self.closed.remove(i)
                 self.record("opening", i)
                 return "slide"
-            self.record("lift-off")
+            self.record("liftoff")
             if self.stops:
                 return None
             self.closed = []
@@ -520,7 +520,7 @@ class Solver:
         if not self.dry:
             contacts = [(i, self.column(i, self.n, self.w, self.u))]
             if self.solve(self.n, self.w, contacts)[2][0] < 0.0:
-                self.record("lift-off")
+                self.record("liftoff")
                 self.closed = []
                 return "fly"
         return self.settle()

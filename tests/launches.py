@@ -129,11 +129,11 @@ def compared(found: dict[str, Any], run: Any, beside: Any = None) -> list[str]:
 
     A run of nearly the same launch, if one is given, tells how far a rounding may grow.
     """
-    if "outcome" not in found:
+    if "status" not in found:
         return [str(found)]
     wrong = []
-    if found["outcome"]["name"] != run.attrs["outcome"]:
-        wrong.append(f"outcome {found['outcome']} instead of {run.attrs['outcome_advice']}")
+    if found["status"]["name"] != run.attrs["status"]:
+        wrong.append(f"status {found['status']} instead of {run.attrs['message']}")
     kinds = [str(kind) for kind in run["event_kind"].values]
     others = [event["kind"] for event in found["events"]]
     if others != kinds:
@@ -141,7 +141,7 @@ def compared(found: dict[str, Any], run: Any, beside: Any = None) -> list[str]:
             (i for i, (a, b) in enumerate(zip(others, kinds, strict=False)) if a != b), None
         )
         return [*wrong, f"events {len(others)} instead of {len(kinds)}, from number {first} on"]
-    modes = [run["mode"].attrs["flag_meanings"].split()[number] for number in run["mode"].values]
+    modes = run["mode"].values.tolist()
     # Where the runs end before their time, one may end a rounding before the last of the samples.
     count = min(len(modes), len(found["track"]["time"]))
     if found["track"]["mode"][:count] != modes[:count]:
@@ -206,7 +206,7 @@ def sizes_of(run: Any) -> dict[str, float]:
 def apart(a: Any, b: Any, name: str) -> float:
     """How far some numbers are from others, at most."""
     off = np.abs(a - b)
-    return largest(np.minimum(off, 2.0 * np.pi - off) if name == "phi" else off)
+    return largest(np.minimum(off, 2.0 * np.pi - off) if name == "azimuth" else off)
 
 
 def largest(numbers: Any) -> float:

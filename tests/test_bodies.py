@@ -32,9 +32,9 @@ def steadily_rolling(body: tt.Body, tilt: float, precession: float, spin: float)
     run = tt.simulate(
         tt.Problem(body=body, friction=ROUGH, launch=launch, gravity=9.81), 0.2, samples=41
     )
-    assert run.attrs["outcome"] == "completed"
-    np.testing.assert_allclose(run["theta"], tilt, rtol=0, atol=2e-9)
-    np.testing.assert_allclose(run["phi_dot"], precession, rtol=2e-9)
+    assert run.attrs["status"] == "completed"
+    np.testing.assert_allclose(run["tilt"], tilt, rtol=0, atol=2e-9)
+    np.testing.assert_allclose(run["precession"], precession, rtol=2e-9)
     assert np.abs(run["velocity"]).max() < 2e-9 * precession * float(body.surface.size)
     assert float(run["energy_error"]) < 1e-12
 
@@ -72,8 +72,8 @@ def test_a_disk_that_does_not_spin_falls_flat() -> None:
         body=thin, friction=tt.ViscousFriction(mu=0.0), launch=launch, gravity=9.81
     )
     run = tt.simulate(problem, 1.0)
-    assert run.attrs["outcome"] == "lying_flat"
-    assert abs(run["theta"].values[-1]) < 1e-9
+    assert run.attrs["status"] == "lying_flat"
+    assert abs(run["tilt"].values[-1]) < 1e-9
     # (I1 + m R^2 cos^2) theta'^2 / 2 = m g R (sin 1.2 - sin theta); theta = 1.2 - u^2 takes the
     # root away.
     nodes, weights = np.polynomial.legendre.leggauss(60)
@@ -107,7 +107,7 @@ def test_sweeps_find_disks_lying_flat_as_runs_do() -> None:
         run = tt.simulate(problem.replace({"launch.spin": spin}), 0.2)
         cell = found.sel(spin=spin, tilt=0.3)
         assert float(cell["end_time"]) == pytest.approx(float(run["end_time"]), rel=1e-9)
-        assert float(cell["final_theta"]) == pytest.approx(float(run["final_theta"]), abs=1e-9)
+        assert float(cell["final_tilt"]) == pytest.approx(float(run["final_tilt"]), abs=1e-9)
         flat = found.sel(spin=spin, tilt=0.0)
         assert flat["fault"] == "value_out_of_range"
     assert float(found.sel(spin=0.0, tilt=0.3)["end_time"]) < 0.1
@@ -135,9 +135,9 @@ def test_a_coin_thrown_onto_its_face_slips_until_it_lies_flat(
         launch=tt.Launch(tilt=tilt, spin=0.0, tilt_rate=rate),
     )
     run = tt.simulate(problem, 0.1, samples=1001)
-    assert run.attrs["outcome"] == "lying_flat"
+    assert run.attrs["status"] == "lying_flat"
     assert float(run["energy_error"]) < 1e-9
-    theta = run["theta"].values if rate < 0.0 else math.pi - run["theta"].values
+    theta = run["tilt"].values if rate < 0.0 else math.pi - run["tilt"].values
     assert theta[-1] == pytest.approx(0.0, abs=1e-9)
     assert (np.diff(theta) < 0.0).all()
 
@@ -151,7 +151,7 @@ def test_coins_that_slip_until_they_lie_flat_do_the_same_in_a_sweep() -> None:
             tt.simulate(problem.replace({"launch.tilt": tilt}), 0.1),
             swept.sel(tilt=tilt),
         )
-        assert float(cell["final_theta"]) == pytest.approx(0.0, abs=1e-9)
+        assert float(cell["final_tilt"]) == pytest.approx(0.0, abs=1e-9)
         assert float(cell["end_time"]) == pytest.approx(float(run["end_time"]), rel=1e-9)
         assert float(cell["energy_lost"]) == pytest.approx(float(run["energy_lost"]), rel=1e-9)
 
@@ -182,7 +182,7 @@ def test_an_oval_that_is_a_sphere_moves_as_one():
             friction=tt.ViscousFriction(mu=0.3),
             launch=tt.Launch(tilt=0.3, spin=120.0),
         )
-        ends.append(tt.simulate(problem, 1.0)["theta"].values[-1])
+        ends.append(tt.simulate(problem, 1.0)["tilt"].values[-1])
     assert ends[1] == pytest.approx(ends[0], abs=1e-9)
 
 

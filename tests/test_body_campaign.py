@@ -75,7 +75,7 @@ last impacts are slow.
 def test_random_bodies_keep_what_every_one_must(seed: int) -> None:
     problem = problem_of(np.random.default_rng(seed))
     run = tt.simulate(problem, 0.3, samples=201, integrator="taylor", tolerance=3e-14)
-    assert run.attrs["outcome"] in NAMED, problem.to_json()
+    assert run.attrs["status"] in NAMED, problem.to_json()
     assert float(run["energy_error"]) < 1e-10
     assert float(run["gap"].min()) > -1e-12 * SIZE
     assert float(run["normal_force"].min()) >= 0.0

@@ -39,7 +39,7 @@ def completed():
 def vertical():
     """A run in which something is not a number."""
     run = tt.simulate(report_problem(tilt=0.0).replace({"contact.liftoff": "stop"}), 0.1, samples=3)
-    assert np.all(np.isnan(run.phi_dot))
+    assert np.all(np.isnan(run.precession))
     return run
 
 
@@ -128,14 +128,14 @@ def test_every_number_and_every_sentence_survives_a_file(completed, tmp_path, co
     """Also what is infinite, not a number, negative zero or too small for full precision."""
     special = [math.inf, -math.inf, math.nan, -0.0, 5e-324, -2.5e-310, 1e308, 0.1]
     numbers = [*special, *np.random.default_rng(count).normal(size=3)]
-    kinds = np.array(["lift-off", "touchdown", "impact"][:count], dtype=completed.event_kind.dtype)
+    kinds = np.array(["liftoff", "touchdown", "impact"][:count], dtype=completed.event_kind.dtype)
     run = completed.drop_dims(set(completed.sizes) - {"time", "space", "quaternion"})
-    run["theta"] = run.theta.copy(data=numbers)
+    run["tilt"] = run.tilt.copy(data=numbers)
     run["event_kind"] = ("event", kinds.astype(str), completed.event_kind.attrs)
-    run.attrs["outcome_advice"] = ["", "é, 中, 🎠 \U0010ffff ' \" \\ %"][count > 0]
+    run.attrs["message"] = ["", "é, 中, 🎠 \U0010ffff ' \" \\ %"][count > 0]
     read = tt.read_run(tt.write_run(run, tmp_path / "run.nc"))
     assert same(read, run)
-    np.testing.assert_array_equal(np.signbit(read.theta), np.signbit(run.theta))
+    np.testing.assert_array_equal(np.signbit(read.tilt), np.signbit(run.tilt))
 
 
 def test_file_follows_the_cf_conventions(path):

@@ -42,11 +42,11 @@ def test_the_parts_of_the_energy_add_up_to_it(run: xr.Dataset) -> None:
 def test_each_part_of_the_energy_has_its_closed_form_in_euler_angles(run: xr.Dataset) -> None:
     problem = tt.Problem.from_json(run.attrs["problem"])
     body, gravity = problem.body, problem.gravity
-    rates = run["theta_dot"] ** 2 + (run["phi_dot"] * np.sin(run["theta"])) ** 2
+    rates = run["tilt_rate"] ** 2 + (run["precession"] * np.sin(run["tilt"])) ** 2
     parts = {
         "height": body.mass * gravity * run["height"],
         "translation": 0.5 * body.mass * (run["velocity"] ** 2).sum("space"),
-        "spin": 0.5 * body.I3 * run["omega3"] ** 2,
+        "spin": 0.5 * body.I3 * run["spin"] ** 2,
         "turning": 0.5 * body.I1 * rates,
     }
     for part, expected in parts.items():
@@ -101,7 +101,7 @@ def test_all_that_has_components_or_a_direction_names_its_frame(sliding: xr.Data
     assert sliding["contact_force_body"].attrs["frame"] == "body"
     assert sliding["slip_x"].attrs["frame"] == "contact"
     assert sliding["orientation"].attrs["convention"].startswith("scalar first: w, x, y, z")
-    same = {"least_normal_force": "normal_force", "highest": "height", "highest_gap": "gap"}
+    same = {"min_normal_force": "normal_force", "max_height": "height", "max_gap": "gap"}
     same |= {f"final_{name}": name for name in SAMPLED if f"final_{name}" in METRICS}
     for name, sampled in same.items():
         assert sliding[name].attrs["frame"] == sliding[sampled].attrs["frame"], name
@@ -111,7 +111,7 @@ def test_slip_is_the_velocity_of_the_lowest_point_and_friction_acts_against_it(
     sliding: xr.Dataset,
 ) -> None:
     touching = sliding["normal_force"] > 0.0
-    lean = sliding["phi"]
+    lean = sliding["azimuth"]
     force = sliding["contact_force"]
     along = force.sel(space="x") * np.cos(lean) + force.sel(space="y") * np.sin(lean)
     across = force.sel(space="y") * np.cos(lean) - force.sel(space="x") * np.sin(lean)

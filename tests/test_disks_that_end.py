@@ -102,7 +102,7 @@ EULER = tt.Problem(
 def check_end(problem: tt.Problem) -> None:
     """Check that a body comes to lie flat with the energy, and at the time, that it should."""
     run, solution = tt.simulate(problem, 60.0, samples=2, dense=True)
-    assert run.attrs["outcome"] == "lying_flat"
+    assert run.attrs["status"] == "lying_flat"
     assert float(run["energy_error"]) < 1e-8
     end, unit = solution.end_time, math.sqrt(outer_radius(problem.body) / G)
     last = solution(end)

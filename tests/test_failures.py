@@ -14,7 +14,7 @@ from test_painleve_on_two import drawn
 from tippetop.contact import slip_onset
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import mode_on_two
-from tippetop.contact.mode import BOTH, BROKEN, EventKind, Outcome
+from tippetop.contact.mode import BOTH, BROKEN, EventKind, Status
 from tippetop.contact.slip_onset import UNSEEN
 from tippetop.contact.two_closed import Before, TwoClosed
 from tippetop.mechanics.contacts import pair_resolver
@@ -83,8 +83,8 @@ def test_what_cannot_be_found_is_said_in_words_of_the_motion(
 
     monkeypatch.setattr(f"tippetop.contact.{site}", fail)
     run = tt.simulate(problem, 0.5, samples=3)
-    assert run.attrs["outcome"] == "failed"
-    assert run.attrs["outcome_advice"].endswith(f" {what} cannot be found: {why}.")
+    assert run.attrs["status"] == "failed"
+    assert run.attrs["message"].endswith(f" {what} cannot be found: {why}.")
 
 
 @pytest.mark.parametrize("spin", [1e80, 1e150])
@@ -92,8 +92,8 @@ def test_the_page_says_the_same(spin: float) -> None:
     problem = THROWN.replace({"launch.spin": spin})
     run = tt.simulate(problem, 0.5, samples=3, integrator="dop853", tolerance=TOLERANCE)
     (found,) = in_javascript([asked(0, 0.5) | {"problem": problem.model_dump(mode="json")}])
-    assert found["outcome"] == {"name": "failed", "advice": run.attrs["outcome_advice"]}
-    assert "The end of the flight cannot be found" in run.attrs["outcome_advice"]
+    assert found["status"] == {"name": "failed", "message": run.attrs["message"]}
+    assert "The end of the flight cannot be found" in run.attrs["message"]
 
 
 @pytest.mark.parametrize(
@@ -112,9 +112,9 @@ def test_steps_too_long_for_an_edge_are_told_whatever_they_lead_to(
             body=tt.presets.COIN, friction=friction, launch=tt.Launch(tilt=tilt, spin=0.0)
         )
         run = tt.simulate(problem, 0.6, integrator="rk4", step=step)
-        if run.attrs["outcome"] not in {"inaccurate", "failed"}:
+        if run.attrs["status"] not in {"inaccurate", "failed"}:
             exact = tt.simulate(problem, 0.6, samples=3)
-            assert run.attrs["outcome"] == exact.attrs["outcome"] == "lying_flat"
+            assert run.attrs["status"] == exact.attrs["status"] == "lying_flat"
             assert float(run["end_time"]) == pytest.approx(float(exact["end_time"]), rel=1e-10)
 
 
@@ -234,7 +234,7 @@ def test_forces_on_two_contacts_may_be_many_or_none_without_a_jam(seed: int, why
     automaton = Automaton(contacts.tops[0], "fly", 0.0)
     tops, state = contacts.tops, contacts.state
     after = automaton.resolve_two(0.0, state, tops, Before(), 0.0)
-    assert after.next is Outcome.FAILED
+    assert after.next is Status.FAILED
     assert after.detail == why
 
 
@@ -244,7 +244,7 @@ def test_slip_on_two_begins_in_no_direction_where_friction_holds_them() -> None:
     mode = mode_on_two(contacts.tops, 0.0, (True, True))
     automaton = Automaton(contacts.tops[0], "fly", 0.0)
     after = automaton.slip_on_two(0.0, contacts.state, mode, BOTH)
-    assert after.next is Outcome.FAILED
+    assert after.next is Status.FAILED
     assert after.detail.startswith(
         "The direction in which slip, or rolling, begins on two surfaces cannot be found: no dir"
     )
@@ -279,8 +279,8 @@ def test_velocities_that_rounding_hides_are_not_followed(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(slip_onset, "follow_slip", hidden)
     run = tt.simulate(SLIPPERY, 0.5, samples=3)
-    assert run.attrs["outcome"] == "failed"
-    assert UNSEEN in run.attrs["outcome_advice"]
+    assert run.attrs["status"] == "failed"
+    assert UNSEEN in run.attrs["message"]
 
 
 @pytest.mark.parametrize(

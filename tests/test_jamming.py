@@ -108,8 +108,8 @@ def angular_velocity(run) -> np.ndarray:
 @pytest.mark.parametrize("liftoff", ["stop", "ignore"])
 def test_a_contact_that_jams_ends_a_run_without_impacts(liftoff: str, slip: float) -> None:
     run = tt.simulate(jamming(liftoff, slip), 1e-3 * slip / SLOW, samples=11)
-    assert run.attrs["outcome"] == "failed"
-    assert "no contact force is consistent" in run.attrs["outcome_advice"]
+    assert run.attrs["status"] == "failed"
+    assert "no contact force is consistent" in run.attrs["message"]
     assert float(run["energy_error"]) < 1e-11
     assert float(np.hypot(run["slip_x"], run["slip_y"])[-1]) > 1e-4
 
@@ -187,7 +187,7 @@ def test_a_ball_jams_beside_another_that_has_just_opened(mu: float, launch: tt.L
         ),
         1.0,
     )
-    assert run.attrs["outcome"] == "completed"
+    assert run.attrs["status"] == "completed"
 
 
 @pytest.mark.slow
@@ -209,8 +209,8 @@ def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
         contact=tt.Contact(liftoff="fly"),
     )
     run = tt.simulate(problem, 0.2, samples=101)
-    assert run.attrs["outcome"] == "failed"
-    assert "rigid bodies do not tell" in run.attrs["outcome_advice"]
+    assert run.attrs["status"] == "failed"
+    assert "rigid bodies do not tell" in run.attrs["message"]
     last = {name: run[name].values[-1] for name in ("axis", "angular_momentum", "velocity")}
     touch = sliding_contact(
         last["axis"], last["angular_momentum"], last["velocity"][:2], problem.top
@@ -284,7 +284,7 @@ def test_slip_that_has_all_but_ended_where_it_jams_sticks(problem: tt.Problem) -
     for units in range(-3, 4):
         tilt = problem.launch.tilt * (1.0 + units * np.finfo(float).eps)
         beside = problem.replace({"launch.tilt": tilt})
-        run = tt.simulate(beside, 0.05, samples=5, phase_limit=300)
+        run = tt.simulate(beside, 0.05, samples=5, mode_limit=300)
         kinds.append(run["event_kind"].values.tolist())
         assert float(run["energy_error"]) < 1e-13
         assert float(np.hypot(run["slip_x"], run["slip_y"])[-1]) < 1e-14

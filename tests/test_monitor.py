@@ -120,8 +120,8 @@ def test_the_monitor_looks_at_gaps_of_a_body_of_one_surface(
     monkeypatch.setattr("tippetop.contact.flight.touchdown", lambda *_: None)
     for simulated in (tt.presets.report_problem().replace({"launch.gap": 1e-3}), TWO_MAXIMA):
         run = tt.simulate(simulated, 0.05, samples=3)
-        assert run.attrs["outcome"] == "inaccurate"
-        assert "The body sinks into the table by " in run.attrs["outcome_advice"]
+        assert run.attrs["status"] == "inaccurate"
+        assert "The body sinks into the table by " in run.attrs["message"]
 
 
 @pytest.mark.parametrize(
@@ -155,8 +155,8 @@ def test_a_guard_that_is_missed_is_named(
         run = tt.simulate(problem, 6.5, samples=3)
     finally:
         contact_mode.motion_of.cache_clear()
-    assert run.attrs["outcome"] == "inaccurate"
-    assert words in run.attrs["outcome_advice"]
+    assert run.attrs["status"] == "inaccurate"
+    assert words in run.attrs["message"]
 
 
 def test_coarser_steps_may_be_further_off() -> None:
@@ -197,13 +197,13 @@ def test_the_end_of_a_run_is_seen() -> None:
     """A run of a single step begins nowhere but at its launch."""
     run = tt.simulate(PROBLEM, 0.05, samples=2, integrator="rk4", step=0.05)
     assert int(run["steps"]) == 1
-    assert run.attrs["outcome"] == "inaccurate"
-    assert "shorter steps" in run.attrs["outcome_advice"]
+    assert run.attrs["status"] == "inaccurate"
+    assert "shorter steps" in run.attrs["message"]
 
 
 def test_fixed_steps_are_warned_of() -> None:
     advice = [
-        tt.simulate(PROBLEM, 0.01, samples=2, **method).attrs["outcome_advice"]
+        tt.simulate(PROBLEM, 0.01, samples=2, **method).attrs["message"]
         for method in ({"integrator": "rk4", "step": 1e-3}, {"integrator": "dop853"})
     ]
     assert ["half the step" in one for one in advice] == [True, False]
@@ -211,7 +211,7 @@ def test_fixed_steps_are_warned_of() -> None:
 
 def test_steps_that_are_too_long_are_told() -> None:
     outcomes = [
-        tt.simulate(PROBLEM, 0.5, samples=2, integrator="rk4", step=step).attrs["outcome"]
+        tt.simulate(PROBLEM, 0.5, samples=2, integrator="rk4", step=step).attrs["status"]
         for step in (1e-2, 1e-3)
     ]
     assert outcomes == ["inaccurate", "completed"]
@@ -219,16 +219,16 @@ def test_steps_that_are_too_long_are_told() -> None:
 
 def test_what_a_motion_seemed_to_come_to_is_not_told_of_one_that_cannot_be_trusted() -> None:
     off, kept = seen(energy=1e-3 * ENERGY), seen()
-    for outcome in tt.Outcome:
+    for outcome in tt.Status:
         ends = outcome in (
-            tt.Outcome.COMPLETED,
-            tt.Outcome.LIFTED_OFF,
-            tt.Outcome.AT_REST,
-            tt.Outcome.LYING_FLAT,
-            tt.Outcome.STOPPED,
+            tt.Status.COMPLETED,
+            tt.Status.LIFTED_OFF,
+            tt.Status.AT_REST,
+            tt.Status.LYING_FLAT,
+            tt.Status.STOPPED,
         )
-        assert kept.trusted_outcome(outcome, 1e-12) is outcome
-        assert off.trusted_outcome(outcome, 1e-12) is (tt.Outcome.INACCURATE if ends else outcome)
+        assert kept.trusted_status(outcome, 1e-12) is outcome
+        assert off.trusted_status(outcome, 1e-12) is (tt.Status.INACCURATE if ends else outcome)
 
 
 @pytest.mark.slow
@@ -236,5 +236,5 @@ def test_a_lift_off_that_steps_too_long_find_is_not_told() -> None:
     problem = tt.presets.report_problem(spin=175.0).replace({"contact.liftoff": "stop"})
     methods: list[dict[str, Any]] = [{"integrator": "rk4", "step": 3e-3}, {"integrator": "dop853"}]
     runs = [tt.simulate(problem, 6.5, samples=2, **method) for method in methods]
-    assert [run.attrs["outcome"] for run in runs] == ["inaccurate", "lifted_off"]
+    assert [run.attrs["status"] for run in runs] == ["inaccurate", "lifted_off"]
     assert all(run["end_time"] < 6.5 for run in runs)

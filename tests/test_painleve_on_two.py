@@ -11,7 +11,7 @@ from tippetop.contact.automaton import Automaton, opens_by_zero
 from tippetop.contact.contact_mode import ContactMode, sliding_on_two
 from tippetop.contact.flight import Flight
 from tippetop.contact.guards import OPENING, SLIP
-from tippetop.contact.mode import EventKind, ModeEnd, Outcome, Transition
+from tippetop.contact.mode import EventKind, ModeEnd, Status, Transition
 from tippetop.contact.trajectory import Trajectory
 from tippetop.contact.two_closed import Before
 from tippetop.integrators import make_integrator
@@ -118,21 +118,21 @@ def test_two_contacts_report_whether_their_forces_are_unique() -> None:
         if counts[min(len(sets), 2)] >= 12:
             continue
         counts[min(len(sets), 2)] += 1
-        after = {choice: resolved(tops, state, choice) for choice in ("impact", "lift_off")}
+        after = {choice: resolved(tops, state, choice) for choice in ("impact", "liftoff")}
         for following in after.values():
             kinds = [event.kind for event in following.events]
             single = len(sets) == 1 and sets.keys() <= {"first", "second"}
             if not single:  # One contact alone may be indeterminate by itself.
                 assert (EventKind.INDETERMINATE in kinds) == (len(sets) > 1), (sets, kinds)
             if len(sets) != 1:
-                assert following.next is not Outcome.FAILED or {"first", "second"} <= sets.keys()
+                assert following.next is not Status.FAILED or {"first", "second"} <= sets.keys()
                 struck = EventKind.IMPACT in kinds
-                assert struck or "" in sets or following.next is Outcome.FAILED
+                assert struck or "" in sets or following.next is Status.FAILED
                 if struck:
                     assert energy(following.state, tops[0]) < energy(state, tops[0])
         if "" in sets and len(sets) > 1:
-            assert isinstance(after["lift_off"].next, Flight)
-            assert after["lift_off"].state == state
+            assert isinstance(after["liftoff"].next, Flight)
+            assert after["liftoff"].state == state
 
 
 def indeterminate(random: np.random.Generator) -> tuple[Tops, State]:
@@ -145,15 +145,15 @@ def indeterminate(random: np.random.Generator) -> tuple[Tops, State]:
                 return case
 
 
-@pytest.mark.parametrize("choice", ["impact", "lift_off"])
+@pytest.mark.parametrize("choice", ["impact", "liftoff"])
 def test_where_tops_cannot_fly_indeterminate_forces_end_the_run(choice: str) -> None:
     tops, state = indeterminate(np.random.default_rng(8))
     automaton = Automaton(tops[0], "stop", 0.0, choice)
     after = automaton.resolve_two(0.0, state, tops, Before(), 0.0)
-    if choice == "lift_off":
-        assert after.next is Outcome.LIFTED_OFF
+    if choice == "liftoff":
+        assert after.next is Status.LIFTED_OFF
     else:
-        assert after.next is Outcome.FAILED
+        assert after.next is Status.FAILED
         assert "contact.indeterminate names needs contact.liftoff = fly" in after.detail
 
 

@@ -225,14 +225,15 @@ def test_a_plausible_problem_runs_without_a_word():
         ({"body.shape.eccentricity": [0.3, 0.9]}, "1 of 2 cells", "I3 ="),
         ({"launch.tilt": [0.1, 2.0], "body.mass": [0.02, 20.0, 30.0]}, "5 of 6 cells", "I3 ="),
         (
-            tt.Draws((tt.Range("launch.spin", 1.2e4, 2e4),), count=5, seed=1),
+            {"draw": {"launch.spin": {"from": 1.2e4, "to": 2e4}}, "count": 5, "seed": 1},
             "5 of 5 cells",
             "the spin at launch is",
         ),
     ],
 )
 def test_a_sweep_counts_its_implausible_cells(over, count, said):
-    (warning,) = warned(lambda: tt.sweep(REPORT, over, duration=0.001, workers=1))
+    cells = over if "draw" in over else {"over": over}
+    (warning,) = warned(lambda: tt.sweep(REPORT, **cells, duration=0.001, workers=1))
     assert str(warning.message).startswith(f"{count} are implausible; the first: {said}")
 
 
@@ -268,7 +269,7 @@ def test_the_command_line_warns_in_a_line(at_the_command_line):
 
 def test_the_command_line_counts_the_cells_of_a_sweep(at_the_command_line, tmp_path):
     out = tmp_path / "sweep.zarr"
-    options = ["--axis", "launch.spin=0:20000:4", "--duration", "0.001", "--out", str(out)]
+    options = ["--over", "launch.spin=0:20000:4", "--duration", "0.001", "--out", str(out)]
     said = at_the_command_line("sweep", *options, "--workers", "1", "--no-maps")
     assert said.startswith("tippetop: 2 of 4 cells are implausible; the first: the spin at launch")
     assert said.count("\n") == 1

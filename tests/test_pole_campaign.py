@@ -13,7 +13,7 @@ SIZE, MASS = 0.02, 0.02
 STEPS, MODES = 2_000, 200
 TILTS = [0.0, 1e-12, 1e-9, 1e-8, 1e-6, 1e-3, 0.05, np.pi - 1e-3, np.pi - 1e-9, np.pi]
 
-NAMED = {"completed", "at_rest", "lying_flat", "too_many_steps", "too_many_phases"}
+NAMED = {"completed", "at_rest", "lying_flat", "too_many_steps", "too_many_modes"}
 """Outcomes that need no reason."""
 
 
@@ -92,16 +92,16 @@ def ending_of(seed: int, integrator: str = "dop853") -> str:
         integrator=integrator,
         tolerance=1e-10,
         step_limit=STEPS,
-        phase_limit=MODES,
+        mode_limit=MODES,
     )
-    outcome: str = run.attrs["outcome"]
+    outcome: str = run.attrs["status"]
     if outcome in NAMED:
         if outcome == "completed":
             assert float(run["energy_error"]) < 1e-8, (seed, problem.to_json())
             assert float(run["gap"].min()) > -1e-9 * SIZE, (seed, problem.to_json())
         return outcome
-    advice: str = run.attrs["outcome_advice"]
-    return f"{outcome}: {advice.removeprefix(tt.Outcome[outcome.upper()].value).strip()}"
+    advice: str = run.attrs["message"]
+    return f"{outcome}: {advice.removeprefix(tt.Status[outcome.upper()].value).strip()}"
 
 
 @pytest.mark.parametrize("seeds", seed_ranges(check=8, sample=24, claim=500, size=8))

@@ -31,7 +31,7 @@ from tippetop.problem.frictions import (
     ViscousFriction,
 )
 from tippetop.problem.launch import Launch
-from tippetop.problem.problem import Problem, get
+from tippetop.problem.problem import Problem
 from tippetop.problem.shapes import EccentricSphere, Oval, Ring, Sphere, Spheroid
 from tippetop.support.errors import FileTrouble, InvalidInput, TippetopError
 from tippetop.support.field_paths import dotted_names, part_at
@@ -792,16 +792,16 @@ class TestValues:
     @given(problems())
     def test_what_is_got_at_a_path_is_what_replace_puts_there(self, original):
         for name in dotted_names(original.model_dump()):
-            value = get(original, name)
+            value = original.get(name)
             assert original.replace({name: value}) == original, name
             where, _, last = name.rpartition(".")
-            if where and not last.isdecimal() and not isinstance(get(original, where), tuple):
-                assert getattr(get(original, where), last) == value
+            if where and not last.isdecimal() and not isinstance(original.get(where), tuple):
+                assert getattr(original.get(where), last) == value
 
     def test_items_of_lists_are_got_by_their_places(self):
         problem = top_problem(launch__slip=(0.1, 0.2))
-        assert get(problem, "launch.slip.1") == 0.2
-        assert get(problem, "launch.slip") == (0.1, 0.2)
+        assert problem.get("launch.slip.1") == 0.2
+        assert problem.get("launch.slip") == (0.1, 0.2)
 
     @pytest.mark.parametrize(
         ("path", "meant"),
@@ -819,7 +819,7 @@ class TestValues:
     def test_a_path_without_a_field_is_refused_with_what_may_be_meant(self, path, meant):
         problem = top_problem()
         calls = {
-            f"path: {path!r} is not the name of a field": lambda: get(problem, path),
+            f"field: {path!r} is not the name of a field": lambda: problem.get(path),
             f"{path or repr(path)}: 1 is given for an unknown field": lambda: problem.replace(
                 {path: 1.0}
             ),

@@ -110,7 +110,7 @@ def test_dir_lists_the_public_names_in_order():
 def test_what_users_are_shown_is_public():
     shown = """Problem Body EccentricSphere Sphere Ring Spheroid ViscousFriction Launch Contact
         presets simulate summarize plot view sweep predict critical_spins steady_states read_run
-        get to_dataframe write_run write_csv write_parquet write_glb write_html write_movie
+        to_dataframe write_run write_csv write_parquet write_glb write_html write_movie
         write_solid
         Workpiece Insert design_insert design_bowl"""
     assert set(shown.split()) <= set(tt.__all__)

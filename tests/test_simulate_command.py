@@ -12,7 +12,7 @@ import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.integrators import DEFAULT, NAMES
 from tippetop.results.summary import summarize
-from tippetop.theory.averaging import flip_time_limit
+from tippetop.theory.averaging import arrival_time_limit
 
 
 def said(*words: str) -> str:
@@ -34,11 +34,11 @@ def test_people_and_programs_are_told_what_summarize_returns() -> None:
         "energy lost in impacts",
     } <= found
     (line,) = [line for line in lines if line.startswith("turns over at")]
-    assert float(line.split()[-2]) == pytest.approx(summary["turns_over"], rel=1e-6)
+    assert float(line.split()[-2]) == pytest.approx(summary["turnover_time"], rel=1e-6)
 
 
 def test_what_there_is_not_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
-    without = ("turns_over", "arrives", "jellett_drift", "energy_error")
+    without = ("turnover_time", "arrival_time", "jellett_drift", "energy_error")
     monkeypatch.setattr(tt, "summarize", lambda run: summarize(run) | dict.fromkeys(without, None))
     lines = said("--spin", "20", "--duration", "0.1")
     assert lines.count("not within the run") == 1
@@ -68,7 +68,7 @@ def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
     events = (tmp_path / "events.csv").read_text().splitlines()
     assert events[0] == "time (s),kind,impulse (N s),energy_lost (J),surface"
     flights = pd.read_parquet(tmp_path / "flights.parquet")
-    assert list(flights.columns) == ["start", "end", "highest_gap"]
+    assert list(flights.columns) == ["start", "end", "max_gap"]
 
 
 @pytest.mark.parametrize(
@@ -187,7 +187,7 @@ def test_critical_says_what_is_known_where_a_dry_point_sticks() -> None:
 def test_critical_tells_why_it_leaves_out_how_long_a_launch_takes() -> None:
     """One so fast that the limit of small friction needs a pull of the table."""
     with pytest.raises(tt.InvalidInput) as refusal:
-        flip_time_limit(tt.presets.report_problem(spin=1000.0))
+        arrival_time_limit(tt.presets.report_problem(spin=1000.0))
     done = CliRunner().invoke(app, ["critical", "--spin", "1000"])
     assert "so at this friction about" not in done.output
     assert refusal.value.accepted in " ".join(done.output.split())

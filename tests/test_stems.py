@@ -72,8 +72,8 @@ def test_leine_and_glocker_s_top_to_eight_seconds() -> None:
     assert surfaces(run, "touchdown")[:4] == [1, 0, 1, 0]
     assert times(run, "double contact") == pytest.approx([4.67713921], abs=1e-6)
     assert times(run, "opening")[-1] == pytest.approx(5.4664569, abs=1e-6)
-    assert float(run["final_theta"]) == pytest.approx(1.70243211, abs=1e-6)
-    assert not len(times(run, "lift-off")), "one surface or the other always touches"
+    assert float(run["final_tilt"]) == pytest.approx(1.70243211, abs=1e-6)
+    assert not len(times(run, "liftoff")), "one surface or the other always touches"
 
 
 def test_the_report_s_top_with_a_stem() -> None:
@@ -82,14 +82,14 @@ def test_the_report_s_top_with_a_stem() -> None:
     assert times(run, "touchdown")[:2] == pytest.approx([6.34894636, 6.36564926], abs=1e-8)
     assert times(run, "double contact") == pytest.approx([6.66419077], abs=1e-6)
     assert times(run, "opening")[-1] == pytest.approx(8.33507784, abs=1e-6)
-    assert float(run["final_theta"]) == pytest.approx(2.481515194, abs=1e-6)
-    assert float(run["final_omega3"]) == pytest.approx(-35.27884, abs=1e-5)
+    assert float(run["final_tilt"]) == pytest.approx(2.481515194, abs=1e-6)
+    assert float(run["final_spin"]) == pytest.approx(-35.27884, abs=1e-5)
 
 
 @pytest.mark.parametrize("run", [leine_glocker, report], ids=["leine-glocker", "report"])
 def test_energy_balances_and_nothing_sinks_in(run) -> None:
     found = run()
-    assert found.attrs["outcome"] == "completed"
+    assert found.attrs["status"] == "completed"
     assert float(found["energy_error"]) < 1e-12
     size = 0.02
     assert float(found["gap"].min()) > -1e-12 * size
@@ -97,13 +97,13 @@ def test_energy_balances_and_nothing_sinks_in(run) -> None:
     assert float(found["normal_force"].min()) > 0.0
     lost = found["event_energy_lost"].values
     assert (lost >= 0.0).all()
-    assert float(found["impact_energy_lost"]) == pytest.approx(lost.sum())
+    assert float(found["energy_lost_impacts"]) == pytest.approx(lost.sum())
 
 
 @pytest.mark.parametrize("run", [leine_glocker, report], ids=["leine-glocker", "report"])
 def test_modes_name_the_surfaces_that_touch(run) -> None:
     found = run()
-    words = np.array(found["mode"].attrs["flag_meanings"].split())[found["mode"].values]
+    words = found["mode"].values
     on_two = words == "sliding_on_0_and_1"
     time = found["time"].values
     begin, end = times(found, "double contact")[0], times(found, "opening")[-1]
@@ -112,8 +112,8 @@ def test_modes_name_the_surfaces_that_touch(run) -> None:
     shapes = tt.Problem.from_json(found.attrs["problem"]).body.shapes
     (r0, z0), (r1, z1) = ((shape.surface.radius, shape.surface.center) for shape in shapes)
     both = np.arccos((r1 - r0) / (z1 - z0))
-    assert found["theta"].values[on_two] == pytest.approx(both, abs=1e-12)
-    standing = found["theta"].values > both
+    assert found["tilt"].values[on_two] == pytest.approx(both, abs=1e-12)
+    standing = found["tilt"].values > both
     assert (words[standing & ~on_two] == "sliding_on_1").all()
     assert (words[~standing & ~on_two] == "sliding_on_0").all()
 
@@ -126,7 +126,7 @@ def test_the_end_of_rocking_converges_at_first_order(monkeypatch: pytest.MonkeyP
             monkeypatch.setattr(module, "SLOWEST_ROCKING", bound)
         run = tt.simulate(LEINE_GLOCKER, 5.0, samples=11)
         ends.append(times(run, "double contact")[0])
-        tilts.append(float(run["final_omega3"]))
+        tilts.append(float(run["final_spin"]))
     errors = np.abs(np.array(ends[:-1]) - ends[-1])
     orders = np.diff(np.log(errors)) / np.diff(np.log(bounds))
     assert orders == pytest.approx(1.0, abs=0.25)
@@ -249,7 +249,7 @@ def test_jellett_s_integral_is_that_of_the_surface_that_touches_in_whatever_orde
         run = tt.simulate(problem, 0.3, samples=31)
         assert set(run["event_kind"].values) == set()
         assert float(run["jellett_drift"]) < 1e-13
-        assert float(run["jellett_error"]) < 1e-13
+        assert float(run["jellett_change"]) < 1e-13
 
 
 def test_sweeps_follow_stems_as_runs_do() -> None:
@@ -285,11 +285,11 @@ ROD = tt.Problem(
 def test_a_rod_falls_on_its_ends_in_turn_and_comes_to_lie(restitution: float) -> None:
     """Either end presses the other onto the table: both stay, and carry half of the weight each."""
     run = tt.simulate(ROD.replace({"contact.restitution": restitution}), 1.0, samples=101)
-    assert run.attrs["outcome"] == "completed"
+    assert run.attrs["status"] == "completed"
     assert float(run["energy_error"]) < 1e-12
     assert float(run["gap"].min()) > -1e-14
     assert run["event_kind"].values[-1] == "double contact"
-    assert float(run["final_theta"]) == pytest.approx(np.pi / 2, abs=1e-10)
+    assert float(run["final_tilt"]) == pytest.approx(np.pi / 2, abs=1e-10)
     assert float(run["normal_force"][-1]) == pytest.approx(0.01 * 9.8, rel=1e-12)
     touches = surfaces(run, "touchdown")
     assert set(touches) == {0, 1}
@@ -307,7 +307,7 @@ def test_two_balls_that_friction_holds_rock_to_rest() -> None:
     run = tt.simulate(problem, 0.5, times=[0.0, 0.5], integrator="dop853", step_limit=2000)
     impulses = run["event_impulse"].values[run["event_kind"].values == "impact"]
     assert impulses[1:10] / impulses[:9] == pytest.approx(np.full(9, 7 / 17), rel=1e-6)
-    assert run.attrs["outcome"] == "at_rest"
+    assert run.attrs["status"] == "at_rest"
     assert times(run, "stick")[-2:] == pytest.approx(
         np.full(2, times(run, "double contact")[0]), rel=1e-9
     )
@@ -393,7 +393,7 @@ def test_a_surface_that_has_just_opened_is_drawn_back_where_the_other_sticks(mu,
         contact=tt.Contact(liftoff="fly", restitution=0.5),
     )
     run = tt.simulate(problem, 2.0, samples=401)
-    assert run.attrs["outcome"] == "completed"
+    assert run.attrs["status"] == "completed"
     assert (run["event_kind"] == "double contact").any()
     heights = [
         ball.radius - ball.center * run["axis"].values[:, 2]

@@ -33,7 +33,7 @@ def test_the_blunter_of_two_surfaces_carries_the_body(
 ) -> None:
     both = tt.simulate(launched([SHARP, BLUNT][::order], friction, tilt), 0.3, samples=31)
     alone = tt.simulate(launched([BLUNT], friction, tilt), 0.3, samples=31)
-    assert both.attrs["outcome"] == alone.attrs["outcome"] == "completed"
+    assert both.attrs["status"] == alone.attrs["status"] == "completed"
     assert both["event_kind"].values.tolist() == alone["event_kind"].values.tolist()
     for name in ("axis", "angular_momentum", "velocity"):
         size = float(abs(alone[name]).max())
@@ -45,7 +45,7 @@ def test_a_body_that_falls_on_its_pole_lands_on_the_blunter_surface() -> None:
         tt.simulate(launched(shape, tt.CoulombFriction(mu=0.3), 0.0, gap=1e-4), 0.1, samples=5)
         for shape in ([SHARP, BLUNT], [BLUNT])
     )
-    assert both.attrs["outcome"] == "completed"
+    assert both.attrs["status"] == "completed"
     np.testing.assert_allclose(both["event_time"], alone["event_time"], rtol=0, atol=1e-12)
     np.testing.assert_allclose(both["axis"], alone["axis"], rtol=0, atol=1e-10)
 

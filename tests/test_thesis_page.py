@@ -37,7 +37,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, dict
             names: dict[str, Any] = {"__name__": "__main__"}
             plt.close("all")
             for cell in [*CELL.findall(begin), *CELL.findall(task)]:
-                code = cell.replace("n=1000", "n=100")
+                code = cell.replace("count=1000", "count=100")
                 exec(compile(code, str(PAGE), "exec"), names)
             axes = [axes for number in plt.get_fignums() for axes in plt.figure(number).axes]
             found[task.partition("\n")[0]] = names | {
@@ -70,7 +70,7 @@ def test_the_parts_of_the_energy_are_the_energy(results: dict[str, dict[str, Any
 
 def test_the_diagram_has_the_branches_of_the_theory(results: dict[str, dict[str, Any]]) -> None:
     names = results["A bifurcation diagram"]
-    critical, settled = names["critical"], names["settled"]["final_theta"]
+    critical, settled = names["critical"], names["settled"]["final_tilt"]
     below = settled.where(settled["spin"] < critical.upright, drop=True)
     above = settled.where(settled["spin"] > critical.inverted, drop=True)
     assert below.size > 5 < above.size
@@ -81,9 +81,9 @@ def test_the_diagram_has_the_branches_of_the_theory(results: dict[str, dict[str,
 def test_the_section_is_where_the_tilt_is_least(results: dict[str, dict[str, Any]]) -> None:
     names = results["A Poincaré section"]
     section, solution = names["section"], names["solution"]
-    assert len(section.theta) > 50
+    assert len(section.tilt) > 50
     beside = solution(np.maximum(section.time - 1e-4, 0.0)), solution(section.time + 1e-4)
-    assert all((section.theta <= near.theta).all() for near in beside)
+    assert all((section.tilt <= near.tilt).all() for near in beside)
 
 
 def test_the_body_s_force_is_as_large_as_the_table_s(results: dict[str, dict[str, Any]]) -> None:
@@ -99,17 +99,17 @@ def test_the_event_is_in_the_table(results: dict[str, dict[str, Any]]) -> None:
     problem = results["An event of your own"]["problem"]
     again = tt.simulate(problem, 10.0, times=[0.0, *times, 10.0])
     assert len(times) > 0
-    np.testing.assert_allclose(again["theta"][1:-1], np.pi / 3, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(again["tilt"][1:-1], np.pi / 3, rtol=0, atol=1e-12)
 
 
 def test_the_samples_have_the_distributions(results: dict[str, dict[str, Any]]) -> None:
     names = results["A thousand launches, and an interval"]
     launches = names["launches"]
-    assert launches.sizes["sample"] == 100
+    assert launches.sizes["draw"] == 100
     for field in ("spin", "tilt"):
         assert scipy.stats.kstest(launches[field].values, names[field].cdf).pvalue > 1e-3
     low, high = names["interval"].values
-    inside = (launches["turns_over"] >= low) & (launches["turns_over"] <= high)
+    inside = (launches["turnover_time"] >= low) & (launches["turnover_time"] <= high)
     assert float(inside.mean()) == pytest.approx(0.95, abs=0.011)
 
 
@@ -125,8 +125,8 @@ def test_the_law_is_swept_with_the_numbers_of_single_runs(
     names = results["A friction law of your own in a sweep"]
     for mu in (0.1, 0.3):
         run = tt.simulate(names["mine"].replace({"friction.mu": mu}), 10.0, tolerance=1e-9)
-        assert float(names["swept"]["final_theta"].sel(mu=mu)) == pytest.approx(
-            float(run["final_theta"]), abs=1e-6
+        assert float(names["swept"]["final_tilt"].sel(mu=mu)) == pytest.approx(
+            float(run["final_tilt"]), abs=1e-6
         )
 
 
@@ -134,5 +134,7 @@ def test_a_restart_goes_on_as_the_run_does(results: dict[str, dict[str, Any]]) -
     names = results["A restart from a state in mid-run"]
     solution, run = names["solution"], names["run"]
     later = tt.simulate(solution.problem_at(2.0), 18.0)
-    assert 2.0 + float(later["turns_over"]) == pytest.approx(float(run["turns_over"]), abs=1e-9)
-    assert float(names["later"]["turns_over"]) > float(later["turns_over"])
+    assert 2.0 + float(later["turnover_time"]) == pytest.approx(
+        float(run["turnover_time"]), abs=1e-9
+    )
+    assert float(names["later"]["turnover_time"]) > float(later["turnover_time"])

@@ -23,6 +23,7 @@ from tippetop.cli.commands import app
 from tippetop.page_engine import HERE
 from tippetop.support import units
 from tippetop.support.errors import InvalidInput
+from tippetop.sweeps.draws import RangeColumn
 from tippetop.sweeps.grid import Product
 
 PINT: Any = pint.UnitRegistry()
@@ -190,7 +191,7 @@ def test_axes_of_sweeps_have_units() -> None:
         assert found == pytest.approx(wanted.axes[0].values, rel=1e-15)
     spaced = Product.of({"launch.tilt": {"from": "0 deg", "to": "90 deg", "count": 3}})
     assert spaced.axes[0].values.tolist() == [0.0, math.pi / 4.0, math.pi / 2.0]
-    drawn = tt.Range("body.shape.radius", "1 cm", "2 cm")
+    drawn = RangeColumn("body.shape.radius", "1 cm", "2 cm")
     assert (drawn.low, drawn.high) == (0.01, 0.02)
 
 
@@ -205,7 +206,7 @@ def test_axes_of_sweeps_have_units() -> None:
 )
 def test_axes_of_the_command_line_have_units(tmp_path: Any, axis: str, values: list[float]) -> None:
     out = str(tmp_path / "a.zarr")
-    words = ["sweep", "--axis", axis, "--duration", "1 ms", "--workers", "1", "--no-maps"]
+    words = ["sweep", "--over", axis, "--duration", "1 ms", "--workers", "1", "--no-maps"]
     done = CliRunner().invoke(app, [*words, "--out", out])
     assert done.exit_code == 0, done.output
     found = tt.read_sweep(out)
@@ -218,7 +219,7 @@ def test_options_have_units() -> None:
     words = ["simulate", "--json", "--spin", "2200rpm", "--tilt", "5 deg", "--duration", "100ms"]
     done = CliRunner().invoke(app, [*words, "--samples", "3"])
     told = json.loads(done.stdout)
-    assert told["duration"] == 0.1
+    assert told["end_time"] == 0.1
     assert told["problem"]["launch"]["spin"] == pytest.approx(2200.0 * TURN / 60.0, rel=1e-15)
     assert told["problem"]["launch"]["tilt"] == pytest.approx(math.radians(5.0), rel=1e-15)
 
@@ -228,7 +229,7 @@ def test_step_and_sample_times_of_a_run_have_units() -> None:
     problem = tt.presets.report_problem()
     steps = [tt.simulate(problem, 0.1, integrator="rk4", step=step) for step in STEPS]
     assert [run.attrs["step"] for run in steps] == [pytest.approx(0.001, rel=1e-15)] * len(STEPS)
-    assert np.ptp([float(run["theta"][-1]) for run in steps]) == 0.0
+    assert np.ptp([float(run["tilt"][-1]) for run in steps]) == 0.0
     for times in SAMPLE_TIMES:
         run = tt.simulate(problem, "100 ms", times=times)
         assert run["time"].values.tolist() == [0.05, 0.1]

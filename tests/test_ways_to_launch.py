@@ -128,8 +128,8 @@ def test_sweeps_launch_the_same() -> None:
     found = tt.sweep(base, {"launch.velocity.2": heights}, duration=0.05, workers=1)
     for place, up in enumerate(heights):
         alone = tt.simulate(base.replace({"launch.velocity.2": up}), 0.05, samples=2)
-        assert found["final_theta"].values[place] == pytest.approx(
-            float(alone["theta"][-1]), rel=1e-7
+        assert found["final_tilt"].values[place] == pytest.approx(
+            float(alone["tilt"][-1]), rel=1e-7
         )
 
 

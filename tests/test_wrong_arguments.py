@@ -71,14 +71,14 @@ def test_a_whole_number_beyond_all_floats():
 @pytest.mark.parametrize("name", OF_A_RUN)
 def test_what_is_no_run(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    for wrong in (*NONE.values(), xr.Dataset(), run()["theta"], run()[["theta"]]):
+    for wrong in (*NONE.values(), xr.Dataset(), run()["tilt"], run()[["tilt"]]):
         refused("run", OF_A_RUN[name], wrong)
     for wrong in (run().isel(time=[]), run().isel(time=0)):
         refused("run", OF_A_RUN[name], wrong)
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("lost", ["problem", "outcome", "outcome_advice", "integrator"])
+@pytest.mark.parametrize("lost", ["problem", "status", "message", "integrator"])
 def test_a_run_that_lost_an_attribute(lost):
     poor = run().copy()
     del poor.attrs[lost]
@@ -97,7 +97,7 @@ def test_a_run_is_not_written_under_the_ending_of_another_kind(name, tmp_path):
 
 
 def test_some_samples_of_a_run_are_a_run():
-    assert tt.summarize(run().isel(time=slice(2, 4)))["final"]["theta"] == run()["theta"][3]
+    assert tt.summarize(run().isel(time=slice(2, 4)))["final"]["tilt"] == run()["tilt"][3]
 
 
 @pytest.mark.parametrize("wrong", NONE)
@@ -118,7 +118,7 @@ def test_no_gravity_to_stand_in(gravity):
 @pytest.mark.parametrize(
     ("field", "wrong"),
     [
-        *(("phase_limit", bad) for bad in (-1, 1.5, "many", None, True)),
+        *(("mode_limit", bad) for bad in (-1, 1.5, "many", None, True)),
         *(("step_limit", bad) for bad in (-1, 1.5, "many", None, True)),
         ("times", np.zeros((2, 2))),
     ],
@@ -130,7 +130,7 @@ def test_limits_and_times_of_a_run(field, wrong):
 @pytest.mark.parametrize(
     ("field", "wrong"),
     [
-        *(("fps", bad) for bad in (0, "a", float("nan"), True)),
+        *(("frame_rate", bad) for bad in (0, "a", float("nan"), True)),
         *(("speed", bad) for bad in (0, "a", float("nan"), None)),
         *(("pixels", bad) for bad in (3, "ab", (64,), (64, 64, 64), (64.0, 64.0), (65, 64), 0)),
     ],
@@ -181,7 +181,7 @@ def test_changes_that_are_no_dict(wrong):
     "wrong", [[1], [("launch.spin", [50.0], 3)], [(None, [50.0])], ["launch.spin"], 3]
 )
 def test_axes_that_are_no_table(wrong):
-    refused("axes", lambda: tt.sweep(PROBLEM, wrong, duration=1.0, workers=1))
+    refused("over", lambda: tt.sweep(PROBLEM, wrong, duration=1.0, workers=1))
 
 
 @pytest.mark.parametrize("wrong", [3, None])
@@ -240,17 +240,17 @@ def test_a_field_in_its_place_and_by_its_name(name):
     refused(name, lambda: Listed("launch.spin", (1.0,), **{name: (2.0,)}))
 
 
-@pytest.mark.parametrize("name", ["problem", "grid", "axes"])
+@pytest.mark.parametrize("name", ["problem", "grid", "over"])
 def test_a_part_of_a_sweep_in_its_place_and_by_its_name(name):
     grid = Product.of({"launch.spin": [1.0]})
     refused(name, lambda: Sweep(PROBLEM, grid, **{name: grid}))
 
 
 def test_a_sweep_of_both_axes_and_draws():
-    draws = tt.Draws((tt.Range("launch.spin", 1.0, 2.0),), count=2)
+    draw = {"launch.spin": {"from": 1.0, "to": 2.0}}
     refused(
-        "axes, draws, samples",
-        lambda: Sweep(PROBLEM, Product.of({"launch.tilt": [0.1]}), draws=draws),
+        "over, draw",
+        lambda: Sweep(PROBLEM, Product.of({"launch.tilt": [0.1]}), draw=draw),
     )
 
 
@@ -300,6 +300,6 @@ def test_no_number_for_a_patch(size):
 
 @pytest.mark.parametrize("ends", [(-1.7e308, 1.7e308), (1e-200, 1e200), (1e200, 1e-200)])
 def test_ends_of_an_axis_too_far_apart_for_numbers(ends):
-    spacing = "linear" if ends[0] < 0.0 else "geometric"
+    spacing = "linear" if ends[0] < 0.0 else "log"
     entry = {"from": ends[0], "to": ends[1], "count": 3, "spacing": spacing}
     refused("friction.mu", Product.of, {"friction.mu": entry})

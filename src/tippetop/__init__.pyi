@@ -1,7 +1,7 @@
 """The public names, and where they live: the package loads them from here."""
 
 from . import extend as extend
-from .contact.mode import Outcome as Outcome
+from .contact.mode import Status as Status
 from .engines.bodies import write_mjcf as write_mjcf
 from .engines.bodies import write_urdf as write_urdf
 from .export.glb import write_glb as write_glb
@@ -10,8 +10,8 @@ from .export.movie import write_movie as write_movie
 from .export.solid import write_solid as write_solid
 from .export.tables import write_csv as write_csv
 from .export.tables import write_parquet as write_parquet
-from .figures.fits import plot_fit as plot_fit
-from .figures.overview import plot as plot
+from .figures.plotting import plot as plot
+from .fit.fitted import Comparison as Comparison
 from .fit.fitted import FitResult as FitResult
 from .fit.fitted import compare_fits as compare_fits
 from .fit.improve import ImprovedTop as ImprovedTop
@@ -19,8 +19,11 @@ from .fit.improve import improve as improve
 from .fit.least_squares import fit as fit
 from .fit.measurement import Measurement as Measurement
 from .fit.measurement import read_measurement as read_measurement
+from .fit.planning import PlannedMeasurement as PlannedMeasurement
 from .fit.planning import plan_measurement as plan_measurement
 from .fit.sensitivities import sensitivities as sensitivities
+from .fit.stored import read_fit as read_fit
+from .fit.stored import write_fit as write_fit
 from .lab.notebook import view as view
 from .lathe.design import design_bowl as design_bowl
 from .lathe.design import design_insert as design_insert
@@ -41,15 +44,15 @@ from .problem.hertz_patch import hertz_patch_radius as hertz_patch_radius
 from .problem.implausible import Implausible as Implausible
 from .problem.launch import Launch as Launch
 from .problem.problem import Problem as Problem
-from .problem.problem import get as get
 from .problem.shapes import EccentricSphere as EccentricSphere
 from .problem.shapes import Oval as Oval
 from .problem.shapes import Ring as Ring
 from .problem.shapes import Shape as Shape
 from .problem.shapes import Sphere as Sphere
 from .problem.shapes import Spheroid as Spheroid
-from .results.catalogue import Ending as Ending
+from .results.catalogue import Outcome as Outcome
 from .results.dataframes import to_dataframe as to_dataframe
+from .results.description import Account as Account
 from .results.description import describe as describe
 from .results.netcdf import read_run as read_run
 from .results.netcdf import write_run as write_run
@@ -61,14 +64,15 @@ from .support.errors import InvalidInput as InvalidInput
 from .support.errors import NotConverged as NotConverged
 from .support.errors import TippetopError as TippetopError
 from .support.errors import Unavailable as Unavailable
-from .sweeps.grid import Draws as Draws
-from .sweeps.grid import Range as Range
 from .sweeps.run_sweep import sweep as sweep
 from .sweeps.store import read_sweep as read_sweep
 from .theory.drilling import standing_time as standing_time
 from .theory.overview import steady_states as steady_states
+from .theory.prediction import Prediction as Prediction
 from .theory.prediction import predict as predict
+from .theory.steady import SteadyState as SteadyState
 from .theory.stem import least_jellett_to_stand as least_jellett_to_stand
+from .theory.thresholds import CriticalSpins as CriticalSpins
 from .theory.thresholds import critical_spins as critical_spins
 
 __version__: str

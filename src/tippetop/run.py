@@ -8,9 +8,9 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from tippetop import __version__
-from tippetop.contact.mode import Event, Outcome, Segment, ambiguity_of
+from tippetop.contact.mode import Event, Segment, Status, ambiguity_of
 from tippetop.contact.natural_launch import NaturalLaunch
-from tippetop.contact.trajectory import PHASE_LIMIT, STEP_LIMIT, Trajectory, require_limits
+from tippetop.contact.trajectory import MODE_LIMIT, STEP_LIMIT, Trajectory, require_limits
 from tippetop.graph.own_parts import require_recordable
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.mechanics.invariants import energy
@@ -18,10 +18,11 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.units import Units
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
+from tippetop.results.catalogue import Outcome
 from tippetop.results.dataset import assemble
 from tippetop.results.derived import variables_of
 from tippetop.results.event_functions import EventSearch, FunctionEvent, Value
-from tippetop.results.metrics import metrics
+from tippetop.results.metrics import metrics, outcomes_of
 from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import RunMetrics
 from tippetop.results.run_solution import RunSolution
@@ -45,7 +46,7 @@ def simulate(
     integrator: str | Integrator | None = None,
     tolerance: float | None = None,
     step: float | None = None,
-    phase_limit: int = PHASE_LIMIT,
+    mode_limit: int = MODE_LIMIT,
     step_limit: int = STEP_LIMIT,
     callback: Callable[[float], None] | None = None,
 ) -> xr.Dataset: ...
@@ -64,13 +65,13 @@ def simulate(
     integrator: str | Integrator | None = None,
     tolerance: float | None = None,
     step: float | None = None,
-    phase_limit: int = PHASE_LIMIT,
+    mode_limit: int = MODE_LIMIT,
     step_limit: int = STEP_LIMIT,
     callback: Callable[[float], None] | None = None,
 ) -> tuple[xr.Dataset, RunSolution]: ...
 
 
-@np.errstate(all="ignore")  # numbers that overflow end the run with an outcome of their own
+@np.errstate(all="ignore")  # numbers that overflow end the run with an status of their own
 def simulate(
     problem: Problem,
     duration: float,
@@ -83,7 +84,7 @@ def simulate(
     integrator: str | Integrator | None = None,
     tolerance: float | None = None,
     step: float | None = None,
-    phase_limit: int = PHASE_LIMIT,
+    mode_limit: int = MODE_LIMIT,
     step_limit: int = STEP_LIMIT,
     callback: Callable[[float], None] | None = None,
 ) -> xr.Dataset | tuple[xr.Dataset, RunSolution]:
@@ -106,8 +107,8 @@ def simulate(
         reported with the others. A function may have a `direction`, and be `terminal`: see
         `tippetop.extend.EventFunction`.
     until
-        Event that ends the run early, with the outcome "stopped": the name of a function in
-        `events`, a kind of event such as "lift-off" or "stick", or a function whose first change
+        Event that ends the run early, with the status "stopped": the name of a function in
+        `events`, a kind of event such as "liftoff" or "stick", or a function whose first change
         of sign ends the run. If an impact ends it, the last sample is just before the impact, and
         the numbers of the end are those just after.
     dense
@@ -120,7 +121,7 @@ def simulate(
         Relative error per step; None for the integrator's default. Only for an integrator by name.
     step
         Step size, s, or a text such as "1 ms", or a quantity of pint; only for "rk4".
-    phase_limit
+    mode_limit
         Number of contact modes, such as sliding and flight, after which the run ends early.
     step_limit
         Number of steps of the integrator after which the run ends early; it is checked after every
@@ -134,8 +135,8 @@ def simulate(
         The variables of `tippetop.results.catalogue` with their SI units. Over `time`: those of
         `SAMPLED` and `DERIVED`, and the contact mode. Over `event` and `flight`: those of `LISTED`.
         Single numbers: those of `METRICS`, which are events and extremes of the motion and do not
-        depend on the samples, and of `MONITORS`. Attributes: problem (JSON), outcome,
-        outcome_advice, integrator (every one that took steps), tolerance (the largest) or step,
+        depend on the samples, and of `MONITORS`. Attributes: problem (JSON), status,
+        message, integrator (every one that took steps), tolerance (the largest) or step,
         tippetop_version, Conventions. If the run ends before `duration`, the last sample is at its
         end, unless its numbers overflowed.
     RunSolution
@@ -150,12 +151,12 @@ def simulate(
     --------
     >>> import tippetop as tt
     >>> run = tt.simulate(tt.presets.report_problem(spin=155.0), duration=20.0)
-    >>> round(float(run["turns_over"]), 2), round(float(run["theta"][-1]), 2)  # s, rad
+    >>> round(float(run["turnover_time"]), 2), round(float(run["tilt"][-1]), 2)  # s, rad
     (5.88, 3.14)
     >>> bool(run["energy_error"] < 1e-12)
     True
     >>> run = tt.simulate(tt.presets.report_problem(), 20.0, until=lambda s: s.axis[2] - 0.5)
-    >>> run.attrs["outcome"], round(float(run["theta"][-1]), 6)  # at 60 degrees
+    >>> run.attrs["status"], round(float(run["tilt"][-1]), 6)  # at 60 degrees
     ('stopped', 1.047198)
     """
     require_problem(problem)
@@ -165,7 +166,7 @@ def simulate(
     start = NaturalLaunch.of(problem)
     units = start.units
     duration = number_in("duration", duration, "s")
-    require_limits(duration, units.time, phase_limit, step_limit)
+    require_limits(duration, units.time, mode_limit, step_limit)
     duration = float(duration)
     grid = sample_times(duration, samples, times)
     step = number_in("step", step, "s")
@@ -173,7 +174,7 @@ def simulate(
     method = integrator_of(integrator, tolerance, step, units)
     warn_if_implausible(problem)
     end = duration / units.time
-    trajectory = Trajectory(start.automaton, start.first, end, method, phase_limit, step_limit)
+    trajectory = Trajectory(start.automaton, start.first, end, method, mode_limit, step_limit)
     recorder = Recorder.of(start, grid / units.time)
     run_metrics = RunMetrics(start.top, start.state)
     segments = list[Segment]()
@@ -184,17 +185,17 @@ def simulate(
             segments += block.segments
         if callback is not None:
             callback(trajectory.time / trajectory.end)
-    outcome = recorder.outcome_of(trajectory)
-    breach = recorder.breach_of(trajectory) if outcome is Outcome.INACCURATE else ""
+    status = recorder.status_of(trajectory)
+    breach = recorder.breach_of(trajectory) if status is Status.INACCURATE else ""
     attributes = {
         "title": "Motion of a spinning top on a table",
         "problem": problem.to_json(),
-        "outcome": outcome.name.lower(),
-        "outcome_advice": " ".join(
+        "status": status.name.lower(),
+        "message": " ".join(
             filter(
                 None,
                 (
-                    outcome.value,
+                    status.value,
                     trajectory.detail,
                     breach,
                     ambiguity_of(trajectory.events),
@@ -208,7 +209,7 @@ def simulate(
         "tippetop_version": __version__,
     }
     readers = recorder, run_metrics
-    run = read_off(start, readers, trajectory, outcome, grid, duration, search.events, attributes)
+    run = read_off(start, readers, trajectory, status, grid, duration, search.events, attributes)
     return (run, RunSolution(start, segments, run)) if dense else run
 
 
@@ -216,7 +217,7 @@ def read_off(
     start: NaturalLaunch,
     readers: tuple[Recorder, RunMetrics],
     trajectory: Trajectory,
-    outcome: Outcome,
+    status: Status,
     grid: NDArray[np.float64],
     duration: float,
     function_events: Sequence[FunctionEvent] = (),
@@ -232,8 +233,8 @@ def read_off(
         The recorder and the metrics that took the trajectory's blocks.
     trajectory
         The trajectory.
-    outcome
-        The outcome of the run.
+    status
+        The status of the run.
     grid, duration
         The requested sample times, shape (k,), and length of the run, s.
     function_events
@@ -244,21 +245,22 @@ def read_off(
     recorder, run_metrics = readers
     top, units, state = start.top, start.units, start.state
     is_finite = bool(np.all(np.isfinite(trajectory.state.pack())))
-    early = outcome is not Outcome.COMPLETED and is_finite
+    early = status is not Status.COMPLETED and is_finite
     sampled = recorder.finish(trajectory.time, trajectory.state, early)
     ends = run_metrics.ends(
-        trajectory.state, trajectory.time, outcome, trajectory.events, recorder.sums
+        trajectory.state, trajectory.time, status, trajectory.events, recorder.sums
     )
-    peak_tilt, peak_time = run_metrics.peak
+    max_tilt, max_tilt_time = run_metrics.peak
     begin = State.unpack([np.float64(number) for number in state.pack()])
     end_time = duration if trajectory.time == trajectory.end else trajectory.time * units.time
     scalars = metrics(ends, begin, top, units) | {
+        "outcome": Outcome(int(outcomes_of(ends, begin))).name.lower(),
         "end_time": end_time,
-        "energy_start": float(energy(state, top)) * units.energy,
-        "impact_energy_lost": ends.struck * units.energy,
-        "peak_tilt": peak_tilt,
-        "peak_time": peak_time * units.time,
-        "settled_since": run_metrics.settled_since * units.time,
+        "initial_energy": float(energy(state, top)) * units.energy,
+        "energy_lost_impacts": ends.struck * units.energy,
+        "max_tilt": max_tilt,
+        "max_tilt_time": max_tilt_time * units.time,
+        "settling_time": run_metrics.settling_time * units.time,
         "evaluations": run_metrics.evaluations,
         "energy_error": recorder.monitor.energy_error,
         "jellett_drift": recorder.monitor.jellett_drift,
@@ -323,7 +325,7 @@ def _flight_arrays(
     return {
         "flight_start": starts * units.time,
         "flight_end": ends * units.time,
-        "flight_highest_gap": gaps * units.length,
+        "flight_max_gap": gaps * units.length,
     }
 
 

@@ -21,8 +21,8 @@ STEPS = (2e-3, 1e-3, 5e-4)
 
 PLAIN_ROW = {
     "holds_until": 0.0,
-    "turns_over": None,
-    "turns_over_exactly": None,
+    "turnover_time": None,
+    "turnover_time_exactly": None,
     "energy_error": None,
     "jellett_error": None,
     "microseconds_per_step": 1.0,

@@ -40,7 +40,7 @@ def test_csv_holds_every_number_with_its_unit(flying: xr.Dataset, tmp_path: Path
     with path.open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == flying.sizes["time"]
-    assert [float(row["theta (rad)"]) for row in rows] == flying["theta"].values.tolist()
+    assert [float(row["tilt (rad)"]) for row in rows] == flying["tilt"].values.tolist()
     assert [float(row["velocity_z (m s-1)"]) for row in rows] == flying["velocity"].values[
         :, 2
     ].tolist()
@@ -50,7 +50,7 @@ def test_csv_holds_every_number_with_its_unit(flying: xr.Dataset, tmp_path: Path
 def test_csv_leaves_what_is_not_a_number_empty(tmp_path: Path) -> None:
     run = tt.simulate(tt.presets.report_problem(spin=10.0, tilt=0.0), 0.1, samples=3)
     with write_csv(run, tmp_path / "run.csv").open(newline="", encoding="utf-8") as file:
-        assert next(csv.DictReader(file))["phi_dot (rad s-1)"] == ""
+        assert next(csv.DictReader(file))["precession (rad s-1)"] == ""
 
 
 def test_glb_plays_the_run(flying: xr.Dataset, tmp_path: Path) -> None:
@@ -87,7 +87,7 @@ def test_films_and_models_of_a_part_of_a_run_begin_where_it_does(
         return poses_at(run, times)
 
     monkeypatch.setattr("tippetop.export.movie.poses_at", seen)
-    write_movie(part, tmp_path / "part.gif", fps=10.0, pixels=(96, 72))
+    write_movie(part, tmp_path / "part.gif", frame_rate=10.0, pixels=(96, 72))
     assert drawn[0] == pytest.approx(start + 0.1 * np.arange(len(drawn[0])))
     assert end - 0.1 < drawn[0][-1] <= end
 
@@ -141,7 +141,7 @@ def test_gif_has_a_picture_for_every_moment(short: xr.Dataset, tmp_path: Path) -
     path = write_movie(
         short,
         tmp_path / "run.gif",
-        fps=10.0,
+        frame_rate=10.0,
         pixels=(96, 72),
         progress=lambda *so_far: told.append(so_far),
     )
@@ -156,7 +156,7 @@ def test_gif_has_a_picture_for_every_moment(short: xr.Dataset, tmp_path: Path) -
     shutil.which("ffmpeg") is None, reason="ffmpeg makes .mp4 files and is not on the PATH"
 )
 def test_mp4_is_written_whole(short: xr.Dataset, tmp_path: Path) -> None:
-    path = write_movie(short, tmp_path / "run.mp4", fps=10.0, pixels=(96, 72))
+    path = write_movie(short, tmp_path / "run.mp4", frame_rate=10.0, pixels=(96, 72))
     assert path.read_bytes()[4:8] == b"ftyp"
     assert [entry.name for entry in tmp_path.iterdir()] == ["run.mp4"]
 
@@ -183,7 +183,7 @@ def test_what_ffmpeg_says_is_passed_on(
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"fps": 0.0}, {"speed": -1.0}, {"pixels": (97, 72)}, {"speed": 1e-9}],
+    [{"frame_rate": 0.0}, {"speed": -1.0}, {"pixels": (97, 72)}, {"speed": 1e-9}],
     ids=str,
 )
 def test_films_that_cannot_be_are_refused(
@@ -213,7 +213,7 @@ def test_a_file_that_exists_is_kept_unless_told_otherwise(
     with pytest.raises(tt.FileTrouble, match="overwrite=True"):
         write(short, path)
     assert path.read_text() == "mine"
-    options = {"fps": 2.0, "pixels": (32, 32)} if write is write_movie else {}
+    options = {"frame_rate": 2.0, "pixels": (32, 32)} if write is write_movie else {}
     write(short, path, True, **options)
     assert path.stat().st_size > 100
 
@@ -222,7 +222,9 @@ def test_a_file_that_exists_is_kept_unless_told_otherwise(
 def test_a_gif_plays_in_time_at_any_rate(
     short: xr.Dataset, tmp_path: Path, asked: float, each: int
 ) -> None:
-    with Image.open(write_movie(short, tmp_path / "run.gif", fps=asked, pixels=(32, 32))) as film:
+    with Image.open(
+        write_movie(short, tmp_path / "run.gif", frame_rate=asked, pixels=(32, 32))
+    ) as film:
         assert film.info["duration"] == each
         total = sum(_shown(film, number) for number in range(film.n_frames))
     assert 500 < total <= 500 + each

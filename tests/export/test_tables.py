@@ -41,12 +41,12 @@ def test_samples_have_a_column_for_every_component(flying: xr.Dataset) -> None:
 def test_events_and_flights_are_tables_of_their_own(flying: xr.Dataset) -> None:
     events, flights = (tt.to_dataframe(flying, name) for name in ("events", "flights"))
     assert list(events.columns) == ["time", "kind", "impulse", "energy_lost", "surface"]
-    assert list(flights.columns) == ["start", "end", "highest_gap"]
+    assert list(flights.columns) == ["start", "end", "max_gap"]
     assert len(flights) == int(flying["flights"]) > 0
     lasting = (flights["end"] - flights["start"]).sum()
     assert lasting == pytest.approx(float(flying["airborne_time"]), rel=1e-12)
     assert events["energy_lost"].sum() == pytest.approx(
-        float(flying["impact_energy_lost"]), rel=1e-12
+        float(flying["energy_lost_impacts"]), rel=1e-12
     )
     assert events.attrs["units"]["impulse"] == "N s"
 
@@ -60,15 +60,17 @@ def test_a_sweep_is_a_table_of_launches(swept: xr.Dataset) -> None:
         for name in swept.data_vars:
             value = cell[name].item()
             assert row[name] == value or (np.isnan(row[name]) and np.isnan(value)), name
-    assert set(table.query("tilt > 3.2")["outcome"]) == {"bad"}
+    assert set(table.query("tilt > 3.2")["outcome"]) == {"invalid"}
     assert table.attrs["units"]["spin"] == "rad s-1"
     assert len(tt.to_dataframe(swept.isel(spin=0, tilt=0))) == 1
 
 
 def test_draws_are_a_table_too() -> None:
-    draws = tt.Draws((tt.Range("launch.spin", 10.0, 200.0),), count=3, seed=1)
-    table = tt.to_dataframe(tt.sweep(tt.presets.report_problem(), draws, duration=0.01))
-    assert list(table.columns[:2]) == ["sample", "spin"]
+    spins = {"launch.spin": {"from": 10.0, "to": 200.0}}
+    table = tt.to_dataframe(
+        tt.sweep(tt.presets.report_problem(), draw=spins, count=3, duration=0.01)
+    )
+    assert list(table.columns[:2]) == ["draw", "spin"]
     assert table["spin"].between(10.0, 200.0).all()
 
 
@@ -100,7 +102,7 @@ def test_csv_and_parquet_hold_sweeps(swept: xr.Dataset, tmp_path: Path) -> None:
 def test_csv_holds_the_tables_of_a_run(flying: xr.Dataset, tmp_path: Path) -> None:
     path = tt.write_csv(flying, tmp_path / "flights.csv", table="flights")
     head, *rows = path.read_text().splitlines()
-    assert head == "start (s),end (s),highest_gap (m)"
+    assert head == "start (s),end (s),max_gap (m)"
     assert [float(row.split(",")[0]) for row in rows] == flying["flight_start"].values.tolist()
 
 

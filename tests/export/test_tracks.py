@@ -50,18 +50,18 @@ def test_of_a_part_of_a_run_only_what_it_shows_is_told(flying: xr.Dataset) -> No
     shaded = track.flights(part)
     assert (shaded[0][0], shaded[-1][1]) == (first, last)
     assert shaded[1:-1] == np.stack([starts[3:6], ends[3:6]], axis=1).tolist()
-    turns_over = float(flying["turns_over"])
-    assert not first < turns_over < last
-    assert track.unpack_header(track.pack_run(part))["turns_over"] is None
-    about = flying.sel(time=slice(turns_over - 0.1, turns_over + 0.1))
-    assert track.unpack_header(track.pack_run(about))["turns_over"] == turns_over
+    turnover_time = float(flying["turnover_time"])
+    assert not first < turnover_time < last
+    assert track.unpack_header(track.pack_run(part))["turnover_time"] is None
+    about = flying.sel(time=slice(turnover_time - 0.1, turnover_time + 0.1))
+    assert track.unpack_header(track.pack_run(about))["turnover_time"] == turnover_time
 
 
 def test_friction_takes_the_energy_that_slides_away() -> None:
     problem = tt.presets.report_problem(spin=155.0)
     run = tt.simulate(problem, 5.0, samples=20001)
     force = run["contact_force"].values[:, :2]
-    phi = run["phi"].values
+    phi = run["azimuth"].values
     slip_x, slip_y = run["slip_x"].values, run["slip_y"].values
     slip = np.stack(
         [slip_x * np.cos(phi) - slip_y * np.sin(phi), slip_x * np.sin(phi) + slip_y * np.cos(phi)],

@@ -63,7 +63,7 @@ def test_others_read_the_file_as_it_is(written):
     with xr.open_dataset(written, engine="h5netcdf") as opened:
         xr.testing.assert_identical(opened.load(), tt.read_run(written))
     with xr.open_dataset(written) as opened:
-        assert opened.attrs["outcome"] == tt.read_run(written).attrs["outcome"]
+        assert opened.attrs["status"] == tt.read_run(written).attrs["status"]
 
 
 def test_a_run_for_which_there_is_no_memory_is_refused_before_it_is_read(

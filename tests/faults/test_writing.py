@@ -49,7 +49,7 @@ def write(path, content="new", overwrite=False):
 
 
 def small_movie(run, path, overwrite=False):
-    return write_movie(run, path, overwrite, fps=5.0, pixels=(32, 32))
+    return write_movie(run, path, overwrite, frame_rate=5.0, pixels=(32, 32))
 
 
 WRITERS = [
@@ -320,7 +320,7 @@ bundle.built = lambda name: "/*!\\nnotices\\n*/\\nplayer"
 run = tt.simulate(tt.presets.report_problem(), 0.2, samples=101)
 writers = {"nc": tt.write_run, "csv": write_csv, "glb": write_glb}
 writers |= {"html": write_html}
-writers["gif"] = lambda run, path: write_movie(run, path, fps=5.0, pixels=(64, 64))
+writers["gif"] = lambda run, path: write_movie(run, path, frame_rate=5.0, pixels=(64, 64))
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 for size in map(int, sys.argv[2:]):
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))

@@ -84,7 +84,7 @@ def test_derivatives_are_those_of_the_drop():
 def test_a_direction_without_effect_is_named():
     # Of a body without slip and friction's part only the product of mass and nothing else counts:
     # the mass cancels from the motion when inertias go with it, and the azimuth from the tilt.
-    data = tt.Measurement.of_variables(TIMES[:20], {"theta": 0.1 + 0.001 * np.arange(20)})
+    data = tt.Measurement.of_variables(TIMES[:20], {"tilt": 0.1 + 0.001 * np.arange(20)})
     fitted = tt.fit(TRUE, data, ["friction.mu", "launch.azimuth"], starts=1)
     assert fitted.errors["launch.azimuth"] == np.inf
     assert any("launch.azimuth" in direction for direction in fitted.undetermined)
@@ -93,8 +93,8 @@ def test_a_direction_without_effect_is_named():
 
 def test_unknown_noise_is_estimated(run):
     rng = np.random.default_rng(3)
-    tilt = run["theta"].values + rng.normal(0.0, 0.01, len(TIMES))
-    data = tt.Measurement.of_variables(TIMES, {"theta": tilt})
+    tilt = run["tilt"].values + rng.normal(0.0, 0.01, len(TIMES))
+    data = tt.Measurement.of_variables(TIMES, {"tilt": tilt})
     fitted = tt.fit(TRUE, data, "friction.mu")
     assert fitted.noise[0][0] == pytest.approx(0.01, rel=4 / np.sqrt(2 * len(TIMES)))
     stated = tt.fit(TRUE, data, "friction.mu", noise=0.01)
@@ -104,8 +104,8 @@ def test_unknown_noise_is_estimated(run):
 
 def test_a_profile_agrees_where_the_model_is_linear(run):
     rng = np.random.default_rng(4)
-    tilt = run["theta"].values + rng.normal(0.0, 1e-4, len(TIMES))
-    data = tt.Measurement.of_variables(TIMES, {"theta": tilt}, noise=1e-4)
+    tilt = run["tilt"].values + rng.normal(0.0, 1e-4, len(TIMES))
+    data = tt.Measurement.of_variables(TIMES, {"tilt": tilt}, noise=1e-4)
     fitted = tt.fit(TRUE, data, ["friction.mu", "launch.tilt"])
     assert fitted.profile("friction.mu") == pytest.approx(fitted.interval("friction.mu"), rel=1e-4)
 
@@ -113,8 +113,8 @@ def test_a_profile_agrees_where_the_model_is_linear(run):
 def test_events_alone_give_friction():
     # At small friction mu t is the same for all mu: twice the friction turns over in half the time.
     slow, fast = TRUE.replace({"friction.mu": 0.02}), TRUE.replace({"friction.mu": 0.04})
-    seen = float(tt.simulate(slow, 100.0, samples=2)["turns_over"])
-    fitted = tt.fit(fast, tt.Measurement.of_events({"turns_over": 0.6 * seen}), "friction.mu")
+    seen = float(tt.simulate(slow, 100.0, samples=2)["turnover_time"])
+    fitted = tt.fit(fast, tt.Measurement.of_events({"turnover_time": 0.6 * seen}), "friction.mu")
     assert fitted.problem.friction.mu == pytest.approx(0.02 / 0.6, rel=0.01)
 
 
@@ -123,8 +123,8 @@ def test_laws_are_told_apart_or_not(run):
     dry = {"friction.kind": "regularized_coulomb", "friction.mu": 0.3}
 
     def compared(noise):
-        tilt = run["theta"].values + rng.normal(0.0, noise, len(TIMES))
-        data = tt.Measurement.of_variables(TIMES, {"theta": tilt}, noise=noise)
+        tilt = run["tilt"].values + rng.normal(0.0, noise, len(TIMES))
+        data = tt.Measurement.of_variables(TIMES, {"tilt": tilt}, noise=noise)
         fits = {
             "viscous": tt.fit(TRUE, data, "friction.mu"),
             "dry": tt.fit(TRUE.replace(dry), data, {"friction.mu": (0.001, 1.0)}, starts=1),
@@ -163,22 +163,22 @@ def test_wrong_arguments_get_a_sentence(film, arguments, sentence):
 
 
 def test_fewer_data_than_numbers_are_refused():
-    data = tt.Measurement.of_events({"turns_over": 3.0})
+    data = tt.Measurement.of_events({"turnover_time": 3.0})
     with pytest.raises(tt.InvalidInput, match="at least 2"):
         tt.fit(TRUE, data, ["friction.mu", "launch.spin"])
 
 
 def test_a_run_without_the_events_is_refused():
-    data = tt.Measurement.of_events({"turns_over": 0.1})
+    data = tt.Measurement.of_events({"turnover_time": 0.1})
     with pytest.raises(tt.InvalidInput, match="does not show all that was measured"):
         tt.fit(TRUE, data, ["friction.mu"])
 
 
 def test_the_command_fits_a_file(tmp_path, run):
     data, problem, drawn = (tmp_path / name for name in ("film.csv", "mine.toml", "fit.png"))
-    tilt = np.degrees(run["theta"].values) + np.random.default_rng(6).normal(0, 0.5, len(TIMES))
+    tilt = np.degrees(run["tilt"].values) + np.random.default_rng(6).normal(0, 0.5, len(TIMES))
     rows = [f"{t:.4f};{d:.3f}".replace(".", ",") for t, d in zip(TIMES, tilt, strict=True)]
-    data.write_text("\n".join(["t (s);theta (deg)", *rows]))
+    data.write_text("\n".join(["t (s);tilt (deg)", *rows]))
     problem.write_text(GUESSED.to_toml())
     command = ["fit", str(data), str(problem), "--vary", "friction.mu,launch.spin", "--json"]
     answer = CliRunner().invoke(app, [*command, "--plot", str(drawn)], catch_exceptions=False)
@@ -200,7 +200,7 @@ COMMANDS = {
 @pytest.mark.parametrize(("options", "sentence"), COMMANDS.values(), ids=COMMANDS)
 def test_the_command_refuses_in_a_sentence(tmp_path, options, sentence):
     data = tmp_path / "film.csv"
-    data.write_text("t,theta\n0,0.1\n0.1,0.12\n0.2,0.2\n")
+    data.write_text("t,tilt\n0,0.1\n0.1,0.12\n0.2,0.2\n")
     with pytest.raises(tt.InvalidInput, match=sentence) as refusal:
         CliRunner().invoke(app, ["fit", str(data), *options], catch_exceptions=False)
     assert "\n" not in str(refusal.value)

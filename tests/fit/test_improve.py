@@ -33,7 +33,7 @@ def test_a_poor_top_made_better_turns_over(name):
     assert better.spin < USUAL < better.before
     launch = tt.Launch(tilt=0.1, spin=USUAL)
     problem = tt.Problem(body=better.body, friction=CREEP, launch=launch)
-    assert float(tt.simulate(problem, 20.0, samples=2)["turns_over"]) < 20.0
+    assert float(tt.simulate(problem, 20.0, samples=2)["turnover_time"]) < 20.0
     # The solid can be made, and its volume, of a polygon along its profile, has the mass.
     assert better.sizes["wall"] >= 1e-3
     assert better.sizes["stem"] >= 1.5e-3
@@ -56,7 +56,7 @@ def test_goals_are_met_better_than_by_the_least_spin(goal):
 def turning_over(body, spin):
     """Return the time after which a run has turned over, s."""
     problem = tt.Problem(body=body, friction=CREEP, launch=tt.Launch(tilt=0.1, spin=spin))
-    return float(tt.simulate(problem, 20.0, samples=2)["turns_over"])
+    return float(tt.simulate(problem, 20.0, samples=2)["turnover_time"])
 
 
 def lying(body, spin):

@@ -20,16 +20,16 @@ def written(tmp_path):
 
 
 TABLES = {
-    "commas": "t,theta\n0,0.1\n0.02,0.12\n0.04,0.16\n",
+    "commas": "t,tilt\n0,0.1\n0.02,0.12\n0.04,0.16\n",
     "semicolons and decimal commas": "t;theta\n0;0,1\n0,02;0,12\n0,04;0,16\n",
-    "tabs": "t\ttheta\n0\t0.1\n0.02\t0.12\n0.04\t0.16\n",
-    "tabs and decimal commas": "t\ttheta\t\n0,0\t1,0E-1\t\n2,0E-2\t0,12\t\n0,04\t0,16\t\n",
-    "spaces": "t   theta\n0.0  0.1\n0.02 0.12\n0.04 0.16\n",
+    "tabs": "t\ttilt\n0\t0.1\n0.02\t0.12\n0.04\t0.16\n",
+    "tabs and decimal commas": "t\ttilt\t\n0,0\t1,0E-1\t\n2,0E-2\t0,12\t\n0,04\t0,16\t\n",
+    "spaces": "t   tilt\n0.0  0.1\n0.02 0.12\n0.04 0.16\n",
     "units in brackets": "Time [ms],tilt (mrad)\n0,100\n20,120\n40,160\n",
-    "units after a slash": "t / ms;theta / mrad\n0;100\n20;120\n40;160\n",
-    "a byte order mark and a comment": "\ufeff# my film\nt,theta\n0,0.1\n0.02,0.12\n0.04,0.16\n",
-    "the name of a track": "mass_A\nt\ttheta\n0\t0.1\n0.02\t0.12\n0.04\t0.16\n",
-    "a column more": "frame,t,theta\n0,0,0.1\n1,0.02,0.12\n2,0.04,0.16\n",
+    "units after a slash": "t / ms;tilt / mrad\n0;100\n20;120\n40;160\n",
+    "a byte order mark and a comment": "\ufeff# my film\nt,tilt\n0,0.1\n0.02,0.12\n0.04,0.16\n",
+    "the name of a track": "mass_A\nt\ttilt\n0\t0.1\n0.02\t0.12\n0.04\t0.16\n",
+    "a column more": "frame,t,tilt\n0,0,0.1\n1,0.02,0.12\n2,0.04,0.16\n",
 }
 
 
@@ -58,12 +58,12 @@ def test_a_track_of_several_is_chosen_by_its_name(written):
 
 
 def test_numbers_of_pictures_become_times(written):
-    data = tt.read_measurement(written("frame,theta\n10,0.1\n12,0.2\n16,0.3\n"), frame_rate=100.0)
+    data = tt.read_measurement(written("frame,tilt\n10,0.1\n12,0.2\n16,0.3\n"), frame_rate=100.0)
     assert np.allclose(data.times, [0.0, 0.02, 0.06])
 
 
 def test_the_launch_may_be_later_than_the_film(written):
-    data = tt.read_measurement(written("t,theta\n0,1\n1,0.1\n1.5,0.2\n"), start=1.0)
+    data = tt.read_measurement(written("t,tilt\n0,1\n1,0.1\n1.5,0.2\n"), start=1.0)
     assert data.times.tolist() == [0.0, 0.5]
 
 
@@ -83,7 +83,7 @@ def test_a_unit_of_length_is_the_scale(written):
 
 def test_turns_a_minute_and_events_alone(written):
     assert isinstance(tt.read_measurement(written("t,rpm\n0,1500\n1,1400\n")).observation, SpinRate)
-    events = tt.read_measurement(written("event,t (ms)\nturns_over,3100\nlift-off,700\n"))
+    events = tt.read_measurement(written("event,t (ms)\nturnover_time,3100\nliftoff,700\n"))
     assert isinstance(events.observation, EventTimes)
     assert np.allclose(events.values, [[3.1, 0.7]])
 
@@ -91,20 +91,20 @@ def test_turns_a_minute_and_events_alone(written):
 BAD = {
     "empty": ("", "has no numbers"),
     "no header": ("0,0.1\n0.1,0.2\n", "there is no header"),
-    "shuffled": ("t,theta\n0,0.1\n0.2,0.2\n0.1,0.3\n", "times must increase"),
-    "the same time twice": ("t,theta\n0,0.1\n0.1,0.2\n0.1,0.3\n", "times must increase"),
-    "degrees without a unit": ("t,theta\n0,5\n0.1,90\n", r"theta \(deg\)"),
-    "milliseconds without a unit": ("t,theta\n0,0.1\n5000,0.2\n", r"t \(ms\)"),
-    "a wrong unit": ("t (kg),theta\n0,0.1\n1,0.2\n", "unit of column t"),
-    "one picture": ("t,theta\n0,0.1\n", "at least two"),
-    "constant": ("t,theta\n0,0.1\n0.1,0.1\n", "nothing moves"),
-    "text in a column": ("t,theta\n0,0.1\n0.1,blurred\n0.2,0.3\n", "line 3.*blurred"),
-    "a number missing": ("t,theta\n0,0.1\n0.1\n0.2,0.3\n", "line 3"),
-    "no time": ("theta,theta_dot\n0,0.1\n0.1,0.2\n", "have no time"),
-    "columns of another kind": ("t,price\n0,0.1\n0.1,0.2\n", "t and theta"),
-    "infinite": ("t,theta\n0,0.1\n0.1,inf\n", "line 3"),
+    "shuffled": ("t,tilt\n0,0.1\n0.2,0.2\n0.1,0.3\n", "times must increase"),
+    "the same time twice": ("t,tilt\n0,0.1\n0.1,0.2\n0.1,0.3\n", "times must increase"),
+    "degrees without a unit": ("t,tilt\n0,5\n0.1,90\n", r"tilt \(deg\)"),
+    "milliseconds without a unit": ("t,tilt\n0,0.1\n5000,0.2\n", r"t \(ms\)"),
+    "a wrong unit": ("t (kg),tilt\n0,0.1\n1,0.2\n", "unit of column t"),
+    "one picture": ("t,tilt\n0,0.1\n", "at least two"),
+    "constant": ("t,tilt\n0,0.1\n0.1,0.1\n", "nothing moves"),
+    "text in a column": ("t,tilt\n0,0.1\n0.1,blurred\n0.2,0.3\n", "line 3.*blurred"),
+    "a number missing": ("t,tilt\n0,0.1\n0.1\n0.2,0.3\n", "line 3"),
+    "no time": ("tilt,tilt_rate\n0,0.1\n0.1,0.2\n", "have no time"),
+    "columns of another kind": ("t,price\n0,0.1\n0.1,0.2\n", "t and tilt"),
+    "infinite": ("t,tilt\n0,0.1\n0.1,inf\n", "line 3"),
     "points without a view": ("t,x,y\n0,1,2\n1,2,3\n", "'above' or 'side'"),
-    "no such event": ("event,t\nturned,3.1\n", "turns_over"),
+    "no such event": ("event,t\nturned,3.1\n", "turnover_time"),
 }
 
 

@@ -12,9 +12,9 @@ def test_a_plan_foretells_the_errors_of_the_fit():
     ways = tt.plan_measurement(TOP, 1.0, ["friction.mu", "launch.tilt"], noise={"tilt": 2e-4})
     (way,) = [way for way in ways if way.duration == 1.0]
     times = np.linspace(0.0, 1.0, 61)
-    tilt = tt.simulate(TOP, 1.0, times=times)["theta"].values
+    tilt = tt.simulate(TOP, 1.0, times=times)["tilt"].values
     noisy = tilt + np.random.default_rng(2).normal(0.0, 2e-4, 61)
-    film = tt.Measurement.of_variables(times, {"theta": noisy}, noise=2e-4)
+    film = tt.Measurement.of_variables(times, {"tilt": noisy}, noise=2e-4)
     fitted = tt.fit(TOP, film, ["friction.mu", "launch.tilt"])
     # One frame more than 60, and derivatives at the fit instead of the truth.
     assert way.error == pytest.approx(fitted.errors["friction.mu"] / 0.3, rel=0.05)

@@ -103,7 +103,7 @@ def test_random_launches_have_the_events_that_heyoka_finds(seed):
     if problem is None:
         return
     run, same = followed(problem, "taylor"), followed(problem, Heyoka())
-    assert same.attrs["outcome"] == run.attrs["outcome"]
+    assert same.attrs["status"] == run.attrs["status"]
     assert same["event_kind"].values.tolist() == run["event_kind"].values.tolist()
     times = run["event_time"].values
     apart = np.abs(same["event_time"].values - times)

@@ -187,7 +187,7 @@ def test_the_reports_run_is_that_of_the_other_integrators():
         tt.simulate(report_problem(), 0.3, samples=21, integrator=one)
         for one in (PageMethod(), "dop853")
     )
-    np.testing.assert_allclose(own.theta, scipys.theta, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(own.tilt, scipys.tilt, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["page", "taylor", "collocation", "dop853"])

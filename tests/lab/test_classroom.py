@@ -10,7 +10,7 @@ Lab = Callable[..., Visit]
 
 RESULTS = """
 import { readResults, resultCode, resultLink, spinsOf } from "./results.js";
-const run = { problem: { launch: { spin: 123.456 } }, metrics: { final_theta: Math.PI / 2 } };
+const run = { problem: { launch: { spin: 123.456 } }, metrics: { final_tilt: Math.PI / 2 } };
 const code = resultCode(run);
 export const found = {
   code,
@@ -38,7 +38,7 @@ def test_a_class_makes_one_diagram(lab: Lab) -> None:
     page = visitor.page
     assert page.locator(".codes li").count() == 8
     assert "tippetop lab --host" in page.locator(".classroom .refused").inner_text()
-    tilt = float(tt.simulate(tt.presets.report_problem(spin=50.0), 12.0, samples=2)["final_theta"])
+    tilt = float(tt.simulate(tt.presets.report_problem(spin=50.0), 12.0, samples=2)["final_tilt"])
     code = page.locator(".mine").inner_text()
     assert code == f"50 {tilt * 57.29577951308232:.1f}"
     page.locator(".classroom textarea").last.fill(f"{code}\n155 179.9\nnothing\n")

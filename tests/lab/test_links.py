@@ -45,8 +45,8 @@ const state = () => ({
   },
   tab: one(["story", "story", "launch", "own", "compare", "map", "keep"]),
   step: one([0, 0, 1, 4, 9]),
-  plots: random() < 0.5 ? null : some(["theta", "omega3", "slip", "energy"]),
-  free: random() < 0.6 ? null : [one(["time", "theta", "slip"]), one(["omega3", "energy"])],
+  plots: random() < 0.5 ? null : some(["tilt", "spin", "slip", "energy"]),
+  free: random() < 0.6 ? null : [one(["time", "tilt", "slip"]), one(["spin", "energy"])],
   lang: one([null, "en", "de"]),
   theme: one(["auto", "light", "dark"]),
 });

@@ -52,7 +52,7 @@ def test_the_page_is_one_small_file_that_asks_for_nothing(page: Path, lab: Lab) 
         url for url in visitor.requests if not url.startswith(("file:", "blob:", "data:"))
     ] == []
     run = tt.simulate(tt.presets.report_problem(), 20.0, samples=3)
-    turns, since = (float(run[name]) for name in ("turns_over", "settled_since"))
+    turns, since = (float(run[name]) for name in ("turnover_time", "settling_time"))
     assert headline(visitor) == (
         f"Turns over: its axis passes the horizontal at {turns:.2f} s; settles upside down:"
         f" from {since:.2f} s on it stays within 0.6° of that"
@@ -174,10 +174,10 @@ def test_a_pinned_run_plays_beside_the_next(lab: Lab) -> None:
     settled(visitor, "problem.launch.spin === 175")
     assert "155 rad/s → 175 rad/s" in page.locator(".pinned").inner_text()
     ours, theirs = (
-        float(tt.simulate(tt.presets.report_problem(spin=spin), 12.0, samples=3)["turns_over"])
+        float(tt.simulate(tt.presets.report_problem(spin=spin), 12.0, samples=3)["turnover_time"])
         for spin in (175.0, 155.0)
     )
-    cells = page.locator("tr[data-metric=turns_over] td").all_inner_texts()
+    cells = page.locator("tr[data-metric=turnover_time] td").all_inner_texts()
     assert [float(cell) for cell in cells] == pytest.approx([theirs, ours, ours - theirs], abs=1e-3)
     assert visitor.ask("() => tippetopLab.player.scene.ghosts.length") == 1
     other = lab(visitor.ask("() => tippetopLab.link().split('#')[1]"))

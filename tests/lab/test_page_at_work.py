@@ -254,7 +254,7 @@ def test_the_mark_on_every_plot_is_at_the_time_that_is_shown(lab: Lab) -> None:
 
 def test_flights_shade_what_they_fill_once(lab: Lab) -> None:
     """However many there are in a pixel, what flies under the shade is seen."""
-    visitor = lab("tab=launch&duration=2&t=0&plots=theta")
+    visitor = lab("tab=launch&duration=2&t=0&plots=tilt")
     shade = """(count) => {
       const hop = (_, k) => [0.5 + k / count, 0.5 + (k + 1) / count];
       tippetopLab.track.header.flights = Array.from({ length: count }, hop);
@@ -272,13 +272,13 @@ def test_flights_shade_what_they_fill_once(lab: Lab) -> None:
 
 
 def test_a_graph_with_free_axes_tells_the_values_under_the_pointer(lab: Lab) -> None:
-    visitor = lab("tab=launch&launch.spin=155&t=0&free=theta omega3")
+    visitor = lab("tab=launch&launch.spin=155&t=0&free=tilt spin")
     page = visitor.page
     visitor.pause(0.0)
     graph = page.locator(".free svg")
     graph.scroll_into_view_if_needed()
     page.locator(".free select").nth(1).select_option("energy")
-    assert "free=theta+energy" in visitor.ask("() => tippetopLab.link()")
+    assert "free=tilt+energy" in visitor.ask("() => tippetopLab.link()")
     box = graph.bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + 0.9 * box["width"], box["y"] + 0.8 * box["height"])
@@ -288,6 +288,6 @@ def test_a_graph_with_free_axes_tells_the_values_under_the_pointer(lab: Lab) -> 
     assert read is not None, words
     tilt, energy, time = map(float, read.groups())
     at = visitor.ask(
-        "(t) => ['theta', 'energy'].map((name) => tippetopLab.track.value(name, t))", time
+        "(t) => ['tilt', 'energy'].map((name) => tippetopLab.track.value(name, t))", time
     )
     assert [tilt, energy] == pytest.approx([math.degrees(at[0]), 1e3 * at[1]], rel=2e-3)

@@ -133,5 +133,5 @@ def test_a_turned_top_comes_to_lie_on_sphere_and_stem_where_the_hull_says():
     )
     run = tt.simulate(problem, 9.0)
     (both,) = (tilt for tilt in piece.hull.flats)
-    assert run["theta"].values[-1] == pytest.approx(both, abs=1e-9)
+    assert run["tilt"].values[-1] == pytest.approx(both, abs=1e-9)
     assert piece.hull.zones[0].high == both

@@ -111,7 +111,7 @@ def test_slips_and_sticks_up_to_lift_off():
     run = DryRun(*launched(report(CoulombLaw(0.028)), 0.1, 155.0 / SECOND)).follow(8.0 * SECOND)
     assert np.array(run.times("slip")[:4]) / SECOND == pytest.approx(SLIPS, abs=1e-11)
     assert np.array(run.times("stick")[:4]) / SECOND == pytest.approx(STICKS, abs=1e-11)
-    assert run.times("lift-off")[0] / SECOND == pytest.approx(7.858113898308634, abs=1e-9)
+    assert run.times("liftoff")[0] / SECOND == pytest.approx(7.858113898308634, abs=1e-9)
     assert tilt(run) == pytest.approx(1.0658142580452235, abs=1e-8)
 
 

@@ -29,20 +29,20 @@ def named(fields: dict[str, Any]) -> str:
                 DURATION,
                 samples=2,
                 step_limit=STEPS,
-                phase_limit=MODES,
+                mode_limit=MODES,
                 integrator="taylor",
                 tolerance=TOLERANCE,
             )
         except tt.InvalidInput as refusal:
             return refusal.field
-    return str(run.attrs["outcome"])
+    return str(run.attrs["status"])
 
 
 def named_there(found: dict[str, Any]) -> str:
     """The same of what the engine tells."""
     return (
-        found["outcome"]["name"]
-        if "outcome" in found
+        found["status"]["name"]
+        if "status" in found
         else found.get("refused", str(found)).split()[0].removesuffix(":")
     )
 
@@ -52,7 +52,7 @@ def test_hostile_problems_end_as_in_python(seeds: range) -> None:
     drawn = [hostile(np.random.default_rng(seed)) for seed in seeds]
     # Pages have no numbers but those of JSON.
     told = [fields for fields in drawn if not re.search("NaN|Infinity", json.dumps(fields))]
-    limits = {"step_limit": STEPS, "phase_limit": MODES}
+    limits = {"step_limit": STEPS, "mode_limit": MODES}
     asked = {"duration": DURATION, "tolerance": TOLERANCE, "times": TIMES, **limits}
     found = in_javascript([{"problem": fields, **asked} for fields in told])
     ends = [

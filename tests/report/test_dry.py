@@ -43,7 +43,7 @@ def test_the_bound_parts_rolling_from_slipping(computed: dict[str, xr.Dataset]) 
     assert float(data["needed_main"]) == pytest.approx(0.0299, abs=5e-5)
     assert int(data["slips_held"].sum()) == 0
     assert 0.0 < float(data["held_below"]) < 0.1
-    early, late = np.split(data["theta_slips"].values[1:], 2)
+    early, late = np.split(data["tilt_slips"].values[1:], 2)
     assert np.ptp(late) > 1.1 * np.ptp(early)
 
 
@@ -67,8 +67,8 @@ def test_cohens_centre_of_mass_rests_at_launch_and_its_slip_ends(
     assert np.linalg.norm(turning) == pytest.approx(100.0, rel=1e-14)
     assert float(data["sticks"]) == pytest.approx(0.0288, abs=5e-5)
     assert float(data["energy_kept"]) < 1e-9
-    assert float(data["theta_stepped"].sel(step=0.01).max()) > 3.0
-    assert float(data["theta_stepped"].sel(step=0.0005).max()) < 0.5
+    assert float(data["tilt_stepped"].sel(step=0.01).max()) > 3.0
+    assert float(data["tilt_stepped"].sel(step=0.0005).max()) < 0.5
 
 
 def test_smoothed_friction_takes_for_ever_in_the_limit(computed: dict[str, xr.Dataset]) -> None:
@@ -134,8 +134,8 @@ def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) 
     ("name", "experiment", "change", "verdict"),
     [
         ("dry-tilting-rate", "dry-rolling", {"slips_held": 3.0}, Verdict.REPRODUCED),
-        ("dry-cohen-inversion", "dry-cohen", {"theta": 2.0}, Verdict.REPRODUCED),
-        ("dry-cohen-inversion", "dry-cohen", {"theta_stepped": 0.1}, Verdict.CORRECTED),
+        ("dry-cohen-inversion", "dry-cohen", {"tilt": 2.0}, Verdict.REPRODUCED),
+        ("dry-cohen-inversion", "dry-cohen", {"tilt_stepped": 0.1}, Verdict.CORRECTED),
         ("dry-cohen-sliding", "dry-cohen", {"slips_again": 4.0}, Verdict.REPRODUCED),
         ("dry-coulomb-weaker", "dry-smoothed", {"exact_turns": 3.0}, Verdict.REPRODUCED),
         ("dry-patch-inversion", "dry-patch", {"theirs_turns": math.nan}, Verdict.CORRECTED),

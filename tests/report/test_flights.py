@@ -21,7 +21,7 @@ from tippetop.run import simulate
 
 @pytest.fixture(scope="module")
 def computed() -> dict[str, xr.Dataset]:
-    tilts = {"final_theta_flight": variable([math.pi, 3.1], "rad", "tilt", "spin_flight")}
+    tilts = {"final_tilt_flight": variable([math.pi, 3.1], "rad", "tilt", "spin_flight")}
     return {
         "run-175": EXPERIMENTS["run-175"].run(quick=True),
         "flights": followed((160.0, 175.0, 200.0), 0.0),
@@ -29,7 +29,7 @@ def computed() -> dict[str, xr.Dataset]:
         "final-tilt": xr.Dataset(
             {
                 **tilts,
-                "final_theta": ("spin", [math.pi, 3.14, 0.4]),
+                "final_tilt": ("spin", [math.pi, 3.14, 0.4]),
                 "lift_off_onset": 165.1,
                 "lost": 169.0,
             },
@@ -37,11 +37,11 @@ def computed() -> dict[str, xr.Dataset]:
             {"window_s": 20.0},
         ),
         "final-tilt-listing": xr.Dataset(
-            {"final_theta_listing": ("spin_listing", [0.5, 3.14, 0.4])},
+            {"final_tilt_listing": ("spin_listing", [0.5, 3.14, 0.4])},
             {"spin_listing": [60.0, 100.0, 175.0]},
         ),
         "listing-capped": xr.Dataset(
-            {"final_theta": ("spin", [3.14, 0.7]), "final_theta_capped": ("spin", [3.14, 3.13])},
+            {"final_tilt": ("spin", [3.14, 0.7]), "final_tilt_capped": ("spin", [3.14, 3.13])},
             {"spin": [165.0, 175.0]},
         ),
     }
@@ -56,7 +56,7 @@ def onset_data(name: str, least: float) -> xr.Dataset:
     """A scan of two values, the report's own tilt and one that never leaves the table."""
     return xr.Dataset(
         {
-            "first_lift_off": ((name, "spin"), [[math.nan, 3.0, 2.0], [math.nan] * 3]),
+            "liftoff_time": ((name, "spin"), [[math.nan, 3.0, 2.0], [math.nan] * 3]),
             "onset": (("window", name), [[least, math.nan]]),
         },
         {"spin": [100.0, 200.0, 300.0], "window": [20.0], name: [0.1, 1.3]},
@@ -99,7 +99,7 @@ def test_readings_are_those_of_the_flights(computed: dict[str, xr.Dataset]) -> N
     assert float(both["last_touchdown"]) == pytest.approx(float(run["flight_end"][-1]))
     lost = run["event_energy_lost"].values
     assert float(both["energy_in_impacts"]) == pytest.approx(lost.sum())
-    theta = np.interp(float(both["turning_time"]), run["time"], run["theta"])
+    theta = np.interp(float(both["turning_time"]), run["time"], run["tilt"])
     assert theta == pytest.approx(math.pi / 2, abs=0.02)
 
 
@@ -109,10 +109,10 @@ def test_a_launch_below_the_onset_has_no_flights(computed: dict[str, xr.Dataset]
     assert (
         float(slow["airborne_time"])
         == float(slow["last_touchdown"])
-        == float(slow["highest_gap"])
+        == float(slow["max_gap"])
         == 0.0
     )
-    assert math.isnan(float(slow["first_lift_off"]))
+    assert math.isnan(float(slow["liftoff_time"]))
 
 
 def test_comparison_goes_on_in_flight_only_where_there_is_one(
@@ -120,13 +120,13 @@ def test_comparison_goes_on_in_flight_only_where_there_is_one(
 ) -> None:
     run = computed["run-175"]
     before = run.sel(time=slice(None, float(run["lift_off_time"])))
-    for name in ("theta", "normal_force", "energy"):
+    for name in ("tilt", "normal_force", "energy"):
         assert before[f"{name}_flight"].values == pytest.approx(before[name].values, rel=1e-6)
         assert run[f"{name}_flight"].attrs["units"] == run[name].attrs["units"]
     assert float(run["normal_force_flight"].min()) == 0.0
     assert float(run["normal_force"].min()) < 0.0
-    assert {"turning_time", "energy_in_impacts", "final_theta_flight"} <= set(run.data_vars)
-    assert "theta_flight" not in comparison(report_problem(20.0), quick=True)
+    assert {"turning_time", "energy_in_impacts", "final_tilt_flight"} <= set(run.data_vars)
+    assert "tilt_flight" not in comparison(report_problem(20.0), quick=True)
 
 
 def test_the_abnormal_point_is_not_one_of_the_top(computed: dict[str, xr.Dataset]) -> None:
@@ -156,7 +156,7 @@ def test_one_launch_that_does_not_turn_over_would_be_seen(
 ) -> None:
     spoilt = dict(computed)
     spoilt[sweep] = computed[sweep].copy(deep=True)
-    spoilt[sweep]["final_theta_flight"][..., -1] = 0.8
+    spoilt[sweep]["final_tilt_flight"][..., -1] = 0.8
     judged = judge(spoilt, "sum-abnormal")
     assert judged.verdict is Verdict.EXPLAINED
     assert "still" in judged.finding.note
@@ -167,7 +167,7 @@ def test_what_the_listing_leaves_out_is_told_as_news_if_it_cures(
 ) -> None:
     assert "commented out" in judge(computed, "sum-abnormal").finding.news
     lines = computed["listing-capped"]
-    useless = computed | {"listing-capped": lines.assign(final_theta_capped=lines["final_theta"])}
+    useless = computed | {"listing-capped": lines.assign(final_tilt_capped=lines["final_tilt"])}
     assert judge(useless, "sum-abnormal").finding.news == ""
 
 
@@ -204,7 +204,7 @@ def test_the_report_stops_between_the_first_pull_of_its_method_and_what_a_plot_s
 
 
 def test_a_top_that_hardly_rises_does_not_fly(computed: dict[str, xr.Dataset]) -> None:
-    low = computed["run-175"].assign(highest_gap=1e-6)
+    low = computed["run-175"].assign(max_gap=1e-6)
     assert judge(computed | {"run-175": low}, "sec4-may-fly").verdict is Verdict.CORRECTED
 
 
@@ -216,7 +216,7 @@ def test_huge_spins_are_judged_at_the_reports_own_launch(
     for words in ("165.10 rad/s", "120 rad/s", "132 rad/s", "From a tilt of 1.30 rad on"):
         assert words in judged.finding.note
     scan = onsets["onset-tilt"].copy(deep=True)
-    scan["first_lift_off"][0, 1] = math.nan
+    scan["liftoff_time"][0, 1] = math.nan
     assert (
         judge(computed | onsets | {"onset-tilt": scan}, "sec4-huge-spin").verdict
         is Verdict.EXPLAINED

@@ -90,12 +90,12 @@ def test_listing_follows_the_true_motion_roughly() -> None:
     problem = report_problem(50.0)
     run = listing_run(problem, 2.0)
     true = simulate(problem.replace({"contact.liftoff": "ignore"}), 2.0, samples=2)
-    assert float(run["theta"][-1]) == pytest.approx(float(true["theta"][-1]), abs=2e-3)
-    assert float(run["omega3"][-1]) == pytest.approx(float(true["omega3"][-1]), rel=2e-3)
+    assert float(run["tilt"][-1]) == pytest.approx(float(true["tilt"][-1]), abs=2e-3)
+    assert float(run["spin"][-1]) == pytest.approx(float(true["spin"][-1]), rel=2e-3)
     assert float(run["normal_force"][0]) == pytest.approx(float(true["normal_force"][0]), rel=1e-9)
     assert float(run["energy"][0]) == pytest.approx(float(true["energy"][0]), rel=1e-9)
-    assert float(run["theta"].min()) >= 0
-    assert float(run["theta"].max()) < math.pi
+    assert float(run["tilt"].min()) >= 0
+    assert float(run["tilt"].max()) < math.pi
 
 
 def test_launch_state_is_the_launch() -> None:

@@ -58,14 +58,14 @@ def test_time_stepping_comes_to_our_run_at_first_order(computed: dict[str, xr.Da
 def test_stems_are_stood_upon_above_the_least_jellett(computed: dict[str, xr.Dataset]) -> None:
     data = computed["real-stems"]
     assert least_jellett_to_stand(with_stem(0.004)) == pytest.approx(1.12145e-05, rel=1e-5)
-    stands = data["final_theta"].values > math.pi - 0.1
+    stands = data["final_tilt"].values > math.pi - 0.1
     assert stands.any()
     assert not stands.all()
     assert np.array_equal(stands, (data["jellett"] > data["jellett_needed"]).values)
 
 
 def test_an_egg_rises_if_it_is_spun_fast(computed: dict[str, xr.Dataset]) -> None:
-    final = computed["real-egg"]["theta"].isel(time=-1).values
+    final = computed["real-egg"]["tilt"].isel(time=-1).values
     assert final[0] < 2.6
     assert final[-1] > 3.1
 
@@ -96,8 +96,8 @@ def test_any_body_rolls_so_in_a_run() -> None:
     rolls = rolling(body, 0.7)
     assert rolls is not None
     motion, run = rolls
-    np.testing.assert_allclose(run["theta"], 0.7, rtol=0, atol=1e-9)
-    np.testing.assert_allclose(run["phi_dot"], motion.precession, rtol=1e-9)
+    np.testing.assert_allclose(run["tilt"], 0.7, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(run["precession"], motion.precession, rtol=1e-9)
     assert np.abs(run["velocity"]).max() < 1e-9
 
 
@@ -128,9 +128,9 @@ def test_verdicts(computed: dict[str, xr.Dataset], name: str, verdict: Verdict) 
         ("real-leine-both", "real-leine", {"both": 4.3}),
         ("real-leine-apart", "real-leine", {"apart": 5.8}),
         ("real-leine-stepping", "real-stepping", {"both": 4.2}),
-        ("real-stem-test", "real-stems", {"final_theta": 3.1}),
-        ("real-egg-rises", "real-egg", {"theta": 2.0}),
-        ("real-egg-jumps", "real-egg", {"lift_off": math.nan}),
+        ("real-stem-test", "real-stems", {"final_tilt": 3.1}),
+        ("real-egg-rises", "real-egg", {"tilt": 2.0}),
+        ("real-egg-jumps", "real-egg", {"liftoff": math.nan}),
         ("real-disk-rate", "real-rolling", {"disk_measured": 70.0}),
         ("real-hurricane-balls", "real-rolling", {"balls_measured": 70.0}),
     ],

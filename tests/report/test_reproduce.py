@@ -120,8 +120,8 @@ def test_one_figure_with_its_data_and_claims(fig13: Path) -> None:
     assert [record["id"] for record in records] == ["fig13-upright", "eq-2.17-exception"]
     assert (fig13 / "figures/fig13.png").read_bytes().startswith(b"\x89PNG")
     data = read_run(fig13 / "data/fig13.nc")
-    assert {"theta", "theta_listing"} <= set(data.data_vars)
-    assert data["theta"].attrs["units"] == "rad"
+    assert {"tilt", "tilt_listing"} <= set(data.data_vars)
+    assert data["tilt"].attrs["units"] == "rad"
 
 
 def test_page_stands_alone(fig13: Path) -> None:

@@ -24,7 +24,7 @@ def computed() -> dict[str, xr.Dataset]:
     data = {f"why-{name}": EXPERIMENTS[f"why-{name}"].run(quick=True) for name in NAMES}
     data["critical-spins"] = _thresholds_of_runs()
     data["final-tilt-listing"] = xr.Dataset(
-        {"final_theta_listing": ("spin_listing", [0.0, 0.5, 2.5, math.pi, 0.7])},
+        {"final_tilt_listing": ("spin_listing", [0.0, 0.5, 2.5, math.pi, 0.7])},
         {"spin_listing": [20.0, 40.0, 70.0, 100.0, 175.0]},
     )
     data["flip-times-wide"] = xr.Dataset(
@@ -95,8 +95,8 @@ def test_two_launches_of_one_spin_end_apart_beyond_a_fold(computed: dict[str, xr
 
 def test_precessions_are_unstable_below_the_fold_only(computed: dict[str, xr.Dataset]) -> None:
     states = computed["why-bifurcation"]
-    assert float(states["branch_growth"].isel(branch_theta=slice(1, -1)).max()) < 0
-    inside = states.isel(branch_theta_jump=slice(1, -1))
+    assert float(states["branch_growth"].isel(branch_tilt=slice(1, -1)).max()) < 0
+    inside = states.isel(branch_tilt_jump=slice(1, -1))
     rising = np.gradient(inside["branch_spin_jump"].values) > 0
     stable = inside["branch_growth_jump"].values < 0
     assert np.array_equal(stable[2:-2], rising[2:-2])
@@ -124,10 +124,10 @@ def test_times_are_in_order_and_tend_to_their_limits(computed: dict[str, xr.Data
 def test_nutation_stays_between_its_turning_points(computed: dict[str, xr.Dataset]) -> None:
     run = computed["why-diagnostics"]
     slack = 0.02
-    assert np.all(run["theta_diagnosed"] > run["envelope_low"] - slack)
-    assert np.all(run["theta_diagnosed"] < run["envelope_high"] + slack)
+    assert np.all(run["tilt_diagnosed"] > run["envelope_low"] - slack)
+    assert np.all(run["tilt_diagnosed"] < run["envelope_high"] + slack)
     for k in range(run.sizes["instant"] - 1):
-        well = np.interp(float(run["instant_theta"][k]), run["well_theta"], run["potential"][k])
+        well = np.interp(float(run["instant_tilt"][k]), run["well_tilt"], run["potential"][k])
         assert well <= float(run["level"][k]) * (1 + 1e-3)
     assert np.all(np.diff(run["level"]) < 0)
     assert float(run["balance_ratio"][0]) == pytest.approx(-1.0, abs=1e-9)
@@ -163,7 +163,7 @@ def test_claims_follow_the_data(computed: dict[str, xr.Dataset]) -> None:
     )
     assert CLAIMS["why-regimes"].judge(spoilt, quick=True).verdict is Verdict.EXPLAINED
     other = computed["final-tilt-listing"].copy(deep=True)
-    other["final_theta_listing"][0] = 0.5
+    other["final_tilt_listing"][0] = 0.5
     spoilt["final-tilt-listing"] = other
     assert CLAIMS["why-regimes"].judge(spoilt, quick=True).verdict is Verdict.CORRECTED
 

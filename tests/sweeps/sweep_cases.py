@@ -14,11 +14,11 @@ from tippetop.sweeps.axes import Spaced
 zarr = pytest.importorskip("zarr")
 
 FIELDS = (
-    "final_theta",
-    "final_omega3",
+    "final_tilt",
+    "final_spin",
     "energy_lost",
     "airborne_time",
-    "first_lift_off",
+    "liftoff_time",
     "end_time",
 )
 
@@ -30,7 +30,7 @@ def lively(liftoff="fly", spins=5, mus=3, duration=1.4, tolerance=1e-12, tilt=1.
     problem = report_problem(tilt=tilt).replace({"contact.liftoff": liftoff})
     axes = (
         Spaced("launch.spin", 40.0, 240.0, spins),
-        Spaced("friction.mu", 0.2, 1.0, mus, "geometric"),
+        Spaced("friction.mu", 0.2, 1.0, mus, "log"),
     )
     return Sweep(problem, Product(axes), duration, tolerance)
 
@@ -62,7 +62,7 @@ def truth(problem, duration, samples=2001, **options):
 
 def wait_for_a_task(store, process):
     """Wait until the process that fills a store has finished a task of it."""
-    while not (store.exists() and np.any(zarr.open_array(store / "status", mode="r")[...])):
+    while not (store.exists() and np.any(zarr.open_array(store / "is_done", mode="r")[...])):
         assert process.poll() is None
         time.sleep(0.05)
 

@@ -48,9 +48,9 @@ def test_a_launch_that_raises_fails_alone(
     before = swept(problem)
     monkeypatch.setattr(Automaton, "launch", raising)
     for after in (swept(problem), swept(problem, out=tmp_path / "a.zarr")):
-        assert (after["status"] == "done").all()
+        assert after["is_done"].all()
         assert str(after["outcome"][BAD].values) == "failed"
-        assert np.isnan(after["final_theta"][BAD])
+        assert np.isnan(after["final_tilt"][BAD])
         others = [0, 1, 3]
         assert after[{"spin": others}].drop_attrs().equals(before[{"spin": others}].drop_attrs())
 
@@ -67,9 +67,9 @@ def test_what_ends_the_program_ends_the_sweep(monkeypatch: pytest.MonkeyPatch) -
 def test_a_lost_chunk_of_the_status_is_damage_and_is_mended(tmp_path: Path) -> None:
     path, problem = tmp_path / "a.zarr", problem_of(False)
     done = swept(problem, out=path).load()
-    (chunk,) = (path / "status" / "c").iterdir()
+    (chunk,) = (path / "is_done" / "c").iterdir()
     chunk.unlink()
-    with pytest.raises(tt.FileTrouble, match=r"damaged.*status is missing"):
+    with pytest.raises(tt.FileTrouble, match=r"damaged.*is_done is missing"):
         tt.read_sweep(path)
     assert swept(problem, out=path, resume=True).load().equals(done)
 

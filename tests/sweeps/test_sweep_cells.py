@@ -11,7 +11,7 @@ from campaigns import examples
 from strategies import problems
 from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.problem.presets import REPORT_THIN_STEM, WOODEN, report_problem
-from tippetop.results.catalogue import Ending, Fault
+from tippetop.results.catalogue import Fault, Outcome
 from tippetop.support.errors import InvalidInput
 from tippetop.sweeps import Product, Sweep, compute
 from tippetop.sweeps.cells import cells_of, numeric_fields
@@ -160,5 +160,5 @@ def test_rolling_that_overflows_is_an_outcome():
     problem = report_problem(spin=100.0, tilt=1.0).replace({"contact.liftoff": "fly"})
     axes = {"launch.spin": [50.0, 1e200], "rolling_resistance": [1e-4, 1e10]}
     outcomes = compute(Sweep(problem, Product.of(axes), 0.1))["outcome"].values
-    assert outcomes[0, 0] != Ending.FAILED
-    assert set(outcomes[1]) <= {Ending.FAILED, Ending.BAD}
+    assert outcomes[0, 0] != Outcome.FAILED
+    assert set(outcomes[1]) <= {Outcome.FAILED, Outcome.INVALID}

@@ -22,7 +22,7 @@ from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble, InvalidInput
 from tippetop.sweeps import Store
 
-AXES = ["--axis", "launch.spin=50:200:3", "--axis", "friction.mu=0.1:1:2:geo"]
+AXES = ["--over", "launch.spin=50:200:3", "--over", "friction.mu=0.1:1:2:log"]
 SHORT = ["--tilt", "1.0", "--duration", "0.1", "--workers", "1"]
 
 
@@ -42,18 +42,18 @@ def test_a_sweep_writes_a_store_and_maps_beside_it(tmp_path):
     said = run(*AXES, *SHORT, "--out", out)
     assert "6 launches" in said
     assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "a.final_theta.png",
+        "a.final_tilt.png",
         "a.flights.png",
         "a.outcome.png",
-        "a.turns_over.png",
+        "a.turnover_time.png",
         "a.zarr",
     ]
-    assert xr.open_zarr(out)["final_theta"].shape == (3, 2)
+    assert xr.open_zarr(out)["final_tilt"].shape == (3, 2)
 
 
 def test_the_first_invalid_launch_is_reported(tmp_path):
     options = [
-        "--axis",
+        "--over",
         "launch.tilt=0.1,45,90",
         *SHORT[2:],
         "--no-maps",
@@ -61,7 +61,7 @@ def test_the_first_invalid_launch_is_reported(tmp_path):
         tmp_path / "a.zarr",
     ]
     assert "The first launch that is not valid: launch.tilt: 45 is not" in run(*options)
-    assert "bad" not in run("--axis", "launch.tilt=0.1,0.2", *options[2:], "--force")
+    assert "not valid" not in run("--over", "launch.tilt=0.1,0.2", *options[2:], "--force")
 
 
 def test_programs_get_json(tmp_path):
@@ -112,7 +112,7 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
     run(tmp_path / "top.toml", *AXES[2:], *SHORT, "--out", tmp_path / "a.zarr", "--no-maps")
     assert Store.resume(tmp_path / "a.zarr").sweep.problem.launch.spin == 77.0
     (tmp_path / "sweep.toml").write_text(
-        'problem = "top.toml"\nduration = 0.1\n[axes]\nlaunch.tilt = [0.2, 0.3]\n'
+        'problem = "top.toml"\nduration = 0.1\n[over]\nlaunch.tilt = [0.2, 0.3]\n'
     )
     run(
         tmp_path / "sweep.toml",
@@ -130,11 +130,11 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
     assert sweep.duration == 0.1
 
 
-def test_a_file_of_samples_is_swept_resumed_and_swept_over_axes_instead(tmp_path):
+def test_a_file_of_draws_is_swept_resumed_and_swept_over_fields_instead(tmp_path):
     (tmp_path / "top.toml").write_text(report_problem(spin=77.0).to_toml())
     (tmp_path / "sweep.toml").write_text(
-        'problem = "top.toml"\nduration = 0.1\n[samples]\ncount = 3\nseed = 4\n[samples.fields]\n'
-        'launch.spin = { law = "normal", mean = 150, std = 5 }\nfriction.mu = [0.1, 0.2, 0.3]\n'
+        'problem = "top.toml"\nduration = 0.1\ncount = 3\nseed = 4\n[draw]\n'
+        'launch.spin = { distribution = "norm", loc = 150, scale = 5 }\nfriction.mu = [0.1, 0.2, 0.3]\n'
     )
     alone = ("--workers", 1, "--no-maps", "--out")
     run(tmp_path / "sweep.toml", *alone, tmp_path / "a.zarr")
@@ -142,8 +142,8 @@ def test_a_file_of_samples_is_swept_resumed_and_swept_over_axes_instead(tmp_path
     assert stored["mu"].values.tolist() == [0.1, 0.2, 0.3]
     spins = tt.sweep(
         report_problem(),
-        samples={"launch.spin": {"law": "normal", "mean": 150, "std": 5}},
-        n=3,
+        draw={"launch.spin": {"distribution": "norm", "loc": 150, "scale": 5}},
+        count=3,
         seed=4,
         duration=0.01,
         workers=1,
@@ -151,9 +151,9 @@ def test_a_file_of_samples_is_swept_resumed_and_swept_over_axes_instead(tmp_path
     assert stored["spin"].values.tolist() == spins.values.tolist()
     whole = json.loads(run(*alone, tmp_path / "a.zarr", "--resume", "--json"))
     assert (whole["cells"], whole["computed"]) == (3, 0)
-    run(tmp_path / "sweep.toml", "--axis", "launch.spin=10,20", *alone, tmp_path / "b.zarr")
+    run(tmp_path / "sweep.toml", "--over", "launch.spin=10,20", *alone, tmp_path / "b.zarr")
     sweep = Store.resume(tmp_path / "b.zarr").sweep
-    assert sweep.samples is None
+    assert sweep.draw is None
     assert sweep.grid.shape == (2,)
 
 
@@ -163,10 +163,10 @@ def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path)
     lengths, spins = [0.016, 0.018, 0.02], [40.0, 100.0]
     axes = {"body.shape.1.center": lengths, "launch.spin": spins}
     expected = tt.sweep(problem, axes, duration=0.3, workers=1)
-    assert len(np.unique(expected["final_theta"])) == 6
+    assert len(np.unique(expected["final_tilt"])) == 6
     (tmp_path / "stem.toml").write_text(problem.to_toml())
     written = ["body.shape.1.center=0.016:0.02:3", "launch.spin=40,100"]
-    options = [part for text in written for part in ("--axis", text)]
+    options = [part for text in written for part in ("--over", text)]
     run(
         tmp_path / "stem.toml",
         *options,
@@ -179,7 +179,7 @@ def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path)
         "--no-maps",
     )
     (tmp_path / "sweep.toml").write_text(
-        'problem = "stem.toml"\nduration = 0.3\n[axes]\n'
+        'problem = "stem.toml"\nduration = 0.3\n[over]\n'
         '"body.shape.1.center" = { from = 0.016, to = 0.02, count = 3 }\n'
         "launch.spin = [40.0, 100.0]\n"
     )
@@ -188,7 +188,7 @@ def test_stems_are_swept_from_a_file_and_from_the_command_as_in_python(tmp_path)
         found = xr.open_zarr(tmp_path / name)
         assert found["center"].values == pytest.approx(lengths)
         assert found["center"].attrs["units"] == "m"
-        for metric in ("final_theta", "final_omega3", "energy_lost"):
+        for metric in ("final_tilt", "final_spin", "energy_lost"):
             assert found[metric].values == pytest.approx(expected[metric].values, rel=1e-10), (
                 name,
                 metric,
@@ -203,7 +203,7 @@ def test_the_name_of_a_store_ends_in_zarr(tmp_path, name):
 
 
 UNREADABLE = {
-    "--axis": [
+    "--over": [
         "launch.spin",
         "launch.spin=",
         "launch.spin=1:2",
@@ -217,17 +217,17 @@ UNREADABLE = {
 @pytest.mark.parametrize(
     ("arguments", "field"),
     [
-        ([], "--axis"),
-        (["--axis", "launch.spn=1,2"], "launch.spn"),
+        ([], "--over"),
+        (["--over", "launch.spn=1,2"], "launch.spn"),
         *(([word, text], word) for word, texts in UNREADABLE.items() for text in texts),
-        (["--axis", "launch.spin=1:2:3:log"], "launch.spin.spacing"),
-        (["--axis", "launch.spin=1:2:0"], "launch.spin.count"),
-        (["--axis", "launch.spin=nan,1"], "--axis"),
-        (["--axis", "launch.spin=1:1:3"], "launch.spin"),
-        (["--axis", "launch.spin=1,2", "--axis", "launch.spin=3,4"], "axes"),
-        (["--draw", "launch.spin=0:1:log", "--count", "3"], "fields.launch.spin"),
+        (["--over", "launch.spin=1:2:3:geo"], "launch.spin.spacing"),
+        (["--over", "launch.spin=1:2:0"], "launch.spin.count"),
+        (["--over", "launch.spin=nan,1"], "--over"),
+        (["--over", "launch.spin=1:1:3"], "launch.spin"),
+        (["--over", "launch.spin=1,2", "--over", "launch.spin=3,4"], "over"),
+        (["--draw", "launch.spin=0:1:log", "--count", "3"], "launch.spin"),
         (["--draw", "launch.spin=1:2"], "--count"),
-        (["--draw", "launch.spin=1:2", "--axis", "friction.mu=1,2"], "--draw"),
+        (["--draw", "launch.spin=1:2", "--over", "friction.mu=1,2"], "--draw"),
         ([*AXES, "--resume", "--force"], "--force"),
         ([*AXES, "--workers", "0"], "workers"),
         ([*AXES, "--duration", "0"], "duration"),
@@ -307,9 +307,9 @@ def test_names_that_no_file_can_have_are_told_in_a_sentence(tmp_path, name, opti
 @pytest.mark.parametrize(
     "text",
     [
-        "[axes]\nself = [1]",
+        "[over]\nself = [1]",
         "self = 1\nduration = 1.0",
-        "[axes]\n" + 1000 * "a." + "b = [1]",
+        "[over]\n" + 1000 * "a." + "b = [1]",
         "a = " + 5000 * "[",
     ],
 )
@@ -336,7 +336,7 @@ if __name__ == "__main__":
 def test_ctrl_c_leaves_a_line_and_a_store_that_resumes(tmp_path, workers):
     script, out = tmp_path / "run.py", tmp_path / "a.zarr"
     script.write_text(INTERRUPTED)
-    options = ["--axis", "launch.spin=1:250:120", "--axis", "friction.mu=0.1:1:100", "--no-maps"]
+    options = ["--over", "launch.spin=1:250:120", "--over", "friction.mu=0.1:1:100", "--no-maps"]
     options += ["--duration", "1"]
     command = [sys.executable, script, *options, "--workers", str(workers), "--out", out]
     with started(command) as process:

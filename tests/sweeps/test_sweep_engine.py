@@ -21,8 +21,8 @@ from tippetop.support.errors import InvalidInput
 from tippetop.sweeps import (
     SWEPT,
     Axis,
-    Ending,
     Fault,
+    Outcome,
     Product,
     Sweep,
     compute,
@@ -52,42 +52,42 @@ def check_against_runs(sweep, cells=None, closeness=1e-7, **options):
         summary = summarize(run)
         here = {name: values[cell] for name, values in found.items()}
         step = sweep.duration / (samples - 1)
-        lifts = [event["time"] for event in summary["events"] if event["kind"] == "lift-off"]
-        assert here["final_theta"] == pytest.approx(summary["final"]["theta"], abs=closeness)
-        assert here["final_omega3"] == pytest.approx(
-            summary["final"]["omega3"], rel=closeness, abs=closeness
+        lifts = [event["time"] for event in summary["events"] if event["kind"] == "liftoff"]
+        assert here["final_tilt"] == pytest.approx(summary["final"]["tilt"], abs=closeness)
+        assert here["final_spin"] == pytest.approx(
+            summary["final"]["spin"], rel=closeness, abs=closeness
         )
-        if summary["final"]["phi_dot"] is not None and abs(math.sin(here["final_theta"])) > 1e-2:
-            assert here["final_phi_dot"] == pytest.approx(
-                summary["final"]["phi_dot"], rel=10 * closeness
+        if summary["final"]["precession"] is not None and abs(math.sin(here["final_tilt"])) > 1e-2:
+            assert here["final_precession"] == pytest.approx(
+                summary["final"]["precession"], rel=10 * closeness
             )
-        assert here["end_time"] == pytest.approx(summary["duration"], rel=closeness)
+        assert here["end_time"] == pytest.approx(summary["end_time"], rel=closeness)
         assert here["energy_lost"] == pytest.approx(
-            summary["energy_lost"], abs=closeness * summary["energy_start"]
+            summary["energy_lost"], abs=closeness * summary["initial_energy"]
         )
         assert here["flights"] == summary["flights"]
         assert here["airborne_time"] == pytest.approx(summary["airborne_time"], abs=closeness)
-        assert here["highest_gap"] == pytest.approx(summary["highest_gap"], abs=1e-7)
-        assert here["highest"] == pytest.approx(float(run["height"].max()), rel=1e-4)
-        assert here["jellett_error"] < 1e-9 or run.attrs["problem"].find("spheroid") > 0
+        assert here["max_gap"] == pytest.approx(summary["max_gap"], abs=1e-7)
+        assert here["max_height"] == pytest.approx(float(run["height"].max()), rel=1e-4)
+        assert here["jellett_change"] < 1e-9 or run.attrs["problem"].find("spheroid") > 0
         if lifts:
-            assert here["first_lift_off"] == pytest.approx(lifts[0], abs=closeness)
+            assert here["liftoff_time"] == pytest.approx(lifts[0], abs=closeness)
         else:
-            assert np.isnan(here["first_lift_off"])
+            assert np.isnan(here["liftoff_time"])
         if lifts or summary["flights"]:
-            assert here["least_normal_force"] == 0.0
+            assert here["min_normal_force"] == 0.0
         else:
             least = float(run["normal_force"].min())
-            assert here["least_normal_force"] == pytest.approx(
+            assert here["min_normal_force"] == pytest.approx(
                 least, abs=1e-3 * float(run["normal_force"].max())
             )
-            assert here["least_normal_force"] < least + 1e-9
-        if summary["turns_over"] is None:
-            assert np.isnan(here["turns_over"])
+            assert here["min_normal_force"] < least + 1e-9
+        if summary["turnover_time"] is None:
+            assert np.isnan(here["turnover_time"])
         else:
-            assert here["turns_over"] == pytest.approx(summary["turns_over"], abs=step)
+            assert here["turnover_time"] == pytest.approx(summary["turnover_time"], abs=step)
         assert here["is_settled"] == summary["is_settled"]
-        for name in ("arrives", "highest_tilt"):
+        for name in ("arrival_time", "max_tilt_ever"):
             if summary[name] is None:
                 assert np.isnan(here[name])
             else:
@@ -98,20 +98,20 @@ def check_against_runs(sweep, cells=None, closeness=1e-7, **options):
 @pytest.mark.parametrize("liftoff", ["fly", "stop", "ignore"])
 def test_cells_are_single_runs(liftoff):
     found = check_against_runs(lively(liftoff))
-    lifted = np.isfinite(found["first_lift_off"])
+    lifted = np.isfinite(found["liftoff_time"])
     assert lifted.any() == (liftoff != "ignore")
     assert (found["flights"].sum() > 10) == (liftoff == "fly")
-    assert np.array_equal(found["outcome"] == Ending.LIFTED_OFF, lifted & (liftoff == "stop"))
+    assert np.array_equal(found["outcome"] == Outcome.LIFTED_OFF, lifted & (liftoff == "stop"))
 
 
 def test_a_top_that_turns_over_is_a_single_run():
     axes = Axis.of("launch.spin", [20.0, 50.0, 155.0, 180.0]), Axis.of("friction.mu", [0.3])
     found = check_against_runs(Sweep(report_problem(), Product(axes), 12.0, 1e-12))
     assert found["outcome"].tolist() == [
-        Ending.UPRIGHT,
-        Ending.TILTED,
-        Ending.INVERTED,
-        Ending.MOVING_INVERTED,
+        Outcome.UPRIGHT,
+        Outcome.TILTED,
+        Outcome.INVERTED,
+        Outcome.MOVING_INVERTED,
     ]
     assert found["flights"][3] > 0
 
@@ -237,10 +237,10 @@ def test_weaker_gravity_is_no_singular_motion(tolerance):
     run = truth(problem, 0.3, 2)
     axis = Axis.of("gravity", [1e-10, 1e-20, 1e-26, 1e-30])
     found = follow_cells(Sweep(problem, Product((axis,)), 0.3, tolerance), np.arange(4))
-    assert np.all(found["outcome"] == Ending.MOVING_TILTED)
-    for name in ("final_theta", "final_omega3", "highest"):
+    assert np.all(found["outcome"] == Outcome.MOVING_TILTED)
+    for name in ("final_tilt", "final_spin", "max_height"):
         assert found[name] == pytest.approx(np.full(4, float(run[name])), rel=1e-8), name
-    assert abs(found["final_theta"][0] - 1.0) > 0.01
+    assert abs(found["final_tilt"][0] - 1.0) > 0.01
 
 
 @pytest.mark.parametrize(
@@ -260,10 +260,10 @@ def test_what_is_no_number_is_not_followed(changes):
     problem = report_problem(spin=155.0).replace(changes)
     alone = simulate(problem, 0.5, samples=2)
     found = follow_cells(Sweep(problem, Product((Axis.of("gravity", [9.81]),)), 0.5), np.arange(1))
-    assert found["outcome"] == Ending.FAILED
-    assert alone.attrs["outcome"] == "failed"
+    assert found["outcome"] == Outcome.FAILED
+    assert alone.attrs["status"] == "failed"
     assert found["end_time"] == float(alone["end_time"]) == 0.0
-    assert found["final_theta"] == pytest.approx(problem.launch.tilt)
+    assert found["final_tilt"] == pytest.approx(problem.launch.tilt)
 
 
 def test_lift_off_is_not_left_to_looks(monkeypatch):
@@ -276,8 +276,8 @@ def test_lift_off_is_not_left_to_looks(monkeypatch):
     stepper.cache_clear()
     found = follow_cells(sweep, np.arange(32))
     stepper.cache_clear()
-    assert np.isfinite(usual["first_lift_off"]).sum() >= 5
-    assert found["first_lift_off"] == pytest.approx(usual["first_lift_off"], rel=1e-12, nan_ok=True)
+    assert np.isfinite(usual["liftoff_time"]).sum() >= 5
+    assert found["liftoff_time"] == pytest.approx(usual["liftoff_time"], rel=1e-12, nan_ok=True)
 
 
 @pytest.mark.parametrize("liftoff", ["fly", "ignore"])
@@ -292,7 +292,7 @@ def test_launches_that_begin_beyond_a_right_angle_are_single_runs(liftoff):
     spins = Axis.of("launch.spin", [5.0, 155.0] if liftoff == "fly" else [5.0])
     axes = Axis.of("launch.tilt", [1.6, 2.0, 2.5]), spins
     found = check_against_runs(Sweep(problem, Product(axes), 0.8, 1e-12), closeness=1e-6)
-    assert np.isnan(found["turns_over"]).any() == (liftoff == "fly")
+    assert np.isnan(found["turnover_time"]).any() == (liftoff == "fly")
     if liftoff == "fly":
         gaps = Axis.of("launch.gap", [0.003, 0.05]), Axis.of("launch.tilt", [2.0, 3.0])
         check_against_runs(Sweep(report_problem(), Product(gaps), 0.3, 1e-12), closeness=1e-6)
@@ -302,8 +302,8 @@ def test_a_launch_that_ends_in_its_first_flight_has_not_settled():
     axis = Axis.of("launch.gap", [0.5, 50.0])
     sweep = Sweep(report_problem(), Product((axis,)), 0.2, 1e-12)
     found = check_against_runs(sweep, closeness=1e-6)
-    assert np.all(np.isnan(found["arrives"]))
-    assert np.all(found["outcome"] == Ending.MOVING_UPRIGHT)
+    assert np.all(np.isnan(found["arrival_time"]))
+    assert np.all(found["outcome"] == Outcome.MOVING_UPRIGHT)
 
 
 def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
@@ -311,7 +311,7 @@ def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
     problem = report_problem(spin=2000.0, tilt=1.0).replace({"launch.precession": 3000.0})
     axis = Axis.of("launch.gap", [1.0])
     found = follow_cells(Sweep(problem, Product((axis,)), 0.3, 1e-9), np.arange(1))
-    assert found["outcome"][0] == Ending.FAILED
+    assert found["outcome"][0] == Outcome.FAILED
     assert found["end_time"][0] == pytest.approx(found["airborne_time"][0])
     assert 0.0 < found["end_time"][0] < 0.3
 
@@ -332,10 +332,10 @@ def test_launches_that_have_settled_end_early_and_where_they_would_have_ended():
     whole, short = (follow_cells(settling(settled), cells) for settled in (None, 1e-3))
     assert np.all(whole["end_time"] == 60.0)
     assert np.sum(short["end_time"] < 40.0) >= 8
-    assert np.abs(short["final_theta"] - whole["final_theta"]).max() <= 1e-3
+    assert np.abs(short["final_tilt"] - whole["final_tilt"]).max() <= 1e-3
     ended = short["end_time"] < 60.0
-    assert set(whole["outcome"][ended]) == {Ending.UPRIGHT, Ending.TILTED, Ending.INVERTED}
-    for name in ("outcome", "flights", "turns_over", "first_lift_off", "least_normal_force"):
+    assert set(whole["outcome"][ended]) == {Outcome.UPRIGHT, Outcome.TILTED, Outcome.INVERTED}
+    for name in ("outcome", "flights", "turnover_time", "liftoff_time", "min_normal_force"):
         assert short[name] == pytest.approx(whole[name], rel=1e-9, nan_ok=True), name
 
 
@@ -345,9 +345,9 @@ def test_a_tilt_that_is_held_never_leaves():
     short = follow_cells(sweep, np.arange(10))
     for cell in (1, 2, 5):
         run = truth(problem_of(sweep, cell), 60.0)
-        later = run["theta"].values[run["time"].values >= short["end_time"][cell]]
+        later = run["tilt"].values[run["time"].values >= short["end_time"][cell]]
         assert len(later) > 100
-        assert np.abs(later - short["final_theta"][cell]).max() <= 1e-2
+        assert np.abs(later - short["final_tilt"][cell]).max() <= 1e-2
 
 
 def test_launches_followed_one_by_one_end_too_when_they_have_settled():
@@ -359,7 +359,7 @@ def test_launches_followed_one_by_one_end_too_when_they_have_settled():
     assert ((ends.time < launches.end) == (batch["end_time"] < 60.0)).all()
     assert (ends.time < launches.end).any()
     tilts = np.arctan2(np.hypot(ends.state.axis[0], ends.state.axis[1]), ends.state.axis[2])
-    assert np.abs(tilts - batch["final_theta"]).max() <= 1e-3
+    assert np.abs(tilts - batch["final_tilt"]).max() <= 1e-3
 
 
 def test_a_launch_that_swings_has_not_settled():
@@ -384,7 +384,7 @@ def test_bad_cells_are_labelled_and_harm_no_other():
     problem = report_problem(spin=200.0)
     sweep = Sweep(problem, Product(axes), 0.2, 1e-9)
     dataset = compute(sweep)
-    assert (dataset["outcome"] == Ending.BAD).values.tolist() == [
+    assert (dataset["outcome"] == Outcome.INVALID).values.tolist() == [
         [False, True],
         [True, True],
         [True, True],
@@ -401,7 +401,7 @@ def test_bad_cells_are_labelled_and_harm_no_other():
     assert same(good, alone)
     bad = follow_cells(sweep, np.array([1, 2]))
     assert bad["fault"].tolist() == [Fault.VALUE_OUT_OF_RANGE, Fault.NO_SUCH_BODY]
-    assert bad["outcome"].tolist() == [Ending.BAD] * 2
+    assert bad["outcome"].tolist() == [Outcome.INVALID] * 2
     for name in METRICS:
         assert np.array_equal(bad[name], [METRICS[name].missing] * 2, equal_nan=True), name
 
@@ -416,20 +416,20 @@ def test_a_motion_that_becomes_singular_is_labelled():
     sweep = Sweep(problem, Product((Axis.of("friction.mu", [0.3, 40.0]),)), 1.0, 1e-9)
     found = follow_cells(sweep, np.arange(2))
     runs = [truth(problem_of(sweep, k), 1.0, 11) for k in range(2)]
-    assert [outcome == Ending.FAILED for outcome in found["outcome"]] == [
-        run.attrs["outcome"] == "failed" for run in runs
+    assert [outcome == Outcome.FAILED for outcome in found["outcome"]] == [
+        run.attrs["status"] == "failed" for run in runs
     ]
 
 
 def test_a_launch_that_takes_too_long_is_given_up(monkeypatch):
     monkeypatch.setattr(lane_executor, "STEP_LIMIT", 50)
     found = follow_cells(lively("ignore", 2, 2), np.arange(4))
-    assert np.all(found["outcome"] == Ending.FAILED)
+    assert np.all(found["outcome"] == Outcome.FAILED)
     monkeypatch.undo()
     monkeypatch.setattr(transitions, "FLIGHT_LIMIT", 2)
     found = follow_cells(lively("fly", 2, 2), np.arange(4))
-    assert np.array_equal(found["outcome"] == Ending.FAILED, found["flights"] == 2)
-    assert (found["outcome"] == Ending.FAILED).any()
+    assert np.array_equal(found["outcome"] == Outcome.FAILED, found["flights"] == 2)
+    assert (found["outcome"] == Outcome.FAILED).any()
 
 
 def test_a_smaller_tolerance_is_a_smaller_error():
@@ -437,7 +437,7 @@ def test_a_smaller_tolerance_is_a_smaller_error():
     errors = []
     for tolerance in (1e-6, 1e-9):
         found = follow_cells(lively("ignore", tolerance=tolerance), np.arange(15))
-        errors.append(np.abs(found["final_theta"] - exact["final_theta"]).max())
+        errors.append(np.abs(found["final_tilt"] - exact["final_tilt"]).max())
     assert errors[0] > 10 * errors[1] > 0
     assert errors[1] < 1e-7
 
@@ -445,13 +445,13 @@ def test_a_smaller_tolerance_is_a_smaller_error():
 def test_upright_launches_stay_where_they_are():
     axes = Axis.of("launch.tilt", [0.0, math.pi]), Axis.of("launch.spin", [0.0, 100.0])
     found = follow_cells(Sweep(report_problem(), Product(axes), 1.0), np.arange(4))
-    assert found["final_theta"] == pytest.approx([0, 0, math.pi, math.pi], abs=1e-12)
+    assert found["final_tilt"] == pytest.approx([0, 0, math.pi, math.pi], abs=1e-12)
     # The upright spin is not stable at 100 rad/s, and the inverted one at none.
-    assert found["is_settled"].tolist() == [1, 0, 0, 1]
-    assert found["arrives"] == pytest.approx([0.0, math.nan, math.nan, 0.0], nan_ok=True)
-    assert np.all(np.isnan(found["final_phi_dot"]))
+    assert found["is_settled"].tolist() == [True, False, False, True]
+    assert found["arrival_time"] == pytest.approx([0.0, math.nan, math.nan, 0.0], nan_ok=True)
+    assert np.all(np.isnan(found["final_precession"]))
     assert found["energy_lost"] == pytest.approx(0, abs=1e-15)
-    assert found["least_normal_force"] == pytest.approx(0.02 * 9.8)
+    assert found["min_normal_force"] == pytest.approx(0.02 * 9.8)
 
 
 def test_every_variable_is_described():
@@ -475,4 +475,4 @@ def test_a_top_however_fast_presses_on_the_table_as_in_a_single_run(spin):
     run = simulate(problem.replace({"launch.spin": spin}), duration, samples=2)
     assert int(run["flights"]) == 0
     assert int(swept["flights"][0]) == 0
-    assert float(swept["final_theta"][0]) == pytest.approx(float(run["theta"][-1]), abs=1e-9)
+    assert float(swept["final_tilt"][0]) == pytest.approx(float(run["tilt"][-1]), abs=1e-9)

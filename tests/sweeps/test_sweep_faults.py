@@ -24,7 +24,6 @@ from tippetop.support.errors import FileTrouble
 from tippetop.sweeps import (
     SWEPT,
     Draws,
-    Range,
     Store,
     Sweep,
     compute,
@@ -71,7 +70,7 @@ def test_nothing_damaged_is_read_and_lost_results_are_computed_again(tmp_path, m
     path, random = tmp_path / "a.zarr", np.random.default_rng(seed)
     truth = compute(quick())
     stored(quick(), path, workers=1)
-    names = ["status", *SWEPT]
+    names = ["is_done", *SWEPT]
     xr.testing.assert_identical(read_sweep(path, decode=False)[names], truth[names])
     files = sorted(file for file in path.rglob("*") if file.is_file() and file.name != ".lock")
     sizes = np.array([file.stat().st_size for file in files])
@@ -95,9 +94,9 @@ def test_nothing_damaged_is_read_and_lost_results_are_computed_again(tmp_path, m
         else:
             # Metadata of an array, which the group's repeat, spaces between words, or a task that
             # counts as pending.
-            done = found["status"] == 1
+            done = found["is_done"]
             assert found.where(done).identical(truth[names].where(done)), where
-            assert bool(done.all()) or place[:2] == ("status", "c"), where
+            assert bool(done.all()) or place[:2] == ("is_done", "c"), where
         if place[0] in names and place[1] == "c":
             file.unlink(missing_ok=True)
             fill(Store.resume(path), workers=1)
@@ -138,14 +137,14 @@ def test_resuming_does_again_what_is_missing_and_no_more(tmp_path, small_tasks):
     path = tmp_path / "a.zarr"
     stored(quick(), path, workers=1)
     first, *_, last = quick().tasks
-    shutil.rmtree(path / "final_theta" / "c" / str(first[0]))
+    shutil.rmtree(path / "final_tilt" / "c" / str(first[0]))
     chunk = path.joinpath("steps", "c", *map(str, last))
     chunk.unlink()
     store = Store.resume(path)
     lost = {task for task in quick().tasks if task[0] == first[0]} | {last}
     assert set(store.remaining()) == lost
     with pytest.raises(FileTrouble, match="resume=True computes missing results again"):
-        store.load(["final_theta"])
+        store.load(["final_tilt"])
     with pytest.raises(FileTrouble, match=r"a chunk of .* is missing"):
         store.dataset()
     progress = fill(store, workers=1)
@@ -170,7 +169,9 @@ def test_a_damaged_chunk_is_named_and_is_computed_again_once_it_is_deleted(tmp_p
 
 
 def test_a_lost_coordinate_is_reported(tmp_path):
-    draws = Draws((Range("launch.spin", 10, 200), Range("friction.mu", 0, 1)), 5)
+    draws = Draws.of(
+        {"launch.spin": {"from": 10, "to": 200}, "friction.mu": {"from": 0, "to": 1}}, 5
+    )
     sweep = Sweep(report_problem(), draws, 0.05)
     stored(sweep, tmp_path / "a.zarr", workers=1)
     shutil.rmtree(tmp_path / "a.zarr" / "mu")
@@ -195,8 +196,8 @@ def test_results_are_on_disk_before_their_status_says_so(tmp_path, small_tasks, 
     """
     store = Store.create(tmp_path / "a.zarr", quick())
     synced, task = set(), quick().tasks[0]
-    chunks = {store.path.joinpath(name, "c", *map(str, task)) for name in ("status", *SWEPT)}
-    status = store.path.joinpath("status", "c", *map(str, task))
+    chunks = {store.path.joinpath(name, "c", *map(str, task)) for name in ("is_done", *SWEPT)}
+    status = store.path.joinpath("is_done", "c", *map(str, task))
     sync = store_lock._sync
 
     def recorded(path):

@@ -15,10 +15,8 @@ from tippetop.results.flags import decoded, encoded
 from tippetop.support.errors import FileTrouble, InvalidInput
 from tippetop.sweeps import (
     Axis,
-    Draws,
-    Ending,
+    Outcome,
     Product,
-    Range,
     Store,
     Sweep,
     compute,
@@ -41,11 +39,11 @@ def test_fields_and_their_values_are_a_sweep():
 
 def test_tables_and_draws_are_sweeps_too():
     problem = report_problem(tilt=1.0)
-    geometric = {"launch.spin": {"from": 10, "to": 160, "count": 3, "spacing": "geometric"}}
+    geometric = {"launch.spin": {"from": 10, "to": 160, "count": 3, "spacing": "log"}}
     found = sweep(problem, geometric, duration=0.05)
     assert found["spin"].values == pytest.approx([10, 40, 160])
-    draws = sweep(problem, Draws((Range("launch.spin", 10, 20),), 4), duration=0.05)
-    assert draws["final_theta"].dims == ("sample",)
+    draws = sweep(problem, draw={"launch.spin": {"from": 10, "to": 20}}, count=4, duration=0.05)
+    assert draws["final_tilt"].dims == ("draw",)
 
 
 def test_a_sweep_is_kept_where_it_is_told_to(tmp_path):
@@ -65,10 +63,10 @@ def test_a_sweep_is_kept_where_it_is_told_to(tmp_path):
         ({"launch.spn": [1]}, {}, "launch.spn"),
         ({"launch.spin": [1, 1]}, {}, "launch.spin"),
         ({"launch.spin": np.array([1.0, np.nan])}, {}, "launch.spin.values.1"),
-        ({"launch.spin": np.ones((2, 2))}, {}, "launch.spin.values.0"),
+        ({"launch.spin": np.ones((2, 2))}, {}, "launch.spin"),
         ({"launch.spin": 3.0}, {}, "launch.spin"),
-        ({}, {}, "axes"),
-        ("launch.spin", {}, "axes"),
+        ({}, {}, "over"),
+        ("launch.spin", {}, "over"),
         (OVER, {"duration": -1}, "duration"),
         (OVER, {"settled": 1}, "settled"),
         (OVER, {"workers": 0, "duration": 0.1}, "workers"),
@@ -115,10 +113,13 @@ def number_of(problem, field):
 
 
 def test_draws_carry_units_too():
-    ranges = Range("friction.mu", 0.1, 0.2), Range("friction.eps", 1e-3, 1e-2)
+    ranges = {
+        "friction.mu": {"from": 0.1, "to": 0.2},
+        "friction.eps": {"from": 0.001, "to": 0.01},
+    }
     dry = report_problem().model_copy(update={"friction": RegularizedCoulombFriction(mu=0.1)})
-    found = sweep(dry, Draws(ranges, 2), duration=0.01)
-    assert [found[name].attrs["units"] for name in ("sample", "mu", "eps")] == [
+    found = sweep(dry, draw=ranges, count=2, duration=0.01)
+    assert [found[name].attrs["units"] for name in ("draw", "mu", "eps")] == [
         "1",
         "1",
         "m s-1",
@@ -154,8 +155,8 @@ def test_flags_are_words_or_numbers_as_asked(tmp_path, where):
     assert (words["outcome"] == "inverted").values.tolist() == [[False, False], [True, False]]
     assert (words["fault"] == "value_out_of_range").values.tolist() == [[False, True]] * 2
     assert numbers["outcome"].dtype == np.int8
-    assert list(numbers["outcome"].attrs["flag_values"]) == list(map(int, Ending))
-    expected = [[Ending(n).name.lower() for n in row] for row in numbers["outcome"].values]
+    assert list(numbers["outcome"].attrs["flag_values"]) == list(map(int, Outcome))
+    expected = [[Outcome(n).name.lower() for n in row] for row in numbers["outcome"].values]
     assert words["outcome"].values.tolist() == expected
     numbers = numbers.load()
     xr.testing.assert_identical(decoded(numbers), words.load())
@@ -170,7 +171,7 @@ def test_what_is_not_computed_yet_has_no_outcome(tmp_path):
     Store.create(tmp_path / "a.zarr", chosen)
     empty = read_sweep(tmp_path / "a.zarr")
     assert empty["outcome"].values.tolist() == ["", ""]
-    assert empty["status"].values.tolist() == ["pending", "pending"]
+    assert empty["is_done"].values.tolist() == [False, False]
     assert encoded(empty)["outcome"].values.tolist() == [-1, -1]
 
 

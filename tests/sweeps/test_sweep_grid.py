@@ -9,9 +9,10 @@ import pytest
 
 from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble, InvalidInput
-from tippetop.sweeps import Axis, Draws, Product, Range, Sweep
+from tippetop.sweeps import Axis, Draws, Product, Sweep
 from tippetop.sweeps.axes import Spaced
 from tippetop.sweeps.definition import is_sweep
+from tippetop.sweeps.draws import RangeColumn
 from tippetop.sweeps.grid import short_names
 
 
@@ -19,8 +20,8 @@ from tippetop.sweeps.grid import short_names
     ("entry", "values"),
     [
         ({"from": 0, "to": 250, "count": 6}, [0, 50, 100, 150, 200, 250]),
-        ({"from": 0.01, "to": 1, "count": 3, "spacing": "geo"}, [0.01, 0.1, 1.0]),
-        ({"from": -4, "to": -1, "count": 3, "spacing": "geometric"}, [-4, -2, -1]),
+        ({"from": 0.01, "to": 1, "count": 3, "spacing": "log"}, [0.01, 0.1, 1.0]),
+        ({"from": -4, "to": -1, "count": 3, "spacing": "log"}, [-4, -2, -1]),
         ({"values": [0.5, 0.1, 0.7]}, [0.5, 0.1, 0.7]),
         ([0.5, 0.1, 0.7], [0.5, 0.1, 0.7]),
         (np.array([3, 1]), [3, 1]),
@@ -44,9 +45,9 @@ def test_axes_are_read_as_they_are_written(entry, values):
         ([math.nan, 1], "a.values.0"),
         ([1, 1], "a"),
         ({"from": 1, "to": 1, "count": 5}, "a"),
-        ({"from": 0, "to": 1, "count": 5, "spacing": "geo"}, "a"),
-        ({"from": -1, "to": 1, "count": 5, "spacing": "geometric"}, "a"),
-        ({"from": 1, "to": 2, "count": 5, "spacing": "log"}, "a.spacing"),
+        ({"from": 0, "to": 1, "count": 5, "spacing": "log"}, "a"),
+        ({"from": -1, "to": 1, "count": 5, "spacing": "log"}, "a"),
+        ({"from": 1, "to": 2, "count": 5, "spacing": "geo"}, "a.spacing"),
         ({"from": 1, "to": 2, "count": 0}, "a.count"),
         ({"from": 1, "to": 2, "count": "3"}, "a.count"),
         ({"from": 1, "to": math.inf, "count": 3}, "a.to"),
@@ -63,9 +64,9 @@ def test_axes_that_cannot_be_are_refused_by_what_is_wrong(entry, field):
 @pytest.mark.parametrize(
     ("entry", "field"),
     [
-        (lambda: Range("launch.spin", 2, 1), "launch.spin"),
-        (lambda: Range("launch.spin", 2), "launch.spin.to"),
-        (lambda: Range(3, 1, 2), "field"),
+        (lambda: RangeColumn("launch.spin", 2, 1), "launch.spin"),
+        (lambda: RangeColumn("launch.spin", 2), "launch.spin.to"),
+        (lambda: RangeColumn(3, 1, 2), "field"),
         (lambda: Spaced("launch.spin", 1, 1, 2), "launch.spin"),
         (lambda: Spaced("launch.spin", 1, 2, 0), "launch.spin.count"),
         (lambda: Axis.of("launch.spin", 3), "launch.spin"),
@@ -91,8 +92,12 @@ def test_cells_of_a_product_are_counted_row_by_row():
 
 
 def test_draws_follow_from_their_seed_and_not_from_their_number():
-    ranges = (Range("launch.spin", 10, 20), Range("friction.mu", 0.01, 1, "log-uniform"))
-    few, many, other = Draws(ranges, 10, 7), Draws(ranges, 10_000, 7), Draws(ranges, 10, 8)
+    ranges = {
+        "launch.spin": {"from": 10, "to": 20},
+        "friction.mu": {"from": 0.01, "to": 1, "spacing": "log"},
+    }
+    few, many = Draws.of(ranges, 10, 7), Draws.of(ranges, 10_000, 7)
+    other = Draws.of(ranges, 10, 8)
     first = np.arange(10)
     for field in ("launch.spin", "friction.mu"):
         assert few.values(first)[field].tolist() == many.values(first)[field].tolist()
@@ -108,27 +113,27 @@ def test_draws_follow_from_their_seed_and_not_from_their_number():
 @pytest.mark.parametrize(
     ("entry", "field"),
     [
-        ([1, 2], "fields.a"),
-        ({"from": 1}, "fields.a.to"),
-        ({"from": 1, "to": 2, "law": "lin"}, "fields.a.law"),
-        ({"from": 2, "to": 1}, "fields.a"),
-        ({"from": 0, "to": 1, "law": "log-uniform"}, "fields.a"),
-        ({"from": 1, "to": math.nan}, "fields.a.to"),
+        ([1, 2], "a"),
+        (3.0, "a"),
+        ({"from": 1}, "a.to"),
+        ({"from": 1, "to": 2, "spacing": "lin"}, "a.spacing"),
+        ({"from": 2, "to": 1}, "a"),
+        ({"from": 0, "to": 1, "spacing": "log"}, "a"),
+        ({"from": 1, "to": math.nan}, "a.to"),
     ],
 )
 def test_draws_that_cannot_be_are_refused_by_what_is_wrong(entry, field):
     with pytest.raises(InvalidInput, match=r"^[\w.]+(: .| is missing)") as refusal:
-        Draws(fields={"a": entry}, count=3)
+        Draws.of({"a": entry}, count=3)
     assert refusal.value.field == field
 
 
 @pytest.mark.parametrize(
     "grid",
     [
-        Product(
-            (Spaced("friction.mu", 0.1, 1, 5, "geometric"), Axis.of("launch.tilt", [0.1, 0.2]))
-        ),
-        Draws((Range("launch.spin", 0, 1),), 5, 3),
+        Product((Spaced("friction.mu", 0.1, 1, 5, "log"), Axis.of("launch.tilt", [0.1, 0.2]))),
+        Draws.of({"launch.spin": {"from": 0, "to": 1}}, 5, 3),
+        Draws.of({"launch.spin": {"distribution": "gamma", "a": 3.0, "scale": 2.0}}, 5, 3),
     ],
 )
 def test_sweeps_come_back_from_their_description(grid):
@@ -142,7 +147,7 @@ def test_sweeps_come_back_from_their_description(grid):
 def test_what_is_written_is_what_is_described():
     tables = {
         "problem": json.loads(report_problem().to_json()),
-        "axes": {"launch.spin": {"from": 0.0, "to": 9.0, "count": 2, "spacing": "linear"}},
+        "over": {"launch.spin": {"from": 0.0, "to": 9.0, "count": 2, "spacing": "linear"}},
         "duration": 3.0,
         "tolerance": 1e-8,
     }
@@ -169,9 +174,9 @@ problem = "top.toml"
 duration = 2.5
 tolerance = 1e-8
 settled = 1e-3
-[axes]
+[over]
 launch.spin = { from = 0, to = 100, count = 3 }
-"friction.mu" = { from = 0.1, to = 1, count = 2, spacing = "geometric" }
+"friction.mu" = { from = 0.1, to = 1, count = 2, spacing = "log" }
 body.shape.eccentricity = [0.2, 0.3]
 """
 
@@ -182,7 +187,7 @@ def test_a_sweep_is_read_from_one_file(tmp_path):
     grid = Product(
         (
             Spaced("launch.spin", 0, 100, 3),
-            Spaced("friction.mu", 0.1, 1, 2, "geometric"),
+            Spaced("friction.mu", 0.1, 1, 2, "log"),
             Axis.of("body.shape.eccentricity", [0.2, 0.3]),
         )
     )
@@ -195,12 +200,10 @@ def test_draws_are_read_from_a_file(tmp_path):
     text = f"[problem]\n{report_problem().to_toml()}"
     problem = text.replace("[body", "[problem.body").replace("[friction", "[problem.friction")
     problem = problem.replace("[launch", "[problem.launch").replace("[contact", "[problem.contact")
-    draws = (
-        "\n[draws]\ncount = 4\nseed = 9\nfields.launch.spin = { from = 1, to = 2, law ="
-        ' "log-uniform" }\n'
-    )
-    (tmp_path / "sweep.toml").write_text(problem + draws)
-    wanted = Sweep(report_problem(), Draws((Range("launch.spin", 1, 2, "log-uniform"),), 4, 9))
+    spins = '\n[draw]\nlaunch.spin = { from = 1, to = 2, spacing = "log" }\n'
+    (tmp_path / "sweep.toml").write_text("count = 4\nseed = 9\n" + problem + spins)
+    draws = Draws.of({"launch.spin": {"from": 1, "to": 2, "spacing": "log"}}, 4, 9)
+    wanted = Sweep(report_problem(), draws)
     assert Sweep.read(tmp_path / "sweep.toml") == wanted
 
 
@@ -213,21 +216,22 @@ def test_draws_are_read_from_a_file(tmp_path):
         (("settled = 1e-3", "settled = 0.1"), "settled"),
         (("settled = 1e-3", "settled = nan"), "settled"),
         (("launch.spin", "launch.spn"), "launch.spn"),
-        (("count = 3", "count = 3.5"), "axes.launch.spin.count"),
-        (("count = 3", "count = true"), "axes.launch.spin.count"),
-        (("[0.2, 0.3]", "{ values = 3 }"), "axes.body.shape.eccentricity"),
-        (("[0.2, 0.3]", "[1" + 400 * "0" + "]"), "axes.body.shape.eccentricity.values.0"),
+        (("count = 3", "count = 3.5"), "over.launch.spin.count"),
+        (("count = 3", "count = true"), "over.launch.spin.count"),
+        (("[0.2, 0.3]", "{ values = 3 }"), "over.body.shape.eccentricity"),
+        (("[0.2, 0.3]", "[1" + 400 * "0" + "]"), "over.body.shape.eccentricity.values.0"),
         (("[0.2, 0.3]", 3000 * "[" + 3000 * "]"), "sweep"),
-        (("[axes]", "[axes]\n'launch.spin' = [1]"), "axes"),
-        (("count = 3", "cout = 3"), "axes"),
+        (("[over]", "[over]\n'launch.spin' = [1]"), "over"),
+        (("count = 3", "cout = 3"), "over"),
         (('problem = "top.toml"', ""), "problem"),
-        (("[0.2, 0.3]", '["a"]'), "axes.body.shape.eccentricity.values.0"),
-        (("[axes]", "[axis]"), "axis"),
-        (("[axes]", "[axes"), "sweep"),
+        (("[0.2, 0.3]", '["a"]'), "over.body.shape.eccentricity.values.0"),
+        (("[over]", "[axis]"), "axis"),
+        (("[over]", "[axes"), "sweep"),
         (("duration = 2.5", "self = 2.5"), "self"),
-        (("[axes]", "[axes]\nself = [1]"), "self"),
-        (("[axes]", "[draws]\nself = 3\n[axes]"), "draws.self"),
-        (("[axes]", "[axes]\n" + "a." * 2000 + "b = [1]"), "sweep"),
+        (("[over]", "[over]\nself = [1]"), "self"),
+        (("[over]", "[draw]\nself = 3\n[over]"), "draw.self"),
+        (("duration = 2.5", "count = 3"), "count"),
+        (("[over]", "[over]\n" + "a." * 2000 + "b = [1]"), "sweep"),
         (("[0.2, 0.3]", "{ count = " + 300 * "[" + 300 * "]" + ", from = 1, to = 2 }"), "sweep"),
         (('"top.toml"', "'" + 300 * "x" + "'"), None),
         (('"top.toml"', '"a\\u0000b"'), None),
@@ -245,15 +249,17 @@ def test_files_that_cannot_be_are_refused_by_the_field(tmp_path, change, field):
 
 
 def test_values_of_some_cells_are_made_without_the_others():
-    axes = Spaced("launch.spin", 0.1, 7, 10**4), Spaced("launch.tilt", 0.1, 7, 10**4, "geometric")
+    axes = Spaced("launch.spin", 0.1, 7, 10**4), Spaced("launch.tilt", 0.1, 7, 10**4, "log")
     some = Product(axes).values(np.array([0, 10**4, 10**8 - 1]))
     assert some["launch.spin"].tolist() == [0.1, axes[0].values[1], 7.0]
     assert some["launch.tilt"].tolist() == [0.1, 0.1, 7.0]
     assert axes[0].values == pytest.approx(np.linspace(0.1, 7, 10**4), rel=1e-15)
     assert axes[1].values == pytest.approx(np.geomspace(0.1, 7, 10**4), rel=1e-13)
-    draws = Draws(
-        (Range("launch.spin", 10, 20), Range("launch.tilt", 1, 2, "log-uniform")), 10**6, 4
-    )
+    ranges = {
+        "launch.spin": {"from": 10, "to": 20},
+        "launch.tilt": {"from": 1, "to": 2, "spacing": "log"},
+    }
+    draws = Draws.of(ranges, 10**6, 4)
     everything = draws.coordinates()
     for field, values in draws.values(np.array([999_999, 999_990])).items():
         assert (
@@ -272,7 +278,7 @@ def test_a_misspelt_sweep_is_not_taken_for_a_problem(tmp_path):
     (tmp_path / "top.toml").write_text(report_problem().to_toml())
     (tmp_path / "sweep.toml").write_text("\ufeff" + SWEEP)
     assert Sweep.read(tmp_path / "sweep.toml").cells == 12
-    assert is_sweep({"problem": "top.toml", "draw": {}})
+    assert is_sweep({"problem": "top.toml", "drow": {}})
     assert not is_sweep(tomllib.loads(report_problem().to_toml()))
 
 
@@ -316,8 +322,8 @@ def test_axes_nested_without_end_or_without_a_name_are_refused_in_a_sentence():
             ["body.shape.0.radius", "body.shape.1.radius", "center"],
         ),
         (
-            ["launch.slip.0", "law.flights", "law.sample"],
-            ["launch.slip.0", "law.flights", "law.sample"],
+            ["launch.slip.0", "law.flights", "law.draw"],
+            ["launch.slip.0", "law.flights", "law.draw"],
         ),
     ],
 )

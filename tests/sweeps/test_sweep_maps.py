@@ -11,17 +11,17 @@ from tippetop.figures.maps import FLAGS, MAPPED, phase_map
 from tippetop.figures.style import save
 from tippetop.problem.presets import report_problem
 from tippetop.support.errors import InvalidInput
-from tippetop.sweeps import SWEPT, Draws, Ending, Product, Range, Sweep, compute
+from tippetop.sweeps import SWEPT, Draws, Outcome, Product, Sweep, compute
 from tippetop.sweeps.axes import Spaced
 
 
 @pytest.fixture(scope="module")
 def plane():
-    axes = Spaced("launch.spin", 100.0, 200.0, 3), Spaced("friction.mu", 0.1, 1.0, 4, "geometric")
+    axes = Spaced("launch.spin", 100.0, 200.0, 3), Spaced("friction.mu", 0.1, 1.0, 4, "log")
     return compute(Sweep(report_problem(tilt=1.0), Product(axes), 0.2))
 
 
-SAVED = ("outcome", "turns_over")
+SAVED = ("outcome", "turnover_time")
 """Maps that are written: one of words and one of numbers."""
 
 
@@ -46,7 +46,7 @@ def test_a_map_holds_every_cell(plane, name, tmp_path):
 
 def test_what_is_not_computed_is_not_shown(plane):
     partly = plane.copy(deep=True)
-    partly["status"][0, :] = 0
+    partly["is_done"][0, :] = False
     mesh = next(
         child for child in phase_map(partly).axes[0].get_children() if isinstance(child, QuadMesh)
     )
@@ -66,25 +66,25 @@ def test_cells_are_drawn_where_their_values_are(plane):
 
 def test_one_axis_is_a_curve_and_draws_are_points():
     curve = compute(Sweep(report_problem(), Product((Spaced("launch.spin", 1, 9, 5),)), 0.1))
-    line, dots = phase_map(curve, "final_theta").axes[0].lines
+    line, dots = phase_map(curve, "final_tilt").axes[0].lines
     assert dots.get_ydata() == pytest.approx(line.get_ydata()), "all are still moving"
-    assert line.get_ydata() == pytest.approx(curve["final_theta"].values)
-    never = phase_map(curve, "turns_over").axes[0]
+    assert line.get_ydata() == pytest.approx(curve["final_tilt"].values)
+    never = phase_map(curve, "turnover_time").axes[0]
     assert never.get_xlim() == pytest.approx((0.0, 10.0))
     assert never.get_title(loc="left").endswith("no point: not within the run")
-    ranges = Range("launch.spin", 1, 9), Range("launch.tilt", 0.1, 0.2)
-    draws = compute(Sweep(report_problem(), Draws(ranges, 6), 0.1))
-    points = phase_map(draws, "final_theta").axes[0].collections[-1]
+    spins, tilts = {"launch.spin": {"from": 1, "to": 9}}, {"launch.tilt": {"from": 0.1, "to": 0.2}}
+    draws = compute(Sweep(report_problem(), Draws.of(spins | tilts, 6), 0.1))
+    points = phase_map(draws, "final_tilt").axes[0].collections[-1]
     assert np.asarray(points.get_offsets())[:, 0] == pytest.approx(draws["spin"].values)
-    assert np.asarray(points.get_array()) == pytest.approx(draws["final_theta"].values)
-    single = compute(Sweep(report_problem(), Draws(ranges[:1], 6), 0.1))
+    assert np.asarray(points.get_array()) == pytest.approx(draws["final_tilt"].values)
+    single = compute(Sweep(report_problem(), Draws.of(spins, 6), 0.1))
     assert phase_map(single).axes[0].lines[0].get_xdata() == pytest.approx(single["spin"].values)
 
 
 @pytest.mark.parametrize(("count", "drawn"), [(2, [0, 1]), (17, [0, 2, 4, 6, 8, 10, 12, 14, 16])])
 def test_more_axes_go_from_panel_to_panel(plane, count, drawn, tmp_path):
     tilts = np.linspace(0.1, 0.9, count)
-    parts = [plane.assign(final_theta=plane["final_theta"] + k) for k in range(count)]
+    parts = [plane.assign(final_tilt=plane["final_tilt"] + k) for k in range(count)]
     cube = xr.concat(parts, xr.DataArray(tilts, dims="tilt", name="tilt"))
     cube = cube.expand_dims({"gravity": [1.0, 2.0, 3.0]}).transpose("spin", "mu", "tilt", "gravity")
     cube["gravity"].attrs["units"] = "m s-2"
@@ -98,7 +98,7 @@ def test_more_axes_go_from_panel_to_panel(plane, count, drawn, tmp_path):
     maps = [mesh for mesh in meshes if mesh.get_array().shape == (4, 3)]
     assert len(maps) == len(drawn)
     for mesh, place in zip(maps, drawn, strict=True):
-        assert np.array_equal(mesh.get_array(), parts[place]["final_theta"].values.T)
+        assert np.array_equal(mesh.get_array(), parts[place]["final_tilt"].values.T)
         assert f"{tilts[place]:.4g}" in mesh.axes.get_title(loc="left")
     assert "Gravity (m/s²) = 2" in figure.get_suptitle()
     if count < 4:
@@ -114,7 +114,7 @@ def test_making_a_map_leaves_the_style_alone(plane):
 
 def test_launches_that_were_stopped_at_lift_off_show_no_final_tilt():
     sweep = compute(lively("stop"))
-    lifted = sweep["outcome"].values == Ending.LIFTED_OFF
+    lifted = sweep["outcome"].values == Outcome.LIFTED_OFF
     assert lifted.any()
     assert not lifted.all()
     axes = phase_map(sweep).axes[0]
@@ -125,7 +125,7 @@ def test_launches_that_were_stopped_at_lift_off_show_no_final_tilt():
 
 def test_launches_that_failed_or_are_inaccurate_show_no_final_tilt(plane):
     some = plane.copy(deep=True)
-    some["outcome"].values[0, :2] = Ending.INACCURATE, Ending.FAILED
+    some["outcome"].values[0, :2] = Outcome.INACCURATE, Outcome.FAILED
     axes = phase_map(some).axes[0]
     mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
     masked = np.ma.getmaskarray(mesh.get_array()).T
@@ -151,7 +151,7 @@ def test_axes_have_the_units_of_the_problem():
 @pytest.mark.parametrize("values", [np.linspace, np.geomspace])
 def test_an_axis_that_is_too_long_to_be_drawn_is_refused(plane, values):
     far = plane.copy(deep=True)
-    name = str(far["final_theta"].dims[0])
+    name = str(far["final_tilt"].dims[0])
     far = far.assign_coords(
         {name: values(1e-3, 1e299 if values is np.geomspace else 1e308, far.sizes[name])}
     )
@@ -160,6 +160,6 @@ def test_an_axis_that_is_too_long_to_be_drawn_is_refused(plane, values):
 
 
 def test_words_along_an_axis_are_no_lengths(plane):
-    name = str(plane["final_theta"].dims[0])
+    name = str(plane["final_tilt"].dims[0])
     words = [f"{value:g}" for value in plane[name].values]
     assert phase_map(plane.assign_coords(label=(name, words))).axes

@@ -76,7 +76,7 @@ def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks, mo
         assert not psutil.pid_exists(victims[0]) or psutil.Process(victims[0]).status() == "zombie"
     assert connected == [address]
     assert same(alone, arrays(together))
-    assert np.all(together["status"].values == 1)
+    assert np.all(together["is_done"].values)
 
 
 @pytest.mark.filterwarnings("ignore")

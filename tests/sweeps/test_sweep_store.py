@@ -21,8 +21,6 @@ from tippetop.sweeps import (
     SWEPT,
     Draws,
     Product,
-    Range,
-    Status,
     Store,
     Sweep,
     compute,
@@ -63,7 +61,9 @@ def path(finished, tmp_path, small_tasks):
         quick(),
         Sweep(
             report_problem(),
-            Draws((Range("launch.spin", 10, 200), Range("launch.tilt", 0, 4)), 9, 5),
+            Draws.of(
+                {"launch.spin": {"from": 10, "to": 200}, "launch.tilt": {"from": 0, "to": 4}}, 9, 5
+            ),
             0.1,
         ),
     ],
@@ -75,16 +75,16 @@ def test_a_store_is_the_sweep_in_memory(tmp_path, sweep):
 
 def test_a_store_opens_with_plain_xarray(path):
     opened = xr.open_zarr(path)
-    assert opened["final_theta"].dims == ("spin", "mu")
+    assert opened["final_tilt"].dims == ("spin", "mu")
     assert opened["mu"].values == pytest.approx(np.geomspace(0.2, 1, 4))
     assert set(SWEPT) < set(opened)
     assert json.loads(opened.attrs["problem"])["launch"]["tilt"] == 1.0
-    assert opened["status"].attrs["flag_meanings"] == "pending done"
+    assert opened["is_done"].dtype == bool
     assert opened.sel(spin=240.0).sizes == {"mu": 4}
 
 
 def test_a_task_is_a_chunk_and_there_are_no_shards(path):
-    for name in ("status", *SWEPT):
+    for name in ("is_done", *SWEPT):
         array = zarr.open_array(path / name, mode="r")
         assert array.chunks == quick().chunk
         assert array.shards is None
@@ -95,18 +95,18 @@ def test_the_status_alone_decides_what_remains(path, finished):
     sweep = quick()
     store = Store.resume(path, sweep)
     assert store.remaining() == []
-    status = zarr.open_array(path / "status", mode="r+")
+    status = zarr.open_array(path / "is_done", mode="r+")
     task = sweep.tasks[2]
-    status[sweep.region(task)] = Status.PENDING
+    status[sweep.region(task)] = False
     assert Store.resume(path, sweep).remaining() == [task]
-    theta = zarr.open_array(path / "final_theta", mode="r+")
+    theta = zarr.open_array(path / "final_tilt", mode="r+")
     theta[sweep.region(task)] = 99.0
     xr.testing.assert_identical(stored(sweep, path, resume=True, workers=1).load(), finished[1])
 
 
 @pytest.mark.parametrize("damage", [b"", b"\x00", b"garbage that is no chunk"])
 def test_a_task_with_a_damaged_status_is_computed_again(path, finished, damage):
-    (path / "status" / "c" / "0" / "0").write_bytes(damage)
+    (path / "is_done" / "c" / "0" / "0").write_bytes(damage)
     store = Store.resume(path, quick())
     assert store.remaining() == [(0, 0)]
     fill(store, workers=1)
@@ -123,7 +123,7 @@ def test_a_task_with_a_damaged_status_is_computed_again(path, finished, damage):
         (Sweep(quick().problem, quick().grid, 0.2, 1e-9), "duration"),
         (Sweep(quick().problem, quick().grid, 0.1, 1e-8), "tolerance"),
         (lively("fly", 7, 4, 0.1, 1e-9), r"axes\.launch\.spin\.count"),
-        (Sweep(quick().problem, Product(quick().grid.axes[::-1]), 0.1, 1e-9), "axes"),
+        (Sweep(quick().problem, Product(quick().grid.axes[::-1]), 0.1, 1e-9), "over"),
         (lively("stop", 6, 4, 0.1, 1e-9), "problem.contact.liftoff"),
     ],
 )
@@ -201,7 +201,7 @@ def test_a_store_is_filled_by_one_process_at_a_time(tmp_path, small_tasks):
     store = Store.create(tmp_path / "a.zarr", quick())
     with store.held(), pytest.raises(FileTrouble, match="is being filled by another process"):
         fill(Store.resume(store.path), workers=1)
-    left = store.path / "final_theta" / "c" / "0" / "0.1234.partial"
+    left = store.path / "final_tilt" / "c" / "0" / "0.1234.partial"
     left.parent.mkdir(parents=True)
     left.write_text("half a chunk")
     fill(Store.resume(store.path), workers=1)

@@ -54,7 +54,7 @@ def test_a_run_confirms_the_spin_that_advice_names() -> None:
                 ),
                 20.0,
                 samples=2,
-            )["final_theta"]
+            )["final_tilt"]
         )
         # What is lost while both surfaces touch comes on top of the spin that theory names.
         for share in (0.85, 1.4)

@@ -12,8 +12,8 @@ from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import natural_units
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import (
+    arrival_time_limit,
     averaged_flow,
-    flip_time_limit,
     local_exponent,
     nutation_of_launch,
 )
@@ -58,7 +58,7 @@ it.
 """
 
 
-def flip_time(problem, window, count):
+def arrival_time(problem, window, count):
     """First time a full run is within 0.01 rad of theta = pi, s, looked for in a window of time."""
     axis, _, _ = full_run(problem, np.concatenate([[0.0], np.linspace(*window, count)]))
     away = math.pi - tilts_of(axis)[1:] - 0.01
@@ -71,16 +71,16 @@ def flip_time(problem, window, count):
 
 def test_the_limit_of_the_flip_time_of_the_report():
     """mu t for mu -> 0, known to five digits from full runs."""
-    assert flip_time_limit(REPORT) == pytest.approx(2.3437, abs=6e-5)
+    assert arrival_time_limit(REPORT) == pytest.approx(2.3437, abs=6e-5)
 
 
 @pytest.mark.parametrize("problem", [*LAUNCHES, *SUBTLE])
 def test_the_time_in_plain_numbers_is_that_of_the_slow_flow(problem):
     """The same rates by another integrator, without a dense solution."""
     ends = predict(problem)
-    if ends.certain:
+    if ends.is_certain:
         time = time_to_end(problem, ends.final.tilt, 0.01)
-        assert time * problem.friction.mu == pytest.approx(flip_time_limit(problem), rel=3e-4)
+        assert time * problem.friction.mu == pytest.approx(arrival_time_limit(problem), rel=3e-4)
 
 
 def test_no_time_is_told_where_the_slow_flow_does_not_hold():
@@ -96,9 +96,9 @@ def test_no_time_is_told_where_the_slow_flow_does_not_hold():
 
 
 def test_full_runs_approach_the_limit_quadratically():
-    limit = flip_time_limit(REPORT)
+    limit = arrival_time_limit(REPORT)
     excess = [
-        mu * flip_time(REPORT.replace({"friction.mu": mu}), (2.33 / mu, 2.37 / mu), 4001) / limit
+        mu * arrival_time(REPORT.replace({"friction.mu": mu}), (2.33 / mu, 2.37 / mu), 4001) / limit
         - 1.0
         for mu in (0.04, 0.02, 0.005)
     ]
@@ -157,7 +157,7 @@ def test_the_flow_is_that_of_the_constants_of_the_smooth_table(problem):
         taken = mean_dissipation(path(y), numbers)
         return [taken.axial, taken.energy]
 
-    mu_times = np.linspace(0.0, 0.999, 12) * flip_time_limit(problem)
+    mu_times = np.linspace(0.0, 0.999, 12) * arrival_time_limit(problem)
     energy = begin.swing + begin.axial**2 / (2.0 * numbers.axial) + 1.0 - alpha
     span = mu_times * problem.gravity
     start, settings = [begin.axial, energy], {"method": "DOP853", "rtol": 1e-11, "atol": 1e-11}
@@ -182,7 +182,7 @@ def test_a_launch_that_a_table_cannot_hold_is_refused():
         "fly": "the table would have to pull",
     }.items():
         with pytest.raises(InvalidInput, match=f"{reason}.*only pushes"):
-            flip_time_limit(problem.replace({"contact.liftoff": liftoff}))
+            arrival_time_limit(problem.replace({"contact.liftoff": liftoff}))
 
 
 def test_a_launch_so_near_an_unstable_vertical_that_rounding_decides_is_refused_with_the_reason():
@@ -196,13 +196,13 @@ def test_a_launch_so_near_an_unstable_vertical_that_rounding_decides_is_refused_
         with pytest.raises(
             InvalidInput, match=r"launch\.tilt.*unstable vertical.*rounding decides"
         ):
-            flip_time_limit(launch)
+            arrival_time_limit(launch)
 
 
 def test_the_size_of_the_friction_and_the_sense_of_the_spin_do_not_matter():
-    limit = flip_time_limit(REPORT)
-    assert flip_time_limit(REPORT.replace({"friction.mu": 7.0})) == limit
-    assert flip_time_limit(REPORT.replace({"launch.spin": -100.0})) == pytest.approx(
+    limit = arrival_time_limit(REPORT)
+    assert arrival_time_limit(REPORT.replace({"friction.mu": 7.0})) == limit
+    assert arrival_time_limit(REPORT.replace({"launch.spin": -100.0})) == pytest.approx(
         limit, rel=1e-12
     )
 
@@ -215,7 +215,7 @@ def test_with_its_axis_drawn_the_other_way_a_top_does_the_same(problem):
     flip = {"tilt": math.pi - launch.tilt, "tilt_rate": -launch.tilt_rate, "spin": -launch.spin}
     drawn = {"body.shape": {"kind": "sphere", "radius": shape.radius, "center": -middle}}
     other = problem.replace({**drawn, **{f"launch.{name}": value for name, value in flip.items()}})
-    assert flip_time_limit(other) == pytest.approx(flip_time_limit(problem), rel=1e-6)
+    assert arrival_time_limit(other) == pytest.approx(arrival_time_limit(problem), rel=1e-6)
     flow, same = (averaged_flow(each, samples=2000) for each in (problem, other))
     assert same.final_tilt == pytest.approx(math.pi - flow.final_tilt, abs=1e-9)
     # Where it passes a vertical its least tilt has a corner, between samples.
@@ -232,16 +232,16 @@ def test_with_its_axis_drawn_the_other_way_a_top_does_the_same(problem):
 def test_a_wide_nutation_that_reaches_the_end_counts():
     """Launched within 0.01 rad of its end, the top is there at once."""
     problem = presets.report_problem(spin=60.0, tilt=math.pi - 0.005)
-    assert flip_time_limit(problem) == 0.0
+    assert arrival_time_limit(problem) == 0.0
     swinging = problem.replace({"launch.tilt_rate": 6.0})
     assert averaged_flow(swinging).tilt_low[0] < math.pi - 0.02
-    assert flip_time_limit(swinging) == 0.0
+    assert arrival_time_limit(swinging) == 0.0
 
 
 @pytest.mark.parametrize(("spin", "tilt"), [(25.0, 0.1), (50.0, 1.0), (100.0, 1.0)])
 def test_a_nutation_that_passes_the_end_on_its_way_counts(spin, tilt):
     problem, mu = presets.report_problem(spin=spin, tilt=tilt), 0.0005
-    limit, end = flip_time_limit(problem), predict(problem).final.tilt
+    limit, end = arrival_time_limit(problem), predict(problem).final.tilt
     mu_times = np.linspace(0.0, 1.1 * limit, 40001)
     axis, _, _ = full_run(problem.replace({"friction.mu": mu}), mu_times / mu)
     near = np.abs(tilts_of(axis) - end) < 0.01
@@ -270,7 +270,7 @@ def test_the_limit_is_the_first_time_near_the_end_however_short(problem, distanc
     flow = averaged_flow(problem, distance=distance, samples=50000)
     away = np.maximum(flow.tilt_low - flow.final_tilt, flow.final_tilt - flow.tilt_high)
     first = int(np.argmax(away <= distance * (1.0 + 1e-9)))
-    limit = flip_time_limit(problem, distance)
+    limit = arrival_time_limit(problem, distance)
     assert flow.mu_time[max(first - 1, 0)] - 1e-12 <= limit <= flow.mu_time[first] + 1e-12
 
 
@@ -372,4 +372,4 @@ def test_the_flow_needs_no_units():
         }
     )
     assert isinstance(larger.top.surface, SphereSurface)
-    assert flip_time_limit(larger) == pytest.approx(flip_time_limit(REPORT) / 1.5, rel=1e-9)
+    assert arrival_time_limit(larger) == pytest.approx(arrival_time_limit(REPORT) / 1.5, rel=1e-9)

@@ -21,7 +21,7 @@ from tippetop.cli.commands import app
 from tippetop.problem.frictions import ViscousFriction
 from tippetop.problem.problem import Problem
 from tippetop.support.errors import InvalidInput
-from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
+from tippetop.theory.averaging import arrival_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group
 from tippetop.theory.overview import outlook
 from tippetop.theory.prediction import steady_state_of_launch
@@ -126,12 +126,12 @@ def check_what_is_said(problem):
     if found.swings is not None:
         low, high = found.swings
         assert 0.0 <= low <= problem.launch.tilt <= high <= math.pi
-    if found.flip_time is not None:
-        assert found.flip_time >= 0.0
-        assert found.flip_time_needs is None
+    if found.arrival_time is not None:
+        assert found.arrival_time >= 0.0
+        assert found.arrival_time_needs is None
     elif found.group is not None and found.stays is None and 0.0 < problem.launch.tilt < math.pi:
         viscous = isinstance(problem.friction, ViscousFriction) and problem.friction.mu
-        assert (found.flip_time_needs is not None) == bool(viscous)
+        assert (found.arrival_time_needs is not None) == bool(viscous)
 
 
 ALL = list(itertools.product(BODIES, FRICTION, TILTS, SPINS, RATES))
@@ -186,7 +186,7 @@ def test_the_time_to_leave_a_pole_grows_as_the_logarithm_of_the_distance(body, p
         pytest.skip("there it does not leave")
     distances = [1e-5, 1e-8, 1e-12] + ([1e-300] if pole == 0.0 else [])
     times = [
-        flip_time_limit(launch_of(body, FRICTION[0], abs(pole - d), spin, (0.0, 0.0)))
+        arrival_time_limit(launch_of(body, FRICTION[0], abs(pole - d), spin, (0.0, 0.0)))
         for d in distances
     ]
     logs = -np.log([abs(pole - abs(pole - d)) for d in distances])
@@ -215,7 +215,7 @@ def test_a_launch_exactly_on_a_vertical_spin_stays_there(mu, body, tilt, kind):
     problem = launch_of(body, {"kind": "viscous", "mu": mu}, tilt, 100.0, (0.0, 20.0))
     found = outlook(problem)
     assert (found.stays.state.kind, found.stays.state.spin) == (kind, 100.0)
-    assert found.flip_time is None
+    assert found.arrival_time is None
     for field, value in (
         ("tilt_rate", 1e-6),
         ("slip", (1e-6, 0.0)),
@@ -250,8 +250,8 @@ def test_an_egg_on_its_side_stays_there():
 def test_without_friction_nothing_ends_and_the_tilt_swings(kind):
     found = outlook(launch_of("report", {"kind": kind, "mu": 0.0}, 0.3, 40.0, (0.0, 5.0)))
     assert found.prediction is None
-    assert found.mu_flip_time is None
-    assert found.flip_time is None
+    assert found.mu_arrival_time is None
+    assert found.arrival_time is None
     problem = launch_of("report", FRICTION[0], 0.3, 40.0, (0.0, 5.0))
     assert found.swings == nutation_of_launch(problem).tilts
     assert 0.3 in (

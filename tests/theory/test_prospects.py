@@ -50,7 +50,7 @@ def test_who_lies_on_no_sphere_has_no_group():
 
 def end_of(problem, spin, duration):
     return float(
-        tt.simulate(problem.replace({"launch.spin": spin}), duration, samples=11)["theta"][-1]
+        tt.simulate(problem.replace({"launch.spin": spin}), duration, samples=11)["tilt"][-1]
     )
 
 

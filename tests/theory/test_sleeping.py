@@ -93,7 +93,7 @@ def tilts_of_run(share):
     spin = share * sleeping(SteadyKind.UPRIGHT, problem.top, 1.0, rolls=True).spin
     run = tt.simulate(problem.replace({"launch.spin": spin}), 1.5, samples=4)
     growth = sleeping(SteadyKind.UPRIGHT, problem.top, spin, rolls=True).growth_rate
-    return run["theta"].values, growth
+    return run["tilt"].values, growth
 
 
 def test_a_run_on_dry_friction_falls_below_the_threshold_at_the_growth_rate():

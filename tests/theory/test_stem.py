@@ -32,7 +32,7 @@ def run_of(radius: float, center: float) -> tuple[float, float, float]:
     here = run.sel(time=touched, method="bfill")
     axis, momentum = (tuple(here[name].values.tolist()) for name in ("axis", "angular_momentum"))
     about = jellett_about(1, axis, momentum, problem.top)
-    return about, tt.least_jellett_to_stand(problem.body), float(run["final_theta"])
+    return about, tt.least_jellett_to_stand(problem.body), float(run["final_tilt"])
 
 
 @pytest.mark.parametrize("radius", [0.004, 0.008, 0.0115, 0.012])
@@ -95,6 +95,6 @@ def test_steady_states_are_told_of_the_surface_that_touches(tilt: float, spin: f
         "energy lets the other surface touch"
     )
     if number:
-        assert found.lambda_down == pytest.approx(
+        assert found.jellett_inverted == pytest.approx(
             tt.least_jellett_to_stand(problem.body), rel=1e-12
         )

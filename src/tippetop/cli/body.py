@@ -241,12 +241,14 @@ def _write(
     workpiece: "tt.Workpiece", path: Path, force: bool, whole: bool
 ) -> tuple[Sequence[Path], Sequence[str]]:
     """Write a file; return the written files, and remarks on what their format cannot express."""
+    from tippetop.engines.bodies import save_mjcf, save_urdf  # noqa: PLC0415 - slow to import
+
     ending = path.suffix.lower()
     if ending in (*FILE_ENDINGS["mjcf"], *FILE_ENDINGS["urdf"]):
         patch = tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal")
         body = tt.Body.turned(workpiece, whole=whole)
         problem = tt.Problem(body=body, friction=patch, launch=tt.Launch(tilt=0.1, spin=155.0))
-        return (tt.write_mjcf if ending == ".xml" else tt.write_urdf)(problem, path, force)
+        return (save_mjcf if ending == ".xml" else save_urdf)(problem, path, force)
     if ending in FILE_ENDINGS["plot"]:
         from tippetop.figures.section import section  # noqa: PLC0415 - slow to import
 

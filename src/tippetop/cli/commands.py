@@ -18,7 +18,15 @@ from tippetop.cli.reference import reference
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
 from tippetop.cli.sweep import sweep
-from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, InvalidInput, TippetopError
+from tippetop.support.errors import (
+    OTHER_OUT,
+    OVERWRITE,
+    RESUME,
+    InvalidInput,
+    TippetopError,
+    reworded,
+    within_part,
+)
 from tippetop.support.interrupts import INTERRUPTED, is_interrupted, let_end, let_raise
 
 MISUSE = 2
@@ -63,7 +71,7 @@ def _in_a_sentence(error: Any) -> Exception:
     """Return typer's error as one of the package's; help texts stay as they are."""
     cause = error.__cause__
     if isinstance(cause, InvalidInput):
-        return cause.within(error.param.opts[0])
+        return within_part(cause, error.param.opts[0])
     message: str = error.format_message()
     if message:
         return TippetopError(message[0].lower() + message[1:].removesuffix("."))
@@ -115,7 +123,7 @@ def run() -> None:
     try:
         app()
     except TippetopError as error:
-        typer.echo(f"tippetop: {error.reworded(WORDS)}", err=True)
+        typer.echo(f"tippetop: {reworded(error, WORDS)}", err=True)
         sys.exit(MISUSE)
     except BrokenPipeError:
         # The reader has closed the pipe, as in `tippetop ... | head`.

@@ -13,8 +13,16 @@ if TYPE_CHECKING:
     from tippetop.theory.steady import SteadyState
 
 QUANTITIES = (
-    *("inertia_ratio", "eccentricity", "group", "lambda_up", "lambda_down", "jellett", "swings"),
-    *("mu_flip_time", "flip_time", "flip_time_needs", "standing_time", "surface", "tilts"),
+    *(
+        "inertia_ratio",
+        "eccentricity",
+        "group",
+        "jellett_upright",
+        "jellett_inverted",
+        "jellett",
+        "swings",
+    ),
+    *("mu_arrival_time", "arrival_time", "arrival_time_needs", "standing_time", "surface", "tilts"),
     *("creeps", "sticks", "standing", "lying", "resting_center"),
 )
 """Fields of the outlook that JSON has under the same names."""
@@ -109,13 +117,13 @@ def _sentences(outlook: "Outlook") -> Iterator[Any]:
             f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {outlook.tilt:.6g} rad, and"
             " rates.[/]"
         )
-    if outlook.flip_time is not None:
+    if outlook.arrival_time is not None:
         yield (
             "[dim]The last row is the limit of μ t over μ. It is far off for strong friction, or if"
             " a nutation takes the axis round the vertical just once.[/]"
         )
-    if outlook.flip_time_needs is not None:
-        yield f"[dim]The flip time is known only for {outlook.flip_time_needs}.[/]"
+    if outlook.arrival_time_needs is not None:
+        yield f"[dim]The flip time is known only for {outlook.arrival_time_needs}.[/]"
     if outlook.steady:
         headings = ("kind", "tilt", "precession", "axial spin", "energy", "", "growth time")
         rows = (_state_row(entry) for entry in outlook.steady)
@@ -157,10 +165,12 @@ def _rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
         vertical = outlook.tilt in (0.0, math.pi)
         what = "drilling lets it stand" if vertical else "inverted with this λ it would stand"
         rows.append((what, spelled(outlook.standing_time), "s"))
-    if outlook.mu_flip_time is not None:
-        rows.append(("μ t until 0.01 rad from there, μ → 0", spelled(outlook.mu_flip_time), "s²/m"))
-    if outlook.flip_time is not None:
-        rows.append(("so at this friction about", spelled(outlook.flip_time), "s"))
+    if outlook.mu_arrival_time is not None:
+        rows.append(
+            ("μ t until 0.01 rad from there, μ → 0", spelled(outlook.mu_arrival_time), "s²/m")
+        )
+    if outlook.arrival_time is not None:
+        rows.append(("so at this friction about", spelled(outlook.arrival_time), "s"))
     return rows
 
 
@@ -171,7 +181,11 @@ def _critical_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
         spelled(outlook.jellett),
         "kg m³/s" + ("" if outlook.conserved else ", not conserved"),
     )
-    if outlook.critical_spins is None or outlook.lambda_up is None or outlook.lambda_down is None:
+    if (
+        outlook.critical_spins is None
+        or outlook.jellett_upright is None
+        or outlook.jellett_inverted is None
+    ):
         return [jellett]
     sphere = outlook.group is not None
     upright, inverted = outlook.critical_spins.upright, outlook.critical_spins.inverted
@@ -181,8 +195,8 @@ def _critical_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
     return [
         _threshold(names[0], upright, "rad/s"),
         _threshold(names[1], inverted, "rad/s"),
-        _threshold("λ_up", outlook.lambda_up, "kg m³/s"),
-        _threshold("λ_down", outlook.lambda_down, "kg m³/s"),
+        _threshold("λ_up", outlook.jellett_upright, "kg m³/s"),
+        _threshold("λ_down", outlook.jellett_inverted, "kg m³/s"),
         jellett,
     ]
 
@@ -243,7 +257,7 @@ def _end_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
                 "rad",
             )
         )
-        if not outlook.prediction.certain:
+        if not outlook.prediction.is_certain:
             rows.append(("", "of several, by least energy", ""))
     return rows
 

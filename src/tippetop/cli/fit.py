@@ -19,7 +19,7 @@ from tippetop.cli.options import (
 )
 from tippetop.cli.terminal import listing, show, show_json
 from tippetop.support.errors import InvalidInput
-from tippetop.support.files import place_for, require_ending, written_beside
+from tippetop.support.files import place_for, require_ending
 
 if TYPE_CHECKING:
     from tippetop.fit.fitted import FitResult
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @of_a_problem
 def fit(
     choice: Choice,
-    data: Annotated[Path, typer.Argument(help="Table of data: t and theta, t, x and y, rpm, ...")],
+    data: Annotated[Path, typer.Argument(help="Table of data: t and tilt, t, x and y, rpm, ...")],
     vary: Annotated[
         str,
         typer.Option(
@@ -91,8 +91,7 @@ def fit(
 
         write_figure(plot_fit(result), plot, force)
     if out is not None:
-        with written_beside(out, force) as beside:
-            beside.write_text(result.problem.to_toml(), encoding="utf-8")
+        result.problem.write(out, force)
     if as_json:
         show_json({**result.summary(), "plot": plot and str(plot), "out": out and str(out)})
         return

@@ -42,20 +42,20 @@ ENDINGS = {
 """Accepted suffixes of files; other kinds, except `out`, have their name as suffix."""
 
 ROWS = (
-    ("simulated", "duration", "s", ".6g", ""),
-    ("final tilt", "theta", "rad", ".7g", ""),
-    ("final axial spin", "omega3", "rad/s", ".7g", ""),
-    ("final precession", "phi_dot", "rad/s", ".7g", "undefined"),
-    ("turns over at", "turns_over", "s", ".7g", "not within the run"),
-    ("first within 0.01 rad of its settled tilt at", "arrives", "s", ".7g", "not settled"),
-    ("stays within 0.01 rad of it from", "settled_since", "s", ".7g", ""),
-    ("largest tilt", "highest_tilt", "rad", ".7g", "may still rise"),
-    ("least normal force", "least_normal_force", "N", ".7g", ""),
-    ("energy at launch", "energy_start", "J", ".6g", ""),
+    ("simulated", "end_time", "s", ".6g", ""),
+    ("final tilt", "tilt", "rad", ".7g", ""),
+    ("final axial spin", "spin", "rad/s", ".7g", ""),
+    ("final precession", "precession", "rad/s", ".7g", "undefined"),
+    ("turns over at", "turnover_time", "s", ".7g", "not within the run"),
+    ("first within 0.01 rad of its settled tilt at", "arrival_time", "s", ".7g", "not settled"),
+    ("stays within 0.01 rad of it from", "settling_time", "s", ".7g", ""),
+    ("largest tilt", "max_tilt_ever", "rad", ".7g", "may still rise"),
+    ("least normal force", "min_normal_force", "N", ".7g", ""),
+    ("energy at launch", "initial_energy", "J", ".6g", ""),
     ("energy lost", "energy_lost", "J", ".7g", ""),
     ("drift of Jellett's integral", "jellett_drift", "relative", ".1e", "undefined"),
     ("error of the energy balance", "energy_error", "relative", ".1e", "undefined"),
-    ("leaves the table first at", "first_lift_off", "s", ".7g", ""),
+    ("leaves the table first at", "liftoff_time", "s", ".7g", ""),
 )
 """Rows printed for a run: text, key of the summary, unit, format, and text for a missing value.
 
@@ -72,8 +72,8 @@ LOSS_ROWS = (
 FLIGHT_ROWS = (
     ("flights", "flights", "", ".7g", ""),
     ("airborne for", "airborne_time", "s", ".7g", ""),
-    ("highest above the table", "highest_gap", "m", ".7g", ""),
-    ("energy lost in impacts", "impact_energy_lost", "J", ".7g", ""),
+    ("highest above the table", "max_gap", "m", ".7g", ""),
+    ("energy lost in impacts", "energy_lost_impacts", "J", ".7g", ""),
 )
 
 
@@ -160,10 +160,10 @@ def simulate(
         written = {kind: path and str(path) for kind, path in files.items()}
         show_json({**summary, **written, "problem": chosen.model_dump()})
     else:
-        advice = f"{summary['outcome'].replace('_', ' ')}: {summary['advice']}"
+        advice = f"{summary['status'].replace('_', ' ')}: {summary['message']}"
         show(
             summary["description"],
-            *(() if summary["outcome"] == "completed" else (f"[bold]{advice}[/]",)),
+            *(() if summary["status"] == "completed" else (f"[bold]{advice}[/]",)),
             facts(_rows(summary, chosen.top.conserves_jellett)),
             f"[dim]{summary['steps']} steps of {summary['integrator']} in {elapsed:.3g} s[/]",
             files=requested.values(),

@@ -31,13 +31,13 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
-    from tippetop.sweeps import Product, Progress, Sweep
+    from tippetop.sweeps import Progress, Sweep
 
 
 SweepFile = Annotated[
     Path | None,
     typer.Argument(
-        help="Sweep (.toml with axes, draws or samples), or problem; by default the report's top."
+        help="Sweep (.toml with over or draw), or problem; by default the report's top."
     ),
 ]
 Axes = Annotated[
@@ -45,15 +45,16 @@ Axes = Annotated[
     typer.Option(
         metavar="FIELD=VALUES",
         help=(
-            "Values of a field: FIRST:LAST:COUNT, FIRST:LAST:COUNT:geo or A,B,C, in SI or with"
-            " a unit, as in 0:2500rpm:51. Axes cross."
+            "Sweep a field over values: FIRST:LAST:COUNT, FIRST:LAST:COUNT:log or A,B,C, in SI or"
+            " with a unit, as in 0:2500rpm:51. Several cross."
         ),
     ),
 ]
 Ranges = Annotated[
     list[str] | None,
     typer.Option(
-        metavar="FIELD=LOW:HIGH", help="Draw a field at random instead; append :log for its log."
+        metavar="FIELD=LOW:HIGH",
+        help="Draw a field at random instead, from a range; append :log for its logarithm.",
     ),
 ]
 Count = Annotated[int | None, number_option(int, "Number of draws.")]
@@ -89,7 +90,7 @@ Maps = Annotated[
 @partial(of_a_problem, file=SweepFile)
 def sweep(
     choice: Choice,
-    axis: Axes = None,
+    over: Axes = None,
     draw: Ranges = None,
     count: Count = None,
     seed: Seed = None,
@@ -104,11 +105,8 @@ def sweep(
     as_json: Json = False,
     force: Force = False,
 ) -> None:
-    """Simulate many launches, over crossed axes or random draws, and count their outcomes."""
-    from tippetop.problem.implausible import warn  # noqa: PLC0415 - slow to import
-    from tippetop.sweeps import Store, fill  # noqa: PLC0415
-    from tippetop.sweeps.implausible_cells import implausible_cells  # noqa: PLC0415
-    from tippetop.sweeps.schedulers import need_workers  # noqa: PLC0415
+    """Simulate many launches, over crossed fields or random draws, and count their outcomes."""
+    from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
     from tippetop.sweeps.store_layout import refuse_existing, stored_sweep  # noqa: PLC0415
 
     if resume and force:
@@ -125,95 +123,102 @@ def sweep(
         "tolerance": tolerance,
         "settled": number_of("--settled", settled, "rad"),
     }
-    chosen = _chosen_sweep(choice, stored, _chosen_grid(axis, draw, count, seed), limits)
-    with need_workers(chosen, workers, scheduler) as cluster:
-        if not resume:
-            require_ending("--out", out, [".zarr"])
-            refuse_existing(out, force)
-        pictures = _map_files(out, chosen) if maps else {}
-        for path in pictures.values():
-            place_for(path, force or resume)
-        store = Store.resume(out, chosen) if resume else Store.create(out, chosen, force)
-        if doubt := implausible_cells(chosen):
-            warn(doubt)
-        progress: list[Progress] = []
-        try:
-            with progress_bar() as tell:
+    fields = _chosen_fields(choice, stored, _chosen_grid(over, draw, count, seed), limits)
+    chosen = Sweep(**fields)
+    if not resume:
+        require_ending("--out", out, [".zarr"])
+        refuse_existing(out, force)
+    pictures = _map_files(out, chosen) if maps else {}
+    for path in pictures.values():
+        place_for(path, force or resume)
+    progress: list[Progress] = []
+    try:
+        with progress_bar() as tell:
 
-                def callback(now: "Progress") -> None:
-                    progress.append(now)
-                    rate = f" {now.rate:,.0f} launches/s" if now.rate else ""
-                    tell(now.done, now.cells, f"{now.done:,} of {now.cells:,}{rate}")
+            def callback(now: "Progress") -> None:
+                progress.append(now)
+                rate = f" {now.rate:,.0f} launches/s" if now.rate else ""
+                tell(now.done, now.cells, f"{now.done:,} of {now.cells:,}{rate}")
 
-                fill(store, workers=workers, scheduler=cluster, callback=callback)
-            dataset = store.load(
-                ["status", "outcome", "fault", *dict.fromkeys(["flights", *pictures])]
+            tt.sweep(
+                **fields,
+                out=out,
+                overwrite=force,
+                resume=resume,
+                workers=workers,
+                scheduler=scheduler,
+                callback=callback,
             )
-            _draw_maps(dataset, pictures, force or resume)
-        except KeyboardInterrupt:
-            done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
-            typer.echo(
-                f"tippetop: interrupted; {done} cells are in {out}: continue with --resume",
-                err=True,
-            )
-            raise typer.Exit(INTERRUPTED) from None
+        names = ["is_done", "outcome", "fault", *dict.fromkeys(["flights", *pictures])]
+        dataset = tt.read_sweep(out, names, decode=False)
+        _draw_maps(dataset, pictures, force or resume)
+    except KeyboardInterrupt:
+        done = f"{progress[-1].done:,} of {progress[-1].cells:,}" if progress else "none"
+        typer.echo(
+            f"tippetop: interrupted; {done} cells are in {out}: continue with --resume",
+            err=True,
+        )
+        raise typer.Exit(INTERRUPTED) from None
     summary = {
         **_summary(dataset, progress[-1]),
-        "refusal": _refusal(store.sweep, dataset["fault"].values),
+        "refusal": _refusal(chosen, dataset["fault"].values),
     }
     if as_json:
         files = {"out": str(out), "maps": [str(path) for path in pictures.values()]}
-        show_json({**summary, **files, "sweep": store.sweep.to_fields()})
+        show_json({**summary, **files, "sweep": chosen.to_fields()})
     else:
         show(*_sentences(summary), files=[out, *pictures.values()])
 
 
-def _chosen_sweep(
+def _chosen_fields(
     choice: Choice,
     stored: "Sweep | None",
-    grid: "Product | tt.Draws | None",
+    grid: dict[str, Any],
     limits: dict[str, float | None],
-) -> "Sweep":
-    """Return the sweep of the file, or of the store to be resumed, with the options."""
+) -> dict[str, Any]:
+    """Return the fields of the sweep of the file, or of the store to be resumed, with the
+    options.
+    """
     from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
-    from tippetop.sweeps.definition import GRIDS  # noqa: PLC0415
 
     file = choice.file
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else stored
     stated = {name: limit for name, limit in limits.items() if limit is not None}
-    if base is not None:
-        cells = {**dict.fromkeys(GRIDS), "grid": grid or base.grid}
-        return base.model_copy(update={"problem": choice.changed(base.problem), **cells, **stated})
-    problem = choice.problem()
-    if grid is None:
-        raise InvalidInput(
-            "--axis",
-            MISSING,
-            "an axis, such as --axis launch.spin=0:250:51, or --draw, or a sweep's file",
-        )
-    return Sweep(problem, grid, **stated)
+    if base is None:
+        if not {"over", "draw"} & set(grid):
+            raise InvalidInput(
+                "--over",
+                MISSING,
+                "a field, such as --over launch.spin=0:250:51, or --draw, or a sweep's file",
+            )
+        return {"problem": choice.problem(), **grid, **stated}
+    fields = base.to_fields() | {"problem": choice.changed(base.problem)}
+    if grid:
+        for name in ("over", "draw", "count", "seed"):
+            fields.pop(name, None)
+    return fields | grid | stated
 
 
 def _chosen_grid(
-    axis: list[str] | None, draw: list[str] | None, count: int | None, seed: int | None
-) -> "Product | tt.Draws | None":
-    """Return the grid of the options, or None without one."""
-    from tippetop.sweeps import Product  # noqa: PLC0415 - slow to import
+    over: list[str] | None, draw: list[str] | None, count: int | None, seed: int | None
+) -> dict[str, Any]:
+    """Return what the options say of the launches, by the names of a sweep's fields."""
+    from tippetop.sweeps.draws import columns_of  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps.grid import Product  # noqa: PLC0415
 
-    if axis and draw:
-        raise InvalidInput("--draw", draw[0], "axes or draws", "is given beside --axis")
+    if over and draw:
+        raise InvalidInput("--draw", draw[0], "one of the two", "is given beside --over")
     for name, number in (("--count", count), ("--seed", seed)):
         if number is not None and not draw:
             raise InvalidInput(name, number, "", "is only for --draw", "omit it")
-    if axis:
-        return Product.of([_axis(text) for text in axis])
+    if over:
+        return {"over": Product.of([_axis(text) for text in over])}
     if draw:
         if count is None:
             raise InvalidInput("--count", MISSING, "the number of draws")
-        return tt.Draws(
-            **{"fields": [_range(text) for text in draw], "count": count, "seed": seed or 0}
-        )
-    return None
+        ranges = columns_of([_range(text) for text in draw])
+        return {"draw": ranges, "count": count, "seed": seed or 0}
+    return {}
 
 
 def _axis(text: str) -> tuple[str, Any]:
@@ -221,8 +226,8 @@ def _axis(text: str) -> tuple[str, Any]:
     field, equals, values = text.partition("=")
     try:
         match values.split(":"):
-            case [listed] if equals:
-                return field.strip(), _numbers(listed.split(","))
+            case [numbers] if equals:
+                return field.strip(), _numbers(numbers.split(","))
             case [first, last, count, *spacing] if equals and len(spacing) < 2:
                 low, high = _numbers([first, last])
                 axis: dict[str, Any] = {"from": low, "to": high, "count": int(count)}
@@ -232,7 +237,7 @@ def _axis(text: str) -> tuple[str, Any]:
     except ValueError:
         pass
     raise InvalidInput(
-        "--axis", text, "FIELD=FIRST:LAST:COUNT, FIELD=FIRST:LAST:COUNT:geo, or FIELD=A,B,C"
+        "--over", text, "FIELD=FIRST:LAST:COUNT, FIELD=FIRST:LAST:COUNT:log, or FIELD=A,B,C"
     )
 
 
@@ -240,11 +245,11 @@ def _range(text: str) -> tuple[str, Any]:
     """Return a draw of the command line in the form of a sweep's file."""
     field, equals, values = text.partition("=")
     low, _, high = values.removesuffix(":log").partition(":")
-    law = "log-uniform" if values.endswith(":log") else "uniform"
+    spacing = "log" if values.endswith(":log") else "linear"
     try:
         if equals:
             first, last = _numbers([low, high])
-            return field.strip(), {"from": first, "to": last, "law": law}
+            return field.strip(), {"from": first, "to": last, "spacing": spacing}
     except ValueError:
         pass
     raise InvalidInput("--draw", text, "FIELD=LOW:HIGH, or FIELD=LOW:HIGH:log")
@@ -311,7 +316,9 @@ def _summary(dataset: "xr.Dataset", progress: "Progress") -> dict[str, Any]:
         "computed": progress.done - progress.before,
         "seconds": progress.elapsed,
         "launches_per_second": progress.rate,
-        "outcomes": {ending.name.lower(): groups[ending] for ending in tt.Ending if groups[ending]},
+        "outcomes": {
+            outcome.name.lower(): groups[outcome] for outcome in tt.Outcome if groups[outcome]
+        },
         "flights": int(dataset["flights"].where(dataset["flights"] >= 0, 0).sum()),
     }
 

@@ -35,7 +35,7 @@ from tippetop.contact.mode import (
     IntegratedMode,
     Mode,
     ModeEnd,
-    Outcome,
+    Status,
     Transition,
     failed,
 )
@@ -128,7 +128,7 @@ class Automaton:
     restitution: float
     """Ratio of the normal impulses of restitution and compression."""
     indeterminate: str = "impact"
-    """Where the contact force is indeterminate: "impact" or "lift_off"."""
+    """Where the contact force is indeterminate: "impact" or "liftoff"."""
 
     @property
     def pulls(self) -> bool:
@@ -156,13 +156,13 @@ class Automaton:
     ) -> Transition:
         """Return what follows the end of a mode; the integrator may follow an impact, too."""
         if end.cause == COMPLETED:
-            return Transition((), Outcome.COMPLETED, end.state)
+            return Transition((), Status.COMPLETED, end.state)
         if end.cause == FAILURE:
             return self._after_failure(mode, end, time)
         if end.cause == FLAT:
-            return Transition((), Outcome.LYING_FLAT, end.state)
+            return Transition((), Status.LYING_FLAT, end.state)
         if end.cause == AT_REST:
-            return Transition((), Outcome.AT_REST, end.state)
+            return Transition((), Status.AT_REST, end.state)
         contact = off_branch(mode.top)
         if isinstance(mode, Flight):
             return self._after_flight(contact, end, time, integrator)
@@ -206,7 +206,7 @@ class Automaton:
         """Return what follows where a mode cannot be followed: friction that turns may have jammed
         the contact, where no step is short enough.
         """
-        failure = Transition((), Outcome.FAILED, end.state, end.detail)
+        failure = Transition((), Status.FAILED, end.state, end.detail)
         moving = mode.contact_mode if isinstance(mode, SlipEnd) else mode
         if isinstance(moving, ContactMode) and moving.slides_freely:
             return self.jammed(off_branch(mode.top), time, end.state) or failure
@@ -229,7 +229,7 @@ class Automaton:
             else:
                 following = self._slides_on_two(end.state, mode.tops, mode.rolls)
         except ArithmeticError:
-            return Transition((), Outcome.FAILED, end.state, UNSEEN)
+            return Transition((), Status.FAILED, end.state, UNSEEN)
         return Transition((), following, end.state)
 
     def _follow_to_end(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
@@ -490,12 +490,12 @@ class Automaton:
         beside = other_touching(contact, state)
         closed, reported = False, events
         if any(lands_flat(neighbour, state.axis) for neighbour in beside):
-            return Transition(events, Outcome.LYING_FLAT, state)
+            return Transition(events, Status.LYING_FLAT, state)
         for neighbour in beside:
             if gap_rate(state, neighbour) < -SLOWEST_ROCKING:
                 if sum(event.kind is EventKind.IMPACT for event in events) >= MOST_IN_TURNS:
                     detail = "surfaces strike in turns for ever"
-                    return Transition(events, Outcome.FAILED, state, detail)
+                    return Transition(events, Status.FAILED, state, detail)
                 return self._collide(neighbour, time, state, reported, 0.0)
             if stays_closed(contact, neighbour, state):
                 closed = True
@@ -521,7 +521,7 @@ class Automaton:
         under it. `_chosen` decides, for two contacts as for one.
         """
         if lies_flat(contact, state.axis):
-            return Transition(events, Outcome.LYING_FLAT, state)
+            return Transition(events, Status.LYING_FLAT, state)
         sliding = along_table(state)
         stuck = is_set_valued(contact.friction) and not is_slipping(*sliding, contact)
         held = not rolls_freely(contact, state)
@@ -555,7 +555,7 @@ class Automaton:
         if len(consistent) == 1:
             return consistent[0]
         may_lift_off = NONE_CLOSED in consistent
-        if may_lift_off and self.indeterminate == "lift_off":
+        if may_lift_off and self.indeterminate == "liftoff":
             return NONE_CLOSED
         if jams:
             return STRUCK
@@ -583,7 +583,7 @@ class Automaton:
         self, contact: Top, time: float, state: State, events: tuple[Event, ...], start: Start
     ) -> Transition:
         """End the run, or fly."""
-        following = Flight(contact, start) if self.liftoff == "fly" else Outcome.LIFTED_OFF
+        following = Flight(contact, start) if self.liftoff == "fly" else Status.LIFTED_OFF
         event = Event(EventKind.LIFT_OFF, time, surface=contact.active)
         return Transition((*events, event), following, state)
 
@@ -593,7 +593,7 @@ class Automaton:
         """Collide, unless with a face, and go on as the impact leaves the top."""
         reported = (Event(EventKind.TOUCHDOWN, time, surface=contact.active),)
         if lands_flat(contact, state.axis):
-            return Transition(reported, Outcome.LYING_FLAT, state)
+            return Transition(reported, Status.LYING_FLAT, state)
         return self._collide(contact, time, state, reported, self.restitution, integrator)
 
     def touch(
@@ -630,7 +630,7 @@ class Automaton:
         detail = "no contact force is consistent with the friction"
         if any(event.kind is EventKind.INDETERMINATE for event in events):
             detail = "the impact that contact.indeterminate names needs contact.liftoff = fly"
-        return Transition(events, Outcome.FAILED, state, detail)
+        return Transition(events, Status.FAILED, state, detail)
 
     def _collide(
         self,
@@ -746,7 +746,7 @@ class Automaton:
             detail = f"{count} set of forces is consistent with two surfaces that touch"
             if FIRST_ALONE in consistent and SECOND_ALONE in consistent:
                 detail = "each of two surfaces that touch can carry the body alone"
-            return Transition(events, Outcome.FAILED, contacts.state, detail)
+            return Transition(events, Status.FAILED, contacts.state, detail)
         if jammed is not None and chosen == STRUCK:
             touching = on_table(along_table(contacts.state), jammed)
             return self.inconsistent(jammed, time, touching, events)
@@ -869,7 +869,7 @@ def add_prior_impulse(
 
     A run that ends without one ends in the state before.
     """
-    if not following.events and isinstance(following.next, Outcome):
+    if not following.events and isinstance(following.next, Status):
         return replace(following, state=before)
     hit = [
         replace(event, impulse=event.impulse + impulse, energy_lost=event.energy_lost + lost)

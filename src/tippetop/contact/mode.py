@@ -25,16 +25,16 @@ BROKEN = "a number on the way to it is too large for a computer, or zero where i
 """Why something cannot be found where arithmetic breaks down."""
 
 
-class Outcome(Enum):
+class Status(Enum):
     """How a run ended; the value is advice.
 
     Examples
     --------
     >>> import tippetop as tt
     >>> run = tt.simulate(tt.presets.report_problem(), duration=0.1)
-    >>> tt.Outcome[run.attrs["outcome"].upper()] is tt.Outcome.COMPLETED
+    >>> tt.Status[run.attrs["status"].upper()] is tt.Status.COMPLETED
     True
-    >>> tt.Outcome.COMPLETED.value
+    >>> tt.Status.COMPLETED.value
     'The run reached its end.'
     """
 
@@ -48,9 +48,9 @@ class Outcome(Enum):
         "The body lies flat on a face, and may still spin; motion on a flat face is not simulated."
     )
     STOPPED = "The run ended at the event that it was asked to end at."
-    TOO_MANY_PHASES = (
+    TOO_MANY_MODES = (
         "The top bounced and slid more often than the run allows; "
-        "shorten the duration, lower the restitution, or raise the limit on phases."
+        "shorten the duration, lower the restitution, or raise mode_limit."
     )
     TOO_MANY_STEPS = (
         "The motion took more steps than the run allows: it is very fast, or stiff; shorten the"
@@ -71,7 +71,7 @@ class Outcome(Enum):
 class EventKind(Enum):
     """What can happen to a top; the value is its name in a result."""
 
-    LIFT_OFF = "lift-off"
+    LIFT_OFF = "liftoff"
     TOUCHDOWN = "touchdown"
     STICK = "stick"
     SLIP = "slip"
@@ -106,12 +106,12 @@ class Transition:
 
     events: tuple[Event, ...]
     """What happened, in order."""
-    next: "Mode | Outcome"
-    """The next mode, or the outcome of the run."""
+    next: "Mode | Status"
+    """The next mode, or the status of the run."""
     state: State
     """The state in which it begins, floats."""
     detail: str = ""
-    """More about the outcome, where there is more to say."""
+    """More about the status, where there is more to say."""
 
     @property
     def energy_lost(self) -> float:
@@ -128,7 +128,7 @@ def ambiguity_of(events: Sequence[Event]) -> str:
     return (
         f"At {instants} the contact force was indeterminate (Painleve's paradox): an impact and a"
         " lift-off both agree with the laws of rigid bodies and friction. The run took the one"
-        " that contact.indeterminate names, 'impact' or 'lift_off'."
+        " that contact.indeterminate names, 'impact' or 'liftoff'."
     )
 
 
@@ -183,7 +183,7 @@ def failed(
     what: str, error: ArithmeticError, state: State, events: tuple[Event, ...] = ()
 ) -> Transition:
     """Return the end of a run where something cannot be found."""
-    return Transition(events, Outcome.FAILED, state, explanation(what, error))
+    return Transition(events, Status.FAILED, state, explanation(what, error))
 
 
 def split(y: Row) -> tuple[Vector, Vector]:

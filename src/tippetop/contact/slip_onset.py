@@ -35,7 +35,7 @@ slip has ended.
 """
 
 UNSEEN = "slip, or rolling, cannot be told from its beginning"
-"""Detail of the outcome where rounding hides the velocities that begin."""
+"""Detail of the status where rounding hides the velocities that begin."""
 
 
 @dataclass(frozen=True)

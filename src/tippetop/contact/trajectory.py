@@ -5,12 +5,12 @@ from dataclasses import replace
 from typing import Any
 
 from tippetop.contact.automaton import Automaton
-from tippetop.contact.mode import Event, Mode, Outcome, Segment, Transition
+from tippetop.contact.mode import Event, Mode, Segment, Status, Transition
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.state import State
 from tippetop.support.errors import InvalidInput, is_number, is_whole
 
-PHASE_LIMIT = 100_000
+MODE_LIMIT = 100_000
 """How many modes a run goes through at most unless told otherwise."""
 
 LONGEST_RUN = 1e300
@@ -41,7 +41,7 @@ class Trajectory:
         and of impacts, and the pieces of flights.
     time, state
         Where it is.
-    outcome, detail
+    status, detail
         How it ended, once it has, and more about that.
     events
         Everything that happened so far, in order.
@@ -53,7 +53,7 @@ class Trajectory:
         start: Transition,
         end: float,
         integrator: Integrator,
-        limit: int = PHASE_LIMIT,
+        limit: int = MODE_LIMIT,
         step_limit: int = STEP_LIMIT,
         time: float = 0.0,
     ) -> None:
@@ -61,7 +61,7 @@ class Trajectory:
         self.start, self.end, self.integrator = start, end, integrator
         self.limit, self.step_limit = limit, step_limit
         self.time, self.state = time, start.state
-        self.outcome: Outcome | None = None
+        self.status: Status | None = None
         self.detail, self.events = "", list[Event]()
 
     def segments(self) -> Iterator[Segment]:
@@ -69,9 +69,7 @@ class Trajectory:
         transition, modes, steps = self._enter(self.start), 0, 0
         while isinstance(transition.next, Mode):
             if self.time >= self.end or modes == self.limit:
-                self.outcome = (
-                    Outcome.COMPLETED if self.time >= self.end else Outcome.TOO_MANY_PHASES
-                )
+                self.status = Status.COMPLETED if self.time >= self.end else Status.TOO_MANY_MODES
                 return
             modes += 1
             mode = transition.next
@@ -85,27 +83,27 @@ class Trajectory:
                     steps += sum(event.steps for event in transition.events)
                     segment = replace(segment, transition=transition)  # noqa: PLW2901
                 yield segment
-                if steps >= self.step_limit and self.outcome is None:
-                    self.outcome = Outcome.TOO_MANY_STEPS
+                if steps >= self.step_limit and self.status is None:
+                    self.status = Status.TOO_MANY_STEPS
                     return
 
     def end_at(
-        self, time: float, state: State, outcome: Outcome = Outcome.COMPLETED, detail: str = ""
+        self, time: float, state: State, status: Status = Status.COMPLETED, detail: str = ""
     ) -> None:
         """Leave out what follows a time and state that the run has passed."""
-        self.time, self.state, self.outcome, self.detail = time, state, outcome, detail
+        self.time, self.state, self.status, self.detail = time, state, status, detail
         self.events = [event for event in self.events if event.time <= time]
 
     def _enter(self, transition: Transition) -> Transition:
         self.events += transition.events
         self.state = transition.state
-        if isinstance(transition.next, Outcome):
-            self.outcome, self.detail = transition.next, transition.detail
+        if isinstance(transition.next, Status):
+            self.status, self.detail = transition.next, transition.detail
         return transition
 
 
 def require_limits(
-    duration: Any, unit: float, phase_limit: Any = PHASE_LIMIT, step_limit: Any = STEP_LIMIT
+    duration: Any, unit: float, mode_limit: Any = MODE_LIMIT, step_limit: Any = STEP_LIMIT
 ) -> None:
     """Refuse, with `InvalidInput`, a duration, s, or limits that no run can have; `unit` is that of
     time.
@@ -114,6 +112,6 @@ def require_limits(
     if not (is_number(duration) and 0.0 < duration <= longest):
         most = f", at most {longest:.3g}" if is_number(duration) and duration > longest else ""
         raise InvalidInput("duration", duration, f"a number of seconds greater than 0{most}")
-    for name, limit in {"phase_limit": phase_limit, "step_limit": step_limit}.items():
+    for name, limit in {"mode_limit": mode_limit, "step_limit": step_limit}.items():
         if not is_whole(limit) or limit < 0:
             raise InvalidInput(name, limit, "a whole number, at least 0")

@@ -5,6 +5,7 @@ mesh stands for any other surface, with its error stated. The inertia is explici
 """
 
 import math
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -292,8 +293,10 @@ def obj(mesh: ConvexMesh) -> str:
     return "\n".join([*corners, *faces]) + "\n"
 
 
-def write_mjcf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -> Written:
-    """Write a problem as MJCF, the XML of MuJoCo, with its launch as a keyframe.
+def write_mjcf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -> Path:
+    """Write a problem as MJCF, the XML of MuJoCo, with its launch as a keyframe; return the path.
+
+    A warning says what of the problem has no place in the format.
 
     Raises
     ------
@@ -306,16 +309,23 @@ def write_mjcf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -
     --------
     >>> import tippetop as tt
     >>> problem = tt.presets.report_problem().replace({"friction.kind": "coulomb"})
-    >>> tt.write_mjcf(problem, "top.xml").remarks
-    ()
+    >>> tt.write_mjcf(problem, "top.xml").name
+    'top.xml'
     """
+    return _path_of(save_mjcf(problem, path, overwrite))
+
+
+def save_mjcf(problem: tt.Problem, path: Path | str, overwrite: bool) -> Written:
+    """Write a problem as MJCF; return the files and the remarks on them."""
     path = _checked(problem, path, overwrite, ".xml")
     text, written = mjcf(problem)
     return _write_texts({path: text}, overwrite, written)
 
 
-def write_urdf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -> Written:
+def write_urdf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -> Path:
     """Write the body of a problem as URDF, and its mesh as OBJ beside it where it needs one.
+
+    Return the path of the URDF. A warning says what of the problem has no place in the format.
 
     Raises
     ------
@@ -328,9 +338,21 @@ def write_urdf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -
     --------
     >>> import tippetop as tt
     >>> problem = tt.presets.report_problem().replace({"friction.kind": "coulomb"})
-    >>> [path.name for path in tt.write_urdf(problem, "top.urdf").files]
-    ['top.urdf']
+    >>> tt.write_urdf(problem, "top.urdf").name
+    'top.urdf'
     """
+    return _path_of(save_urdf(problem, path, overwrite))
+
+
+def _path_of(written: Written) -> Path:
+    """Return the path of what was written, with a warning for each remark."""
+    for remark in written.remarks:
+        warnings.warn(remark, UserWarning, stacklevel=3)
+    return written.files[0]
+
+
+def save_urdf(problem: tt.Problem, path: Path | str, overwrite: bool) -> Written:
+    """Write the body of a problem as URDF; return the files and the remarks on them."""
     path = _checked(problem, path, overwrite, ".urdf")
     outline = path.with_suffix(MESH_ENDING)
     text, mesh, written = urdf(problem, outline.name)

@@ -99,7 +99,7 @@ class Exact(NamedTuple):
     """What a case has to be: states at its instants, and when it turns over."""
 
     numbers: Mapping[str, Array]
-    turns_over: float
+    turnover_time: float
     """First time at which the tilt passes a right angle, s; nan where it does not."""
     energy: float
     """At launch, J."""
@@ -116,7 +116,7 @@ def exact(case: Case) -> Exact:
     largest = case.problem.body.I1 * np.abs(rows[:, 4:7]).max() * rows[:, 10].max()
     if abs(jellett) < ROUNDING_OF_JELLETT * largest:
         jellett = math.nan
-    return Exact(numbers, float(run["turns_over"]), energy, jellett)
+    return Exact(numbers, float(run["turnover_time"]), energy, jellett)
 
 
 def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dict[str, Any]:
@@ -148,13 +148,13 @@ def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dic
     vectors = [np.array([getattr(one, name) for one in readings]) for name in EngineState._fields]
     numbers = numbers_of(problem, *vectors)
     exact = {name: values[: len(times)] for name, values in reference.numbers.items()}
-    apart = np.abs(numbers["theta"] - exact["theta"])
+    apart = np.abs(numbers["tilt"] - exact["tilt"])
     judged = readings[case.judged - 1]
     state = judged_state(case, judged.axis, judged.omega)
     past = np.flatnonzero(~(apart <= HOLDS))
     holds = times[-1] if not len(past) else times[past[0] - 1] if past[0] else 0.0
     energies = np.concatenate([[reference.energy], numbers["energy"]])
-    late = reference.turns_over > times[-1]
+    late = reference.turnover_time > times[-1]
     row = {
         "case": case.name,
         "setting": task.setting.name,
@@ -164,8 +164,8 @@ def measure(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dic
         "state": [round(float(x), 9) for x in state],
         "tilt_error": float(apart.max()),
         "holds_until": float(holds),
-        "turns_over": over,
-        "turns_over_exactly": math.nan if late else reference.turns_over,
+        "turnover_time": over,
+        "turnover_time_exactly": math.nan if late else reference.turnover_time,
         "energy_error": float((energies[-1] - exact["energy"][-1]) / reference.energy),
         "energy_gain": float(np.diff(energies).max() / reference.energy),
         "jellett_error": float(numbers["jellett"][-1] - exact["jellett"][-1]) / reference.jellett,
@@ -351,8 +351,8 @@ class EngineVerdict(NamedTuple):
     order: float
     """Observed order of the error, of the last two steps; nan where it cannot be said."""
     holds_until: float
-    turns_over: float
-    turns_over_exactly: float
+    turnover_time: float
+    turnover_time_exactly: float
     energy_error: float
     jellett_error: float
     microseconds_per_step: float
@@ -430,8 +430,8 @@ def _verdict(engine: str, rows: Sequence[Mapping[str, Any]], limit: Limit) -> En
         errors[-1],
         order_of([row["step"] for row in rows], errors),
         best["holds_until"],
-        _number(best["turns_over"]),
-        _number(best["turns_over_exactly"]),
+        _number(best["turnover_time"]),
+        _number(best["turnover_time_exactly"]),
         _number(best["energy_error"]),
         _number(best["jellett_error"]),
         best["microseconds_per_step"],

@@ -38,13 +38,13 @@ ROUNDING = 2.0**-52
 Array = NDArray[np.float64]
 
 COLUMNS: Mapping[str, tuple[str, str]] = {
-    "theta": ("rad", "tilt of the axis from the vertical"),
+    "tilt": ("rad", "tilt of the axis from the vertical"),
     "axis_x": ("1", "unit vector along the axis of symmetry"),
     "axis_y": ("1", "unit vector along the axis of symmetry"),
     "axis_z": ("1", "unit vector along the axis of symmetry"),
-    "omega_x": ("rad s-1", "angular velocity"),
-    "omega_y": ("rad s-1", "angular velocity"),
-    "omega_z": ("rad s-1", "angular velocity"),
+    "angular_velocity_x": ("rad s-1", "angular velocity"),
+    "angular_velocity_y": ("rad s-1", "angular velocity"),
+    "angular_velocity_z": ("rad s-1", "angular velocity"),
     "velocity_x": ("m s-1", "velocity of the centre of mass"),
     "velocity_y": ("m s-1", "velocity of the centre of mass"),
     "velocity_z": ("m s-1", "velocity of the centre of mass"),
@@ -65,7 +65,7 @@ class Reference(NamedTuple):
     events: tuple[tuple[float, str, int, float], ...]
     """Time, kind, surface and agreement of each event; nan where the second method has no such
     event."""
-    outcome: str
+    status: str
     energy_error: float
     jellett_drift: float
     method: str
@@ -82,7 +82,7 @@ class Reference(NamedTuple):
         """The largest difference of a state's number, relative to the largest of its kind."""
         groups = {
             "axis": ("axis_x", "axis_y", "axis_z"),
-            "omega": ("omega_x", "omega_y", "omega_z"),
+            "angular_velocity": ("angular_velocity_x", "angular_velocity_y", "angular_velocity_z"),
             "velocity": ("velocity_x", "velocity_y", "velocity_z"),
             "height": ("height",),
         }
@@ -136,9 +136,9 @@ def numbers_of(
         up = np.array([0.0, 0.0, 1.0])
         jellett.append(float(L @ (slope * (n - n[2] * up) + support * up)))
     return {
-        "theta": np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2]),
+        "tilt": np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2]),
         **_components("axis", axis),
-        **_components("omega", omega),
+        **_components("angular_velocity", omega),
         **_components("velocity", velocity),
         "height": height,
         "energy": energy + body.mass * problem.gravity * height,
@@ -197,7 +197,7 @@ def reference(case: Case) -> Reference:
         case,
         states,
         tuple(_events(run, stored["events"])),
-        run.attrs["outcome"],
+        run.attrs["status"],
         float(run["energy_error"]),
         float(run["jellett_drift"]),
         stored["method"],
@@ -283,7 +283,7 @@ def record(one: Reference) -> dict[str, Any]:
         "tests": case.tests,
         "problem": json.loads(case.problem.to_json()),
         "duration": case.duration,
-        "outcome": one.outcome,
+        "status": one.status,
         "time": one.states["time"].values.tolist(),
         "states": {
             name: {
@@ -336,7 +336,7 @@ def _dataset(one: Reference) -> xr.Dataset:
     """Return states and events as one dataset."""
     time, kind, surface, apart = zip(*one.events, strict=True) if one.events else ([],) * 4
     fields = record(one)
-    attributes = {name: fields[name] for name in ("suite", "program", "case", "title", "outcome")}
+    attributes = {name: fields[name] for name in ("suite", "program", "case", "title", "status")}
     events = {
         "event_time": ("event", np.array(time, float), {"units": "s"}),
         "event_kind": ("event", np.array(kind, dtype=object)),
@@ -363,7 +363,7 @@ SCHEMA: Mapping[str, Any] = {
     "title": "A case of the tippetop reference suite",
     "type": "object",
     "required": [
-        *("suite", "program", "case", "title", "problem", "duration", "outcome", "time"),
+        *("suite", "program", "case", "title", "problem", "duration", "status", "time"),
         *("states", "events", "checks"),
     ],
     "properties": {
@@ -378,7 +378,7 @@ SCHEMA: Mapping[str, Any] = {
             "required": ["body", "friction", "launch", "contact", "gravity"],
         },
         "duration": {"type": "number", "description": "s"},
-        "outcome": {"type": "string"},
+        "status": {"type": "string", "description": "how the run ended"},
         "time": {**_NUMBERS, "description": "instants of the states, s"},
         "states": {
             "type": "object",

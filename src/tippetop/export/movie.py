@@ -44,7 +44,7 @@ def write_movie(
     path: Path | str,
     overwrite: bool = False,
     *,
-    fps: float | None = None,
+    frame_rate: float | None = None,
     speed: float = 1.0,
     pixels: tuple[int, int] | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -59,7 +59,7 @@ def write_movie(
         File to write: .mp4 or .gif.
     overwrite
         Whether an existing file is replaced.
-    fps
+    frame_rate
         Pictures per second; None for 30 in an .mp4 and 20 in a .gif. A .gif shows each picture for
         a whole number of hundredths of a second, at least two: it gets the nearest such rate, and
         still plays at `speed`.
@@ -84,7 +84,7 @@ def write_movie(
     --------
     >>> import tippetop as tt
     >>> run = tt.simulate(tt.presets.report_problem(), duration=0.5, samples=501)
-    >>> tt.write_movie(run, "run.gif", fps=10, pixels=(120, 90)).name
+    >>> tt.write_movie(run, "run.gif", frame_rate=10, pixels=(120, 90)).name
     'run.gif'
     """
     require_run(run)
@@ -93,7 +93,7 @@ def write_movie(
     ending = require_ending("path", path, tuple(RATES))
     encoder = ffmpeg() if ending == ".mp4" else ""
     place_for(path, overwrite)
-    rate = fps if fps is not None else RATES[ending]
+    rate = frame_rate if frame_rate is not None else RATES[ending]
     extent = pixels if pixels is not None else (640, 480) if encoder else (360, 270)
     _check(rate, speed, extent)
     rate, speed = float(rate), float(speed)
@@ -141,16 +141,16 @@ def require_film(ending: str, duration: float) -> None:
         )
 
 
-def _is_too_long(duration: float, fps: float, speed: float = 1.0) -> bool:
+def _is_too_long(duration: float, frame_rate: float, speed: float = 1.0) -> bool:
     """Return whether the film of a run of this duration (s) has more than `MOST_FRAMES`
     pictures.
     """
-    return duration * fps / speed >= MOST_FRAMES
+    return duration * frame_rate / speed >= MOST_FRAMES
 
 
 def frames(
     run: xr.Dataset,
-    fps: float,
+    frame_rate: float,
     speed: float,
     pixels: tuple[int, int],
     progress: Callable[[int, int], None] = lambda drawn, count: None,
@@ -160,14 +160,14 @@ def frames(
     Raises `InvalidInput` if the film would have more than `MOST_FRAMES` pictures.
     """
     start, end = run["time"].values[[0, -1]].tolist()
-    if _is_too_long(end - start, fps, speed):
-        least = (end - start) * fps / (MOST_FRAMES - 1)
+    if _is_too_long(end - start, frame_rate, speed):
+        least = (end - start) * frame_rate / (MOST_FRAMES - 1)
         raise InvalidInput(
             "speed", speed, f"at least {least:.2g}", f"is too slow for a run of {end - start:g} s"
         )
-    count = math.floor((end - start) * fps / speed) + 1
+    count = math.floor((end - start) * frame_rate / speed) + 1
     toy = Toy(Problem.from_json(run.attrs["problem"]).body)
-    times = start + np.arange(count) * speed / fps
+    times = start + np.arange(count) * speed / frame_rate
     poses = poses_at(run, times)
     positions, turns = poses.positions / toy.size, poses.turns.as_matrix()
     path, reached = fine_path(contact_path(run) / toy.size, run["normal_force"].values != 0.0)
@@ -196,10 +196,12 @@ def _captioned(drawn: Frame, headline: str, clock: str, speed: float) -> Frame:
     return np.asarray(image)
 
 
-def _check(fps: float, speed: float, pixels: tuple[int, int]) -> None:
+def _check(frame_rate: float, speed: float, pixels: tuple[int, int]) -> None:
     """Raise `InvalidInput` if the rate, the speed or the size of a film is not accepted."""
-    if not (is_number(fps) and LEAST_RATE <= fps <= 240):
-        raise InvalidInput("fps", fps, f"a number at least {LEAST_RATE:g} and at most 240")
+    if not (is_number(frame_rate) and LEAST_RATE <= frame_rate <= 240):
+        raise InvalidInput(
+            "frame_rate", frame_rate, f"a number at least {LEAST_RATE:g} and at most 240"
+        )
     if not (is_number(speed) and 0 < speed <= 100):
         raise InvalidInput("speed", speed, "a number greater than 0 and at most 100")
     is_size = (
@@ -210,7 +212,7 @@ def _check(fps: float, speed: float, pixels: tuple[int, int]) -> None:
 
 
 def _encode(
-    encoder: str, pictures: Iterator[Frame], path: Path, fps: float, pixels: tuple[int, int]
+    encoder: str, pictures: Iterator[Frame], path: Path, frame_rate: float, pixels: tuple[int, int]
 ) -> None:
     """Write the pictures as an .mp4 by ffmpeg; raise `FileTrouble` with its last message if it
     fails.
@@ -224,7 +226,7 @@ def _encode(
         "-s",
         f"{width}x{height}",
         "-r",
-        f"{fps:g}",
+        f"{frame_rate:g}",
         "-i",
         "-",
     )
@@ -244,7 +246,7 @@ def _encode(
         raise FileTrouble(f"{path} cannot be written: ffmpeg says: {last}")
 
 
-def _save_gif(pictures: Iterator[Frame], path: Path, fps: float) -> None:
+def _save_gif(pictures: Iterator[Frame], path: Path, frame_rate: float) -> None:
     """Write the pictures as a .gif in the colours of the first."""
     first = Image.fromarray(next(pictures)).quantize(128)
     later = (
@@ -252,5 +254,10 @@ def _save_gif(pictures: Iterator[Frame], path: Path, fps: float) -> None:
         for drawn in pictures
     )
     first.save(
-        path, format="GIF", save_all=True, append_images=later, duration=round(1000 / fps), loop=0
+        path,
+        format="GIF",
+        save_all=True,
+        append_images=later,
+        duration=round(1000 / frame_rate),
+        loop=0,
     )

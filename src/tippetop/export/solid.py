@@ -25,8 +25,8 @@ MM = 1e3
 
 def write_solid(
     piece: Workpiece, path: Path | str, overwrite: bool = False, *, facets: int = FACETS
-) -> None:
-    """Write a turned body as triangles, closed, in millimetres.
+) -> Path:
+    """Write a turned body as triangles, closed, in millimetres, and return the path.
 
     Cavities and inserts are hollows in the body. In 3MF, each insert with a density is another
     object.
@@ -56,7 +56,8 @@ def write_solid(
     --------
     >>> import tippetop as tt
     >>> ball = tt.Workpiece(profile=[(0, -20), (0, 20, 20)], density=700, unit="mm")
-    >>> tt.write_solid(ball, "ball.stl")
+    >>> tt.write_solid(ball, "ball.stl").name
+    'ball.stl'
     """
     require("piece", piece, Workpiece, "a Workpiece")
     place = path_of(path)
@@ -68,6 +69,7 @@ def write_solid(
     content = exported.export(file_type=suffix[1:])
     with written_beside(path, overwrite) as beside:
         beside.write_bytes(content)
+    return place
 
 
 def solids(piece: Workpiece, facets: int) -> dict[str, Any]:

@@ -34,7 +34,7 @@ def write_csv(
     >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=11)
     >>> path = tt.write_csv(run, "run.csv")
     >>> path.read_text().splitlines()[0][:40]
-    'time (s),theta (rad),theta_dot (rad s-1)'
+    'time (s),tilt (rad),tilt_rate (rad s-1)'
     """
     frame = _with_columns_alone(to_dataframe(result, table))
     units = frame.attrs["units"]
@@ -68,7 +68,7 @@ def write_parquet(
     >>> import tippetop as tt
     >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=11)
     >>> table = pd.read_parquet(tt.write_parquet(run, "run.parquet"))
-    >>> table.attrs["units"]["theta_dot"]
+    >>> table.attrs["units"]["tilt_rate"]
     'rad s-1'
     """
     need_parquet()

@@ -17,6 +17,7 @@ from tippetop.export.poses import contact_path
 from tippetop.figures.appearance import SCENES, size, toy_parts
 from tippetop.problem.problem import Problem
 from tippetop.results.description import describe
+from tippetop.results.flags import encoded
 
 Array = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ SHADINGS = 200
 def pack_run(run: xr.Dataset) -> bytes:
     """Return the block of bytes of a run."""
     problem, (begin, end) = Problem.from_json(run.attrs["problem"]), _ends(run)
-    columns, turns_over, account = _columns(run), float(run["turns_over"]), describe(run)
+    columns, turnover_time, account = _columns(run), float(run["turnover_time"]), describe(run)
     header = {
         "samples": run.sizes["time"],
         "duration": end,
@@ -38,7 +39,7 @@ def pack_run(run: xr.Dataset) -> bytes:
             [name, values.shape[1] if values.ndim > 1 else 1] for name, values in columns.items()
         ],
         "flights": flights(run),
-        "turns_over": turns_over if begin <= turns_over <= end else None,
+        "turnover_time": turnover_time if begin <= turnover_time <= end else None,
         "modes": [str(word) for word in run["mode"].attrs["flag_meanings"].split()],
         "body": {
             "I1": problem.body.I1,
@@ -90,7 +91,7 @@ def _columns(run: xr.Dataset) -> dict[str, Array]:
         "point": contact_path(run),
         "friction": run["contact_force"].values[:, :2],
         "touching": (run["normal_force"].values != 0.0).astype(float),
-        "mode": run["mode"].values.astype(float),
-        "theta": run["theta"].values,
-        "omega3": run["omega3"].values,
+        "mode": encoded(run[["mode"]])["mode"].values.astype(float),
+        "tilt": run["tilt"].values,
+        "spin": run["spin"].values,
     }

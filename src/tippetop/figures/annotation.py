@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
-from tippetop.figures.style import INK, WIDTH, house_style, pi_ticks
+from tippetop.figures.style import INK, WIDTH, ShownFigure, house_style, pi_ticks
 
 Box = tuple[float, float, float, float]
 
@@ -36,7 +36,7 @@ def panels(
     height: float, rows: int = 1, columns: int = 1, *, lettered: bool = True, **options: Any
 ) -> tuple[Figure, Any]:
     """Return a figure of a height in inches, and its panel or its array of lettered panels."""
-    figure = Figure(figsize=(WIDTH, height))
+    figure = ShownFigure(figsize=(WIDTH, height))
     made = figure.subplots(rows, columns, **options)
     if lettered and rows * columns > 1:
         letters(made.flat)

@@ -26,12 +26,12 @@ def rolling_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
     right = 1.12 * float(data["spin"][-1])
     above.set(xlabel="spin at launch (rad/s)", ylabel=r"least $\mu$ for rolling", xlim=(0, right))
     name = rf"$\mu$ = {data.attrs['slippery_mu']:g}"
-    below.plot(data["time_slips"], data["theta_slips"], color=REPORT, label=name)
+    below.plot(data["time_slips"], data["tilt_slips"], color=REPORT, label=name)
     rolls = data.isel(held=0)
     name = rf"$\mu$ = {float(rolls['held']):.4f}"
-    below.plot(rolls["time"], rolls["theta_held"], color=CONVERGED, label=name)
+    below.plot(rolls["time"], rolls["tilt_held"], color=CONVERGED, label=name)
     below.set(xlabel="time (s)", ylabel=mark.TILT, xlim=(0, float(data["time_slips"][-1])))
-    below.set_ylim(0, 1.25 * max(float(data["theta_slips"].max()), data.attrs["tilt_rad"]))
+    below.set_ylim(0, 1.25 * max(float(data["tilt_slips"].max()), data.attrs["tilt_rad"]))
     below.legend(loc="upper left", ncols=2)
 
 
@@ -39,9 +39,9 @@ def rolling_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
 def cohen_figure(axes: Axes, data: xr.Dataset) -> None:
     """Draw the tilt of Cohen's top by time-stepping with several steps, and exactly."""
     colors = (REPORT, *(CYCLE[k] for k in (3, 4, 2, 6, 5)))
-    for step, tilt, color in zip(data["step"], data["theta_stepped"], colors, strict=False):
+    for step, tilt, color in zip(data["step"], data["tilt_stepped"], colors, strict=False):
         axes.plot(data["time"], tilt, color=color, lw=1.1, label=f"{1e3 * float(step):g} ms")
-    axes.plot(data["time"], data["theta"], color=CONVERGED, lw=2.2, label="exact")
+    axes.plot(data["time"], data["tilt"], color=CONVERGED, lw=2.2, label="exact")
     axes.set(xlabel="time (s)", xlim=(0, float(data["time"][-1])))
     mark.tilt_axis(axes, -0.05)
     mark.legend_above(axes, 7)

@@ -82,7 +82,7 @@ def launch_figure(results: Mapping[str, Mapping[str, Any]], name: str) -> Figure
     )
     end = float(case.times[case.compared - 1])
     run = tt.simulate(case.problem, end, samples=1001)
-    panel.plot(run["time"], run["theta"], color="black", lw=2.0, label="exact", zorder=9)
+    panel.plot(run["time"], run["tilt"], color="black", lw=2.0, label="exact", zorder=9)
     for number, result in enumerate(results.values()):
         first = result["settings"][0]["name"]
         for row in result["rows"]:
@@ -95,7 +95,7 @@ def launch_figure(results: Mapping[str, Mapping[str, Any]], name: str) -> Figure
             label = f"{result['engine']}, {row['setting']}, {1e3 * row['step']:.3g} ms"
             style = {"lw": 1.3} if is_best else {"lw": 0.7, "ls": "--"}
             panel.plot(time, row["tilt"], color=f"C{number}", label=label, **style)
-            error = np.abs(row["tilt"] - np.interp(time, run["time"], run["theta"]))
+            error = np.abs(row["tilt"] - np.interp(time, run["time"], run["tilt"]))
             largest = np.maximum.accumulate(np.maximum(error, TILT_DIGIT))
             apart.semilogy(time, largest, color=f"C{number}", **style)
     panel.set_ylabel(r"tilt $\theta$ (rad)")

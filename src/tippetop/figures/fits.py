@@ -1,29 +1,46 @@
 """Data, the fitted run and the residuals."""
 
+from typing import NamedTuple
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tippetop.figures.overview import ShownFigure
-from tippetop.figures.style import CONVERGED, INK, MUTED, WIDTH, house_style
+from tippetop.figures.style import CONVERGED, INK, MUTED, WIDTH, ShownFigure, house_style
 from tippetop.fit.fitted import FitResult
+from tippetop.integrators.base import Array
+from tippetop.support.suggestions import not_one_of
 
 
-@house_style()
-def plot_fit(fit: FitResult) -> Figure:
-    """Draw each column of the data with the fitted run, and its standardised residuals below.
+class FittedColumn(NamedTuple):
+    """Column of the data beside the fitted run."""
 
-    Times of events are drawn over their numbers.
+    times: Array
+    """Times, s; numbers of the rows where the data are times of events."""
+    label: str
+    unit: str
+    values: Array
+    predicted: Array
+    residuals: Array
+    """Residuals over the standard deviation of the data."""
 
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import tippetop as tt
-    >>> tilts = {"theta": [0.1, 0.102, 0.105, 0.107]}
-    >>> film = tt.Measurement.of_variables(np.linspace(0.0, 0.03, 4), tilts)
-    >>> figure = tt.plot_fit(tt.fit(tt.presets.report_problem(), film, "launch.tilt_rate"))
+    def draw(self, axes: Axes) -> None:
+        """Draw the data and the fitted run into a panel."""
+        axes.plot(self.times, self.values, ".", color=MUTED, label="data")
+        axes.plot(self.times, self.predicted, color=CONVERGED, linewidth=1.1, label="fit")
+        axes.set_title(f"{self.label} ({self.unit})" if self.unit else self.label)
+
+
+def columns_of(fit: FitResult, name: str | None = None) -> list[FittedColumn]:
+    """Return the columns of the data of a fit, or those of one name.
+
+    Raises
+    ------
+    InvalidInput
+        If the data have no column of this name.
     """
     columns = [
-        (one.times if len(one.times) else np.arange(1.0), label, unit, *table)
+        FittedColumn(one.times if len(one.times) else np.arange(1.0), label, unit, *table)
         for one, residuals, predicted in zip(
             fit.measurements, fit.residuals, fit.predict(), strict=True
         )
@@ -36,15 +53,30 @@ def plot_fit(fit: FitResult) -> Figure:
             strict=True,
         )
     ]
+    chosen = [column for column in columns if name in (None, column.label)]
+    if not chosen:
+        raise not_one_of("variable", name, [column.label for column in columns])
+    return chosen
+
+
+def draw_fit(axes: Axes, fit: FitResult, name: str | None = None) -> None:
+    """Draw a column of the data, by default the first, and the fitted run into a panel."""
+    columns_of(fit, name)[0].draw(axes)
+    axes.set_xlabel("Time (s)")
+    axes.legend()
+
+
+@house_style()
+def plot_fit(fit: FitResult, name: str | None = None) -> Figure:
+    """Draw each column of the data with the fitted run, and its standardised residuals below."""
+    columns = columns_of(fit, name)
     figure = ShownFigure(figsize=(WIDTH, 3.2 * len(columns)))
     heights = [3, 1] * len(columns)
     grid = figure.subplots(2 * len(columns), 1, sharex=True, height_ratios=heights, squeeze=False)
-    for place, (times, label, unit, values, predicted, residuals) in enumerate(columns):
-        above, below = grid[2 * place, 0], grid[2 * place + 1, 0]
-        above.plot(times, values, ".", color=MUTED, label="data")
-        above.plot(times, predicted, color=CONVERGED, linewidth=1.1, label="fit")
-        above.set_title(f"{label} ({unit})" if unit else label)
-        below.plot(times, residuals, ".", color=INK)
+    for place, column in enumerate(columns):
+        column.draw(grid[2 * place, 0])
+        below = grid[2 * place + 1, 0]
+        below.plot(column.times, column.residuals, ".", color=INK)
         below.axhline(0.0, color=MUTED, linewidth=0.8)
         below.set_ylabel("residual / σ")
     grid[0, 0].legend()

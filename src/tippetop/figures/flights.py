@@ -37,7 +37,7 @@ def onset_figure(axes: Axes, sweep: xr.Dataset, over: str, reported: float) -> N
     `reported` is the spin of the report's abnormal point, rad/s.
     """
     values, spins = np.meshgrid(sweep[over].values, sweep["spin"].values, indexing="ij")
-    times = sweep["first_lift_off"].values
+    times = sweep["liftoff_time"].values
     stays = ~np.isfinite(times)
     axes.plot(values[stays], spins[stays], "o", color=FAINT, ms=3.5, mec=MUTED, mew=0.5, zorder=2)
     dots = axes.scatter(
@@ -91,13 +91,13 @@ def flights_figure(panels: Any, sweep: xr.Dataset) -> None:
         runs = sweep.sel(restitution=restitution).dropna("spin", subset=["airborne_time"])
         spins, air = runs["spin"], runs["airborne_time"]
         hollow = {"color": color, "marker": marker, "ms": 4}
-        between = runs["last_touchdown"] - runs["first_lift_off"]
+        between = runs["last_touchdown"] - runs["liftoff_time"]
         share.plot(spins, 100 * air / between, ls=(0, (4, 2)), mfc="white", **hollow)
         share.plot(spins, 100 * air / runs["last_touchdown"].where(runs["flights"] > 0), **hollow)
         turning.plot(spins, runs["turning_time"], label=f"restitution {restitution:g}", **hollow)
         flying = runs.sel(spin=runs["flights"] > 0)
         count.plot(flying["spin"], flying["flights"], **hollow)
-        tilt.plot(spins, runs["final_theta_flight"], **hollow)
+        tilt.plot(spins, runs["final_tilt_flight"], **hollow)
     _label_shares(share, sweep)
     share.set(ylabel="airborne share (%)", ylim=(0, 100))
     turning.set(ylabel=r"$\theta$ first passes π/2 (s)", ylim=(0, None))
@@ -113,7 +113,7 @@ def _label_shares(axes: Axes, sweep: xr.Dataset) -> None:
     last = sweep.isel(restitution=0).dropna("spin", subset=["airborne_time"]).isel(spin=-1)
     air, end = float(last["airborne_time"]), float(last["last_touchdown"])
     for text, share, offset in (
-        ("from first lift-off\nto last touchdown", air / (end - float(last["first_lift_off"])), 14),
+        ("from first lift-off\nto last touchdown", air / (end - float(last["liftoff_time"])), 14),
         ("from launch\nto last touchdown", air / end, -32),
     ):
         at = (float(last["spin"]), 100 * share)

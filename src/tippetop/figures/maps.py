@@ -19,11 +19,12 @@ from tippetop.figures.style import (
     house_style,
     pi_ticks,
 )
-from tippetop.results.catalogue import SWEPT, Ending, written_unit
+from tippetop.results.catalogue import SWEPT, Outcome, written_unit
 from tippetop.results.flags import encoded
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.suggestions import not_one_of
 
-MAPPED = ("outcome", "final_theta", "turns_over", "flights")
+MAPPED = ("outcome", "final_tilt", "turnover_time", "flights")
 """Variables of which maps are drawn for every sweep."""
 
 SHORT = {
@@ -40,28 +41,28 @@ in titles by their path.
 """
 
 MISSING_MEANS = {
-    "turns_over": ["not within the run"],
-    "arrives": ["not settled"],
-    "highest_tilt": ["may still rise"],
+    "turnover_time": ["not within the run"],
+    "arrival_time": ["not settled"],
+    "max_tilt_ever": ["may still rise"],
     "flights": ["none"],
-    "first_lift_off": ["not within the run"],
+    "liftoff_time": ["not within the run"],
 }
 """Meaning of a missing value, by variable; it is grey in maps and no point of a curve."""
 
 UNFINISHED = {
-    Ending.LIFTED_OFF: "left the table before the end",
-    Ending.FAILED: "failed",
-    Ending.INACCURATE: "inaccurate",
+    Outcome.LIFTED_OFF: "left the table before the end",
+    Outcome.FAILED: "failed",
+    Outcome.INACCURATE: "inaccurate",
 }
-"""Endings after which the last tilt is not where the launch ends, and their names in maps."""
+"""Outcomes after which the last tilt is not where the launch ends, and their names in maps."""
 
 STILL_MOVING = (
-    Ending.MOVING_UPRIGHT,
-    Ending.MOVING_INVERTED,
-    Ending.MOVING_TILTED,
-    Ending.ROLLING,
+    Outcome.MOVING_UPRIGHT,
+    Outcome.MOVING_INVERTED,
+    Outcome.MOVING_TILTED,
+    Outcome.ROLLING,
 )
-"""Endings of launches that had not settled; maps of the last tilt mark them by dots."""
+"""Outcomes of launches that had not settled; maps of the last tilt mark them by dots."""
 
 UPRIGHT, INVERTED, TILTED = "#0B5FA5", "#E07B00", "#109B60"
 FLAGS = (
@@ -86,11 +87,11 @@ it.
 """
 
 MOST_STEP = 1.05
-"""Ratio of the largest to the smallest step above which an axis with even ratios is geometric."""
+"""Ratio of the largest to the smallest step above which an axis with even ratios is logarithmic."""
 
 
 @house_style()
-def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
+def phase_map(sweep: xr.Dataset, variable: str = "final_tilt") -> Figure:
     """Draw a variable of a sweep: as colours over two axes, as a curve over one, as points over
     draws.
 
@@ -103,13 +104,36 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
         If the values of an axis are too far apart to be drawn.
     """
     sweep = encoded(sweep)
+    if variable not in SWEPT:
+        raise not_one_of("variable", variable, list(SWEPT))
     values = sweep[variable]
     require_drawable({_path(sweep, str(name)): at.values for name, at in sweep.coords.items()})
     if values.ndim > 2:
         return _panels(sweep, variable)
     figure, axes = mark.panels(4.6)
+    draw_map(axes, sweep, variable)
+    return figure
+
+
+def draw_map(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
+    """Draw a variable of a sweep of one or two axes, or of draws, into a panel.
+
+    Raises
+    ------
+    InvalidInput
+        If the sweep has no such variable, or more axes.
+    """
+    sweep = encoded(sweep)
+    if variable not in SWEPT:
+        raise not_one_of("variable", variable, list(SWEPT))
+    values, figure = sweep[variable], axes.get_figure(root=True)
+    assert figure is not None
+    if not 1 <= values.ndim <= 2:
+        raise InvalidInput(
+            "ax", Described(f"{values.ndim} axes"), "one or two axes", "do not fit into a panel"
+        )
     axes.set_title(_title(sweep, variable))
-    if values.dims == ("sample",):
+    if values.dims == ("draw",):
         _scatter(figure, axes, sweep, variable)
     elif values.ndim == 1:
         _curve(axes, sweep, variable)
@@ -117,7 +141,6 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_theta") -> Figure:
         shade = _shade(sweep, variable, _values(sweep, variable))
         image = _colours(axes, sweep, variable, shade)
         _bar(figure, [axes], image, sweep, variable)
-    return figure
 
 
 def require_drawable(coordinates: Mapping[str, np.ndarray[Any, Any]]) -> None:
@@ -191,7 +214,7 @@ def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: dict[str, Any]
     _dot_moving(axes, sweep, variable, *np.meshgrid(sweep[across].values, sweep[up].values))
     for name, axis in ((across, axes.xaxis), (up, axes.yaxis)):
         axis.set_label_text(_name(sweep, name))
-        if _is_geometric(sweep[name].values):
+        if _is_logarithmic(sweep[name].values):
             (axes.set_xscale if axis is axes.xaxis else axes.set_yscale)("log")
     axes.set_xlim(*_ends(sweep[across].values))
     axes.set_ylim(*_ends(sweep[up].values))
@@ -203,15 +226,15 @@ def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
     axes.plot(sweep[across].values, _values(sweep, variable), ".-", color=CONVERGED, linewidth=0.8)
     _dot_moving(axes, sweep, variable, sweep[across].values, sweep[variable].values)
     axes.set_xlabel(_name(sweep, across))
-    if _is_geometric(sweep[across].values):
+    if _is_logarithmic(sweep[across].values):
         axes.set_xscale("log")
     axes.set_xlim(*_ends(sweep[across].values))
-    if variable == "final_theta":
+    if variable == "final_tilt":
         pi_ticks(axes.yaxis)
 
 
 def _scatter(figure: Figure, axes: Axes, sweep: xr.Dataset, variable: str) -> None:
-    fields = [str(name) for name in sweep.coords if name != "sample"]
+    fields = [str(name) for name in sweep.coords if name != "draw"]
     values = _values(sweep, variable)
     if len(fields) == 1:
         axes.plot(sweep[fields[0]].values, values, ".", color=CONVERGED)
@@ -244,7 +267,7 @@ def _is_moving(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
     """Return which launches had not settled at their end; none if the variable is not the last
     tilt.
     """
-    return np.isin(sweep["outcome"].values, STILL_MOVING) & (variable == "final_theta")
+    return np.isin(sweep["outcome"].values, STILL_MOVING) & (variable == "final_tilt")
 
 
 def _path(sweep: xr.Dataset, name: str) -> str:
@@ -270,11 +293,11 @@ def _heading(words: str, units: str) -> str:
 def _title(sweep: xr.Dataset, variable: str) -> str:
     title = _heading(SWEPT[variable].label, SWEPT[variable].units)
     means = MISSING_MEANS.get(variable, [])
-    if variable == "final_theta":
+    if variable == "final_tilt":
         outcomes = sweep["outcome"].values
-        means = [words for ending, words in UNFINISHED.items() if (outcomes == ending).any()]
+        means = [words for outcome, words in UNFINISHED.items() if (outcomes == outcome).any()]
     if means:
-        single = sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("sample" in sweep.coords)
+        single = sweep[variable].ndim == 1 and len(sweep.coords) == 1 + ("draw" in sweep.coords)
         title += f"; {'no point' if single else 'grey'}: {', '.join(means)}"
     if _is_moving(sweep, variable).any():
         title += "; dot: still moving"
@@ -284,8 +307,8 @@ def _title(sweep: xr.Dataset, variable: str) -> str:
 def _values(sweep: xr.Dataset, variable: str) -> np.ndarray[Any, Any]:
     """Return the values of a variable as numbers, nan where they are missing."""
     values = np.asarray(sweep[variable].values, dtype=float)
-    missing = sweep["status"].values == 0
-    if variable == "final_theta":
+    missing = ~sweep["is_done"].values
+    if variable == "final_tilt":
         missing = missing | np.isin(sweep["outcome"].values, list(UNFINISHED))
     if np.issubdtype(sweep[variable].dtype, np.integer):
         missing = missing | (values < 0)
@@ -299,7 +322,7 @@ def _shade(sweep: xr.Dataset, variable: str, values: np.ndarray[Any, Any]) -> di
         count = len(meanings.split())
         norm = BoundaryNorm(np.arange(count + 1) - 0.5, count)
         return {"cmap": ListedColormap(FLAGS[:count]), "norm": norm}
-    if variable == "final_theta":
+    if variable == "final_tilt":
         return {"cmap": SEQUENTIAL, "norm": Normalize(0.0, np.pi)}
     finite = values[np.isfinite(values)]
     least, most = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
@@ -315,11 +338,11 @@ def _bar(figure: Figure, axes: list[Axes], image: Any, sweep: xr.Dataset, variab
     if meanings is not None:
         names = meanings.replace("_", "-").split()
         bar.set_ticks(list(range(len(names))), labels=names)
-    elif variable == "final_theta":
+    elif variable == "final_tilt":
         pi_ticks(bar.ax.yaxis)
 
 
-def _is_geometric(values: np.ndarray[Any, Any]) -> bool:
+def _is_logarithmic(values: np.ndarray[Any, Any]) -> bool:
     """Return whether the values grow by even ratios rather than by even steps."""
     if len(values) < 3 or np.any(values[0] * values <= 0):
         return False
@@ -332,7 +355,7 @@ def _ends(values: np.ndarray[Any, Any]) -> tuple[float, float]:
     """Return the outer ends of the first and of the last cell."""
     if len(values) == 1:
         return float(values[0]) - 0.5, float(values[0]) + 0.5
-    if _is_geometric(values):
+    if _is_logarithmic(values):
         first, last = (values[1] / values[0]) ** 0.5, (values[-1] / values[-2]) ** 0.5
         return float(values[0] / first), float(values[-1] * last)
     half = 0.5 * (values[1] - values[0]), 0.5 * (values[-1] - values[-2])

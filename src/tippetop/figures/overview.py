@@ -1,6 +1,5 @@
-"""Overview of one run (`tt.plot`): four variables of the report, the normal force, the energy."""
+"""One run over time: six variables in panels, or one of them."""
 
-from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -8,38 +7,30 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tippetop.figures.style import ACCENT, CONVERGED, DASHED, MUTED, WIDTH, house_style, pi_ticks
-from tippetop.results.dataset import require_run
+from tippetop.figures.style import (
+    ACCENT,
+    CONVERGED,
+    DASHED,
+    MUTED,
+    WIDTH,
+    ShownFigure,
+    house_style,
+    pi_ticks,
+)
+from tippetop.results.catalogue import written_unit
+from tippetop.support.suggestions import not_one_of
 
 TALLEST_PRECESSION = 400.0
 """Precession beyond which a curve is cut off, rad/s: it has no bound where the axis is vertical."""
 
 
-class ShownFigure(Figure):
-    """Figure that notebooks show although pyplot does not know it."""
-
-    @house_style()
-    def _repr_png_(self) -> bytes:
-        picture = BytesIO()
-        self.savefig(picture, format="png")
-        return picture.getvalue()
-
-
 @house_style()
-def plot(run: xr.Dataset) -> Figure:
-    """Draw tilt, axial spin, precession, slip, normal force and energy of a run against time.
-
-    Examples
-    --------
-    >>> import tippetop as tt
-    >>> figure = tt.plot(tt.simulate(tt.presets.report_problem(), duration=10.0))
-    >>> figure.savefig("run.svg")
-    """
-    require_run(run)
+def overview(run: xr.Dataset) -> Figure:
+    """Draw tilt, axial spin, precession, slip, normal force and energy of a run against time."""
     panels = {
-        "Tilt θ (rad)": run["theta"].values,
-        "Axial spin ω₃ (rad/s)": run["omega3"].values,
-        "Precession φ′ (rad/s)": run["phi_dot"].values,
+        "Tilt θ (rad)": run["tilt"].values,
+        "Axial spin ω₃ (rad/s)": run["spin"].values,
+        "Precession φ′ (rad/s)": run["precession"].values,
         "Slip speed (m/s)": np.hypot(run["slip_x"].values, run["slip_y"].values),
         "Normal force (N)": run["normal_force"].values,
         "Energy (J)": run["energy"].values,
@@ -52,18 +43,43 @@ def plot(run: xr.Dataset) -> Figure:
         shade_flights(axes, run)
     pi_ticks(grid[0, 0].yaxis)
     grid[0, 0].set_ylim(-0.1, np.pi + 0.1)
-    _cut(grid[1, 0], run["phi_dot"].values)
+    _cut(grid[1, 0], run["precession"].values)
     grid[2, 0].axhline(0.0, color=MUTED, linewidth=0.8)
     for axes in grid[2]:
         axes.set_xlabel("Time (s)")
     return figure
 
 
+def draw_variable(axes: Axes, run: xr.Dataset, name: str) -> None:
+    """Draw a variable of a run against time into a panel, with its flights shaded.
+
+    Raises
+    ------
+    InvalidInput
+        If the run has no such variable over time.
+    """
+    names = [str(one) for one in run.data_vars if run[one].dims[:1] == ("time",) and one != "mode"]
+    if name not in names:
+        raise not_one_of("variable", name, names)
+    variable = run[name]
+    for values in variable.values.reshape(len(variable), -1).T:
+        axes.plot(run["time"].values, values, linewidth=1.1)
+    units = variable.attrs.get("units", "1")
+    axes.set_title(f"{name} ({written_unit(units)})" if units != "1" else name)
+    axes.set_xlabel("Time (s)")
+    shade_flights(axes, run)
+    if name == "tilt":
+        pi_ticks(axes.yaxis)
+        axes.set_ylim(-0.1, np.pi + 0.1)
+    elif name == "precession":
+        _cut(axes, variable.values)
+
+
 def shade_flights(axes: Axes, run: xr.Dataset) -> None:
     """Shade the flights of a run; mark the end of a run that stopped at lift-off by a line."""
     for begin, end in zip(run["flight_start"].values, run["flight_end"].values, strict=True):
         axes.axvspan(begin, end, color=ACCENT, alpha=0.15, linewidth=0.4)
-    if run.attrs["outcome"] == "lifted_off":
+    if run.attrs["status"] == "lifted_off":
         axes.axvline(float(run["time"][-1]), color=ACCENT, linewidth=0.8, linestyle=DASHED)
 
 

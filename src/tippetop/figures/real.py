@@ -14,7 +14,7 @@ def leine_figure(axes: Axes, data: xr.Dataset) -> None:
     """Draw the tilt of Leine and Glocker's top, with the times at which its stem touches and
     leaves.
     """
-    for tilt, color in zip(data["theta"], (CONVERGED, MUTED), strict=False):
+    for tilt, color in zip(data["tilt"], (CONVERGED, MUTED), strict=False):
         axes.plot(data["time"], tilt, color=color, label=str(tilt["pressure"].values))
     main = data.isel(pressure=0)
     axes.axvspan(float(main["both"]), float(main["apart"]), color=ACCENT, alpha=0.15, lw=0)
@@ -33,9 +33,9 @@ def stepping_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
     """Draw the tilt in the rocking by time-stepping, and the errors of event times against the
     step.
     """
-    for step, tilt, color in zip(data["step"], data["theta"], CYCLE, strict=False):
+    for step, tilt, color in zip(data["step"], data["tilt"], CYCLE, strict=False):
         above.plot(data["time"], tilt, color=color, lw=1.2, label=f"{1e3 * float(step):g} ms")
-    above.plot(data["time"], data["exact_theta"], color=INK, ls=DASHED, lw=1.4, label="exact")
+    above.plot(data["time"], data["exact_tilt"], color=INK, ls=DASHED, lw=1.4, label="exact")
     span = (float(data["time"][0]), float(data["time"][-1]))
     above.set(xlim=span, xlabel="time (s)", ylabel=mark.TILT)
     mark.legend_above(above, 6)
@@ -60,7 +60,7 @@ def stems_figure(above: Axes, below: Axes, data: xr.Dataset) -> None:
     radius.
     """
     radius = 1e3 * data["radius"].values
-    above.plot(radius, data["final_theta"], "o-", color=CONVERGED)
+    above.plot(radius, data["final_tilt"], "o-", color=CONVERGED)
     above.set_ylabel(r"tilt at the end (rad)")
     below.plot(radius, data["jellett"] / data["jellett_needed"], "o-", color=CONVERGED)
     below.axhline(1.0, color=ACCENT, ls=DASHED, lw=1.2)
@@ -73,7 +73,7 @@ def egg_figure(axes: Axes, data: xr.Dataset) -> None:
     """Draw the tilt of eggs spun on their sides, with their first lift-offs."""
     colors = colormaps["viridis"](np.linspace(0.0, 0.9, data.sizes["rate"]))
     for rate, tilt, lift, color in zip(
-        data["rate"], data["theta"], data["lift_off"], colors, strict=True
+        data["rate"], data["tilt"], data["liftoff"], colors, strict=True
     ):
         axes.plot(data["time"], tilt, color=color, lw=1.2, label=f"{float(rate):g} rad/s")
         if np.isfinite(lift):

@@ -45,10 +45,10 @@ def motion_figure(
     of its final values with theta, omega3 and phi_dot.
     """
     tilt, spin, turning, slip = panels.flat
-    _pair(tilt, run, "theta", legend=True)
+    _pair(tilt, run, "tilt", legend=True)
     mark.tilt_axis(tilt)
     _zoom(tilt, run, zoom, inset)
-    _pair(spin, run, "omega3")
+    _pair(spin, run, "spin")
     spin.set_ylabel(r"axial spin $\omega_3$ (rad/s)")
     _precession(turning, run, precession_limit)
     square = {"color": REPORT, "ms": 5, "mec": INK, "mew": 0.6, "zorder": 6}
@@ -57,7 +57,7 @@ def motion_figure(
         mark.note(turning, f"report:\n{time:g} s", (time, 0), (7, below), REPORT, halo=True)
     turned = (
         reported_turn,
-        float(np.interp(reported_turn, run["time_listing"], run["theta_listing"])),
+        float(np.interp(reported_turn, run["time_listing"], run["tilt_listing"])),
     )
     tilt.plot(*turned, "s", **square)
     mark.note(tilt, f"report: {reported_turn:g} s", turned, (6, -8), REPORT, halo=True)
@@ -67,7 +67,7 @@ def motion_figure(
     }
     _pair(slip, run.assign(speeds), "speed")
     slip.set(ylabel="slip speed $|v_A|$ (m/s)", ylim=(0, None))
-    for axes, name in ((tilt, "theta"), (spin, "omega3"), (turning, "phi_dot")):
+    for axes, name in ((tilt, "tilt"), (spin, "spin"), (turning, "precession")):
         if reported_end:
             end = reported_end[0], reported_end[1][name]
             axes.plot(*end, "s", **square)
@@ -92,7 +92,7 @@ def tilt_figure(
     bottom, width, height in shares of the panel).
     """
     _over_time(axes, run)
-    _trio(axes, run, "theta")
+    _trio(axes, run, "tilt")
     mark.tilt_axis(axes)
     _zoom(axes, run, zoom, inset)
     _mark_lift_off(axes, float(run["lift_off_time"]))
@@ -105,10 +105,10 @@ def upright_figure(axes: Axes, run: xr.Dataset, until: float = 3.0) -> None:
     """
     _over_time(axes, run)
     start = run.sel(time=slice(None, until), time_listing=slice(None, until))
-    _pair(axes, start, "theta", legend=True)
+    _pair(axes, start, "tilt", legend=True)
     axes.set_xlim(0, until)
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
-    axes.set_ylim(0, 1.12 * float(run["theta"].max()))
+    axes.set_ylim(0, 1.12 * float(run["tilt"].max()))
     axes.set_ylabel(mark.TILT)
 
 
@@ -162,7 +162,7 @@ def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: floa
     stop = float(run["lift_off_time"])
     before = run.sel(time=run["time"] <= stop)
     listing = run.sel(time_listing=run["time_listing"] <= reported_stop)
-    for axes, name in ((tilt, "theta"), (force, "normal_force")):
+    for axes, name in ((tilt, "tilt"), (force, "normal_force")):
         for part, suffix, color, width, edge, label in (
             (listing, "_listing", REPORT, 2.6, 1.8, _NAME_REPORT),
             (before, "", CONVERGED, 1.3, 1.3, _NAME),
@@ -182,8 +182,8 @@ def stopped_figure(tilt: Axes, force: Axes, run: xr.Dataset, reported_stop: floa
     tilt.set_xlim(0, 8)
     for time, color in ((stop, ACCENT), (reported_stop, REPORT)):
         force.axvline(time, color=color, lw=1.0, ls=DASHED)
-    end = float(np.interp(stop, run["time"], run["theta"]))
-    last = float(listing["theta_listing"][-1])
+    end = float(np.interp(stop, run["time"], run["tilt"]))
+    last = float(listing["tilt_listing"][-1])
     tilt.plot([stop], [end], "o", color=ACCENT, ms=6, zorder=5)
     tilt.plot([reported_stop], [last], "s", color=REPORT, ms=6, zorder=5, mec=INK, mew=0.6)
     for text, at, offset, color in (
@@ -242,7 +242,7 @@ def _trio(
 
 def _precession(axes: Axes, run: xr.Dataset, limit: float) -> None:
     axes.axhline(0, color=MUTED, lw=0.8)
-    _pair(axes, run, "phi_dot")
+    _pair(axes, run, "precession")
     axes.set_ylim(-limit, limit)
     last = float(run["last_reversal"])
     quiet = [float(run[name]) for name in ("quiet_start", "quiet_end")]
@@ -267,11 +267,11 @@ def _zoom(axes: Axes, run: xr.Dataset, span: tuple[float, float], box: mark.Box)
     drawn = []
     for suffix, time, color, width, _ in _LINES:
         part = run.sel({time: slice(*span)})
-        inset.plot(part[time], part[f"theta{suffix}"], color=color, lw=width)
-        drawn.append(part[f"theta{suffix}"].values)
-    if "theta_flight" in run:
+        inset.plot(part[time], part[f"tilt{suffix}"], color=color, lw=width)
+        drawn.append(part[f"tilt{suffix}"].values)
+    if "tilt_flight" in run:
         shade_flights(inset, run)
-        continue_unilateral(inset, run, "theta")
+        continue_unilateral(inset, run, "tilt")
     low, high = min(part.min() for part in drawn), max(part.max() for part in drawn)
     inset.set_xlim(*span)
     inset.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))

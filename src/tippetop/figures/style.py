@@ -7,6 +7,7 @@ sees to the latter.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -93,6 +94,16 @@ def house_style() -> Iterator[None]:
     """Return the context in which every figure is made and saved. It is also a decorator."""
     with mpl.rc_context(_STYLE):
         yield
+
+
+class ShownFigure(Figure):
+    """Figure that notebooks show although pyplot does not know it."""
+
+    @house_style()
+    def _repr_png_(self) -> bytes:
+        picture = BytesIO()
+        self.savefig(picture, format="png")
+        return picture.getvalue()
 
 
 def save(figure: Figure, path: Path | str, **options: Any) -> None:

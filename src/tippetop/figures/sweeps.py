@@ -25,14 +25,14 @@ def final_tilt_figure(axes: Axes, sweep: xr.Dataset, reported: tuple[float, floa
     axes.axvspan(onset, right, color=ACCENT, alpha=0.07, lw=0)
     below = sweep.sel(spin=sweep["spin"] <= onset)
     above = sweep.sel(spin=sweep["spin"] > onset)
-    axes.plot(below["spin"], below["final_theta"], color=CONVERGED, lw=1.8, label="converged")
+    axes.plot(below["spin"], below["final_tilt"], color=CONVERGED, lw=1.8, label="converged")
     axes.plot(
-        above["spin"], above["final_theta"], ".", color=MUTED, ms=3, label="converged, table pulls"
+        above["spin"], above["final_tilt"], ".", color=MUTED, ms=3, label="converged, table pulls"
     )
     flying = sweep.sel(spin_flight=sweep["spin_flight"] > onset)
     axes.plot(
         flying["spin_flight"],
-        flying["final_theta_flight"],
+        flying["final_tilt_flight"],
         "-D",
         color=UNILATERAL,
         ms=3.5,
@@ -42,7 +42,7 @@ def final_tilt_figure(axes: Axes, sweep: xr.Dataset, reported: tuple[float, floa
     )
     axes.plot(
         sweep["spin_listing"],
-        sweep["final_theta_listing"],
+        sweep["final_tilt_listing"],
         "o",
         color=REPORT,
         label="report's method",
@@ -65,9 +65,9 @@ def final_tilt_figure(axes: Axes, sweep: xr.Dataset, reported: tuple[float, floa
     ):
         panel = mark.inset(axes, box)
         _critical(panel, (*reported[:2], *ours), 1.0)
-        panel.plot(sweep["spin"], sweep["final_theta"], ".-", color=CONVERGED, lw=1.2, ms=3)
+        panel.plot(sweep["spin"], sweep["final_tilt"], ".-", color=CONVERGED, lw=1.2, ms=3)
         dots: dict[str, Any] = {"color": REPORT, "ms": 4, "mec": "white", "mew": 0.4}
-        panel.plot(sweep["spin_listing"], sweep["final_theta_listing"], "o", **dots)
+        panel.plot(sweep["spin_listing"], sweep["final_tilt_listing"], "o", **dots)
         panel.set(xlim=around, ylim=tilts)
         panel.locator_params(nbins=4)
         mark.source(axes, panel)

@@ -35,7 +35,7 @@ def _runs_and_flow(axes: Axes, flow: xr.Dataset) -> None:
     """Draw the run with most friction as a curve, the other runs and the flow by their ranges."""
     axes.plot(
         flow["mu_time_swing"],
-        flow["theta_swing"],
+        flow["tilt_swing"],
         color=REPORT,
         lw=0.8,
         label=rf"run, $\mu$ = {float(flow['friction'][0]):g} s/m",
@@ -138,7 +138,7 @@ def _within_envelope(axes: Axes, run: xr.Dataset, width: float) -> None:
         lw=0,
         label="between the turning points on a smooth table",
     )
-    axes.plot(time, run["theta_diagnosed"], color=CONVERGED, lw=width, label="run")
+    axes.plot(time, run["tilt_diagnosed"], color=CONVERGED, lw=width, label="run")
 
 
 @mark.drawn(4.9, 2, 3, sharex=True, lettered=False)
@@ -146,10 +146,10 @@ def potential_figure(panels: Any, run: xr.Dataset) -> None:
     """Draw the effective potential of the tilt and the energy level at several instants of a
     run.
     """
-    tilt = run["well_theta"].values
+    tilt = run["well_tilt"].values
     for k, axes in enumerate(panels.flat):
         well, level = 1e3 * run["potential"][k].values, 1e3 * float(run["level"][k])
-        at = float(run["instant_theta"][k])
+        at = float(run["instant_tilt"][k])
         low = float(well.min())
         axes.fill_between(tilt, well, level, where=well <= level, color=REPORT, alpha=0.3, lw=0)
         axes.plot(tilt, well, color=CONVERGED, lw=1.6)

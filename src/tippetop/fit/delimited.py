@@ -74,7 +74,7 @@ def read_columns(text: str, track: str | None = None) -> dict[str, DataColumn]:
     if first is None:
         raise InvalidInput("data", text[:40], "a table with a header and numbers", "has no numbers")
     if first == 0:
-        hint = "write one above the numbers, such as t,theta"
+        hint = "write one above the numbers, such as t,tilt"
         raise InvalidInput("data", lines[0][1], "", "is the first line: there is no header", hint)
     separator = _separator(lines[first - 1][1], lines[first][1])
     names = _without_last_empty(_cells(lines[first - 1][1], separator))

@@ -100,7 +100,7 @@ class FitResult:
     >>> import tippetop as tt
     >>> problem = tt.presets.report_problem()
     >>> film = tt.Measurement.of_variables(
-    ...     [0.0, 0.1, 0.2, 0.3], {"theta": [0.09, 0.13, 0.11, 0.07]}, noise=0.05
+    ...     [0.0, 0.1, 0.2, 0.3], {"tilt": [0.09, 0.13, 0.11, 0.07]}, noise=0.05
     ... )
     >>> fitted = tt.fit(problem, film, ["friction.mu"])
     >>> sorted(fitted.values)
@@ -156,7 +156,11 @@ class FitResult:
             model.problem_of(numbers),
             dict(zip(names, numbers.tolist(), strict=True)),
             dict(zip(names, errors.tolist(), strict=True)),
-            xr.DataArray(covariance, {"number": names, "beside": names}, ("number", "beside")),
+            xr.DataArray(
+                covariance,
+                {"parameter": names, "other_parameter": names},
+                ("parameter", "other_parameter"),
+            ),
             shaped,
             tuple(
                 level.reshape(one.values.shape)[0]
@@ -436,7 +440,7 @@ def compare_fits(fits: Mapping[str, FitResult]) -> Comparison:
     --------
     >>> import tippetop as tt
     >>> film = tt.Measurement.of_variables(
-    ...     [0.0, 0.1, 0.2, 0.3], {"theta": [0.09, 0.13, 0.11, 0.07]}, noise=0.05
+    ...     [0.0, 0.1, 0.2, 0.3], {"tilt": [0.09, 0.13, 0.11, 0.07]}, noise=0.05
     ... )
     >>> slips = tt.fit(tt.presets.report_problem(), film, ["friction.mu"])
     >>> spins = tt.fit(tt.presets.report_problem(), film, ["friction.mu", "launch.spin"])

@@ -15,7 +15,7 @@ from tippetop.lathe.workpiece import Workpiece
 from tippetop.problem.bodies import Body
 from tippetop.problem.frictions import ContensouFriction, Friction
 from tippetop.problem.launch import Launch
-from tippetop.problem.problem import Problem, get
+from tippetop.problem.problem import Problem
 from tippetop.run import simulate
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.suggestions import not_one_of
@@ -361,14 +361,14 @@ def timed(
         if launch is None or family.spin(at) > launch.launch.spin:
             return math.inf
         run = simulate(launch, LONGEST_RUN, until=lambda state: state.axis[2], samples=2)
-        return float(run["end_time"]) if run.attrs["outcome"] == "stopped" else math.inf
+        return float(run["end_time"]) if run.attrs["status"] == "stopped" else math.inf
 
     def gradient(at: Array) -> Array:
         launch, end = launched(at), time(at)
         if launch is None or not math.isfinite(end):
             return np.zeros(len(at))
         fields = fields_of(launch)
-        slopes = sensitivities(launch, 1.05 * end, fields, samples=2)["turns_over"].values
+        slopes = sensitivities(launch, 1.05 * end, fields, samples=2)["turnover_time"].values
         reach = family.high - family.low
         rows = np.zeros(len(at))
         for place in range(len(at)):
@@ -376,7 +376,7 @@ def timed(
             step[place] = SLOPE_STEP * reach[place]
             up, down = (launched(at + sign * step) for sign in (1.0, -1.0))
             if up is not None and down is not None:
-                moved = [float(get(up, name)) - float(get(down, name)) for name in fields]
+                moved = [float(up.get(name)) - float(down.get(name)) for name in fields]
                 rows[place] = np.nan_to_num(slopes) @ np.array(moved) / (2.0 * step[place])
         return rows
 

@@ -126,8 +126,8 @@ def fit(
     >>> import tippetop as tt
     >>> true = tt.presets.report_problem(spin=155.0)
     >>> times = np.linspace(0.0, 0.5, 60)
-    >>> tilt = tt.simulate(true, 0.5, times=times)["theta"].values
-    >>> film = tt.Measurement.of_variables(times, {"theta": tilt}, noise=0.01)
+    >>> tilt = tt.simulate(true, 0.5, times=times)["tilt"].values
+    >>> film = tt.Measurement.of_variables(times, {"tilt": tilt}, noise=0.01)
     >>> fitted = tt.fit(true.replace({"friction.mu": 0.25}), film, ["friction.mu"])
     >>> round(fitted.problem.friction.mu, 6)
     0.3

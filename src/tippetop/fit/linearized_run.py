@@ -27,8 +27,8 @@ from tippetop.contact.mode import (
     IntegratedMode,
     Mode,
     ModeEnd,
-    Outcome,
     Segment,
+    Status,
     Transition,
 )
 from tippetop.contact.natural_launch import NaturalLaunch, automaton_of
@@ -279,8 +279,8 @@ class LinearizedRun:
             if segment.transition is not None:
                 visit.end, visit.transition = segment.mode_end, segment.transition
                 entered, visit = segment.transition, None
-        assert self.trajectory.outcome is not None
-        self.outcome: Outcome = self.trajectory.outcome
+        assert self.trajectory.status is not None
+        self.status: Status = self.trajectory.status
 
     # Its derivatives.
 
@@ -654,7 +654,7 @@ class LinearizedRun:
             return self.read()
         start = self._launch(numbers, launch)
         trajectory = Trajectory(start.automaton, launch, end, self.integrator)
-        trajectory.end_at(time, state, self.outcome, self.trajectory.detail)
+        trajectory.end_at(time, state, self.status, self.trajectory.detail)
         trajectory.events = events
         problem = self._problem_beside(direction, change) or self.problem
         return RunReading(self._dataset(problem, start, segments, trajectory), states, units)
@@ -693,10 +693,10 @@ class LinearizedRun:
         block = Block(segments)
         recorder.take(block)
         run_metrics.take(block)
-        readers, outcome = (recorder, run_metrics), self.outcome
-        attributes = {"problem": problem.to_json(), "outcome": outcome.name.lower()}
+        readers, status = (recorder, run_metrics), self.status
+        attributes = {"problem": problem.to_json(), "status": status.name.lower()}
         grid, duration = self.grid, self.duration
-        return read_off(start, readers, trajectory, outcome, grid, duration, attributes=attributes)
+        return read_off(start, readers, trajectory, status, grid, duration, attributes=attributes)
 
     def _start_of(self, junction: Junction) -> float:
         return 0.0 if junction.before is None else junction.before.visit.end_time

@@ -24,16 +24,16 @@ from tippetop.fit.observations import (
 )
 from tippetop.integrators.base import Array
 from tippetop.results.catalogue import SAMPLED
-from tippetop.support.errors import MISSING, InvalidInput, is_number
+from tippetop.support.errors import MISSING, InvalidInput, is_number, within_part
 from tippetop.support.files import made_of, read_text
 from tippetop.support.suggestions import not_one_of
 from tippetop.support.units import exponents_of, named_unit, number_in, unit_of
 
 NAMES = {
     **dict.fromkeys(("t", "time", "zeit", "temps", "seconds"), "t"),
-    **dict.fromkeys(("theta", "tilt", "θ", "inclination", "neigung"), "theta"),
+    **dict.fromkeys(("theta", "tilt", "θ", "inclination", "neigung"), "tilt"),
     **dict.fromkeys(("rpm", "u/min", "1/min", "revolutions per minute"), "rpm"),
-    **dict.fromkeys(("spin", "omega", "ω3", "ω"), "omega3"),
+    **dict.fromkeys(("spin", "omega", "omega3", "ω3", "ω"), "spin"),
     **dict.fromkeys(("event", "ereignis", "what"), "event"),
     **dict.fromkeys(("frame", "step", "bild"), "frame"),
 }
@@ -68,10 +68,10 @@ class Measurement:
     Examples
     --------
     >>> import tippetop as tt
-    >>> film = tt.Measurement.of_variables([0.0, 0.1, 0.2], {"theta": [0.10, 0.11, 0.13]})
+    >>> film = tt.Measurement.of_variables([0.0, 0.1, 0.2], {"tilt": [0.10, 0.11, 0.13]})
     >>> film.values.shape
     (3, 1)
-    >>> clock = tt.Measurement.of_events({"turns_over": 3.1}, noise=0.1)
+    >>> clock = tt.Measurement.of_events({"turnover_time": 3.1}, noise=0.1)
     """
 
     times: Array
@@ -140,8 +140,8 @@ class Measurement:
     def of_events(cls, times: Mapping[str, Any], noise: Any = None) -> Self:
         """Return a measurement of times of events, s, by their names.
 
-        The names are those of metrics, `turns_over`, `arrives` and `first_lift_off`, and of kinds
-        of events, such as "stick", of which the first counts.
+        The names are those of metrics, `turnover_time`, `arrival_time` and `liftoff_time`, and of
+        kinds of events, such as "stick", of which the first counts.
         """
         if not times:
             raise InvalidInput("times", times, "times of events by their names")
@@ -231,7 +231,7 @@ def read_measurement(
     r"""Read data from a text file of a video analysis, a spreadsheet or a sound's analysis.
 
     The header names the columns, with units in brackets. There is a time `t`, or a number `frame`
-    of the picture; beside it `theta` or other scalar variables of a run; or `x` and `y` of a point
+    of the picture; beside it `tilt` or other scalar variables of a run; or `x` and `y` of a point
     in pictures; or `rpm`. A file with columns `event` and `t` has times of events. Tabs,
     semicolons, commas and spaces separate columns, numbers may have decimal commas, and cells of
     missing frames are empty. Files of Tracker are read as they are.
@@ -267,7 +267,7 @@ def read_measurement(
     >>> from pathlib import Path
     >>> from tempfile import mkdtemp
     >>> file = Path(mkdtemp(), "film.csv")
-    >>> _ = file.write_text("t (s);theta (deg)\n0,00;5,7\n0,02;5,9\n0,04;6,3\n")
+    >>> _ = file.write_text("t (s);tilt (deg)\n0,00;5,7\n0,02;5,9\n0,04;6,3\n")
     >>> tt.read_measurement(file).values.round(3).tolist()
     [[0.099], [0.103], [0.11]]
     """
@@ -308,7 +308,7 @@ def read_measurement(
         names = [name for name in named if name in SCALARS]
         if not names:
             shown = ", ".join(named)
-            accepted = "t and theta, t, x and y, t and rpm, or event and t"
+            accepted = "t and tilt, t, x and y, t and rpm, or event and t"
             raise InvalidInput("columns", shown, accepted)
         columns = {name: column(name, SAMPLED[name].units) for name in names}
         return Measurement.of_variables(times[since], columns, noise)
@@ -361,7 +361,7 @@ def _in_unit(column: DataColumn, units: str) -> Array:
     try:
         factor = unit_of(unit, unit, units)
     except InvalidInput as error:
-        raise error.within(f"unit of column {column.name}") from None
+        raise within_part(error, f"unit of column {column.name}") from None
     converted: Array = numbers * factor.over / factor.under
     return converted
 

@@ -17,7 +17,7 @@ from tippetop.fit.measurement import Measurement
 from tippetop.fit.problem_numbers import SMALLEST_SCALE, Direction, require_fields, scale_of
 from tippetop.integrators.base import Array
 from tippetop.problem.implausible import Implausible
-from tippetop.problem.problem import Problem, get
+from tippetop.problem.problem import Problem
 from tippetop.run import simulate
 from tippetop.support.errors import InvalidInput
 
@@ -77,7 +77,7 @@ class Model:
     @property
     def start(self) -> Array:
         """The problem's own numbers, and the instruments' that fit best to its run."""
-        fields = [float(get(self.problem, field)) for field in self.fields]
+        fields = [float(self.problem.get(field)) for field in self.fields]
         return self.with_instruments(np.array(fields))
 
     def with_instruments(self, fields: Array) -> Array:

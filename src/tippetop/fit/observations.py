@@ -25,7 +25,7 @@ Point = str | tuple[float, float]
 """A point of the body: "tip", "center", or its distances from the axis and, along the axis, from
 the centre of mass, m."""
 
-INSTANTS = ("turns_over", "arrives", "first_lift_off")
+INSTANTS = ("turnover_time", "arrival_time", "liftoff_time")
 """Metrics of a run that are times of events."""
 
 
@@ -87,7 +87,7 @@ class SpinRate:
 
     def __call__(self, run: xr.Dataset, numbers: Mapping[str, float]) -> Array:
         """Return |omega3| in turns a minute."""
-        rate: Array = np.abs(run["omega3"].values[:, None]) * (30.0 / np.pi)
+        rate: Array = np.abs(run["spin"].values[:, None]) * (30.0 / np.pi)
         return rate
 
 
@@ -172,7 +172,7 @@ class Camera:
 
 @dataclass(frozen=True)
 class EventTimes:
-    """Times of events: metrics such as `turns_over`, or the first event of a kind."""
+    """Times of events: metrics such as `turnover_time`, or the first event of a kind."""
 
     labels: tuple[str, ...]
     parameters: tuple[str, ...] = ()

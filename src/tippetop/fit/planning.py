@@ -18,6 +18,7 @@ from tippetop.run import simulate
 from tippetop.support.errors import InvalidInput, is_number
 from tippetop.support.suggestions import not_one_of
 from tippetop.support.units import number_in
+from tippetop.support.validation import require_names
 
 FRAME_RATE = 60.0
 """Frames a second of the planned film: an ordinary phone's."""
@@ -57,7 +58,7 @@ class PlannedMeasurement(NamedTuple):
 def plan_measurement(
     problem: Problem,
     duration: Any,
-    vary: Sequence[str],
+    vary: str | Sequence[str],
     *,
     accuracy: float = 0.05,
     noise: Mapping[str, float] | None = None,
@@ -100,7 +101,7 @@ def plan_measurement(
             raise not_one_of("noise", quantity, NOISES)
         if not (is_number(deviation) and deviation > 0.0):
             raise InvalidInput(f"noise.{quantity}", deviation, "a number greater than 0")
-    fields = [vary] if isinstance(vary, str) else list(vary)
+    fields = require_names("vary", vary)
     seconds = float(number_in("duration", duration, "s"))
     measurements = _planned(problem, seconds, deviations)
     model = Model(problem, list(measurements.values()), fields)
@@ -136,11 +137,11 @@ def _planned(
     times = np.linspace(0.0, duration, frames)
     run = simulate(problem, duration, times=times)
     instruments: dict[str, Observation] = {
-        "tilt": Variables(("theta",)),
+        "tilt": Variables(("tilt",)),
         "tip from the side": Camera("side", "tip", 1.0, "m"),
         "tip from above": Camera("above", "tip", 1.0, "m"),
         "turns a minute": SpinRate(),
-        "time of turning over": EventTimes(("turns_over",)),
+        "time of turning over": EventTimes(("turnover_time",)),
     }
     camera = {"camera.angle": 0.5, "camera.x": 0.0, "camera.y": 0.0}
     planned = dict[str, Measurement]()

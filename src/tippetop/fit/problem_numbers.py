@@ -10,7 +10,7 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind, Top, natural_units
 from tippetop.mechanics.units import Units
-from tippetop.problem.problem import Problem, get
+from tippetop.problem.problem import Problem
 from tippetop.support.errors import InvalidInput, is_number
 from tippetop.support.units import exponents_of
 
@@ -94,7 +94,7 @@ def require_fields(problem: Problem, fields: Sequence[str], argument: str) -> No
     """Refuse, with `InvalidInput`, names that are no fields with a number."""
     for field in fields:
         try:
-            number = get(problem, field)
+            number = problem.get(field)
         except InvalidInput as error:
             raise InvalidInput(argument, field, error.accepted, hint=error.hint) from None
         if not is_number(number):
@@ -109,7 +109,7 @@ def scale_of(problem: Problem, field: str, number: float | None = None) -> float
     if si not in ("", "1"):
         length, mass, time, _ = exponents_of(si)
         natural = units.length**length * units.mass**mass * units.time**time
-    value = float(get(problem, field)) if number is None else number
+    value = float(problem.get(field)) if number is None else number
     return float(max(abs(value), SMALLEST_SCALE * natural))
 
 
@@ -132,7 +132,7 @@ class Direction:
 
     def beside(self, problem: Problem, change: float) -> Problem | None:
         """Return the problem after a change of the field; None where there is no such problem."""
-        value = float(get(problem, self.field)) + change * self.scale
+        value = float(problem.get(self.field)) + change * self.scale
         try:
             return problem.replace({self.field: value})
         except InvalidInput:
@@ -150,7 +150,7 @@ def derivatives(problem: Problem, field: str) -> StartNumbers:
     InvalidInput
         If the problem has no neighbours with other values of the field.
     """
-    value, step = float(get(problem, field)), STEP * scale_of(problem, field)
+    value, step = float(problem.get(field)), STEP * scale_of(problem, field)
 
     def numbers(change: float) -> Array:
         return StartNumbers.of(problem.replace({field: value + change})).pack()
@@ -161,7 +161,7 @@ def derivatives(problem: Problem, field: str) -> StartNumbers:
         if slopes is not None:
             return StartNumbers.unpack(slopes, size)
     accepted = "a field that may be changed by a thousandth of its value"
-    raise InvalidInput("wrt", field, accepted)
+    raise InvalidInput("vary", field, accepted)
 
 
 def _difference(

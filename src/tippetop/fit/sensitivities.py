@@ -15,8 +15,8 @@ from tippetop.mechanics.top import natural_units
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.results.catalogue import DERIVED, LISTED, METRICS, SAMPLED, Variable
 from tippetop.results.sample_times import sample_times
-from tippetop.support.errors import InvalidInput
 from tippetop.support.units import number_in
+from tippetop.support.validation import require_names
 
 NEARER, TRIES = 0.1, 3
 """How much nearer to the run its variables are read off, and how often at most, until the runs
@@ -29,7 +29,7 @@ TURN = 2.0 * np.pi
 def sensitivities(
     problem: Problem,
     duration: float,
-    wrt: Sequence[str],
+    vary: str | Sequence[str],
     *,
     samples: int = 2001,
     times: ArrayLike | None = None,
@@ -48,8 +48,8 @@ def sensitivities(
         The physics.
     duration
         Length of the run, s; or a text such as "1 min", or a quantity of pint.
-    wrt
-        Names of fields with a number, such as "friction.mu", "launch.spin" or "gravity".
+    vary
+        Name or names of fields with a number, such as "friction.mu", "launch.spin" or "gravity".
     samples
         Number of equally spaced samples from launch to end.
     times
@@ -75,27 +75,26 @@ def sensitivities(
     --------
     >>> import tippetop as tt
     >>> problem = tt.presets.report_problem(spin=155.0)
-    >>> slopes = tt.sensitivities(problem, 7.0, wrt=["friction.mu", "launch.spin"])
-    >>> slopes["turns_over"].sel(parameter="friction.mu").item() < 0.0  # s per s/m
+    >>> slopes = tt.sensitivities(problem, 7.0, vary=["friction.mu", "launch.spin"])
+    >>> slopes["turnover_time"].sel(parameter="friction.mu").item() < 0.0  # s per s/m
     True
-    >>> slopes["theta"].dims
+    >>> slopes["tilt"].dims
     ('parameter', 'time')
     """
     require_problem(problem)
     duration = float(number_in("duration", duration, "s"))
     require_limits(duration, natural_units(problem.top).time)
-    if isinstance(wrt, str) or not len(wrt):
-        raise InvalidInput("wrt", wrt, 'a list of names of fields, such as ["friction.mu"]')
-    require_fields(problem, wrt, "wrt")
+    fields = require_names("vary", vary)
+    require_fields(problem, fields, "vary")
     grid = sample_times(duration, samples, times)
-    run = LinearizedRun(problem, duration, grid, [Direction.of(problem, name) for name in wrt])
+    run = LinearizedRun(problem, duration, grid, [Direction.of(problem, name) for name in fields])
     columns, reasons = list[dict[str, Array]](), list[str]()
-    for direction in range(len(wrt)):
+    for direction in range(len(fields)):
         slopes, reason = slopes_of(run, direction)
         columns.append(slopes)
         reasons.append(reason)
-    units = [problem.quantity(name).units for name in wrt]
-    return _labelled(run.read(), columns, [str(name) for name in wrt], units, reasons)
+    units = [problem.quantity(name).units for name in fields]
+    return _labelled(run.read(), columns, [str(name) for name in fields], units, reasons)
 
 
 def slopes_of(run: LinearizedRun, direction: int) -> tuple[dict[str, Array], str]:

@@ -8,7 +8,7 @@ export { simulate } from "./run.js";
 /** What the theory says without a run: where a launch ends, its critical spins, what a body can do at all. */
 export function predict(problem) {
   const found = m.predict(new m.Problem(problem));
-  return { ...plain(found), certain: found.certain };
+  return { ...plain(found), certain: found.is_certain };
 }
 export const criticalSpins = (problem) => plain(m.critical_spins(new m.Problem(problem)));
 /** How many samples a run of a duration, s, needs so that it can be played at any speed. */

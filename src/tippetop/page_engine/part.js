@@ -38,7 +38,7 @@ export class Part {
       if (value === undefined) wrong.push(new m.InvalidInput(name, m.MISSING, wanted(field)));
       else this[name] = taken(name, value, field, wrong);
     }
-    if (wrong.length) throw wrong[0].within("", wrong.length - 1);
+    if (wrong.length) throw m.within_part(wrong[0], "", wrong.length - 1);
     for (const check of checks) this[check]();
   }
 
@@ -178,7 +178,7 @@ function part(name, value, kinds, wrong) {
     return new m[chosen(value, kinds)](value);
   } catch (error) {
     if (!(error instanceof m.InvalidInput)) throw error;
-    wrong.push(`${error.field}.`.startsWith(`${name}.`) ? error : error.within(name));
+    wrong.push(`${error.field}.`.startsWith(`${name}.`) ? error : m.within_part(error, name));
     return null;
   }
 }

@@ -36,11 +36,11 @@ const [TURN, WORK, STRUCK] = ["turn", "work", "struck"].map((name) =>
 /** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
 export function simulate(
   problem,
-  { duration, tolerance = 1e-10, step_limit, phase_limit, onProgress } = {},
+  { duration, tolerance = 1e-10, step_limit, mode_limit, onProgress } = {},
 ) {
   m.require_tolerance(tolerance, "dop853");
   const seconds = inUnits("duration", duration, "s");
-  const run = new Run(new m.Problem(problem), seconds, tolerance, [phase_limit, step_limit]);
+  const run = new Run(new m.Problem(problem), seconds, tolerance, [mode_limit, step_limit]);
   for (const segment of run.trajectory.segments()) {
     run.include(segment);
     onProgress?.(run.trajectory.time / run.trajectory.end);
@@ -189,24 +189,24 @@ class Run {
   /** Put together what is asked of a run that has ended, in SI. */
   finish() {
     const { trajectory, units } = this;
-    const { outcome, detail, state } = trajectory;
-    const trusted = this.monitor.final_outcome(outcome, state, this.sums[WORK], this.tolerance);
-    const breach = trusted === m.Outcome.INACCURATE ? this.monitor.breach(this.tolerance) : "";
-    this.outcome = {
+    const { status, detail, state } = trajectory;
+    const trusted = this.monitor.final_status(status, state, this.sums[WORK], this.tolerance);
+    const breach = trusted === m.Status.INACCURATE ? this.monitor.breach(this.tolerance) : "";
+    this.status = {
       name: trusted.name.toLowerCase(),
-      advice: [trusted.value, detail, breach, m.ambiguity_of(trajectory.events)]
+      message: [trusted.value, detail, breach, m.ambiguity_of(trajectory.events)]
         .filter(Boolean)
         .join(" "),
     };
-    this.early = trusted !== m.Outcome.COMPLETED && state.pack().every(Number.isFinite);
-    const completed = outcome === m.Outcome.COMPLETED;
+    this.early = trusted !== m.Status.COMPLETED && state.pack().every(Number.isFinite);
+    const completed = status === m.Status.COMPLETED;
     this.endTime = completed ? this.duration : trajectory.time * units.time;
     const events = trajectory.events.map((event) => m.event_in_si(event, units));
     this.events = plain(events);
     this.flights = this.flightRecord.rows.map(([start, end, gap]) => ({
       start: start * units.time,
       end: end * units.time,
-      highest_gap: gap * units.length,
+      max_gap: gap * units.length,
     }));
     const ends = this.ends(trusted);
     const metrics = m.metrics(ends, this.start, this.top, units);
@@ -220,14 +220,14 @@ class Run {
   }
 
   /** What is found of the run in natural units, for `m.metrics`. */
-  ends(outcome) {
+  ends(status) {
     const { state, time, events } = this.trajectory;
     // Of every step the value at its start is taken in: the end of the last one is missing.
     const lastAxisZ = this.segments.length ? state.axis[2] : NaN;
     this.leastAxisZ.includeValue(lastAxisZ, null);
     this.mostAxisZ.includeValue(-lastAxisZ, null);
     const extremes = [this.leastForce, this.leastAxisZ, this.mostAxisZ, this.mostHeight];
-    const settled = m.settled_tilt_of_one(outcome, state, this.start, this.top);
+    const settled = m.settled_tilt_of_one(status, state, this.start, this.top);
     return m.Ends.of_one(
       state,
       time,

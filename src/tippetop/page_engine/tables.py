@@ -23,7 +23,7 @@ from tippetop.results.run_metrics import FORCE_DEGREE
 from tippetop.support import units
 from tippetop.support.accepted_values import count_of, range_of
 from tippetop.support.suggestions import HINTS_BY_NAME, OTHER_NAMES
-from tippetop.support.validation import POINTS, Padded, Part, Quantity
+from tippetop.support.validation import PLACES, POINTS, Padded, Part, Quantity
 
 LIMITS = {"exclusiveMinimum": "gt", "minimum": "ge", "exclusiveMaximum": "lt", "maximum": "le"}
 WIDTHS = {"space": 3, "quaternion": 4}
@@ -50,7 +50,7 @@ def tables(command: str) -> str:
         "PRESETS": to_jsonable_python(
             {"bodies": presets.BODIES, "problems": problems}, exclude_none=True
         ),
-        "PLACES": Part.places,
+        "PLACES": PLACES,
         "OTHER_NAMES": OTHER_NAMES,
         "HINTS_BY_NAME": HINTS_BY_NAME,
         "KINDS": {si: kind._asdict() for si, kind in units.KINDS.items()},

@@ -27,7 +27,7 @@ class Contact(Variant):
     indeterminate
         What happens where strong friction makes the contact force indeterminate (Painleve's
         paradox), so that both an impact and a lift-off satisfy the laws of mechanics and friction:
-        "impact" or "lift_off". A contact that sticks stays closed where friction can hold it, even
+        "impact" or "liftoff". A contact that sticks stays closed where friction can hold it, even
         where opening would be consistent, too.
 
     Examples
@@ -39,7 +39,7 @@ class Contact(Variant):
 
     liftoff: Literal["fly", "stop", "ignore"] = "fly"
     restitution: Annotated[Fraction, Quantity("1", "coefficient of restitution")] = 0.0
-    indeterminate: Literal["impact", "lift_off"] = "impact"
+    indeterminate: Literal["impact", "liftoff"] = "impact"
 
     # translate: skip
     def rules(self, top: Top, units: Units) -> Any:

@@ -128,7 +128,7 @@ class CoulombFriction(Friction):
     >>> import tippetop as tt
     >>> problem = tt.presets.report_problem().replace({"friction.kind": "coulomb"})
     >>> run = tt.simulate(problem, duration=1.0)
-    >>> str(run["event_kind"].values[0]), bool(run["turns_over"].isnull())  # it sticks and rolls
+    >>> str(run["event_kind"].values[0]), bool(run["turnover_time"].isnull())  # it sticks and rolls
     ('stick', True)
     """
 

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from tippetop.mechanics.vectors import Vector, add, cross, dot, scale
 from tippetop.mechanics.view import PoleExact
-from tippetop.support.errors import InvalidInput, is_number
+from tippetop.support.errors import InvalidInput, is_number, within_part
 from tippetop.support.suggestions import not_one_of
 from tippetop.support.units import number_in
 from tippetop.support.validation import NO_WORD, NotNegative, Number, Padded, Part, Quantity
@@ -235,7 +235,7 @@ def _components(omega: Any) -> Vector:
             omega.tolist() if isinstance(omega, np.ndarray) else omega
         )
     except InvalidInput as error:
-        raise error.within("omega") from None
+        raise within_part(error, "omega") from None
     listed = isinstance(numbers, list | tuple) and len(numbers) == 3
     if not listed or not all(is_number(number) for number in numbers):
         raise InvalidInput("omega", omega, "3 finite numbers")

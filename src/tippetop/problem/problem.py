@@ -35,17 +35,20 @@ from tippetop.support.field_paths import (
     table_at,
     with_its_list,
 )
-from tippetop.support.files import made_of, read_text
+from tippetop.support.files import made_of, path_of, read_text, require_ending, written_beside
 from tippetop.support.parsing import parse_json, parse_toml
 from tippetop.support.suggestions import likely, unknown_field
 from tippetop.support.validation import (
     OF_ITS_KIND,
+    PLACES,
     NotNegative,
     Part,
     Positive,
     Quantity,
     Variant,
     declare_places,
+    fields_of_kind,
+    kinds_with,
 )
 
 
@@ -195,7 +198,7 @@ class Problem(Part):
             part = part_at(self, where) if last == "kind" else None
             if isinstance(part, Variant) and value != getattr(part, "kind", None):
                 renewed.add(where)
-                table, common = table_at(fields, where), part.fields_of(value)
+                table, common = table_at(fields, where), fields_of_kind(type(part), value)
                 for field in table.keys() - common:
                     del table[field]
         for path, new in changes.items():
@@ -204,10 +207,41 @@ class Problem(Part):
             table = table_at(fields, where)
             if last not in table and where not in renewed:
                 part = part_at(self, where)
-                kinds = part.kinds_with(last) if isinstance(part, Variant) else ()
-                raise unknown_field(name, value, list(dotted_names(fields)), self.places, kinds)
+                kinds = kinds_with(type(part), last) if isinstance(part, Variant) else ()
+                raise unknown_field(name, value, list(dotted_names(fields)), PLACES, kinds)
             table[last] = value
         return type(self)(**fields)
+
+    # translate: skip
+    def get(self, field: str) -> Any:
+        """Return the value of a field, or a part, by its dotted name.
+
+        The names are those of `replace` and of the fields of a sweep.
+
+        Raises
+        ------
+        InvalidInput
+            If there is no such field.
+
+        Examples
+        --------
+        >>> import tippetop as tt
+        >>> problem = tt.presets.report_problem(spin=155.0)
+        >>> problem.get("launch.spin")
+        155.0
+        >>> problem.replace({"launch.spin": 1.1 * problem.get("launch.spin")}).launch.spin
+        170.5
+        """
+        require("field", field, str, "the name of a field with dots, such as launch.spin")
+        where, _, last = field.rpartition(".")
+        part = part_at(self, where)
+        if isinstance(part, Part) and last in type(part).model_fields:
+            return getattr(part, last)
+        if isinstance(part, tuple) and is_place(last, part):
+            return part[int(last)]
+        meant = likely(field, list(dotted_names(self.model_dump())), PLACES)
+        hint = f"did you mean {meant}?" if meant else ""
+        raise InvalidInput("field", field, "the name of a field, such as launch.spin", hint=hint)
 
     # translate: skip
     def to_toml(self) -> str:
@@ -261,43 +295,35 @@ class Problem(Part):
         with made_of(path):
             return cls(**fields)
 
+    # translate: skip
+    def write(self, path: Path | str, overwrite: bool = False) -> Path:
+        """Write the problem as a .toml or .json file, and return its path.
+
+        Raises
+        ------
+        InvalidInput
+            If the name has another suffix.
+        FileTrouble
+            If the file exists and `overwrite` is false, or cannot be written.
+
+        Examples
+        --------
+        >>> import tippetop as tt
+        >>> problem = tt.presets.report_problem(spin=155.0)
+        >>> tt.Problem.read(problem.write("problem.toml")) == problem
+        True
+        """
+        place = path_of(path)
+        suffix = require_ending("path", place, (".toml", ".json"))
+        text = self.to_toml() if suffix == ".toml" else self.to_json() + "\n"
+        with written_beside(place, overwrite) as beside:
+            beside.write_text(text, encoding="utf-8")
+        return place
+
 
 # translate: skip
-PLACES = declare_places(Problem)
+FULL_NAMES = declare_places(Problem)
 """Full names of all fields by their last names, to suggest the right place of a field."""
-
-
-# translate: skip
-def get(problem: Problem, path: str) -> Any:
-    """Return the value of a field of a problem, or a part, by its dotted name.
-
-    The names are those of `Problem.replace` and of the axes of a sweep.
-
-    Raises
-    ------
-    InvalidInput
-        If there is no such field.
-
-    Examples
-    --------
-    >>> import tippetop as tt
-    >>> problem = tt.presets.report_problem(spin=155.0)
-    >>> tt.get(problem, "launch.spin")
-    155.0
-    >>> problem.replace({"launch.spin": 1.1 * tt.get(problem, "launch.spin")}).launch.spin
-    170.5
-    """
-    require_problem(problem)
-    require("path", path, str, "the name of a field with dots, such as launch.spin")
-    where, _, last = path.rpartition(".")
-    part = part_at(problem, where)
-    if isinstance(part, Part) and last in type(part).model_fields:
-        return getattr(part, last)
-    if isinstance(part, tuple) and is_place(last, part):
-        return part[int(last)]
-    meant = likely(path, list(dotted_names(problem.model_dump())), problem.places)
-    hint = f"did you mean {meant}?" if meant else ""
-    raise InvalidInput("path", path, "the name of a field, such as launch.spin", hint=hint)
 
 
 # translate: drop

@@ -12,7 +12,7 @@ from tippetop.mechanics.euler import published_energy, published_normal_force, p
 from tippetop.problem.problem import Problem
 from tippetop.report.ode45 import ode45
 
-VARIABLES = ("theta", "theta_dot", "phi", "phi_dot", "omega3", "slip_x", "slip_y")
+VARIABLES = ("tilt", "tilt_rate", "azimuth", "precession", "spin", "slip_x", "slip_y")
 """The report's variables, in its order."""
 
 
@@ -26,7 +26,7 @@ def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) 
     -------
     xarray.Dataset
         Over `time`, the points of output of ode45: the report's variables (theta modulo pi, as
-        plotted), `theta_integrated` (not modulo pi), `normal_force` (2.15) and `energy` (4.1).
+        plotted), `tilt_integrated` (not modulo pi), `normal_force` (2.15) and `energy` (4.1).
         Attributes: steps, evaluations, failure (empty if none).
     """
     motion, start = listing_rates(problem, unilateral=unilateral), launch_state(problem)
@@ -35,7 +35,7 @@ def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) 
     y = solution.states.T
     wrapped = (np.mod(y[0], math.pi), *y[1:])
     values = dict(zip(VARIABLES, wrapped, strict=True))
-    values["theta_integrated"] = y[0]
+    values["tilt_integrated"] = y[0]
     with np.errstate(all="ignore"):
         values["normal_force"] = published_normal_force(wrapped, top, np)
         values["energy"] = published_energy(wrapped, top, np)

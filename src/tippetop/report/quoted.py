@@ -9,7 +9,7 @@ TURNED_AT = {"fig04": "7.4", "fig05": "8.9"}
 REVERSALS = {"fig04": ("3.3", "7.9"), "fig05": ("1.1",)}
 """Times at which the precession reverses, s (captions of Figs. 4 and 5)."""
 
-END_OF_FIG_5 = {"theta": 1.503, "phi_dot": 35.257, "omega3": -8.201}
+END_OF_FIG_5 = {"tilt": 1.503, "precession": 35.257, "spin": -8.201}
 """End state of the run at 50 rad/s, rad and rad/s (section 3.1, below Fig. 5)."""
 
 CRITICAL_SPINS = ("26.3", "78.6")

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from tippetop.contact.lowest_surface import LEVEL
-from tippetop.contact.mode import Event, EventKind, Outcome
+from tippetop.contact.mode import Event, EventKind, Status
 from tippetop.mechanics.motion import angular_velocity, point_velocity
 from tippetop.mechanics.surfaces.hull import Hull, acting, is_edge, lowest_surface
 from tippetop.mechanics.surfaces.surface import contact_vector
@@ -31,12 +31,12 @@ class Facts(NamedTuple):
     """Facts of a run that its account uses, in SI."""
 
     problem: Problem
-    outcome: Outcome
+    status: Status
     metrics: Mapping[str, float]
     """Numbers of `tippetop.results.catalogue.METRICS`."""
     peak: tuple[float, float]
     """Largest tilt within the run, rad, and its time, s."""
-    settled_since: float
+    settling_time: float
     """Time since which the tilt stays near its final value, s; nan if it has not settled."""
     events: Sequence[Event]
     flights: Sequence[tuple[float, float]]
@@ -56,7 +56,7 @@ class Clause(NamedTuple):
 
 def account_of(facts: Facts) -> list[Clause]:
     """Return the clauses of a run: of its launch, its motion, its end, and of theory."""
-    if facts.outcome is Outcome.INACCURATE:
+    if facts.status is Status.INACCURATE:
         return [_ended_early(facts)]
     return [*_launch(facts), *_motion(facts), *_end(facts), *_theory(facts)]
 
@@ -126,7 +126,7 @@ def _motion(facts: Facts) -> list[Clause]:
     They are about passing the horizontal, flights, rocking, sticking and a fall.
     """
     clauses = list[Clause]()
-    turned, final = facts.metrics["turns_over"], facts.metrics["final_theta"]
+    turned, final = facts.metrics["turnover_time"], facts.metrics["final_tilt"]
     ends_level = abs(final - 0.5 * math.pi) < NEAR_FINAL
     tilted = facts.problem.launch.tilt
     if tilted > 0.5 * math.pi and final < 0.5 * math.pi:
@@ -155,7 +155,7 @@ def _motion(facts: Facts) -> list[Clause]:
         clauses.append(Clause("falls_back", numbers, "motion"))
     elif (
         not math.isfinite(sticks)
-        and facts.metrics["is_settled"] == 0
+        and not facts.metrics["is_settled"]
         and highest - max(facts.problem.launch.tilt, final) > 2.0 * NEAR_POLE
     ):
         clauses.append(Clause("is_highest", {"highest": highest, "time": when}, "motion"))
@@ -164,7 +164,7 @@ def _motion(facts: Facts) -> list[Clause]:
 
 def _pulled(facts: Facts) -> list[Clause]:
     """Return the clause that the table would have to pull, if it would."""
-    force = facts.metrics["least_normal_force"]
+    force = facts.metrics["min_normal_force"]
     if facts.problem.contact.liftoff != "ignore" or force >= 0.0:
         return []
     return [Clause("is_pulled", {"force": -force}, "motion")]
@@ -190,7 +190,7 @@ def _flights(facts: Facts) -> list[Clause]:
 
 def _sticks_since(facts: Facts) -> float:
     """Return the time since which the top rolls without slip or loss to the end, s, or nan."""
-    if not facts.problem.top.torque_free or facts.outcome is not Outcome.COMPLETED:
+    if not facts.problem.top.torque_free or facts.status is not Status.COMPLETED:
         return math.nan
     changes = [
         event
@@ -203,35 +203,35 @@ def _sticks_since(facts: Facts) -> float:
 
 
 def _fell_back(facts: Facts) -> bool:
-    """Return whether the top rose and fell back, by the definition of `Ending.FELL_BACK`."""
-    final, (highest, _) = facts.metrics["final_theta"], facts.peak
+    """Return whether the top rose and fell back, by the definition of `Outcome.FELL_BACK`."""
+    final, (highest, _) = facts.metrics["final_tilt"], facts.peak
     launched = facts.problem.launch.tilt
-    if facts.outcome in (Outcome.LIFTED_OFF, Outcome.FAILED, Outcome.INACCURATE):
+    if facts.status in (Status.LIFTED_OFF, Status.FAILED, Status.INACCURATE):
         return False
     if highest - max(final, launched) <= RISE:
         return False
-    turned = math.isfinite(facts.metrics["turns_over"]) and launched < LEANS_AT_LAUNCH
-    return (turned and final < 0.5 * math.pi) or facts.metrics["is_settled"] == 1
+    turned = math.isfinite(facts.metrics["turnover_time"]) and launched < LEANS_AT_LAUNCH
+    return (turned and final < 0.5 * math.pi) or facts.metrics["is_settled"] > 0
 
 
 def _end(facts: Facts) -> list[Clause]:
     """Return the clauses of the end: the tilt, whether it is settled, and the surfaces in
     contact.
     """
-    final, spin = facts.metrics["final_theta"], facts.metrics["final_omega3"]
-    outcome, time = facts.outcome, _end_time(facts)
+    final, spin = facts.metrics["final_tilt"], facts.metrics["final_spin"]
+    status, time = facts.status, _end_time(facts)
     clauses = list[Clause]()
-    if outcome is Outcome.LYING_FLAT:
+    if status is Status.LYING_FLAT:
         name = "lies_flat" if abs(spin) < LEAST_SPIN else "lies_flat_and_spins"
         clauses.append(Clause(name, {"time": time, "spin": abs(spin)}, "end"))
-    elif outcome is Outcome.AT_REST:
+    elif status is Status.AT_REST:
         clauses.append(Clause("comes_to_rest", {"tilt": final, "time": time}, "end"))
-    elif outcome is Outcome.LIFTED_OFF:
-        numbers = {"time": facts.metrics["first_lift_off"], "tilt": final}
+    elif status is Status.LIFTED_OFF:
+        numbers = {"time": facts.metrics["liftoff_time"], "tilt": final}
         clauses.append(Clause("lifts_off", numbers, "end"))
-    elif outcome is not Outcome.COMPLETED:
+    elif status is not Status.COMPLETED:
         clauses.append(_ended_early(facts))
-    elif facts.metrics["is_settled"] == 1:
+    elif facts.metrics["is_settled"]:
         clauses.append(_settled(facts))
     elif _is_undisturbed(facts):
         name = "stays_exactly_upright" if final < 1.0 else "stays_exactly_inverted"
@@ -245,7 +245,7 @@ def _end(facts: Facts) -> list[Clause]:
 
 def _moving(facts: Facts) -> Clause:
     """Return the clause of a top that still moves when its run ends."""
-    final, highest = facts.metrics["final_theta"], facts.peak[0]
+    final, highest = facts.metrics["final_tilt"], facts.peak[0]
     numbers = {"tilt": final, "time": _end_time(facts)}
     name = "still_moves"
     if _is_aloft(facts):
@@ -277,14 +277,14 @@ def _is_undisturbed(facts: Facts) -> bool:
     """Return whether the axis was exactly vertical during the whole run."""
     return (
         facts.problem.launch.tilt in (0.0, math.pi)
-        and facts.metrics["final_theta"] == facts.problem.launch.tilt
+        and facts.metrics["final_tilt"] == facts.problem.launch.tilt
         and (facts.peak[0] == 0.0 or facts.problem.launch.tilt > 0.0)
     )
 
 
 def _settled(facts: Facts) -> Clause:
     """Return the clause of a settled motion, with the time since which it has settled."""
-    final, since = facts.metrics["final_theta"], facts.settled_since
+    final, since = facts.metrics["final_tilt"], facts.settling_time
     launch = facts.problem.launch.tilt
     numbers = {"tilt": final, "time": since}
     stays = abs(final - launch) < RISE and facts.peak[0] - max(final, launch) < RISE
@@ -305,10 +305,10 @@ def _standing(facts: Facts) -> list[Clause]:
     if (
         not isinstance(surface, Hull)
         or _is_aloft(facts)
-        or facts.outcome not in (Outcome.COMPLETED, Outcome.AT_REST)
+        or facts.status not in (Status.COMPLETED, Status.AT_REST)
     ):
         return []
-    cosine = math.cos(facts.metrics["final_theta"])
+    cosine = math.cos(facts.metrics["final_tilt"])
     lowest = lowest_surface(surface, cosine)
     least = float(lowest.height(cosine)) - LEVEL * float(surface.size)
     touching = [one.active for one in surface.each if float(one.height(cosine)) >= least]
@@ -346,26 +346,26 @@ def _standing_on_two(surface: Hull, first: int, second: int) -> Clause:
 
 def _ended_early(facts: Facts) -> Clause:
     """Return the clause of the reason why a run ended early."""
-    return Clause(f"ended_{facts.outcome.name}", {"time": _end_time(facts)}, "end")
+    return Clause(f"ended_{facts.status.name}", {"time": _end_time(facts)}, "end")
 
 
 def _theory(facts: Facts) -> list[Clause]:
     """Return the clauses of the theory: what explains the run, and where it ends."""
     problem = facts.problem
-    launch, settled = problem.launch, facts.metrics["is_settled"] == 1
+    launch, settled = problem.launch, facts.metrics["is_settled"]
     if problem.friction.vanishes:
         return [Clause("no_friction", {}, "theory")]
-    pulled = problem.contact.liftoff == "ignore" and facts.metrics["least_normal_force"] < 0.0
+    pulled = problem.contact.liftoff == "ignore" and facts.metrics["min_normal_force"] < 0.0
     stays_aloft = launch.gap > 0.0 and not facts.events
-    if facts.outcome is not Outcome.COMPLETED or pulled or stays_aloft:
+    if facts.status is not Status.COMPLETED or pulled or stays_aloft:
         return []
     if math.isfinite(_sticks_since(facts)):
-        if settled or math.isfinite(facts.metrics["turns_over"]):
+        if settled or math.isfinite(facts.metrics["turnover_time"]):
             return []
         name = "sticking_explained" if _sticks_since(facts) > 0.0 else "slip_missing"
         return [Clause(name, {}, "theory")]
     if not problem.top.torque_free:
-        numbers = {"spin": facts.metrics["final_omega3"]}
+        numbers = {"spin": facts.metrics["final_spin"]}
         return [Clause("torque_takes_spin", numbers, "theory")]
     clauses, spins, spin = list[Clause](), predicted_spins(problem), abs(launch.spin)
     low = launch.tilt < RISE and facts.peak[0] < RISE
@@ -377,13 +377,13 @@ def _theory(facts: Facts) -> list[Clause]:
         return clauses
     if _is_undisturbed(facts):
         return [*clauses, _of_state("beside", end.final)]
-    rises = end.certain and end.final.tilt > 0.5 * math.pi
-    if rises and launch.tilt < 0.5 * math.pi and not math.isfinite(facts.metrics["turns_over"]):
+    rises = end.is_certain and end.final.tilt > 0.5 * math.pi
+    if rises and launch.tilt < 0.5 * math.pi and not math.isfinite(facts.metrics["turnover_time"]):
         clauses.append(Clause("not_yet_over", {"duration": _end_time(facts)}, "theory"))
-    if not end.certain:
+    if not end.is_certain:
         clauses.append(Clause("ends_are_several", {"count": len(end.reachable)}, "theory"))
     clauses += [_of_state("heads_for", state) for state in end.reachable]
-    if end.certain:
+    if end.is_certain:
         about = time_to_end(problem, end.final.tilt, NEAR_FINAL)
         if about > _end_time(facts):
             clauses.append(Clause("is_there_after", {"about": about}, "theory"))

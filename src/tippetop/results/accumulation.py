@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.contact.mode import Outcome
+from tippetop.contact.mode import Status
 from tippetop.mechanics.state import State
-from tippetop.results.metrics import OUTCOMES, Ends
+from tippetop.results.metrics import STATUSES, Ends
 
 
 class Accumulation(NamedTuple):
@@ -38,7 +38,7 @@ HIGHEST, LAST = Accumulation(0.0, np.fmax), Accumulation(np.nan, last)
 
 ACCUMULATED: Mapping[str, Accumulation] = {
     "time": LAST,
-    "outcome": Accumulation(OUTCOMES.index(Outcome.FAILED), last, "int8"),
+    "status": Accumulation(STATUSES.index(Status.FAILED), last, "int8"),
     "steps": Accumulation(0, last, "int64"),
     "flights": COUNT,
     "least_force": LEAST,

@@ -26,8 +26,8 @@ LEANS_AT_LAUNCH = 0.8
 """Tilt at launch, rad, beyond which passing the horizontal does not count as turning over."""
 
 
-class Ending(IntEnum):
-    """Outcome of a launch, as the numbers of a sweep's variable `outcome`.
+class Outcome(IntEnum):
+    """What became of a launch: the words of `outcome` of runs and sweeps, and their numbers.
 
     Upright, inverted and tilted are settled ends: the tilt stays there for ever (see
     `tippetop.results.settling`). The members that begin with MOVING say where a top was whose run
@@ -41,7 +41,7 @@ class Ending(IntEnum):
     >>> tt.sweep(problem, spins, duration=20.0)["outcome"].values.tolist()
     ['upright', 'inverted']
     >>> numbers = tt.sweep(problem, spins, duration=20.0, decode=False)["outcome"]
-    >>> [tt.Ending(number).name for number in numbers.values]
+    >>> [tt.Outcome(number).name for number in numbers.values]
     ['UPRIGHT', 'INVERTED']
     """
 
@@ -50,7 +50,7 @@ class Ending(IntEnum):
     TILTED = 2
     LIFTED_OFF = 3
     FAILED = 4
-    BAD = 5
+    INVALID = 5
     AT_REST = 6
     INACCURATE = 7
     MOVING_UPRIGHT = 8
@@ -108,7 +108,9 @@ class Variable(NamedTuple):
 
     @property
     def missing(self) -> Any:
-        """Value for "not known"."""
+        """Value for "not known"; a truth value is then false."""
+        if self.dtype == "bool":
+            return False
         return np.nan if self.dtype.startswith("float") else -1
 
     @property
@@ -148,35 +150,35 @@ _ON_THE_BODY = "of the table on the body"
 _SLIP = "velocity of the body's lowest point over the table; friction acts against it"
 
 SAMPLED: Mapping[str, Variable] = {
-    "theta": Variable(
+    "tilt": Variable(
         "tilt of the axis from the vertical",
         "rad",
         r"tilt $\theta$",
         frame="table",
         convention="0 with the axis up, pi with the axis down",
     ),
-    "theta_dot": Variable(
+    "tilt_rate": Variable(
         "rate of the tilt",
         "rad s-1",
         r"rate of the tilt $\dot\theta$",
         frame="table",
         convention="positive while the axis falls away from up",
     ),
-    "phi": Variable(
+    "azimuth": Variable(
         "azimuth of the axis, in (-pi, pi]",
         "rad",
         r"azimuth $\varphi$",
         frame="table",
         convention="from x towards y",
     ),
-    "phi_dot": Variable(
+    "precession": Variable(
         "precession; not a number where the axis is vertical",
         "rad s-1",
         r"precession $\dot\varphi$",
         frame="table",
         convention="positive counterclockwise seen from above",
     ),
-    "omega3": Variable(
+    "spin": Variable(
         "axial spin",
         "rad s-1",
         r"axial spin $\omega_3$",
@@ -338,45 +340,44 @@ The four parts of the energy add up to `energy`.
 """
 
 METRICS: Mapping[str, Variable] = {
-    "final_theta": SAMPLED["theta"]._replace(
+    "final_tilt": SAMPLED["tilt"]._replace(
         long_name="tilt of the axis from the vertical at the end", label=r"final tilt $\theta$"
     ),
-    "final_omega3": SAMPLED["omega3"]._replace(
+    "final_spin": SAMPLED["spin"]._replace(
         long_name="axial spin at the end", label=r"final axial spin $\omega_3$"
     ),
-    "final_phi_dot": SAMPLED["phi_dot"]._replace(
+    "final_precession": SAMPLED["precession"]._replace(
         long_name="precession at the end; not a number where the axis is vertical",
         label=r"final precession $\dot\varphi$",
     ),
     "is_settled": Variable(
         f"whether the tilt stays within {NEAR_FINAL} rad of a steady state for good",
         label="settled",
-        dtype="int8",
-        flags=("moving", "settled"),
+        dtype="bool",
     ),
-    "turns_over": Variable(
+    "turnover_time": Variable(
         "time at which the tilt first rises past a right angle",
         "s",
         "turns over at",
         lasting=True,
     ),
-    "arrives": Variable(
+    "arrival_time": Variable(
         f"time at which the tilt is first within {NEAR_FINAL} rad of that at which it settles; "
         "not a number until it has settled",
         "s",
         "arrives at",
         lasting=True,
     ),
-    "highest_tilt": Variable(
+    "max_tilt_ever": Variable(
         "largest tilt of the axis; not a number while a larger one may follow",
         "rad",
         "largest tilt",
         lasting=True,
     ),
-    "least_normal_force": SAMPLED["normal_force"]._replace(
+    "min_normal_force": SAMPLED["normal_force"]._replace(
         long_name="least normal force; 0 where the top left the table", label="least normal force"
     ),
-    "first_lift_off": Variable(
+    "liftoff_time": Variable(
         "time at which the table would first have to pull", "s", "first lift-off", lasting=True
     ),
     "flights": Variable("number of flights", "1", "flights", dtype="int32"),
@@ -391,16 +392,16 @@ METRICS: Mapping[str, Variable] = {
     "energy_lost_rolling": Variable(
         "energy lost to rolling resistance from launch to end", "J", "lost to rolling"
     ),
-    "highest": Variable(
+    "max_height": Variable(
         "largest height of the centre of mass above the table",
         "m",
         "largest height of the centre of mass",
         frame="table",
     ),
-    "highest_gap": Variable(
+    "max_gap": Variable(
         "largest height of the lowest point above the table", "m", "highest jump", frame="table"
     ),
-    "jellett_error": Variable(
+    "jellett_change": Variable(
         "change of Jellett's integral from launch to end, relative to |L| h at launch; "
         "an error for eccentric spheres alone, which conserve it",
         "1",
@@ -415,14 +416,14 @@ LASTING = tuple(name for name, variable in METRICS.items() if variable.lasting)
 """Metrics that a longer run does not change once they are numbers."""
 
 MONITORS: Mapping[str, Variable] = {
-    "energy_start": Variable("energy at launch", "J"),
-    "impact_energy_lost": Variable("energy lost in impacts", "J"),
+    "initial_energy": Variable("energy at launch", "J"),
+    "energy_lost_impacts": Variable("energy lost in impacts", "J"),
     "energy_error": Variable(
         "largest error of the balance of energy and work, relative to the energy", "1"
     ),
-    "peak_tilt": Variable("largest tilt of the axis within the run", "rad"),
-    "peak_time": Variable("time of the largest tilt within the run", "s"),
-    "settled_since": Variable(
+    "max_tilt": Variable("largest tilt of the axis within the run", "rad"),
+    "max_tilt_time": Variable("time of the largest tilt within the run", "s"),
+    "settling_time": Variable(
         f"time since which the tilt stays within {NEAR_FINAL} rad of that at which it settles; "
         "not a number until it has settled",
         "s",
@@ -439,7 +440,7 @@ SWEPT: Mapping[str, Variable] = {
         f"outcome (upright, inverted: within {NEAR_POLE} rad; moving: not settled)",
         label="outcome",
         dtype="int8",
-        flags=meanings(Ending),
+        flags=meanings(Outcome),
     ),
     "fault": Variable(
         "why the launch is not valid", label="fault", dtype="int8", flags=meanings(Fault)
@@ -461,6 +462,6 @@ LISTED: Mapping[str, Variable] = {
     "event_surface": Variable("number of the body's surface in the event", "1", dtype="int8"),
     "flight_start": Variable("time at which the flight began", "s"),
     "flight_end": Variable("time at which the flight ended", "s"),
-    "flight_highest_gap": Variable("highest gap in the flight", "m", frame="table"),
+    "flight_max_gap": Variable("highest gap in the flight", "m", frame="table"),
 }
 """Variables over the events and over the flights of a run; the prefix of the name says which."""

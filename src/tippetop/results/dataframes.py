@@ -7,7 +7,7 @@ import pandas as pd
 import xarray as xr
 
 from tippetop.results.catalogue import LISTED
-from tippetop.results.dataset import require_run
+from tippetop.results.dataset import is_sweep, require_run
 from tippetop.results.flags import decoded
 from tippetop.support.errors import InvalidInput
 from tippetop.support.suggestions import not_one_of
@@ -51,7 +51,7 @@ def to_dataframe(result: xr.Dataset, table: str | None = None) -> pd.DataFrame:
     >>> len(flights) == int(run["flights"])
     True
     """
-    if _is_of_a_sweep(result):
+    if is_sweep(result):
         if table is not None:
             raise InvalidInput("table", table, "None for a sweep, which has one table")
         columns, units = _cells(result)
@@ -64,10 +64,6 @@ def to_dataframe(result: xr.Dataset, table: str | None = None) -> pd.DataFrame:
     columns.attrs = {name: _plain(value) for name, value in result.attrs.items()}
     columns.attrs["units"] = units
     return columns
-
-
-def _is_of_a_sweep(result: object) -> bool:
-    return isinstance(result, xr.Dataset) and "sweep" in result.attrs
 
 
 def _samples(run: xr.Dataset) -> tuple[pd.DataFrame, dict[str, str]]:

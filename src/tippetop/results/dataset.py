@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 import pandas as pd
@@ -10,14 +10,17 @@ import xarray as xr
 from numpy.typing import NDArray
 from xarray.indexes import Index, PandasIndex
 
+from tippetop.results.accessor import TippetopAccessor as TippetopAccessor
 from tippetop.results.catalogue import (
     DERIVED,
     LISTED,
     METRICS,
     MONITORS,
     SAMPLED,
+    SWEPT,
     Variable,
 )
+from tippetop.results.flags import worded
 from tippetop.support.errors import MISSING, InvalidInput
 from tippetop.support.lazy_pint import leave_pint_alone
 
@@ -37,11 +40,16 @@ def require_run(run: object) -> None:
     named = {"time", *SAMPLED, *DERIVED, *METRICS, *MONITORS, *LISTED}
     if not (isinstance(run, xr.Dataset) and named <= set(run.variables) and run.sizes.get("time")):
         raise InvalidInput("run", run, "a run that simulate returned, or some of its samples")
-    for name in ("problem", "outcome", "outcome_advice", "integrator"):
+    for name in ("problem", "status", "message", "integrator"):
         if name not in run.attrs:
             raise InvalidInput(
                 f"run.attrs.{name}", MISSING, "a run that simulate returned, with its attributes"
             )
+
+
+def is_sweep(result: object) -> TypeGuard[xr.Dataset]:
+    """Return whether a value is a sweep, or some of its launches."""
+    return isinstance(result, xr.Dataset) and "sweep" in result.attrs
 
 
 def assemble(
@@ -63,7 +71,7 @@ def assemble(
     modes
         Numbers of the contact modes, shape (k,), and the names by these numbers.
     numbers
-        Single numbers: those of `METRICS` and `MONITORS`.
+        Single numbers: those of `METRICS` and `MONITORS`, and the word of the outcome.
     lists
         Variables of `LISTED`.
     attributes
@@ -74,12 +82,13 @@ def assemble(
         variable = SAMPLED.get(name) or DERIVED[name]
         dimensions = "time", *variable.dimensions
         variables[name] = xr.Variable(dimensions, values, variable.attributes, fastpath=True)
-    described = Variable("contact mode", dtype="int8", flags=tuple(modes[1]))
-    variables["mode"] = xr.Variable(("time",), modes[0], described.attributes, fastpath=True)
+    words = np.array(modes[1], dtype=str)[modes[0]] if modes[1] else np.empty(0, dtype=str)
+    described = Variable("contact mode", flags=tuple(modes[1]))
+    variables["mode"] = xr.Variable(("time",), words, worded(described), fastpath=True)
     for name, value in numbers.items():
-        variable = METRICS.get(name) or MONITORS[name]
-        number = np.array(value, dtype=variable.dtype)
-        variables[name] = xr.Variable((), number, variable.attributes, fastpath=True)
+        variable = SWEPT.get(name) or MONITORS[name]
+        number = np.array(value, dtype=str if variable.flags else variable.dtype)
+        variables[name] = xr.Variable((), number, worded(variable), fastpath=True)
     lengths = {"time": len(times), **{name: len(names) for name, names in COMPONENTS.items()}}
     for name, values in lists.items():
         dimension = name.partition("_")[0]

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from tippetop.contact.mode import Event, EventKind, Outcome
+from tippetop.contact.mode import Event, EventKind, Status
 from tippetop.problem.problem import Problem
 from tippetop.results.account import Clause, Facts, account_of
 from tippetop.results.catalogue import METRICS
@@ -81,10 +81,10 @@ def describe(run: xr.Dataset) -> Account:
     )
     facts = Facts(
         Problem.from_json(run.attrs["problem"]),
-        Outcome[run.attrs["outcome"].upper()],
+        Status[run.attrs["status"].upper()],
         {name: run[name].item() for name in METRICS},
-        (run["peak_tilt"].item(), run["peak_time"].item()),
-        run["settled_since"].item(),
+        (run["max_tilt"].item(), run["max_tilt_time"].item()),
+        run["settling_time"].item(),
         events,
         list(flights),
     )

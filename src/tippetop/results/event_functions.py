@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.block import Block, in_blocks
-from tippetop.contact.mode import EventKind, Outcome, Transition
+from tippetop.contact.mode import EventKind, Status, Transition
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.base import Array
 from tippetop.mechanics.state import State
@@ -58,7 +58,7 @@ class EventFunction:
     >>> import tippetop as tt
     >>> falls = tt.extend.EventFunction(lambda s: s.axis[2], direction=-1, terminal=True)
     >>> run = tt.simulate(tt.presets.report_problem(), 20.0, events={"level": falls})
-    >>> run.attrs["outcome"], round(float(run["end_time"]), 3)
+    >>> run.attrs["status"], round(float(run["end_time"]), 3)
     ('stopped', 5.879)
     """
 
@@ -145,7 +145,7 @@ class EventSearch:
     def _end(self, trajectory: Trajectory, time: float, state: State, name: str) -> None:
         """End a trajectory at an event."""
         when = f"That event is {name!r}, at {time * self.units.time:.6g} s."
-        trajectory.end_at(time, state, Outcome.STOPPED, when)
+        trajectory.end_at(time, state, Status.STOPPED, when)
 
     def _is_end(self, transition: Transition) -> bool:
         """Return whether a transition has an event of the kind that ends the run."""

@@ -6,11 +6,18 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from tippetop.results.catalogue import Variable
+
 
 def flag_words(numbers: NDArray[Any], meanings: str) -> NDArray[np.str_]:
     """Return the word of each number, by CF's flag_meanings; "" for other numbers."""
     words = np.array([*meanings.split(), ""])
     return np.asarray(words[np.where((numbers >= 0) & (numbers < len(words)), numbers, -1)])
+
+
+def worded(variable: Variable) -> dict[str, Any]:
+    """Return the attributes of a variable whose flags are words."""
+    return {name: value for name, value in variable.attributes.items() if name != "flag_values"}
 
 
 def decoded(dataset: xr.Dataset) -> xr.Dataset:

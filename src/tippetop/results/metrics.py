@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tippetop.contact.flights import Flights
 from tippetop.contact.lowest_surface import highest_between, lowest_jellett
-from tippetop.contact.mode import Event, EventKind, Outcome
+from tippetop.contact.mode import Event, EventKind, Status
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.invariants import energy
@@ -24,12 +24,12 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.mechanics.view import axis_sine, precession_rate
-from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE, Ending
+from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE, Outcome
 from tippetop.results.settling import is_barred, tilt
 from tippetop.results.sums import RunSums
 
-OUTCOMES = tuple(Outcome)
-"""Outcomes by number."""
+STATUSES = tuple(Status)
+"""Statuses by number."""
 
 Flags = NDArray[np.bool_]
 
@@ -45,8 +45,8 @@ class Ends:
     """States at the end."""
     time: Scalar
     """Times of the end."""
-    outcome: Scalar
-    """Numbers of `OUTCOMES`."""
+    status: Scalar
+    """Numbers of `STATUSES`."""
     steps: Scalar
     flights: Scalar
     """Steps taken, and flights made."""
@@ -81,7 +81,7 @@ class Ends:
         cls,
         state: State,
         time: float,
-        outcome: int,
+        status: int,
         events: Sequence[Event],
         flights: Flights,
         steps: int,
@@ -103,7 +103,7 @@ class Ends:
         return cls(
             state,
             time,
-            outcome,
+            status,
             steps,
             count,
             *pressed,
@@ -182,26 +182,26 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         highest = np.fmax(highest_between(top.surface, ends.down, ends.up), ends.highest)
         risen = highest_seen(ends)
         over = is_barred(end, top, outer_height(top.surface, ends.down), risen)
-        highest_tilt = np.where(over, risen, np.maximum(ends.settled, risen))
+        max_tilt_ever = np.where(over, risen, np.maximum(ends.settled, risen))
     return {
-        "final_theta": tilt(end),
-        "final_omega3": axial_spin(end.axis, end.momentum, top) / units.time,
-        "final_phi_dot": precession / units.time,
-        "is_settled": np.where(ends.settled == ends.settled, 1, 0),
-        "turns_over": ends.turned * units.time,
-        "arrives": ends.arrived * units.time,
-        "highest_tilt": highest_tilt,
-        "least_normal_force": ends.least_force * units.force,
-        "first_lift_off": ends.lift_off * units.time,
+        "final_tilt": tilt(end),
+        "final_spin": axial_spin(end.axis, end.momentum, top) / units.time,
+        "final_precession": precession / units.time,
+        "is_settled": ends.settled == ends.settled,
+        "turnover_time": ends.turned * units.time,
+        "arrival_time": ends.arrived * units.time,
+        "max_tilt_ever": max_tilt_ever,
+        "min_normal_force": ends.least_force * units.force,
+        "liftoff_time": ends.lift_off * units.time,
         "flights": ends.flights,
         "airborne_time": ends.airborne * units.time,
         "energy_lost": lost * units.energy,
         "energy_lost_sliding": (lost - ends.struck - ends.drilled - ends.rolled) * units.energy,
         "energy_lost_drilling": ends.drilled * units.energy,
         "energy_lost_rolling": ends.rolled * units.energy,
-        "highest": highest * units.length,
-        "highest_gap": ends.highest_gap * units.length,
-        "jellett_error": drift,
+        "max_height": highest * units.length,
+        "max_gap": ends.highest_gap * units.length,
+        "jellett_change": drift,
         "end_time": ends.time * units.time,
         "steps": ends.steps,
     }
@@ -215,25 +215,25 @@ def highest_seen(ends: Ends) -> Array:
 
 
 # translate: skip
-def ending(ends: Ends, start: State) -> NDArray[np.int8]:
-    """Return the endings of launches as numbers of `tippetop.results.catalogue.Ending`.
+def outcomes_of(ends: Ends, start: State) -> NDArray[np.int8]:
+    """Return what became of launches, as numbers of `tippetop.results.catalogue.Outcome`.
 
     `start` has the states at launch; the result has shape (n,).
     """
     final, risen = tilt(ends.state), highest_seen(ends)
     near = [final <= NEAR_POLE, final >= np.pi - NEAR_POLE]
     settled = np.isfinite(ends.settled)
-    endings = np.where(
+    outcomes = np.where(
         settled,
-        np.select(near, [Ending.UPRIGHT, Ending.INVERTED], Ending.TILTED),
-        np.select(near, [Ending.MOVING_UPRIGHT, Ending.MOVING_INVERTED], Ending.MOVING_TILTED),
+        np.select(near, [Outcome.UPRIGHT, Outcome.INVERTED], Outcome.TILTED),
+        np.select(near, [Outcome.MOVING_UPRIGHT, Outcome.MOVING_INVERTED], Outcome.MOVING_TILTED),
     )
-    endings[~settled & (np.asarray(ends.rolls) > 0.0)] = Ending.ROLLING
-    for number, outcome in enumerate(OUTCOMES):
-        if outcome is not Outcome.COMPLETED:
-            endings[ends.outcome == number] = getattr(Ending, outcome.name, Ending.FAILED)
+    outcomes[~settled & (np.asarray(ends.rolls) > 0.0)] = Outcome.ROLLING
+    for number, status in enumerate(STATUSES):
+        if status not in (Status.COMPLETED, Status.STOPPED):
+            outcomes[ends.status == number] = getattr(Outcome, status.name, Outcome.FAILED)
     came_down = risen - np.maximum(final, tilt(start)) > RISE
     below = np.isfinite(ends.turned) & (tilt(start) < LEANS_AT_LAUNCH) & (final < 0.5 * np.pi)
-    is_followed = ~np.isin(endings, [Ending.FAILED, Ending.INACCURATE, Ending.LIFTED_OFF])
-    endings[is_followed & came_down & (below | settled)] = Ending.FELL_BACK
-    return endings.astype(np.int8)
+    is_followed = ~np.isin(outcomes, [Outcome.FAILED, Outcome.INACCURATE, Outcome.LIFTED_OFF])
+    outcomes[is_followed & came_down & (below | settled)] = Outcome.FELL_BACK
+    return outcomes.astype(np.int8)

@@ -5,7 +5,7 @@ quantities, gaps that are not negative, normal forces that press, friction withi
 import numpy as np
 
 from tippetop.contact.lowest_surface import lowest_jellett
-from tippetop.contact.mode import Outcome
+from tippetop.contact.mode import Status
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import lowest_gap, outer_height
@@ -39,14 +39,14 @@ NEGATIVE = -1e-12
 and which of them it is does not matter.
 """
 
-OUTCOMES_OF_MOTION = (
-    Outcome.COMPLETED,
-    Outcome.LIFTED_OFF,
-    Outcome.AT_REST,
-    Outcome.LYING_FLAT,
-    Outcome.STOPPED,
+STATUSES_OF_MOTION = (
+    Status.COMPLETED,
+    Status.LIFTED_OFF,
+    Status.AT_REST,
+    Status.LYING_FLAT,
+    Status.STOPPED,
 )
-"""Outcomes that describe the motion, which a run that cannot be trusted does not have; all others
+"""Statuses that describe the motion, which a run that cannot be trusted does not have; all others
 say why a run failed.
 """
 
@@ -120,22 +120,20 @@ class Monitor:
                 return f"{subject} {float(error):.2g} {predicate}."
         return ""
 
-    def trusted_outcome(self, outcome: Outcome, tolerance: float) -> Outcome:
-        """Return the outcome of one launch, or INACCURATE if its run cannot be trusted."""
+    def trusted_status(self, status: Status, tolerance: float) -> Status:
+        """Return the status of one launch, or INACCURATE if its run cannot be trusted."""
         return (
-            Outcome.INACCURATE
-            if outcome in OUTCOMES_OF_MOTION and not self.is_trusted(tolerance)
-            else outcome
+            Status.INACCURATE
+            if status in STATUSES_OF_MOTION and not self.is_trusted(tolerance)
+            else status
         )
 
-    def final_outcome(
-        self, outcome: Outcome, state: State, work: Scalar, tolerance: float
-    ) -> Outcome:
-        """Return `trusted_outcome` after checking the last state with all work since launch."""
-        if outcome in OUTCOMES_OF_MOTION:
+    def final_status(self, status: Status, state: State, work: Scalar, tolerance: float) -> Status:
+        """Return `trusted_status` after checking the last state with all work since launch."""
+        if status in STATUSES_OF_MOTION:
             self.check(*monitored_quantities(state, self.top), work)
             self.check_gap(lowest_gap(state.axis, state.height, self.top.surface))
-        return self.trusted_outcome(outcome, tolerance)
+        return self.trusted_status(status, tolerance)
 
     def check(self, size: Scalar, energy: Scalar, jellett: Scalar, work: Scalar) -> None:
         """Update the largest errors of conserved quantities by those at some instants.

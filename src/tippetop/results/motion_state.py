@@ -26,7 +26,7 @@ class MotionState(NamedTuple):
     >>> import tippetop as tt
     >>> _, solution = tt.simulate(tt.presets.report_problem(tilt=0.1), duration=1.0, dense=True)
     >>> start = solution(0.0)
-    >>> round(start.theta, 12), round(start.height, 6), start.time
+    >>> round(start.tilt, 12), round(start.height, 6), start.time
     (0.1, 0.01403, 0.0)
     """
 
@@ -40,14 +40,14 @@ class MotionState(NamedTuple):
     """Velocity of the centre of mass, m/s."""
     height: Scalar
     """Height of the centre of mass above the table, m."""
-    theta: Scalar
+    tilt: Scalar
     """Tilt of the axis from the vertical, rad."""
-    phi: Scalar
+    azimuth: Scalar
     """Azimuth of the axis, in (-pi, pi], rad."""
-    theta_dot: Scalar
-    phi_dot: Scalar
+    tilt_rate: Scalar
+    precession: Scalar
     """Rates of both, rad/s; not numbers where the axis is vertical."""
-    omega3: Scalar
+    spin: Scalar
     """Angular velocity about the axis, rad/s."""
     energy: Scalar
     """Kinetic and potential energy, J; 0 at rest with the centre of mass on the table."""

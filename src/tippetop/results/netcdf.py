@@ -12,6 +12,7 @@ from pathlib import Path
 import psutil
 import xarray as xr
 
+from tippetop.results.flags import decoded, encoded
 from tippetop.support.errors import FileTrouble, require
 from tippetop.support.files import (
     in_words,
@@ -50,7 +51,7 @@ def write_run(run: xr.Dataset, path: Path | str, overwrite: bool = False) -> Pat
     place_for(path, overwrite)
     # In memory first, because HDF5 aborts the process if the disk is full.
     memory = BytesIO()
-    run.to_netcdf(memory, engine="h5netcdf")
+    encoded(run).to_netcdf(memory, engine="h5netcdf")
     content = memory.getvalue()
     with written_beside(path, overwrite) as beside, beside.open("wb") as file:
         file.write(content)
@@ -86,7 +87,7 @@ def read_run(path: Path | str) -> xr.Dataset:
         except (ValueError, KeyError, RuntimeError) as error:
             raise FileTrouble(f"{named(path)} cannot be read: {error}") from None
     words = {name: run[name].astype(str) for name in run.variables if run[name].dtype == object}
-    return run.assign(words)
+    return decoded(run.assign(words))
 
 
 def _sealed(content: bytes | memoryview) -> bytes:

@@ -8,7 +8,7 @@ from numpy.polynomial.legendre import Legendre, leg2poly
 from tippetop.contact.block import NODES, WEIGHTS, Block, ModeSteps
 from tippetop.contact.contact_mode import SLIPS, ContactMode
 from tippetop.contact.flight import Flight
-from tippetop.contact.mode import Mode, Outcome
+from tippetop.contact.mode import Mode, Status
 from tippetop.contact.natural_launch import NaturalLaunch, initial_mode
 from tippetop.contact.readings import TOLD, Instants, Rates, conditions, instants, read
 from tippetop.contact.trajectory import Trajectory
@@ -106,13 +106,13 @@ class Recorder:
         """What is summed up from launch to the end of the last block."""
         return RunSums(*self._sums.tolist())
 
-    def outcome_of(self, trajectory: Trajectory) -> Outcome:
-        """Return the outcome of a trajectory whose blocks were all taken, checked by the
+    def status_of(self, trajectory: Trajectory) -> Status:
+        """Return the status of a trajectory whose blocks were all taken, checked by the
         monitor.
         """
-        assert trajectory.outcome is not None, "a trajectory that has no more segments has ended"
-        return self.monitor.final_outcome(
-            trajectory.outcome, trajectory.state, self._sums[WORK], tolerance_of(trajectory)
+        assert trajectory.status is not None, "a trajectory that has no more segments has ended"
+        return self.monitor.final_status(
+            trajectory.status, trajectory.state, self._sums[WORK], tolerance_of(trajectory)
         )
 
     def breach_of(self, trajectory: Trajectory) -> str:

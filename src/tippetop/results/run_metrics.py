@@ -8,7 +8,7 @@ import numpy as np
 from tippetop.contact.block import Block, ModeSteps
 from tippetop.contact.contact_mode import STICKS
 from tippetop.contact.flights import Flights
-from tippetop.contact.mode import Event, IntegratedMode, Outcome
+from tippetop.contact.mode import Event, IntegratedMode, Status
 from tippetop.contact.readings import Rates
 from tippetop.integrators.base import Array, Integrator
 from tippetop.integrators.dense import chebyshev
@@ -18,7 +18,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
 from tippetop.results.metrics import (
-    OUTCOMES,
+    STATUSES,
     Ends,
     Flags,
     arrival_time,
@@ -61,7 +61,7 @@ class RunMetrics:
         """Who took the steps of equations of motion, by name: None, by "", who was asked to."""
         self.peak = self._tilt_at(float(start.axis[2])), 0.0
         """Largest tilt, rad, and its first time; set by `ends`."""
-        self.settled_since = math.nan
+        self.settling_time = math.nan
         """Time since which n_z stays in the band where it settles, or nan; set by `ends`."""
 
     def take(self, block: Block) -> None:
@@ -115,9 +115,9 @@ class RunMetrics:
         self._pressed.append(Polynomials.of_unit(unit, group.spans[near]))
 
     def ends(
-        self, state: State, time: float, outcome: Outcome, events: Sequence[Event], sums: RunSums
+        self, state: State, time: float, status: Status, events: Sequence[Event], sums: RunSums
     ) -> Ends:
-        """Return the accumulated `Ends` of a launch with this last state, time and outcome, and
+        """Return the accumulated `Ends` of a launch with this last state, time and status, and
         these sums.
         """
         last = State.unpack([np.float64(number) for number in state.pack()])
@@ -125,12 +125,12 @@ class RunMetrics:
         self._take_peak(leasts[1])
         if math.isnan(self._turned) and self._is_turning_at(state, time):
             self._turned = time
-        settled = settled_tilt_of_one(outcome, state, self._start, self._top)
-        self.settled_since = self._since(*settled_band(settled))
+        settled = settled_tilt_of_one(status, state, self._start, self._top)
+        self.settling_time = self._since(*settled_band(settled))
         return Ends.of_one(
             last,
             np.float64(time),
-            OUTCOMES.index(outcome),
+            STATUSES.index(status),
             events,
             self.flights,
             self.steps,

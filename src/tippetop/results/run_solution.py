@@ -42,12 +42,12 @@ class RunSolution:
     --------
     >>> import tippetop as tt
     >>> run, solution = tt.simulate(tt.presets.report_problem(), duration=20.0, dense=True)
-    >>> level = solution(float(run["turns_over"]))
+    >>> level = solution(float(run["turnover_time"]))
     >>> bool(abs(level.axis[2]) < 1e-13)
     True
     >>> solution([1.0, 2.0]).axis.shape
     (3, 2)
-    >>> solution.sample([1.0, 2.0])["theta"].sizes["time"]
+    >>> solution.sample([1.0, 2.0])["tilt"].sizes["time"]
     2
     """
 
@@ -99,7 +99,7 @@ class RunSolution:
         >>> import tippetop as tt
         >>> run, solution = tt.simulate(tt.presets.report_problem(155.0), 20.0, dense=True)
         >>> later = tt.simulate(solution.problem_at(2.0), duration=18.0)
-        >>> bool(abs(later["turns_over"] + 2.0 - run["turns_over"]) < 1e-9)
+        >>> bool(abs(later["turnover_time"] + 2.0 - run["turnover_time"]) < 1e-9)
         True
         """
         state = self(time)
@@ -112,8 +112,8 @@ class RunSolution:
         gap = state.height - float(outer_height(top.surface, axis[2]))
         launch = Launch.from_angular_velocity(
             angular_velocity(axis, tuple(state.angular_momentum.tolist()), top),
-            tilt=state.theta,
-            azimuth=state.phi,
+            tilt=state.tilt,
+            azimuth=state.azimuth,
             velocity=(x, y, z if flies else 0.0),
             gap=max(gap, 0.0) if flies else 0.0,
         )
@@ -144,7 +144,7 @@ class RunSolution:
             seconds,
             variables_of(begin, samples),
             (samples.mode, recorder.modes),
-            {name: run[name].values for name in (*METRICS, *MONITORS)},
+            {name: run[name].values for name in ("outcome", *METRICS, *MONITORS)},
             {name: run[name].values for name in LISTED},
             run.attrs,
         )

@@ -48,11 +48,11 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         leaving = np.hypot(momentum[0], momentum[1]) / top.transverse_inertia
         tilting = np.where(upright, np.copysign(leaving, axis[2]), tilting)
     return {
-        "theta": np.arctan2(sine, axis[2]),
-        "theta_dot": tilting / units.time,
-        "phi": np.arctan2(axis[1], axis[0]),
-        "phi_dot": instants.precession / units.time,
-        "omega3": instants.spin / units.time,
+        "tilt": np.arctan2(sine, axis[2]),
+        "tilt_rate": tilting / units.time,
+        "azimuth": np.arctan2(axis[1], axis[0]),
+        "precession": instants.precession / units.time,
+        "spin": instants.spin / units.time,
         "slip_x": slip_x * units.speed,
         "slip_y": slip_y * units.speed,
         "normal_force": instants.force[2] * units.force,

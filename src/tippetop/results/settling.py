@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from tippetop.contact.mode import Outcome
+from tippetop.contact.mode import Status
 from tippetop.integrators.base import Array
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.roots import crossing
@@ -46,7 +46,7 @@ def tilt(state: State) -> Array:
     return angles
 
 
-def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) -> float:
+def settled_tilt_of_one(status: Status, state: State, start: State, top: Top) -> float:
     """Return the tilt near which one launch that has ended stays for ever, rad, or nan.
 
     The criteria are those of `settled_tilts`. A body at rest or lying flat stays where it is; a
@@ -54,9 +54,9 @@ def settled_tilt_of_one(outcome: Outcome, state: State, start: State, top: Top) 
     natural units.
     """
     theta = math.atan2(axis_sine(state.axis), state.axis[2])
-    if outcome in (Outcome.AT_REST, Outcome.LYING_FLAT):
+    if status in (Status.AT_REST, Status.LYING_FLAT):
         return theta
-    if outcome is not Outcome.COMPLETED:
+    if status is not Status.COMPLETED:
         return math.nan
     settled = _settled_spin_tilt(theta, state, start, top) if top.torque_free else math.nan
     return settled if math.isfinite(settled) else _tilt_of_rest(theta, state, top)

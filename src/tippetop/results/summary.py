@@ -17,37 +17,40 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
     -------
     dict
         Keys: account (clauses with name and numbers, as `tippetop.describe` gives them),
-        description (the account in English), outcome, advice, duration (s), final (theta,
-        theta_dot, omega3, phi_dot: rad and rad/s), is_settled (whether the tilt stays near
-        a steady state for ever), turns_over (s: the tilt first passes pi/2; None if not
+        description (the account in English), outcome (what became of the top: a name of
+        `tippetop.Outcome`), status (how the run ended: a name of `tippetop.Status`), message
+        (what to do about it), end_time (s), final (tilt,
+        tilt_rate, spin, precession: rad and rad/s), is_settled (whether the tilt stays near
+        a steady state for ever), turnover_time (s: the tilt first passes pi/2; None if not
         within the run), arrives (s: first within 0.01 rad of the tilt at which it settles;
-        None until then), settled_since (s: from then on it stays within 0.01 rad of it;
-        None until then), highest_tilt (rad; None while a larger one may follow),
-        first_lift_off (s), highest (m), least_normal_force (N), energy_start, energy_lost,
+        None until then), settling_time (s: from then on it stays within 0.01 rad of it;
+        None until then), max_tilt_ever (rad; None while a larger one may follow),
+        liftoff_time (s), max_height (m), min_normal_force (N), initial_energy, energy_lost,
         energy_lost_sliding, energy_lost_drilling, energy_lost_rolling (J), jellett_drift
-        and energy_error (relative), flights (how many), airborne_time (s), highest_gap (m),
-        impact_energy_lost (J), events (kind and time, s), integrator, steps, evaluations.
+        and energy_error (relative), flights (how many), airborne_time (s), max_gap (m),
+        energy_lost_impacts (J), events (kind and time, s), integrator, steps, evaluations.
         Numbers that do not exist are None.
 
     Examples
     --------
     >>> import tippetop as tt
     >>> summary = tt.summarize(tt.simulate(tt.presets.report_problem(spin=155.0), duration=20.0))
-    >>> summary["outcome"], round(summary["turns_over"], 2), summary["flights"]
-    ('completed', 5.88, 0)
+    >>> summary["outcome"], round(summary["turnover_time"], 2), summary["status"]
+    ('inverted', 5.88, 'completed')
     """
     require_run(run)
     last = run.isel(time=-1)
-    names = ("theta", "theta_dot", "omega3", "phi_dot")
+    names = ("tilt", "tilt_rate", "spin", "precession")
     account = describe(run)
     return {
         "account": account.plain(),
         "description": str(account),
-        "outcome": run.attrs["outcome"],
-        "advice": run.attrs["outcome_advice"],
-        "duration": float(run["end_time"]),
+        "outcome": str(run["outcome"].item()),
+        "status": run.attrs["status"],
+        "message": run.attrs["message"],
+        "end_time": float(run["end_time"]),
         "final": {name: _number(last[name]) for name in names},
-        "is_settled": bool(run["is_settled"] == 1),
+        "is_settled": bool(run["is_settled"]),
         **{name: _number(run[name]) for name in NUMBERS},
         "events": [
             {"kind": str(kind), "time": float(at)}
@@ -60,16 +63,16 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
 
 
 _NOT_LISTED = {
-    "final_theta",
-    "final_omega3",
-    "final_phi_dot",
+    "final_tilt",
+    "final_spin",
+    "final_precession",
     "end_time",
     "steps",
     "evaluations",
-    "jellett_error",
+    "jellett_change",
     "is_settled",
-    "peak_tilt",
-    "peak_time",
+    "max_tilt",
+    "max_tilt_time",
 }
 NUMBERS = [name for name in (*METRICS, *MONITORS) if name not in _NOT_LISTED]
 """Single numbers of a run that the summary has under their own names."""

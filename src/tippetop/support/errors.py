@@ -6,7 +6,7 @@
     |-- NotConverged (RuntimeError)    a fit that did not reach a minimum
     `-- Unavailable (RuntimeError)     an optional library or program that is not installed
 
-How a run ends is not an error: see `tippetop.contact.mode.Outcome`.
+How a run ends is not an error: see `tippetop.contact.mode.Status`.
 """
 
 from collections.abc import Mapping
@@ -48,13 +48,6 @@ class TippetopError(Exception):
     ...     print(error)
     mu: -1 is not a number at least 0
     """
-
-    def reworded(self, words: Mapping[str, str]) -> str:
-        """Return the sentence with names of arguments in Python replaced by `words` of theirs."""
-        sentence = str(self)
-        for python, option in words.items():
-            sentence = option.join(sentence.rsplit(python, 1))
-        return sentence
 
 
 LONGEST_FIELD = 100
@@ -131,29 +124,6 @@ class InvalidInput(TippetopError, ValueError):
         self.others = others
         self.file = file
 
-    def within(self, part: str, further: int = 0) -> "InvalidInput":
-        """Return this refusal with the name of a part put before that of the field.
-
-        `further` is how many further values of the same input are refused.
-        """
-        field = ".".join([name for name in (part, self.field) if name])
-        return InvalidInput(
-            field,
-            self.value,
-            self.accepted,
-            self.fault,
-            self.hint,
-            self.others + further,
-            self.file,
-        )
-
-    # translate: skip
-    def in_file(self, file: str) -> "InvalidInput":
-        """Return this refusal with the name of the file that the value is in."""
-        return InvalidInput(
-            self.field, self.value, self.accepted, self.fault, self.hint, self.others, file
-        )
-
     # translate: skip
     def __reduce__(self) -> tuple[type["InvalidInput"], tuple[object, ...]]:
         return type(self), (
@@ -165,6 +135,40 @@ class InvalidInput(TippetopError, ValueError):
             self.others,
             self.file,
         )
+
+
+def within_part(error: InvalidInput, part: str, further: int = 0) -> InvalidInput:
+    """Return a refusal with the name of a part put before that of the field.
+
+    `further` is how many further values of the same input are refused.
+    """
+    field = ".".join([name for name in (part, error.field) if name])
+    return InvalidInput(
+        field,
+        error.value,
+        error.accepted,
+        error.fault,
+        error.hint,
+        error.others + further,
+        error.file,
+    )
+
+
+# translate: skip
+def in_file(error: InvalidInput, file: str) -> InvalidInput:
+    """Return a refusal with the name of the file that the value is in."""
+    return InvalidInput(
+        error.field, error.value, error.accepted, error.fault, error.hint, error.others, file
+    )
+
+
+# translate: skip
+def reworded(error: TippetopError, words: Mapping[str, str]) -> str:
+    """Return the sentence of an error with names of arguments in Python replaced by `words`."""
+    sentence = str(error)
+    for python, option in words.items():
+        sentence = option.join(sentence.rsplit(python, 1))
+    return sentence
 
 
 # translate: skip

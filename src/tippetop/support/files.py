@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from tippetop.support.errors import OVERWRITE, FileTrouble, InvalidInput, require
+from tippetop.support.errors import OVERWRITE, FileTrouble, InvalidInput, in_file, require
 from tippetop.support.interrupts import deferred
 
 if sys.platform != "win32":
@@ -183,7 +183,7 @@ def made_of(path: Path | str, replaced: Container[str] = (), part: str = "") -> 
         elsewhere = part and not f"{error.field}.".startswith(f"{part}.")
         if error.file or elsewhere or error.field.partition(".")[0] in replaced:
             raise
-        raise error.in_file(named(Path(path).name)) from None
+        raise in_file(error, named(Path(path).name)) from None
 
 
 def named(path: Path | str) -> str:

@@ -13,7 +13,7 @@ from difflib import get_close_matches
 from functools import cache
 from typing import Any, NamedTuple
 
-from tippetop.support.errors import Described, InvalidInput, is_number, short
+from tippetop.support.errors import Described, InvalidInput, is_number, short, within_part
 
 DIGITS = r"(?:\d+\.?\d*|\.\d+)"
 NUMBER = re.compile(rf"\s*([+-]?{DIGITS}(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
@@ -148,7 +148,7 @@ def number_in(field: str, value: Any, units: str) -> Any:
     try:
         return in_si(value, units)
     except InvalidInput as error:
-        raise error.within(field) from None
+        raise within_part(error, field) from None
 
 
 def converted(number: Any, unit: Unit) -> Any:
@@ -283,6 +283,18 @@ def registry() -> Any:
     for names in ADDED_NAMES:
         units.define(f"@alias {names}")
     return units
+
+
+def quantity_of(values: Any, units: str) -> Any:
+    """Return values in an SI unit as a quantity of pint's application registry."""
+    import pint  # noqa: PLC0415 - slow to import
+
+    application: Any = pint.get_application_registry()  # type: ignore[no-untyped-call]
+    unit = application.dimensionless
+    for name, power in factors_of(units) or ():
+        if name != "1":
+            unit = unit * application.parse_units(name) ** power
+    return application.Quantity(values, unit)
 
 
 def _exponents_of_name(name: str) -> tuple[int, ...] | None:

@@ -32,7 +32,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from tippetop.support.accepted_values import refusal_of
-from tippetop.support.errors import MISSING, InvalidInput, is_whole, short
+from tippetop.support.errors import MISSING, InvalidInput, is_whole, short, within_part
 from tippetop.support.field_paths import part_at
 from tippetop.support.suggestions import not_one_of, unknown_field
 from tippetop.support.units import DIGITS, KINDS, has_unit, in_si, number_hint
@@ -89,6 +89,16 @@ def require_callback(field: str, value: object) -> None:
     """Raise `InvalidInput` unless a value can be called, or is None."""
     if not (value is None or callable(value)):
         raise InvalidInput(field, value, "a function, or None")
+
+
+def require_names(field: str, value: object) -> list[str]:
+    """Return the names that a text, or a list of texts, holds; raise `InvalidInput` for others."""
+    names = [value] if isinstance(value, str) else value
+    is_listed = isinstance(names, Iterable) and not isinstance(names, Mapping | bytes)
+    listed = list(names) if isinstance(names, Iterable) and is_listed else []
+    if not listed or not all(isinstance(name, str) for name in listed):
+        raise InvalidInput(field, value, "a name, or a list of names, such as launch.spin")
+    return [str(name) for name in listed]
 
 
 TEXT_WITH_UNIT = rf"^\s*[+-]?{DIGITS}([eE][+-]?\d+)?\s*(?![eE][+-]?\d)[A-Za-zµ°/].*$"
@@ -190,7 +200,11 @@ def _placed(place: int, value: Any, of: Callable[[Any], Any]) -> Any:
     try:
         return of(value)
     except InvalidInput as error:
-        raise error.within(str(place)) from None
+        raise within_part(error, str(place)) from None
+
+
+PLACES: dict[str, str] = {}
+"""Full names of the fields of problems by their last names: ``{"spin": "launch.spin"}``."""
 
 
 class Part(BaseModel):
@@ -201,9 +215,6 @@ class Part(BaseModel):
     InvalidInput
         If a field is missing, unknown, not finite or outside its range.
     """
-
-    places: ClassVar[dict[str, str]] = {}
-    """The full names of the fields of problems by their last names: ``{"spin": "launch.spin"}``."""
 
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True
@@ -271,15 +282,16 @@ class Part(BaseModel):
             (item for item in info.metadata if isinstance(item, Quantity)), Quantity("", last)
         )
 
-    def foreign_kinds(self) -> set[type["Part"]]:
-        """Return the classes of this part and its parts that are defined outside this package."""
-        is_foreign = type(self).__module__.partition(".")[0] != _PACKAGE
-        kinds: set[type[Part]] = {type(self)} if is_foreign else set()
-        values = [getattr(self, name) for name in type(self).model_fields]
-        several = [
-            inner for value in values for inner in (value if isinstance(value, tuple) else (value,))
-        ]
-        return kinds.union(*(value.foreign_kinds() for value in several if isinstance(value, Part)))
+
+def foreign_kinds(part: Part) -> set[type[Part]]:
+    """Return the classes of a part and its parts that are defined outside this package."""
+    is_foreign = type(part).__module__.partition(".")[0] != _PACKAGE
+    kinds: set[type[Part]] = {type(part)} if is_foreign else set()
+    values = [getattr(part, name) for name in type(part).model_fields]
+    several = [
+        inner for value in values for inner in (value if isinstance(value, tuple) else (value,))
+    ]
+    return kinds.union(*(foreign_kinds(value) for value in several if isinstance(value, Part)))
 
 
 _PACKAGE = __name__.partition(".")[0]
@@ -337,8 +349,8 @@ def declare_places(part: type[Part]) -> dict[str, str]:
     for name, _ in declared_fields(part):
         last = name.rpartition(".")[2]
         if last != "kind":
-            Part.places.setdefault(last, name)
-    return Part.places
+            PLACES.setdefault(last, name)
+    return PLACES
 
 
 _receiving = list[bool]()
@@ -378,34 +390,31 @@ class Variant(Part):
             )
         cls.kinds[info.default] = cls
 
-    @staticmethod
-    def receive(content: bytes) -> None:
-        """Register kinds that another process has sent, pickled by cloudpickle."""
-        _receiving.append(True)
-        try:
-            kinds = pickle.loads(content)
-        finally:
-            _receiving.pop()
-        for kind in kinds:
-            kind.kinds[kind.model_fields["kind"].default] = kind
 
-    @classmethod
-    def kinds_with(cls, field: str) -> list[str]:
-        """Return the names of the kinds that have a field."""
-        return [word for word, kind in cls.kinds.items() if field in kind.model_fields]
+def receive_kinds(content: bytes) -> None:
+    """Register kinds that another process has sent, pickled by cloudpickle."""
+    _receiving.append(True)
+    try:
+        kinds = pickle.loads(content)
+    finally:
+        _receiving.pop()
+    for kind in kinds:
+        kind.kinds[kind.model_fields["kind"].default] = kind
 
-    @classmethod
-    def fields_of(cls, kind: Any) -> set[str]:
-        """Return the names of the fields of a kind of the same part; of this one if it is
-        unknown.
-        """
-        base = next(part for part in cls.__mro__ if Variant in part.__bases__)
-        kinds: Any = base.kinds  # type: ignore[attr-defined]
-        return (
-            set(kinds.get(kind, cls).model_fields)
-            if isinstance(kind, str)
-            else set(cls.model_fields)
-        )
+
+def kinds_with(variant: type[Variant], field: str) -> list[str]:
+    """Return the names of the kinds of a variant that have a field."""
+    return [word for word, kind in variant.kinds.items() if field in kind.model_fields]
+
+
+def fields_of_kind(variant: type[Variant], kind: Any) -> set[str]:
+    """Return the names of the fields of a kind of a variant; of the variant's own if it is
+    unknown.
+    """
+    base = next(part for part in variant.__mro__ if Variant in part.__bases__)
+    kinds: Any = base.kinds  # type: ignore[attr-defined]
+    known = kinds.get(kind, variant) if isinstance(kind, str) else variant
+    return set(known.model_fields)
 
 
 class _OfItsKind:
@@ -446,7 +455,7 @@ class _OfItsKind:
                 try:
                     parts.append(chosen(inner))
                 except InvalidInput as error:
-                    raise error.within(str(place)) from None
+                    raise within_part(error, str(place)) from None
             if not parts:
                 raise PydanticCustomError("model_type", "a table of its fields")
             return tuple(parts) if len(parts) > 1 else parts[0]
@@ -482,14 +491,16 @@ def _as_invalid_input(
     field = ".".join(str(step) for step in first["loc"])
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InvalidInput):
-        return cause.within("" if f"{cause.field}.".startswith(f"{field}.") else field, others)
+        return within_part(
+            cause, "" if f"{cause.field}.".startswith(f"{field}.") else field, others
+        )
     if first["type"] == "extra_forbidden":
-        kinds = part.kinds_with(field) if issubclass(part, Variant) else ()
-        refusal = unknown_field(field, first["input"], list(_written(part)), part.places, kinds)
-        return refusal.within("", others)
+        kinds = kinds_with(part, field) if issubclass(part, Variant) else ()
+        refusal = unknown_field(field, first["input"], list(_written(part)), PLACES, kinds)
+        return within_part(refusal, "", others)
     if has_unit(fields.get(field)):  # the message shows the number as it was written, not in SI
         first["input"] = fields[field]
-    return refusal_of(first, _written(part)).within("", others)
+    return within_part(refusal_of(first, _written(part)), "", others)
 
 
 def _written(part: type[Part]) -> dict[str, FieldInfo]:

@@ -5,17 +5,15 @@ memory, and `fill` in a `Store`, which survives whatever happens to the program.
 """
 
 from tippetop.results.catalogue import SWEPT as SWEPT
-from tippetop.results.catalogue import Ending as Ending
 from tippetop.results.catalogue import Fault as Fault
+from tippetop.results.catalogue import Outcome as Outcome
 from tippetop.sweeps.axes import Axis as Axis
 from tippetop.sweeps.definition import Sweep as Sweep
-from tippetop.sweeps.grid import Draws as Draws
+from tippetop.sweeps.draws import Draws as Draws
 from tippetop.sweeps.grid import Product as Product
-from tippetop.sweeps.grid import Range as Range
 from tippetop.sweeps.run_sweep import Progress as Progress
 from tippetop.sweeps.run_sweep import compute as compute
 from tippetop.sweeps.run_sweep import fill as fill
 from tippetop.sweeps.run_sweep import sweep as sweep
 from tippetop.sweeps.store import Store as Store
 from tippetop.sweeps.store import read_sweep as read_sweep
-from tippetop.sweeps.store_layout import Status as Status

@@ -6,7 +6,7 @@ An axis is written as a list of values or as a table ``{ from, to, count, spacin
 import math
 from collections.abc import Mapping
 from functools import cache
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from pydantic_core import PydanticCustomError
 
 from tippetop.integrators.base import Array
 from tippetop.problem.problem import Problem
-from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.errors import Described, InvalidInput, within_part
 from tippetop.support.units import is_quantity
 from tippetop.support.validation import Number, Part, Quantity, Whole, declared_fields, in_order
 
@@ -29,8 +29,8 @@ Flat = NDArray[np.int64]
 Count = Annotated[Whole, Field(ge=1, le=MOST_CELLS)]
 
 
-def _in_full(word: Any) -> Any:
-    return {"geo": "geometric", "lin": "linear"}.get(word, word) if isinstance(word, str) else word
+Spacing: TypeAlias = Literal["linear", "log"]
+"""Equal steps, or equal ratios."""
 
 
 def _no_word(value: Any) -> Any:
@@ -66,6 +66,20 @@ def in_si_of(field: str, value: Any) -> Any:
     return value
 
 
+def listed(field: str, entry: Any) -> tuple[Any, ...] | None:
+    """Return the values of a list, an array, a Series, a DataArray or a quantity of one dimension.
+
+    Return None for everything else.
+    """
+    if is_quantity(entry):
+        return tuple(in_si_of(field, entry)) if np.ndim(entry.magnitude) == 1 else None
+    if isinstance(entry, list | tuple | range):
+        return tuple(entry)
+    if getattr(entry, "ndim", None) == 1 and hasattr(entry, "dtype"):
+        return tuple(np.asarray(entry))
+    return None
+
+
 class Entry(Part):
     """A part of a grid: its fields may also be given in their order, and by the names they have in
     Python.
@@ -82,11 +96,11 @@ class Entry(Part):
             try:
                 fields[name] = in_si_of(named, fields[name])
             except InvalidInput as error:
-                raise error.within(f"{named}.{name}") from None
+                raise within_part(error, f"{named}.{name}") from None
         try:
             super().__init__(**fields)
         except InvalidInput as error:
-            raise error.within(named if isinstance(named, str) else "") from None
+            raise within_part(error, named if isinstance(named, str) else "") from None
 
     @classmethod
     def written(cls, field: str, table: Mapping[str, Any]) -> Self:
@@ -110,12 +124,9 @@ class Axis(Entry):
     @classmethod
     def of(cls, field: str, entry: Any) -> "Axis":
         """Return the axis that is written as a list, an array or a table."""
-        if is_quantity(entry) and np.ndim(entry.magnitude):
-            entry = {"values": in_si_of(field, entry)}
-        elif isinstance(entry, list | tuple | range) or (
-            isinstance(entry, np.ndarray) and entry.ndim
-        ):
-            entry = {"values": tuple(entry)}
+        values = listed(field, entry)
+        if values is not None:
+            entry = {"values": values}
         if not isinstance(entry, Mapping):
             raise InvalidInput(field, entry, "a list of values, or { from, to, count, spacing }")
         return (Listed if "values" in entry else Spaced).written(field, entry)
@@ -143,8 +154,8 @@ class Spaced(Axis):
     """The ends, both among the values; "from" and "to" where they are written."""
     count: Count
     """How many values there are."""
-    spacing: Annotated[Literal["linear", "geometric"], BeforeValidator(_in_full)] = "linear"
-    """"linear" or "geometric"."""
+    spacing: Spacing = "linear"
+    """"linear" for equal steps, or "log" for equal ratios."""
 
     @model_validator(mode="after")
     def _has_values(self) -> Self:
@@ -153,7 +164,7 @@ class Spaced(Axis):
             raise InvalidInput(
                 "", Described(ends), "", "gives one value many times", "write ends that differ"
             )
-        if self.spacing == "geometric":
+        if self.spacing == "log":
             if not (self.first > 0 < self.last or self.first < 0 > self.last):
                 raise InvalidInput(
                     "", Described(ends), "ends of one sign, neither 0", "cannot be in equal ratios"
@@ -175,14 +186,14 @@ class Spaced(Axis):
     def at(self, places: Flat) -> Array:
         """Return the values at some places, without making the others."""
         inner = between(
-            self.first, self.last, places / max(self.count - 1, 1), self.spacing == "geometric"
+            self.first, self.last, places / max(self.count - 1, 1), self.spacing == "log"
         )
         return np.where((places == self.count - 1) & (self.count > 1), self.last, inner)
 
 
-def between(first: float, last: float, shares: Array, geometric: bool) -> Array:
+def between(first: float, last: float, shares: Array, is_log: bool) -> Array:
     """Numbers between two after these shares of the way, by their ratio or by their difference."""
-    return first * (last / first) ** shares if geometric else first + (last - first) * shares
+    return first * (last / first) ** shares if is_log else first + (last - first) * shares
 
 
 class Listed(Axis):

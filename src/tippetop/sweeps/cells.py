@@ -26,9 +26,9 @@ from tippetop.mechanics.view import axis_sine
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import Fault
-from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.errors import Described, InvalidInput, within_part
 from tippetop.support.suggestions import unknown_field
-from tippetop.support.validation import Part
+from tippetop.support.validation import PLACES, Part
 from tippetop.sweeps.flights import slips
 from tippetop.sweeps.launch_arrays import Launches, Own, branched
 
@@ -88,7 +88,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     numeric = dict(numeric_fields(problem))
     for field in values:
         if field not in numeric:
-            raise unknown_field(field, Described("what is swept"), list(numeric), Part.places)
+            raise unknown_field(field, Described("what is swept"), list(numeric), PLACES)
     if problem.launch.velocity is not None and any(
         field.startswith("launch.slip.") for field in values
     ):
@@ -178,7 +178,7 @@ def single_part(part: PartType, cell: int) -> PartType:
                 try:
                     return single_part(value, cell)
                 except InvalidInput as error:
-                    raise error.within(name) from None
+                    raise within_part(error, name) from None
             case tuple():
                 return tuple(single(one, f"{name}.{k}") for k, one in enumerate(value))
             case np.ndarray():

@@ -15,10 +15,11 @@ from tippetop.problem.problem import Problem
 from tippetop.support.errors import MISSING, Described, InvalidInput
 from tippetop.support.files import made_of, read_text
 from tippetop.support.parsing import parse_toml
-from tippetop.support.validation import Number, Part, Positive, Quantity, in_order
+from tippetop.support.validation import Number, Part, Positive, Quantity, Whole, in_order
+from tippetop.sweeps.axes import Count
 from tippetop.sweeps.cells import cells_of
-from tippetop.sweeps.grid import Draws, Product
-from tippetop.sweeps.launch_samples import LaunchSamples
+from tippetop.sweeps.draws import Column, Draws, columns_of
+from tippetop.sweeps.grid import Product
 from tippetop.theory.requirements import require_jellett
 
 DEFAULT_TOLERANCE = 1e-9
@@ -34,7 +35,7 @@ TASKS = 16
 """A task is a chunk of the store: about a 16th of the cells, within these bounds."""
 
 
-GRIDS = {"axes": Product, "draws": Draws, "samples": LaunchSamples}
+GRIDS = ("over", "draw")
 """The ways to state the cells of a sweep, by the names that they are written under."""
 
 Task: TypeAlias = tuple[int, ...]
@@ -42,7 +43,7 @@ Task: TypeAlias = tuple[int, ...]
 
 
 class Sweep(Part):
-    """What to compute, over a `grid` of cells: `axes`, `draws` or `samples`.
+    """What to compute, over a `grid` of cells: the axes of `over`, or `draw`.
 
     Raises `InvalidInput` if a field is none, the duration is not positive, or the tolerance is out
     of range; or if runs are to end when they have settled, and the tops do not conserve Jellett's
@@ -51,10 +52,14 @@ class Sweep(Part):
 
     problem: Problem
     """The problem whose fields are changed."""
-    axes: Annotated[Product, BeforeValidator(Product.of)] | None = None
-    draws: Draws | None = None
-    samples: LaunchSamples | None = None
-    """The cells: `Product` of axes, `Draws` or `LaunchSamples`."""
+    over: Annotated[Product, BeforeValidator(Product.of)] | None = None
+    """The cells as axes that cross."""
+    draw: Annotated[tuple[Column, ...], BeforeValidator(columns_of)] | None = None
+    """The cells as fields and how the values of each are drawn."""
+    count: Count | None = None
+    """Number of draws; by default that of listed values."""
+    seed: Annotated[Whole, Field(ge=0)] | None = None
+    """Seed of random draws; 0 by default."""
     duration: Annotated[Positive, Quantity("s", "length of every run")] = 20.0
     """Length of every run, s."""
     tolerance: Annotated[Number, Field(ge=LEAST_TOLERANCE, le=1e-3)] = DEFAULT_TOLERANCE
@@ -74,10 +79,14 @@ class Sweep(Part):
         )
         grid = fields.pop("grid", None)
         if grid is not None:
-            kind = next(name for name, cells in GRIDS.items() if isinstance(grid, cells))
-            if fields.get(kind) is None:
-                fields.pop(kind, None)
-            fields = in_order(type(self), [kind], (grid,), fields)
+            stated = (
+                {"draw": grid.columns, "count": grid.count, "seed": grid.seed}
+                if isinstance(grid, Draws)
+                else {"over": grid}
+            )
+            for name in [name for name in stated if fields.get(name, name) is None]:
+                del fields[name]
+            fields = in_order(type(self), stated, tuple(stated.values()), fields)
         super().__init__(**fields)
 
     @model_validator(mode="after")
@@ -87,6 +96,11 @@ class Sweep(Part):
             stated = Described(" and ".join(chosen)) if chosen else MISSING
             fault = "are given together" if chosen else ""
             raise InvalidInput(", ".join(GRIDS), stated, "one of them", fault)
+        if self.draw is None:
+            for name in ("count", "seed"):
+                value = getattr(self, name)
+                if value is not None:
+                    raise InvalidInput(name, value, "", "is only for draw", "omit it")
         require_recordable(self.problem.top)
         if self.settled is not None:
             require_jellett(self.problem.top)
@@ -95,11 +109,12 @@ class Sweep(Part):
         return self
 
     @cached_property
-    def grid(self) -> Product | Draws | LaunchSamples:
+    def grid(self) -> Product | Draws:
         """The cells."""
-        grid = self.axes or self.draws or self.samples
-        assert grid is not None
-        return grid
+        if self.over is not None:
+            return self.over
+        assert self.draw is not None
+        return Draws.of(self.draw, self.count, self.seed or 0)
 
     @property
     def cells(self) -> int:
@@ -140,7 +155,13 @@ class Sweep(Part):
         """Return the sweep as plain numbers and words, as in a file: ``Sweep(**fields)`` is the
         sweep.
         """
-        return self.model_dump(mode="json", by_alias=True, exclude_none=True)
+        grid = self.grid
+        fields = self.model_dump(
+            mode="json", by_alias=True, exclude_none=True, exclude={"draw", "count", "seed"}
+        )
+        if isinstance(grid, Draws):
+            fields |= {"draw": grid.written, "count": grid.count, "seed": grid.seed}
+        return fields
 
     @classmethod
     def read(cls, path: Path | str) -> "Sweep":

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.contact_mode import sliding_motion
-from tippetop.contact.mode import Outcome
+from tippetop.contact.mode import Status
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import on_table, sliding_contact
@@ -18,9 +18,9 @@ from tippetop.mechanics.surfaces.hull import lowest_gap
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
-from tippetop.results.catalogue import SWEPT, Ending, Fault
-from tippetop.results.metrics import OUTCOMES, Ends, ending, metrics, settled_band
-from tippetop.results.monitor import OUTCOMES_OF_MOTION, Monitor, monitored_quantities
+from tippetop.results.catalogue import SWEPT, Fault, Outcome
+from tippetop.results.metrics import STATUSES, Ends, metrics, outcomes_of, settled_band
+from tippetop.results.monitor import STATUSES_OF_MOTION, Monitor, monitored_quantities
 from tippetop.results.settling import settled_tilts
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.cells import cells_of, spread
@@ -52,10 +52,10 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
             halves = [follow_cells(sweep, half) for half in np.array_split(numbers, 2)]
             return {name: np.concatenate([half[name] for half in halves]) for name in SWEPT}
         note_failure(error)
-        return _unknown(1, Ending.FAILED)
+        return _unknown(1, Outcome.FAILED)
 
 
-def _unknown(count: int, outcome: Ending) -> dict[str, NDArray[np.generic]]:
+def _unknown(count: int, outcome: Outcome) -> dict[str, NDArray[np.generic]]:
     """Return each variable for cells of which nothing but the outcome is known."""
     variables: dict[str, NDArray[np.generic]] = {
         name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()
@@ -69,7 +69,7 @@ def _unknown(count: int, outcome: Ending) -> dict[str, NDArray[np.generic]]:
 def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
     count = len(numbers)
-    variables = _unknown(count, Ending.BAD)
+    variables = _unknown(count, Outcome.INVALID)
     variables["fault"][:] = cells.fault
     good = np.flatnonzero(cells.fault == Fault.NONE)
     if not len(good):
@@ -86,13 +86,14 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
             lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
             ends = lanes.run()
             judge(ends, some, sweep.tolerance)
-            done = ends.outcome == OUTCOMES.index(Outcome.COMPLETED)
+            done = ends.status == STATUSES.index(Status.COMPLETED)
             settled = settled_tilts(ends.state, some.state, some.top)
             ends.settled = np.where(done, settled, ends.settled)
             again = arrivals(lanes, settled_band(ends.settled))
             ends.arrived = np.where(np.isnan(again), ends.arrived, again)
         units = Units(*(spread(unit, count)[which] for unit in cells.units))
-        values = metrics(ends, some.state, some.top, units) | {"outcome": ending(ends, some.state)}
+        values = metrics(ends, some.state, some.top, units)
+        values["outcome"] = outcomes_of(ends, some.state)
         for name, numbers_found in values.items():
             variables[name][which] = numbers_found.astype(SWEPT[name].dtype)
     return variables
@@ -111,8 +112,8 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     monitor.check(*(number[None] for number in (*monitored_quantities(end, top), gone)))
     monitor.check_gap(lowest_gap(end.axis, end.height, top.surface)[None])
     monitor.check_force(np.nan_to_num(ends.least_force)[None])
-    is_reported = np.isin(ends.outcome, [OUTCOMES.index(outcome) for outcome in OUTCOMES_OF_MOTION])
-    ends.outcome[is_reported & ~monitor.is_trusted(tolerance)] = OUTCOMES.index(Outcome.INACCURATE)
+    is_reported = np.isin(ends.status, [STATUSES.index(status) for status in STATUSES_OF_MOTION])
+    ends.status[is_reported & ~monitor.is_trusted(tolerance)] = STATUSES.index(Status.INACCURATE)
 
 
 @lru_cache

@@ -7,7 +7,7 @@ from tippetop.problem.implausible import sentence
 from tippetop.problem.plausibility import Outside, checks, doubts, outside_of
 from tippetop.sweeps.cells import put
 from tippetop.sweeps.definition import Sweep
-from tippetop.sweeps.grid import Draws
+from tippetop.sweeps.draws import Draws
 
 CELLS_EXAMINED, MOST_SHAPES = 100_000, 256
 """Cells that are looked at; and where every cell has a shape of its own, whose outside takes 0.1 ms

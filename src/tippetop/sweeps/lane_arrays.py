@@ -4,7 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tippetop.contact.mode import Outcome
+from tippetop.contact.mode import Status
 from tippetop.integrators.base import Array
 from tippetop.mechanics.contacts.branches import is_branched, on_other_branch
 from tippetop.mechanics.motion import along_table, on_table
@@ -12,7 +12,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.results.accumulation import accumulate, before_launch
-from tippetop.results.metrics import OUTCOMES
+from tippetop.results.metrics import STATUSES
 from tippetop.sweeps.launch_arrays import Flags, Indices, Launches, branched
 from tippetop.sweeps.taylor_step import LANES
 from tippetop.sweeps.taylor_stepper import Stepper
@@ -21,7 +21,7 @@ from tippetop.sweeps.tip_extremes import TipMotion
 NATURAL = Units(1.0, 1.0, 1.0)
 """Units of what is dimensionless."""
 
-HELD_BY_LANES = {"time", "outcome", "steps", "turned", "arrived"}
+HELD_BY_LANES = {"time", "status", "steps", "turned", "arrived"}
 """Quantities that lanes hold themselves until their launches end."""
 
 LOSSES = slice(8, 10)
@@ -140,7 +140,7 @@ class Slots:
         for row, number in enumerate(top.friction.coefficients(NATURAL), start=first):
             self.numbers[row, lanes] = number
 
-    def retire(self, lanes: Indices, state: State, time: Array, outcome: Outcome) -> None:
+    def retire(self, lanes: Indices, state: State, time: Array, status: Status) -> None:
         """Put down how launches ended."""
         if not len(lanes):
             return
@@ -153,7 +153,7 @@ class Slots:
             cells,
             state,
             time=time,
-            outcome=np.where(fine, OUTCOMES.index(outcome), OUTCOMES.index(Outcome.FAILED)),
+            status=np.where(fine, STATUSES.index(status), STATUSES.index(Status.FAILED)),
             steps=self.rows[self.layout.steps, lanes],
             turned=self.tip.turned[lanes],
             arrived=self.tip.reached[lanes],

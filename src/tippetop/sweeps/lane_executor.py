@@ -8,7 +8,7 @@ looked at together, exactly, and go on: after that step if nothing came of it, e
 
 import numpy as np
 
-from tippetop.contact.mode import Outcome
+from tippetop.contact.mode import Status
 from tippetop.contact.trajectory import STEP_LIMIT
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
@@ -156,16 +156,16 @@ class Lanes:
         slots.tip.put_aside()
         ended = np.flatnonzero(slots.alive & (slots.remaining <= 0.0))
         if len(ended):
-            slots.retire(ended, slots.states(ended), slots.end[ended], Outcome.COMPLETED)
+            slots.retire(ended, slots.states(ended), slots.end[ended], Status.COMPLETED)
         shortest = np.minimum(SHORTEST, ROUNDED * slots.remaining)
         singular = slots.rows[layout.step_time] < shortest
         many = slots.rows[layout.steps] >= STEP_LIMIT
-        for lost, outcome in (
-            (singular, Outcome.FAILED),
-            (~singular & many, Outcome.TOO_MANY_STEPS),
+        for lost, status in (
+            (singular, Status.FAILED),
+            (~singular & many, Status.TOO_MANY_STEPS),
         ):
             which = np.flatnonzero(slots.alive & lost)
-            slots.retire(which, slots.states(which), slots.time(which), outcome)
+            slots.retire(which, slots.states(which), slots.time(which), status)
         if self.settled is not None:
             self._end_the_settled(self.settled)
         self._relieve(np.flatnonzero(recorded & slots.alive), window_start)
@@ -195,7 +195,7 @@ class Lanes:
             return
         state = slots.states(lanes)
         held = is_held(state, slots.launches.tops(slots.cell[lanes]), closeness)
-        slots.retire(lanes[held], picked(state, held), slots.time(lanes[held]), Outcome.COMPLETED)
+        slots.retire(lanes[held], picked(state, held), slots.time(lanes[held]), Status.COMPLETED)
 
 
 def arrivals(followed: Lanes, band: tuple[Array, Array]) -> Array:

@@ -36,7 +36,7 @@ class Launches:
     restitution: Array
     """Ratio of the normal impulses of restitution and compression, shape (n,)."""
     indeterminate: str
-    """What the table does where the contact force is indeterminate: "impact" or "lift_off"."""
+    """What the table does where the contact force is indeterminate: "impact" or "liftoff"."""
     rules: Own | None = None
     """For contacts that bring their own rules, what makes them of a top, shape (n,)."""
 

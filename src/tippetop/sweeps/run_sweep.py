@@ -12,15 +12,15 @@ import xarray as xr
 from tippetop.problem.implausible import warn
 from tippetop.problem.problem import Problem
 from tippetop.results.flags import decoded
-from tippetop.support.errors import MISSING, InvalidInput, require
+from tippetop.support.errors import InvalidInput, require
 from tippetop.support.validation import require_callback
 from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
-from tippetop.sweeps.grid import Draws, Product
+from tippetop.sweeps.draws import columns_of
+from tippetop.sweeps.grid import Product
 from tippetop.sweeps.implausible_cells import implausible_cells
-from tippetop.sweeps.launch_samples import LaunchSamples
 from tippetop.sweeps.schedulers import Cluster, Found, need_workers, results
 from tippetop.sweeps.store import Store
-from tippetop.sweeps.store_layout import CONTENTS, Status, coordinate_attributes, layout_attributes
+from tippetop.sweeps.store_layout import CONTENTS, coordinate_attributes, layout_attributes
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def compute(
 ) -> xr.Dataset:
     """Carry out a sweep in memory; for workers, scheduler and callback see `sweep`.
 
-    The variables of `tippetop.results.catalogue.SWEPT` and `status` are over the grid.
+    The variables of `tippetop.results.catalogue.SWEPT` and `is_done` are over the grid.
     """
     shape, grid = sweep.grid.shape, sweep.grid
     arrays = {
@@ -105,7 +105,7 @@ def compute(
             arrays[name][region] = values.reshape(arrays[name][region].shape)
 
     _carry_out(sweep, sweep.tasks, keep, workers, scheduler, callback)
-    arrays["status"][...] = Status.DONE
+    arrays["is_done"][...] = True
     data = {
         name: (grid.dimensions, arrays[name], kind.attributes) for name, kind in CONTENTS.items()
     }
@@ -118,10 +118,10 @@ def compute(
 
 def sweep(
     problem: Problem,
-    over: Mapping[str, Any] | Product | Draws | None = None,
+    over: Mapping[str, Any] | Product | None = None,
     *,
-    samples: Any = None,
-    n: int | None = None,
+    draw: Any = None,
+    count: int | None = None,
     seed: int | None = None,
     duration: float = 20.0,
     tolerance: float = DEFAULT_TOLERANCE,
@@ -144,19 +144,19 @@ def sweep(
     problem
         The problem whose fields are changed.
     over
-        Fields, named with dots, and their values in SI units: arrays, lists, or tables such as
-        ``{"from": 0.05, "to": 1, "count": 40, "spacing": "geometric"}``, of which all combinations
-        are launched; or `Draws`. Left out where launches are sampled.
-    samples
-        Fields and how each is sampled: one number a launch (a list, an array, a Series), a frozen
-        distribution of `scipy.stats`, or a table ``{"law": "normal", "mean": 150, "std": 5}`` or
-        ``{"law": "lognormal", "median": 0.3, "sigma": 0.1}``; or a DataFrame with a column a field
-        and a row a launch, in which they may be correlated.
-    n
-        How many samples; left out where values are listed.
+        Fields, named with dots, and their values in SI units, of which all combinations are
+        launched: lists, arrays, Series, DataArrays, or tables such as ``{"from": 0.05, "to": 1,
+        "count": 40, "spacing": "log"}``.
+    draw
+        Fields and how each is drawn, instead of `over`: a distribution (any object with a method
+        `ppf`, such as ``scipy.stats.norm(150, 5)``, or a table ``{"distribution": "norm", "loc":
+        150, "scale": 5}``), a range ``{"from": 0.05, "to": 1, "spacing": "log"}``, or one number a
+        draw (a list, an array, a Series, a DataArray). Or a DataFrame with a column a field and a
+        row a draw, in which fields may be correlated.
+    count
+        Number of draws; omitted where values are listed.
     seed
-        What random samples follow from, 0 if left out: a sample does not depend on how many there
-        are.
+        Seed of random draws, 0 if omitted: a draw does not depend on how many there are.
     duration
         Length of every run, s.
     tolerance
@@ -181,7 +181,7 @@ def sweep(
         Told of the progress, at the beginning and after every task.
     decode
         Give outcomes, and all else that is flags, as words; False for their numbers, which take a
-        byte a launch (see `Ending`).
+        byte a launch (see `Outcome`).
 
     Returns
     -------
@@ -190,7 +190,7 @@ def sweep(
         when it turned over, its flights, forces and losses, each with its SI unit. That of a store
         is read when used. A coordinate is named by the last word of its field, spin for
         launch.spin, where that names one field alone, else by the whole; its attribute `path` is
-        the whole.
+        the whole. The dimensions are the fields of `over`, or `draw`.
 
     Raises
     ------
@@ -206,24 +206,21 @@ def sweep(
     >>> import tippetop as tt
     >>> spins = {"launch.spin": [10.0, 50.0, 155.0]}
     >>> found = tt.sweep(tt.presets.report_problem(), spins, duration=20.0)
-    >>> [round(float(tilt), 2) for tilt in found["final_theta"]]
+    >>> [round(float(tilt), 2) for tilt in found["final_tilt"]]
     [0.0, 1.5, 3.14]
     >>> bool(found["outcome"].sel(spin=155.0) == "inverted")
     True
     """
-    if (over is None) == (samples is None):
-        stated = MISSING if over is None else "both"
-        raise InvalidInput("over, samples", stated, "one of them")
-    if samples is not None:
-        grid: Product | Draws | LaunchSamples
-        grid = LaunchSamples.of(samples, n, 0 if seed is None else seed)
-    else:
-        for field, number in {"n": n, "seed": seed}.items():
-            if number is not None:
-                fault = "is for samples, and over is given"
-                raise InvalidInput(field, number, "none", fault, "leave it out, or give samples")
-        grid = over if isinstance(over, Draws) else Product.of(over)
-    chosen = Sweep(problem, grid, duration, tolerance, settled)
+    chosen = Sweep(
+        problem=problem,
+        over=None if over is None else Product.of(over),
+        draw=None if draw is None else columns_of(draw),
+        count=count,
+        seed=seed,
+        duration=duration,
+        tolerance=tolerance,
+        settled=settled,
+    )
     require_callback("callback", callback)
     require("decode", decode, bool, "True or False")
     for field, functions in {"events": events, "until": until}.items():

@@ -20,7 +20,7 @@ from tippetop import __version__
 from tippetop.support.errors import RESUME, InvalidInput, Unavailable, is_whole
 from tippetop.support.installation import install_command
 from tippetop.support.processes import RESTARTS, Job, processors, shared
-from tippetop.support.validation import Variant
+from tippetop.support.validation import foreign_kinds, receive_kinds
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.ensemble import follow_cells
 
@@ -73,7 +73,7 @@ def compute_region(
         for name in modules:
             import_module(name)
         if kinds:
-            Variant.receive(kinds)
+            receive_kinds(kinds)
     except ImportError as error:
         raise Unavailable(
             f"a worker cannot import the module of a part of the problem: {error}"
@@ -147,7 +147,7 @@ def _own_parts(
     is_count = is_whole(workers) and workers >= 1
     if not (workers is None or is_count):
         raise InvalidInput("workers", workers, "a whole number, at least 1")
-    foreign = sorted(sweep.problem.foreign_kinds(), key=lambda kind: kind.__qualname__)
+    foreign = sorted(foreign_kinds(sweep.problem), key=lambda kind: kind.__qualname__)
     modules = tuple(sorted({kind.__module__ for kind in foreign} - {HERE}))
     unimportable = [kind for kind in foreign if kind.__module__ == HERE]
     kinds, why = _pickled(unimportable) if unimportable else (b"", "")

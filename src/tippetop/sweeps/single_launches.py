@@ -86,9 +86,9 @@ def follow(
     for block in in_blocks(segments):
         recorder.take(block)
         run_metrics.take(block)
-    outcome = recorder.outcome_of(trajectory)
+    status = recorder.status_of(trajectory)
     return run_metrics.ends(
-        trajectory.state, trajectory.time, outcome, trajectory.events, recorder.sums
+        trajectory.state, trajectory.time, status, trajectory.events, recorder.sums
     ), run_metrics
 
 

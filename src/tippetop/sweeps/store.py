@@ -1,7 +1,7 @@
 """Store of a sweep on disk, in Zarr, that stays valid if the program that fills it is killed.
 
-The array `status` says which tasks are done. Its chunk of a task is written last, once those of the
-results are on disk, and every chunk is written beside its place and then moved there. A program
+The array `is_done` says which tasks are done. Its chunk of a task is written last, once those of
+the results are on disk, and every chunk is written beside its place and then moved there. A program
 that is killed, even during a write, loses only the tasks under way. Tasks whose chunks were deleted
 are computed again; Zarr reports a damaged chunk when it is read.
 """
@@ -27,7 +27,6 @@ from tippetop.support.interrupts import deferred
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.store_layout import (
     CONTENTS,
-    Status,
     altered,
     lay_out,
     may_be_replaced,
@@ -130,7 +129,7 @@ class Store:
                         partial.unlink(missing_ok=True)
                 yield
             except FileTrouble:
-                if self._is_new and not self._done(self.status()):
+                if self._is_new and not self._done(self.is_done()):
                     self._remove()
                 raise
 
@@ -148,32 +147,32 @@ class Store:
                 )
 
     def _write_first_values(self) -> None:
-        """Write the coordinates, and the status of every cell."""
+        """Write the coordinates, and that no cell is done."""
         for name, (_, values) in self.sweep.grid.coordinates().items():
             self._arrays[name][...] = values
-        self._arrays["status"][...] = Status.PENDING
+        self._arrays["is_done"][...] = False
 
-    def status(self) -> NDArray[np.int8]:
-        """Return numbers of `Status` over the grid; chunks that cannot be read are pending."""
-        array = self._arrays["status"]
+    def is_done(self) -> NDArray[np.bool_]:
+        """Return whether each cell is computed; those of chunks that cannot be read are not."""
+        array = self._arrays["is_done"]
         if _can_be_read(array, ...):
             return np.asarray(array[...])
-        status = np.full(self.sweep.grid.shape, Status.PENDING, dtype=np.int8)
+        done = np.full(self.sweep.grid.shape, False)
         for region in map(self.sweep.region, self.sweep.tasks):
             if _can_be_read(array, region):
-                status[region] = array[region]
-        return status
+                done[region] = array[region]
+        return done
 
     def remaining(self) -> list[Task]:
         """Return the tasks that are not done, and those of which a chunk was deleted."""
-        done = self._done(self.status())
+        done = self._done(self.is_done())
         stored = [self._stored(name) for name in SWEPT]
         done.intersection_update(*stored)
         return [task for task in self.sweep.tasks if task not in done]
 
-    def _done(self, status: NDArray[np.int8]) -> set[Task]:
+    def _done(self, done: NDArray[np.bool_]) -> set[Task]:
         sweep = self.sweep
-        return {task for task in sweep.tasks if np.all(status[sweep.region(task)] == Status.DONE)}
+        return {task for task in sweep.tasks if np.all(done[sweep.region(task)])}
 
     def _stored(self, name: str) -> set[Task]:
         """Return the tasks of which an array has a chunk on disk."""
@@ -182,7 +181,7 @@ class Store:
         return {tuple(map(int, place)) for place in places if all(map(str.isdigit, place))}
 
     def write(self, task: Task, variables: Mapping[str, NDArray[Any]]) -> None:
-        """Write the results of a task, and its status once they are on disk.
+        """Write the results of a task, and that it is done once they are on disk.
 
         Raises `FileTrouble` if it cannot be written, and then the store stays good; or if it was
         replaced meanwhile.
@@ -194,8 +193,8 @@ class Store:
             for name, values in variables.items():
                 self._arrays[name][region] = values.reshape(shape)
             self._bring_chunks_to_disk(variables, task)
-            self._arrays["status"][region] = np.full(shape, Status.DONE, dtype=np.int8)
-            self._bring_chunks_to_disk(["status"], task)
+            self._arrays["is_done"][region] = np.full(shape, True)
+            self._bring_chunks_to_disk(["is_done"], task)
 
     def _bring_chunks_to_disk(self, names: Iterable[str], task: Task) -> None:
         chunks = [self._chunk(name, task) for name in names]
@@ -231,8 +230,8 @@ class Store:
         with _damage_in_words(self.path):
             refuse_altered(self.path, self.sweep)
             self._check_coordinates()
-            done = self._done(np.asarray(self._arrays["status"][...]))
-            chunks = [("status", task) for task in self.sweep.tasks]
+            done = self._done(np.asarray(self._arrays["is_done"][...]))
+            chunks = [("is_done", task) for task in self.sweep.tasks]
             chunks += [(name, task) for name in names if name in SWEPT for task in done]
             self._require_chunks(chunks)
             opened: xr.Dataset = xr.open_zarr(self.path)

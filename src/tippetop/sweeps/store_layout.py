@@ -7,7 +7,6 @@ Zarr's.
 
 import json
 import warnings
-from enum import IntEnum
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -16,27 +15,20 @@ from llvmlite.binding import get_host_cpu_name
 
 from tippetop import __version__
 from tippetop.problem.implausible import warn
-from tippetop.results.catalogue import SWEPT, Variable, meanings
+from tippetop.results.catalogue import SWEPT, Variable
 from tippetop.results.dataset import CONVENTIONS
 from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, short
 from tippetop.support.files import refuse_overwriting
 from tippetop.sweeps.definition import Sweep
-from tippetop.sweeps.grid import Product, field_paths
+from tippetop.sweeps.grid import field_paths
 
-FORMAT = "tippetop sweep 4"
+FORMAT = "tippetop sweep 5"
 """Name and version of the layout; a store of another is refused."""
 METADATA = "zarr.json"
 
 
-class Status(IntEnum):
-    """Whether a cell is computed."""
-
-    PENDING = 0
-    DONE = 1
-
-
 CONTENTS = {
-    "status": Variable("whether the cell is computed", dtype="int8", flags=meanings(Status)),
+    "is_done": Variable("whether the launch is computed", dtype="bool"),
     **SWEPT,
 }
 """Variables of a sweep's dataset over the grid."""
@@ -77,7 +69,7 @@ def lay_out(store: Any, sweep: Sweep) -> Any:
             shape=grid.shape,
             chunks=sweep.chunk,
             dtype=kind.dtype,
-            fill_value=Status.PENDING if name == "status" else kind.missing,
+            fill_value=kind.missing,
             dimension_names=grid.dimensions,
             attributes=_json_attributes(kind.attributes) | _coordinates(sweep),
             compressors=compressors,
@@ -109,7 +101,7 @@ def layout_attributes(sweep: Sweep) -> dict[str, Any]:
         "tolerance": sweep.tolerance,
         "tippetop_version": __version__,
         "processor": get_host_cpu_name(),
-        **({} if isinstance(sweep.grid, Product) else {"seed": sweep.grid.seed}),
+        **({"seed": sweep.seed or 0} if sweep.draw is not None else {}),
     }
 
 
@@ -117,7 +109,7 @@ def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
     """Return the attributes of a coordinate by the CF conventions, and the `path` of its field."""
     path = field_paths(sweep.grid.fields).get(name)
     if path is None:
-        return Variable("number of the sample", "1").attributes
+        return Variable("number of the draw", "1").attributes
     kind = sweep.problem.quantity(path)
     return Variable(kind.long_name, kind.units).attributes | {"path": path}
 

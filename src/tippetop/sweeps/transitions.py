@@ -11,7 +11,7 @@ import numpy as np
 from tippetop.contact.contact_mode import ContactMode, sliding_motion
 from tippetop.contact.flight import TOUCHING, Flight
 from tippetop.contact.guards import BRANCH, LIFT_OFF
-from tippetop.contact.mode import EventKind, Mode, ModeEnd, Outcome, Transition
+from tippetop.contact.mode import EventKind, Mode, ModeEnd, Status, Transition
 from tippetop.contact.surfaces import lands_flat, lies_flat
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
@@ -20,7 +20,7 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, falls_by_zero, sliding_contact
 from tippetop.mechanics.state import State
 from tippetop.results.accumulation import accumulate, of_a_part
-from tippetop.results.metrics import OUTCOMES
+from tippetop.results.metrics import STATUSES
 from tippetop.sweeps.flights import fly_all, rolls, slides, slips
 from tippetop.sweeps.impacts import collide
 from tippetop.sweeps.lane_arrays import HELD_BY_LANES, Slots
@@ -96,7 +96,7 @@ class Crossings:
         cells, state = slots.cell[lanes], slots.states(lanes)
         accumulate(slots.ends, cells, lift_off=time)
         if slots.launches.liftoff == "stop":
-            slots.retire(lanes, state, time, Outcome.LIFTED_OFF)
+            slots.retire(lanes, state, time, Status.LIFTED_OFF)
         else:
             self._fly(lanes, state, time, np.full(len(lanes), int(Start.LIFT_OFF), dtype=np.intp))
 
@@ -121,14 +121,14 @@ class Crossings:
             )
             over = ~flown.landed & (flown.duration >= horizon)
             time = np.where(over, slots.end[lanes], time + flown.duration)
-            slots.retire(lanes[over], picked(flown.state, over), time[over], Outcome.COMPLETED)
+            slots.retire(lanes[over], picked(flown.state, over), time[over], Status.COMPLETED)
             slots.retire(
-                lanes[flown.lost], picked(flown.state, flown.lost), time[flown.lost], Outcome.FAILED
+                lanes[flown.lost], picked(flown.state, flown.lost), time[flown.lost], Status.FAILED
             )
             spent = ~over & (~flown.landed | (ends.flights[cells] >= FLIGHT_LIMIT))
             which = spent & ~flown.lost
             slots.retire(
-                lanes[which], picked(flown.state, which), time[which], Outcome.TOO_MANY_PHASES
+                lanes[which], picked(flown.state, which), time[which], Status.TOO_MANY_MODES
             )
             landed = flown.landed & ~spent
             lanes, time, state = lanes[landed], time[landed], picked(flown.state, landed)
@@ -176,7 +176,7 @@ class Crossings:
         again, starts, states = [], [], []
         for i, transition in enumerate(transitions):
             self._note(lanes[i], float(time[i]), transition)
-            if not isinstance(transition.next, Flight | Outcome) and not is_plain(transition.next):
+            if not isinstance(transition.next, Flight | Status) and not is_plain(transition.next):
                 self._follow_alone(int(lanes[i]), float(time[i]), single(state, i), transition)
                 continue
             cell = self.slots.cell[lanes[i]]
@@ -204,7 +204,7 @@ class Crossings:
         state = State.unpack(
             [np.array([number], dtype=float) for number in transition.state.pack()]
         )
-        if isinstance(transition.next, Outcome):
+        if isinstance(transition.next, Status):
             self.slots.retire(lane, state, time, transition.next)
         else:
             self.slots.place(lane, state, time)
@@ -240,7 +240,7 @@ class Crossings:
             arrived = run_metrics.arrival(tip.low[where], tip.high[where])
         tip.reached[where] = np.fmin(tip.reached[where], arrived)
         slots.rows[slots.layout.steps, where] += ended.steps
-        slots.retire(where, ended.state, ended.time, OUTCOMES[ended.outcome])
+        slots.retire(where, ended.state, ended.time, STATUSES[ended.status])
 
 
 def is_plain(mode: Mode) -> bool:

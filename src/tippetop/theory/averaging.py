@@ -142,7 +142,7 @@ def nutation_of_launch(problem: Problem) -> Nutation:
     return nutation_of_angles(Angles(launch.tilt, *rates, (0.0, 0.0)), numbers_of(problem.top))
 
 
-def flip_time_limit(problem: Problem, distance: float = 0.01) -> float:
+def arrival_time_limit(problem: Problem, distance: float = 0.01) -> float:
     """Return the limit of mu times the flip time for small mu, s^2/m.
 
     The flip time is the first instant with the tilt within `distance` (rad) of its end. Raises
@@ -224,9 +224,9 @@ def _first_near(stage: Stage, final: float, distance: float) -> float | None:
     return None
 
 
-def local_exponent(mu: Array, flip_time: Array) -> Array:
+def local_exponent(mu: Array, arrival_time: Array) -> Array:
     """Return the exponent d ln t / d ln mu of flip times, shape (n,): -1 where t ~ 1 / mu."""
-    return np.asarray(np.gradient(np.log(flip_time), np.log(mu)))
+    return np.asarray(np.gradient(np.log(arrival_time), np.log(mu)))
 
 
 _PER_STEP = 40

@@ -9,7 +9,7 @@ from tippetop.mechanics.top import Top
 from tippetop.problem.frictions import ViscousFriction
 from tippetop.problem.problem import Problem, require_problem
 from tippetop.support.errors import InvalidInput
-from tippetop.theory.averaging import flip_time_limit, nutation_of_launch
+from tippetop.theory.averaging import arrival_time_limit, nutation_of_launch
 from tippetop.theory.drilling import standing_time
 from tippetop.theory.groups import Group, classify_top, eccentricity, inertia_ratio
 from tippetop.theory.level import Lying, lying
@@ -93,8 +93,8 @@ class Outlook:
     """gamma = I1 / I3 and alpha; None for a shape other than an eccentric sphere."""
     group: Group | None
     """Group of the eccentric sphere; None for other shapes, and for a centre of mass outside."""
-    lambda_up: float | None
-    lambda_down: float | None
+    jellett_upright: float | None
+    jellett_inverted: float | None
     """Jellett's integrals, kg m^3/s, at which the upright spin loses and the inverted spin gains
     stability; None without creep (see `creeps`).
     """
@@ -120,13 +120,13 @@ class Outlook:
     """Steady states, by tilt: all with the launch's lambda; for a shape that does not conserve it,
     both vertical spins with the launch's axial spin and the level spin with its precession.
     """
-    mu_flip_time: float | None
+    mu_arrival_time: float | None
     """mu times the time (s^2/m) until within 0.01 rad of the end, in the limit of small friction;
     None if there is no limit, or no friction.
     """
-    flip_time: float | None
-    """`mu_flip_time` divided by the problem's mu, s."""
-    flip_time_needs: str | None
+    arrival_time: float | None
+    """`mu_arrival_time` divided by the problem's mu, s."""
+    arrival_time_needs: str | None
     """Description of the launches that have these times; None if this one has, or friction is not
     viscous.
     """
@@ -172,13 +172,15 @@ def outlook(problem: Problem) -> Outlook:
     edge, creeping = is_edge(top.surface), creeps(top)
     stays = None if drills or edge or sticks(top) else steady_state_of_launch(problem)
     grouped = sphere and 0.0 < eccentricity(top) < 1.0
-    limit, time, needs = _flip_times(problem) if grouped and stays is None else (None, None, None)
+    limit, time, needs = (
+        _arrival_times(problem) if grouped and stays is None else (None, None, None)
+    )
     return Outlook(
         inertia_ratio=inertia_ratio(top) if sphere else None,
         eccentricity=eccentricity(top) if sphere else None,
         group=classify_top(top) if grouped else None,
-        lambda_up=critical_jellett(SteadyKind.UPRIGHT, top) if creeping else None,
-        lambda_down=critical_jellett(SteadyKind.INVERTED, top) if creeping else None,
+        jellett_upright=critical_jellett(SteadyKind.UPRIGHT, top) if creeping else None,
+        jellett_inverted=critical_jellett(SteadyKind.INVERTED, top) if creeping else None,
         critical_spins=stability_limits(problem) if creeping else None,
         tilt=problem.launch.tilt,
         jellett=jellett,
@@ -186,9 +188,9 @@ def outlook(problem: Problem) -> Outlook:
         swings=_swings(problem) if top.surface.spherical and smooth else None,
         prediction=predicted(problem) if sphere and creeping and not smooth else None,
         steady=tuple(_analysed(state, top) for state in steady_states(problem)),
-        mu_flip_time=limit,
-        flip_time=time,
-        flip_time_needs=needs,
+        mu_arrival_time=limit,
+        arrival_time=time,
+        arrival_time_needs=needs,
         conserved=sphere,
         standing_time=standing_time(problem)
         if creeping and drills and (vertical or top.surface.spherical)
@@ -244,9 +246,9 @@ def _outlook_of_several_surfaces(problem: Problem) -> Outlook:
         single,
         prediction=prediction,
         steady=tuple(judged for judged in single.steady if low <= judged.state.tilt <= high),
-        mu_flip_time=None,
-        flip_time=None,
-        flip_time_needs=None,
+        mu_arrival_time=None,
+        arrival_time=None,
+        arrival_time_needs=None,
         standing=single.standing if low == 0.0 or high == math.pi else None,
         lying=lying(problem.standing(), problem.launch.tilt),
         surface=hull.active,
@@ -299,7 +301,7 @@ def _swings(problem: Problem) -> tuple[float, float]:
     return min(low, problem.launch.tilt), max(high, problem.launch.tilt)
 
 
-def _flip_times(problem: Problem) -> tuple[float | None, float | None, str | None]:
+def _arrival_times(problem: Problem) -> tuple[float | None, float | None, str | None]:
     """Return the limit of mu times the flip time, the flip time, and which launches have them.
 
     The last is None if both are known. All are None for vertical spins and for friction that is not
@@ -310,7 +312,7 @@ def _flip_times(problem: Problem) -> tuple[float | None, float | None, str | Non
     if vertical or friction.vanishes or not isinstance(friction, ViscousFriction):
         return None, None, None
     try:
-        limit = flip_time_limit(problem)
+        limit = arrival_time_limit(problem)
     except InvalidInput as refusal:
         return None, None, refusal.accepted
     return limit, limit / friction.mu, None

@@ -55,11 +55,11 @@ class Prediction:
 
     @property
     def final(self) -> SteadyState[float]:
-        """Reachable stable state of least energy: the end of the launch if that is `certain`."""
+        """Reachable stable state of least energy: the end of the launch if that is `is_certain`."""
         return self.reachable[0]
 
     @property
-    def certain(self) -> bool:
+    def is_certain(self) -> bool:
         """Whether only one stable state can be reached; otherwise details of the launch decide."""
         return len(self.reachable) == 1
 
@@ -81,7 +81,7 @@ def predict(problem: Problem) -> Prediction:
     --------
     >>> import tippetop as tt
     >>> ahead = tt.predict(tt.presets.report_problem(spin=155.0))
-    >>> str(ahead.final.kind), round(ahead.final.spin, 2), ahead.certain
+    >>> str(ahead.final.kind), round(ahead.final.spin, 2), ahead.is_certain
     ('inverted', -82.87, True)
     """
     require_problem(problem)

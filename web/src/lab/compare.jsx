@@ -6,14 +6,14 @@ import { differences } from "./setup.js";
 import { cleared, digits, shown, unitOf } from "./units.js";
 
 const METRICS = {
-  turns_over: "s",
-  arrives: "s",
-  final_theta: "angle",
-  final_omega3: "spin",
+  turnover_time: "s",
+  arrival_time: "s",
+  final_tilt: "angle",
+  final_spin: "spin",
   energy_lost: "mJ",
   flights: "",
-  highest_gap: "mm",
-  least_normal_force: "N",
+  max_gap: "mm",
+  min_normal_force: "N",
 };
 
 export function Compare({ lab }) {
@@ -103,7 +103,7 @@ function Table({ ghost, track, units }) {
 
 function Row({ name, before, now, units }) {
   const { name: unit, size } = unitOf(METRICS[name], units);
-  const missing = name === "turns_over" ? t("compare.never") : "–";
+  const missing = name === "turnover_time" ? t("compare.never") : "–";
   const text = (value, otherwise) =>
     Number.isFinite(value) ? digits(cleared(value) / size, 4) : otherwise;
   const difference = cleared(now - before, Math.max(Math.abs(now), Math.abs(before)));

@@ -11,7 +11,7 @@ const [WIDTH, HEIGHT] = [520, 300];
 const ROOM = { left: 58, right: 12, top: 10, bottom: 40 };
 const MOST = 2000;
 const TICKS = 4;
-const FIRST = ["theta", "omega3"];
+const FIRST = ["tilt", "spin"];
 
 export function Free({ lab }) {
   const axes = lab.state.free ?? FIRST;

@@ -137,7 +137,7 @@ function wordsOf(plan, { row, column, answer }, units) {
   };
   if (answer.error || !Number.isFinite(answer.tilt)) {
     const message =
-      (answer.error && translated(answer.error.message)) ?? t(`outcomes.${answer.outcome.name}`);
+      (answer.error && translated(answer.error.message)) ?? t(`statuses.${answer.status.name}`);
     return t("map.failed", { ...gaps, message });
   }
   const { tilt, highest, fellBack, flights } = answer;

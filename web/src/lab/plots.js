@@ -7,16 +7,16 @@ import { part, t } from "./i18n.js";
 import { digits, unitOf } from "./units.js";
 
 export const QUANTITIES = {
-  theta: "angle",
-  omega3: "spin",
-  phi_dot: "spin",
+  tilt: "angle",
+  spin: "spin",
+  precession: "spin",
   slip: "m/s",
   energy: "mJ",
   normal_force: "N",
-  jellett_error: "",
+  jellett_change: "",
   height: "mm",
 };
-export const USUAL = ["theta", "omega3", "phi_dot", "slip", "energy", "normal_force"];
+export const USUAL = ["tilt", "spin", "precession", "slip", "energy", "normal_force"];
 
 // Height of a plot and smallest gap between two, pixels.
 const HEIGHT = 168;
@@ -45,7 +45,7 @@ const DARK = {
 const SMALLEST_RANGE = 0.02;
 // At least as much for any quantity, in SI, and for those that are zero but for rounding.
 const SMALLEST = 1e-9;
-const SMALLEST_OF = { jellett_error: 1e-6, slip: 1e-7 };
+const SMALLEST_OF = { jellett_change: 1e-6, slip: 1e-7 };
 // Room above and below the curves, as a share of their range.
 const MARGIN = 0.07;
 // Share of the values of precession that are left out at either end of its range: its spikes.
@@ -183,7 +183,7 @@ export class Plots {
       values: (_, ticks) => ticks.map(brief),
     };
     const upright = { ...axis, label, size: 60, space: 30 };
-    if (name === "theta") upright.splits = (_, __, low, high) => this.splitsOfTilt(low, high);
+    if (name === "tilt") upright.splits = (_, __, low, high) => this.splitsOfTilt(low, high);
     const curve = (stroke, thickness) => ({ stroke, width: thickness, points: { show: false } });
     const colour = curves[Object.keys(QUANTITIES).indexOf(name)];
     return {
@@ -286,8 +286,8 @@ export class Plots {
     const [begin, end] = this.span;
     const first = track.before(begin);
     const last = Math.min(track.before(end) + 1, track.count - 1);
-    const bins = name === "phi_dot" ? PRECESSION_BINS : BINS;
-    if (last - first >= 2 * bins && name === "phi_dot") {
+    const bins = name === "precession" ? PRECESSION_BINS : BINS;
+    if (last - first >= 2 * bins && name === "precession") {
       return middles(track.time, column, first, last, bins, size);
     }
     const places =
@@ -299,7 +299,7 @@ export class Plots {
   // Lowest and highest value to show, in the visitor's units.
   range(name) {
     const { size } = unitOf(QUANTITIES[name], this.units);
-    if (name === "theta" && !this.window) return [0, Math.PI / size];
+    if (name === "tilt" && !this.window) return [0, Math.PI / size];
     const [low, high] = this.extent(name);
     if (!(low <= high)) return [0, 1];
     const smallest = Math.max(
@@ -318,7 +318,7 @@ export class Plots {
     for (const track of [this.track, ...this.ghosts]) {
       const [first, last] = this.span.map((time) => track.before(Math.min(time, track.duration)));
       const values =
-        name === "phi_dot"
+        name === "precession"
           ? withoutSpikes(track, first, last)
           : track.columns[name].subarray(first, last + 2);
       for (const value of values) {
@@ -434,7 +434,7 @@ function middles(time, column, first, last, bins, size) {
 // The values of precession but for the largest and smallest ones, in increasing order.
 function withoutSpikes({ time, columns }, first, last) {
   const bins = Math.min(PRECESSION_BINS, last - first + 1);
-  const [, values] = middles(time, columns.phi_dot, first, last, bins, 1);
+  const [, values] = middles(time, columns.precession, first, last, bins, 1);
   const sorted = Float64Array.from(values.filter((value) => value !== null)).sort();
   const { length } = sorted;
   return sorted.subarray(Math.floor(SPIKES * length), Math.ceil((1 - SPIKES) * length));

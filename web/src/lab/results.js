@@ -8,7 +8,7 @@ const FIRST_PART = /^\s*(-?\d+(?:[.,]\d+)?)\s*[ ;:/→\t]\s*(\d+(?:[.,]\d+)?)\s*
 /** The code of a run: "155 179.9". */
 export function resultCode({ problem, metrics }) {
   const spin = Number(problem.launch.spin.toPrecision(4));
-  return `${spin} ${(metrics.final_theta * DEGREES).toFixed(1)}`;
+  return `${spin} ${(metrics.final_tilt * DEGREES).toFixed(1)}`;
 }
 
 /** The address under which a run is seen again, with its result code. */

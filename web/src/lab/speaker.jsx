@@ -18,7 +18,7 @@ export function Speaker({ lab }) {
     const look = () => {
       const { player, track } = lab;
       const now = {
-        place: placeOf(track.value("theta", player.time), last.place),
+        place: placeOf(track.value("tilt", player.time), last.place),
         mode: track.mode(player.time),
       };
       if (player.playing) {
@@ -45,11 +45,11 @@ export function Speaker({ lab }) {
 }
 
 // How the axis stands: "upright", "inverted", or by how many eighths of a turn it leans.
-function placeOf(theta, before) {
-  if (theta < STANDS) return "upright";
-  if (theta > Math.PI - STANDS) return "inverted";
-  const lean = Math.round(theta / QUARTER);
-  const isNear = typeof before === "number" && Math.abs(theta / QUARTER - before) < 0.5 + SLACK;
+function placeOf(tilt, before) {
+  if (tilt < STANDS) return "upright";
+  if (tilt > Math.PI - STANDS) return "inverted";
+  const lean = Math.round(tilt / QUARTER);
+  const isNear = typeof before === "number" && Math.abs(tilt / QUARTER - before) < 0.5 + SLACK;
   return isNear ? before : lean;
 }
 

@@ -15,9 +15,9 @@ const LONGEST_WATCHED = 8;
 
 // When what a step asks for is to be seen in a run, s; NaN where it does not happen.
 const MOMENTS = {
-  flip: ({ turns_over }) => (turns_over ?? NaN) + SPAN,
+  flip: ({ turnover_time }) => (turnover_time ?? NaN) + SPAN,
   flight: ({ flights: [first] }) => (first?.[0] ?? NaN) + SPAN,
-  arrival: ({ metrics: { arrives } }) => arrives ?? NaN,
+  arrival: ({ metrics: { arrival_time } }) => arrival_time ?? NaN,
 };
 
 export function Story({ lab }) {

@@ -13,13 +13,13 @@ export const CHOICES = { spin: Object.keys(SPINS), angle: Object.keys(ANGLES) };
 /** What may be an axis of a graph. */
 export const AXES = [
   "time",
-  "theta",
-  "omega3",
-  "phi_dot",
+  "tilt",
+  "spin",
+  "precession",
   "slip",
   "energy",
   "normal_force",
-  "jellett_error",
+  "jellett_change",
   "height",
 ];
 

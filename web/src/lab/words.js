@@ -73,7 +73,7 @@ export function factsAt(track, time, units) {
   const [across, along] = [0, 1].map((k) => track.value("friction", time, k, 2));
   const slip = cleared(track.value("slip", time));
   return t("player.facts", {
-    spin: shown(track.value("omega3", time), "spin", units, 3),
+    spin: shown(track.value("spin", time), "spin", units, 3),
     slip: slip < SLOW ? `${digits(1e3 * slip, 2)} mm/s` : `${digits(slip, 2)} m/s`,
     friction: `${digits(1e3 * cleared(Math.hypot(across, along)), 2)} mN`,
   });

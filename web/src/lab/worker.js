@@ -53,11 +53,11 @@ function answerRun({ id, problem, duration, quick }) {
 }
 
 function answerCell({ problem, duration }) {
-  const { metrics, outcome } = simulate(problem, { duration, tolerance: COARSE });
-  const { final_theta: tilt, highest_tilt: highest, turns_over: turnsOver, flights } = metrics;
+  const { metrics, status } = simulate(problem, { duration, tolerance: COARSE });
+  const { final_tilt: tilt, max_tilt_ever: highest, turnover_time: turnsOver, flights } = metrics;
   const isBack = Number.isFinite(turnsOver) && tilt < Math.PI / 2;
   const fellBack = isBack || highest - Math.max(tilt, problem.launch.tilt ?? 0) > RISE;
-  return { tilt, highest, fellBack, flights, turnsOver, outcome };
+  return { tilt, highest, fellBack, flights, turnsOver, status };
 }
 
 function answerBody({ body, gravity, tilt }) {

@@ -149,7 +149,7 @@ export class Player extends EventTarget {
   }
 
   get turnsOver() {
-    return this.track?.header.turns_over ?? NaN;
+    return this.track?.header.turnover_time ?? NaN;
   }
 
   // Show another run, given as a track or a block of bytes; the time and whether it plays stay as they are.
@@ -303,7 +303,7 @@ export class Player extends EventTarget {
     this.stale = false;
     this.tellTime();
     this.tellMode();
-    this.tone?.sound(this.track.value("omega3", this.time), this.speed, this.playing);
+    this.tone?.sound(this.track.value("spin", this.time), this.speed, this.playing);
   }
 
   // Draw with `quality` pixels for each pixel of the screen, call `use`, draw as before, and return its result.

@@ -26,12 +26,12 @@ export function drawStrip(canvas, track, dark, ghosts = []) {
   drawTilt(pen, track, across, width, height);
 }
 
-function drawTilt(pen, { count, time, columns: { theta } }, across, width, height) {
+function drawTilt(pen, { count, time, columns: { tilt } }, across, width, height) {
   const stride = Math.max(1, Math.floor(count / (2 * width)));
   pen.beginPath();
   for (let i = 0; i < count; i += stride) {
     const x = across(time[i]);
-    const y = height * (0.94 - 0.88 * (theta[i] / Math.PI));
+    const y = height * (0.94 - 0.88 * (tilt[i] / Math.PI));
     if (i) pen.lineTo(x, y);
     else pen.moveTo(x, y);
   }

@@ -5,7 +5,7 @@ import { doubts, lowestSurface } from "engine";
 import { foresee } from "./foresee.js";
 import { SCENES, sizeOf, toyParts } from "./looks.js";
 
-const PLAIN = ["theta", "omega3", "phi_dot", "energy", "normal_force", "height"];
+const PLAIN = ["tilt", "spin", "precession", "energy", "normal_force", "height"];
 const WIDE = { orientation: 4, angular_momentum: 3, velocity: 3, axis: 3, contact_force: 3 };
 
 // Of a launch, a problem as plain data, what the engine found.
@@ -29,7 +29,7 @@ export function pack(problem, run, samples) {
   columns.point = contactPath(sampled, problem.body, count);
   columns.touching = new Float32Array(count);
   columns.mode = new Float32Array(count);
-  columns.jellett_error = new Float32Array(count);
+  columns.jellett_change = new Float32Array(count);
   const modes = [...new Set(sampled.mode)];
   const moment = Math.hypot(...columns.momentum.subarray(0, 3)) * sampled.height[0];
   for (let i = 0; i < count; i++) {
@@ -38,7 +38,7 @@ export function pack(problem, run, samples) {
     columns.slip[i] = Math.hypot(sampled.slip_x[i], sampled.slip_y[i]);
     columns.mode[i] = modes.indexOf(sampled.mode[i]);
     columns.touching[i] = sampled.normal_force[i] ? 1 : 0;
-    columns.jellett_error[i] = moment ? (sampled.jellett[i] - sampled.jellett[0]) / moment : 0;
+    columns.jellett_change[i] = moment ? (sampled.jellett[i] - sampled.jellett[0]) / moment : 0;
   }
   delete columns.angular_momentum;
   delete columns.contact_force;
@@ -52,10 +52,10 @@ export function pack(problem, run, samples) {
     prospect: foresee(problem),
     doubts: doubts(problem),
     asked: run.duration,
-    outcome: run.outcome,
+    status: run.status,
     metrics,
     account: run.account,
-    turns_over: metrics.turns_over ?? NaN,
+    turnover_time: metrics.turnover_time ?? NaN,
     events: run.events,
     modes,
   };

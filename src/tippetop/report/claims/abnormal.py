@@ -30,11 +30,11 @@ def _(run: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
 def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dataset) -> Finding:
     at_report_tilt = over_tilt.sel(tilt=TILT)
     spins = at_report_tilt["spin"]
-    huge = at_report_tilt["first_lift_off"].sel(spin=spins > float(ABNORMAL_SPIN))
+    huge = at_report_tilt["liftoff_time"].sel(spin=spins > float(ABNORMAL_SPIN))
     slippery, steep = over_mu["onset"].isel(window=-1), over_tilt["onset"].isel(window=0)
     at_mu = slippery.isel(mu=int(np.nanargmin(slippery.values)))
     at_tilt = steep.isel(tilt=int(np.nanargmin(steep.values)))
-    stays = over_tilt["tilt"].values[~np.isfinite(over_tilt["first_lift_off"].values).any(axis=1)]
+    stays = over_tilt["tilt"].values[~np.isfinite(over_tilt["liftoff_time"].values).any(axis=1)]
     never = (
         f" From a tilt of {stays.min():.2f} rad on no launch of the scan leaves the table."
         if len(stays)
@@ -53,11 +53,11 @@ def _(over_tilt: xr.Dataset, over_mu: xr.Dataset, run: xr.Dataset, sweep: xr.Dat
 
 @examines("sum-abnormal", "final-tilt", "flights", "flights-bouncing", "listing-capped")
 def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.Dataset) -> Finding:
-    true, spins = sweep["final_theta_flight"].values, sweep["spin_flight"].values
-    cured = not _turned(capped["final_theta"]) and _turned(capped["final_theta_capped"])
-    columns = ("spin", "final_theta", "final_theta_capped")
+    true, spins = sweep["final_tilt_flight"].values, sweep["spin_flight"].values
+    cured = not _turned(capped["final_tilt"]) and _turned(capped["final_tilt_capped"])
+    columns = ("spin", "final_tilt", "final_tilt_capped")
     ends = listed("{:g} rad/s {:.2f} and {:.2f} rad", *(capped[name].values for name in columns))
-    turned = all(_turned(data["final_theta_flight"]) for data in (sweep, flights, bouncing))
+    turned = all(_turned(data["final_tilt_flight"]) for data in (sweep, flights, bouncing))
     lost = float(sweep["lost"])
     return Finding(
         cured,
@@ -66,7 +66,7 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
         f" that pulls, launches from {lost:g} rad/s on end anywhere; on one that only pushes, those"
         f" from {spins[0]:g} to {spins[-1]:g} rad/s end within {np.abs(true - np.pi).max():.1g} rad"
         f" of pi after {sweep.attrs['window_s']:g} s, and those up to {flights['spin'][-1]:g} rad/s"
-        f" within {np.abs(flights['final_theta_flight'].values - np.pi).max():.1g} rad after"
+        f" within {np.abs(flights['final_tilt_flight'].values - np.pi).max():.1g} rad after"
         f" {flights.attrs['window_s']:g} s. The report's listing has three lines commented out that"
         " set a negative normal force to zero; without and with them its method ends, by spin, at"
         f" {ends}.",
@@ -84,9 +84,7 @@ def _(sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset, capped: xr.D
 def _(listing: xr.Dataset, sweep: xr.Dataset, flights: xr.Dataset, bouncing: xr.Dataset) -> Finding:
     theirs = _inverting(listing, "_listing", float(ABNORMAL_SPIN))
     ours = _inverting(sweep, "", float(sweep["lift_off_onset"]))
-    turned = _turned(ours) and all(
-        _turned(run["final_theta_flight"]) for run in (flights, bouncing)
-    )
+    turned = _turned(ours) and all(_turned(run["final_tilt_flight"]) for run in (flights, bouncing))
     flights = flights.isel(restitution=0)
     flying = flights.sel(spin=flights["flights"] > 0)
     share = 100 * flying["airborne_time"] / flying["last_touchdown"]
@@ -109,7 +107,7 @@ def _inverting(sweep: xr.Dataset, suffix: str, limit: float) -> np.ndarray:
     """Return the final tilts of the launches between omega_c2 and a limit, rad."""
     spins = sweep[f"spin{suffix}"].values
     return np.asarray(
-        sweep[f"final_theta{suffix}"].values[(spins > float(CRITICAL_SPINS[1])) & (spins < limit)]
+        sweep[f"final_tilt{suffix}"].values[(spins > float(CRITICAL_SPINS[1])) & (spins < limit)]
     )
 
 

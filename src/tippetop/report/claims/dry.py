@@ -24,7 +24,7 @@ dry-normal-mu.
 
 @examines("dry-tilting-rate")
 def _(data: xr.Dataset) -> Finding:
-    tilt = data["theta_held"]
+    tilt = data["tilt_held"]
     same = float(abs(tilt - tilt.isel(held=0)).max()) < _EQUAL
     rolls = same and int(data["slips_held"].sum()) == 0 and float(data["lost_held"].max()) < _EQUAL
     needed, shown = float(data["needed_main"]), data["held"].values
@@ -44,18 +44,18 @@ def _(data: xr.Dataset) -> Finding:
 @examines("dry-cohen-inversion")
 def _(data: xr.Dataset) -> Finding:
     window = data.sel(time=slice(0.0, COHEN_WINDOW + 1e-9))
-    highest = data["theta_stepped"].max("time")
+    highest = data["tilt_stepped"].max("time")
     tilts = listed("{:g} ms {:.2f}", 1e3 * data["step"].values, highest.values)
-    longest = window["theta_stepped"].isel(step=0)
+    longest = window["tilt_stepped"].isel(step=0)
     ends = [float(longest.sel(time=t, method="nearest")) for t in (1.0, 1.5, 2.0)]
     return Finding(
-        bool(window["theta_stepped"].sel(step=COHEN_STEP, method="nearest").max() > _OVER),
-        bool(data["theta"].max() > _OVER),
+        bool(window["tilt_stepped"].sel(step=COHEN_STEP, method="nearest").max() > _OVER),
+        bool(data["tilt"].max() > _OVER),
         f"With steps of {1e3 * COHEN_STEP:g} ms the classical Runge-Kutta method gives"
         f" {ends[0]:.2f}, {ends[1]:.2f} and {ends[2]:.2f} rad at 1, 1.5 and 2 s. Largest tilts"
         f" within {float(data['time'][-1]):g} s by the step (rad): {tilts}. Exactly, slip ends"
         f" after {float(data['sticks']):.6f} s, the top rolls from then on, and its tilt is at most"
-        f" {float(data['theta'].max()):.3f} rad.",
+        f" {float(data['tilt'].max()):.3f} rad.",
     )
 
 

@@ -119,7 +119,7 @@ def _change_in_flight(run: xr.Dataset) -> tuple[float, float]:
     """
     spans = zip(run["flight_start"].values, run["flight_end"].values, strict=True)
     inside = [run["energy_flight"].sel(time=slice(start, end)).values for start, end in spans]
-    return max(float(np.ptp(part)) for part in inside if len(part) > 1), float(run["highest_gap"])
+    return max(float(np.ptp(part)) for part in inside if len(part) > 1), float(run["max_gap"])
 
 
 @examines("fig10-impossible", "run-175")
@@ -185,7 +185,7 @@ def _(run: xr.Dataset) -> Finding:
 
 def _swing_by_second(run: xr.Dataset, suffix: str) -> np.ndarray:
     """Return the median swing of the tilt between turning points, rad, in every second of a run."""
-    theta, times = run[f"theta{suffix}"].values, run[f"time{suffix}"].values
+    theta, times = run[f"tilt{suffix}"].values, run[f"time{suffix}"].values
     turns = turning_points(theta)
     second, size = times[turns][1:].astype(int), np.abs(np.diff(theta[turns]))
     return np.array([np.median(size[second == k]) for k in np.unique(second)])
@@ -209,7 +209,7 @@ def _numerator(run: xr.Dataset, suffix: str) -> tuple[float, float, float]:
     """
     k = int(np.argmax(run[f"normal_force{suffix}"].values < 0))
     theta, theta_dot, phi_dot, omega3 = (
-        float(run[f"{name}{suffix}"][k]) for name in ("theta", "theta_dot", "phi_dot", "omega3")
+        float(run[f"{name}{suffix}"][k]) for name in ("tilt", "tilt_rate", "precession", "spin")
     )
     m, I1, I3, R, alpha, _, g = published_parameters(Problem.from_json(run.attrs["problem"]).top)
     s, c = np.sin(theta), np.cos(theta)
@@ -231,7 +231,7 @@ def _(run: xr.Dataset) -> Finding:
 @examines("sec4-may-fly", "run-175")
 def _(run: xr.Dataset) -> Finding:
     return Finding.unlisted(
-        float(run["highest_gap"]) > PLOTTED.value * float(REPORT.surface.size),
+        float(run["max_gap"]) > PLOTTED.value * float(REPORT.surface.size),
         f"It leaves the table first after {run['lift_off_time']:.2f} s, and rises higher than the 1"
         f" % of its radius that a drawing could show. {_hopping(run)} The report calls the motion"
         " hard to discuss; it can be computed.",
@@ -242,8 +242,8 @@ def _hopping(run: xr.Dataset) -> str:
     """Return a sentence on the flights of a launch on a table that only pushes."""
     return (
         f"When the table only pushes, the top makes {int(run['flights'])} flights, the highest of"
-        f" {1e3 * float(run['highest_gap']):.2f} mm, with {run['airborne_time']:.2f} s in the air"
+        f" {1e3 * float(run['max_gap']):.2f} mm, with {run['airborne_time']:.2f} s in the air"
         f" until the last touchdown at {run['last_touchdown']:.2f} s; its axis passes the"
         f" horizontal at {run['turning_time']:.1f} s, and it ends at"
-        f" {run['final_theta_flight']:.3f} rad."
+        f" {run['final_tilt_flight']:.3f} rad."
     )

@@ -146,7 +146,7 @@ def _(wide: xr.Dataset) -> Finding:
 @examines("fig08-around-pi", "run-mu-100")
 def _(run: xr.Dataset) -> Finding:
     (theirs, _), (ours, last) = (_round_the_pole(run, suffix) for suffix in ("_listing", ""))
-    late = run["theta"].sel(time=slice(last, None))
+    late = run["tilt"].sel(time=slice(last, None))
     return Finding(
         theirs > 0.5,
         ours > 0.5,
@@ -163,11 +163,11 @@ def _nearest_to_pi(run: xr.Dataset, suffix: str) -> tuple[np.ndarray, np.ndarray
     """Return the times (s) of the largest tilts of nutations beyond pi/2, and the precession
     (rad/s) then.
     """
-    times, theta = run[f"time{suffix}"].values, run[f"theta{suffix}"].values
+    times, theta = run[f"time{suffix}"].values, run[f"tilt{suffix}"].values
     rising = np.diff(theta) > 0
     peaks = np.flatnonzero(rising[:-1] & ~rising[1:]) + 1
     peaks = peaks[theta[peaks] > np.pi / 2]
-    return times[peaks], run[f"phi_dot{suffix}"].values[peaks]
+    return times[peaks], run[f"precession{suffix}"].values[peaks]
 
 
 def _round_the_pole(run: xr.Dataset, suffix: str) -> tuple[float, float]:
@@ -226,7 +226,7 @@ _TIME: dict[str, Any] = {
 @examines("table-1-mu-unit", "units", **_LENGTH, correct="s/m, which section 2.2 has right,")
 @examines("table-1-g-unit", "units", **_TIME, correct="m s^-2")
 def _(check: xr.Dataset, *, quantity: str, others: str, wrong: str, correct: str) -> Finding:
-    misses = abs(check[f"theta_in_{others}"] - check["theta"])
+    misses = abs(check[f"tilt_in_{others}"] - check["tilt"])
     k = int(np.argmin(misses.values))
     power = float(misses[f"power_of_{quantity}"][k])
     return Finding(

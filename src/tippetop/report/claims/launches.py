@@ -23,9 +23,9 @@ def _(run: xr.Dataset, other_run: xr.Dataset) -> Finding:
         float(theirs[0]),
         float(ours[k]),
         "The report does not state how it read the time. By the definition of section 3.3 (within"
-        f" {SETTLED:g} rad of the last tilt) it is {run['arrives']:.2f} s. One threshold has to"
-        f" hold for both figures: {within:.3f} rad comes nearest to both printed times, and gives"
-        f" {ours[k]:.2f} s for this one.",
+        f" {SETTLED:g} rad of the last tilt) it is {run['arrival_time']:.2f} s. One threshold has"
+        f" to hold for both figures: {within:.3f} rad comes nearest to both printed times, and"
+        f" gives {ours[k]:.2f} s for this one.",
         float(theirs[k]),
         f"arrived is within {within:.3f} rad of the last tilt, for Figs. 4 and 5",
     )
@@ -66,9 +66,9 @@ def _(run: xr.Dataset, *, name: str, meant: str) -> Finding:
 
 @examines("fig04-inverts", "run-155", tolerance=ARRIVED)
 def _(run: xr.Dataset) -> Finding:
-    distance = math.pi - float(run["end_theta"])
+    distance = math.pi - float(run["end_tilt"])
     return Finding(
-        *both(run, "end_theta"),
+        *both(run, "end_tilt"),
         f"After 20 s the axis is still {1e3 * distance:.2f} mrad from the vertical; this decays"
         " slowly.",
     )
@@ -89,7 +89,7 @@ def _(run: xr.Dataset) -> Finding:
 def _(*runs: xr.Dataset) -> Finding:
     theirs, ours, precession = (
         [_detour(run[name].values) for run in runs]
-        for name in ("omega3_listing", "omega3", "phi_dot")
+        for name in ("spin_listing", "spin", "precession")
     )
     return Finding(
         max(theirs),
@@ -107,10 +107,10 @@ def _detour(values: np.ndarray) -> float:
 
 @examines("fig13-upright", "run-10", tolerance=ARRIVED)
 def _(run: xr.Dataset) -> Finding:
-    away = np.abs(run["theta"].values - float(run["end_theta"])) > SETTLED
+    away = np.abs(run["tilt"].values - float(run["end_tilt"])) > SETTLED
     since = float(run["time"].values[np.flatnonzero(away)[-1] + 1])
     return Finding(
-        *both(run, "end_theta"),
+        *both(run, "end_tilt"),
         f"The nutation of the launch dies away: from {since:.2f} s on the tilt stays below"
         f" {SETTLED:g} rad.",
     )
@@ -120,7 +120,8 @@ def _(run: xr.Dataset) -> Finding:
 @examines("fig15-inverts", "run-120", tolerance=ARRIVED)
 def _(run: xr.Dataset) -> Finding:
     return Finding(
-        *both(run, "end_theta"), f"It arrives within {SETTLED:g} rad after {run['arrives']:.2f} s."
+        *both(run, "end_tilt"),
+        f"It arrives within {SETTLED:g} rad after {run['arrival_time']:.2f} s.",
     )
 
 

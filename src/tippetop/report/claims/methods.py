@@ -82,11 +82,11 @@ def _misses(run: xr.Dataset) -> tuple[float, ...]:
     """Return the errors of final tilt, precession, spin and of arrival, as shares of their
     plots.
     """
-    spans = (np.pi, 2.0 * float(abs(run["phi_dot"]).max()), float(np.ptp(run["omega3"].values)))
-    ends = zip(("end_theta", "end_phi_dot", "end_omega3"), spans, strict=True)
+    spans = (np.pi, 2.0 * float(abs(run["precession"]).max()), float(np.ptp(run["spin"].values)))
+    ends = zip(("end_tilt", "end_precession", "end_spin"), spans, strict=True)
     parts = [abs(float(run[f"{end}_listing"] - run[end])) / span for end, span in ends]
     window = float(run["time"][-1])
-    return (*parts, abs(float(run["arrival_time_listing"][0] - run["arrives"])) / window)
+    return (*parts, abs(float(run["arrival_time_listing"][0] - run["arrival_time"])) / window)
 
 
 def _name(run: xr.Dataset) -> str:
@@ -156,7 +156,7 @@ def _(counts: xr.Dataset) -> Finding:
 def _(check: xr.Dataset, *runs: xr.Dataset) -> Finding:
     size = float(check["size"])
     theirs = float(check["jump_listing"]) / size
-    tilts = {_name(run): run["theta_integrated_listing"] for run in runs}
+    tilts = {_name(run): run["tilt_integrated_listing"] for run in runs}
     wraps = {name: int(((tilt < 0) | (tilt > np.pi)).sum()) for name, tilt in tilts.items()}
     outside = listed("{} in {}", wraps.values(), wraps)
     return Finding(

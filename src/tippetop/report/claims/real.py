@@ -39,7 +39,7 @@ def _(data: xr.Dataset, *, printed: float, event: str) -> Finding:
 @examines("real-leine-stepping")
 def _(data: xr.Dataset) -> Finding:
     events = ("stem", "back", "both", "apart")
-    off = {name: data[name] - data[f"exact_{name}"] for name in (*events, "final_theta")}
+    off = {name: data[name] - data[f"exact_{name}"] for name in (*events, "final_tilt")}
     goes = all(abs(float(off[name][-1])) < 0.5 * abs(float(off[name][0])) for name in events)
     columns = (
         1e3 * data["step"],
@@ -47,7 +47,7 @@ def _(data: xr.Dataset) -> Finding:
         off["back"],
         off["both"],
         data["strikes"],
-        off["final_theta"],
+        off["final_tilt"],
     )
     steps = listed(
         "{:g} ms: {:+.4f}, {:+.3f}, {:+.3f} s, {:.0f} strikes, {:+.3f} rad",
@@ -66,7 +66,7 @@ def _(data: xr.Dataset) -> Finding:
 
 @examines("real-stem-test")
 def _(data: xr.Dataset) -> Finding:
-    stands = (data["final_theta"] > np.pi - data.attrs["upright_rad"]).values
+    stands = (data["final_tilt"] > np.pi - data.attrs["upright_rad"]).values
     enough = (data["jellett"] > data["jellett_needed"]).values
     share = (data["jellett"] / data["jellett_needed"]).values
     return Finding.unlisted(
@@ -81,7 +81,7 @@ def _(data: xr.Dataset) -> Finding:
 
 @examines("real-egg-rises")
 def _(data: xr.Dataset) -> Finding:
-    final = data["theta"].isel(time=-1)
+    final = data["tilt"].isel(time=-1)
     tilts = listed("{:g} rad/s: {:.3f}", data["rate"].values, final.values, between="; ")
     return Finding.unlisted(
         float(final.isel(rate=-1)) > np.pi - 0.1,
@@ -92,7 +92,7 @@ def _(data: xr.Dataset) -> Finding:
 
 @examines("real-egg-jumps")
 def _(data: xr.Dataset) -> Finding:
-    lifts = data["lift_off"].dropna("rate")
+    lifts = data["liftoff"].dropna("rate")
     times = listed("{:.3f} s at {:g} rad/s", lifts.values, lifts["rate"].values)
     return Finding.unlisted(bool(len(lifts)), f"First lift-offs: {times or 'none'}.")
 

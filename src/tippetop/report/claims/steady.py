@@ -27,7 +27,7 @@ def _(steady: xr.Dataset, *runs: xr.Dataset) -> Finding:
 
 @examines("eq-2.16", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
-    residual = np.maximum(steady["residual_216"].values, steady["phi_ddot"].values)
+    residual = np.maximum(steady["residual_216"].values, steady["azimuth_ddot"].values)
     return Finding.unlisted(
         float(residual.max()),
         f"The largest of {len(residual)} bodies after {steady.attrs['duration_s']:g} s;"
@@ -38,11 +38,11 @@ def _(steady: xr.Dataset) -> Finding:
 _ALPHA = float(REPORT.surface.proportions[0])
 
 
-def _rounding_of_217(theta: float, phi_dot: float, omega3: float) -> float:
+def _rounding_of_217(tilt: float, precession: float, spin: float) -> float:
     """Return the residual (rad/s) of (2.17) that rounding its three numbers to three decimals can
     cause.
     """
-    return 0.0005 * (abs(phi_dot * math.sin(theta)) + abs(math.cos(theta) - _ALPHA) + 1.0)
+    return 0.0005 * (abs(precession * math.sin(tilt)) + abs(math.cos(tilt) - _ALPHA) + 1.0)
 
 
 @examines(
@@ -88,14 +88,14 @@ def _(states: xr.Dataset) -> Finding:
 @examines("eq-2.17-exception", "run-10", tolerance=STEADY)
 def _(run: xr.Dataset) -> Finding:
     late = run.sel(time=slice(15.0, None))
-    residual = residual_of_217(late["theta"], late["phi_dot"], late["omega3"], _ALPHA)
+    residual = residual_of_217(late["tilt"], late["precession"], late["spin"], _ALPHA)
     return Finding.unlisted(
-        float((abs(residual) / abs(late["omega3"])).max()),
+        float((abs(residual) / abs(late["spin"])).max()),
         "Judged, like (2.14), over all the states in which the report's top can end. theta = 0 is"
         " one of them and another exception: the derivation divides by sin(theta). An upright top"
         " spins steadily at any omega3, and its remaining nutation turns at"
-        f" {late['phi_dot'].mean():.2f} rad/s, where (2.17) would give"
-        f" {float(late['omega3'].mean()) / (1.0 - _ALPHA):.2f} rad/s.",
+        f" {late['precession'].mean():.2f} rad/s, where (2.17) would give"
+        f" {float(late['spin'].mean()) / (1.0 - _ALPHA):.2f} rad/s.",
     )
 
 
@@ -104,7 +104,7 @@ def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
     # The bracket over I3 is alpha + (gamma - 1) cos(theta): it has a zero where |gamma - 1| reaches
     # alpha.
     bracket = chart["top_alpha"] - abs(chart["top_gamma"] - 1.0)
-    least, tilting = float(bracket[0]), float(steady["theta_dot"].max())
+    least, tilting = float(bracket[0]), float(steady["tilt_rate"].max())
     return Finding.unlisted(
         least > 0 and tilting < STEADY.value,
         "Judged, like (2.17), over all the states in which the report's top can end: in them the"
@@ -116,20 +116,20 @@ def _(chart: xr.Dataset, steady: xr.Dataset) -> Finding:
 
 @examines("eq-2.17-any-body", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
-    residual = abs(steady["residual_217"]) / abs(steady["phi_dot"])
+    residual = abs(steady["residual_217"]) / abs(steady["precession"])
     each = listed("{} {}", steady["body"].values, map(rounded, residual.values))
     return Finding.unlisted(float(residual.max()), f"Differences over phi': {each}.")
 
 
 @examines("eq-2.16-third", "steady-bodies", tolerance=STEADY)
 def _(steady: xr.Dataset) -> Finding:
-    precession, spin = steady["phi_dot"], steady["omega3"]
-    rotation = spin - precession * np.cos(steady["theta"])
+    precession, spin = steady["precession"], steady["spin"]
+    rotation = spin - precession * np.cos(steady["tilt"])
     slowest = min(float(abs(rate).min()) for rate in (precession, rotation))
     return Finding.unlisted(
         slowest,
         f"A misprint for omega3' = 0, which holds: in the steady states of {steady.sizes['body']}"
-        f" bodies it is at most {steady['omega3_rate'].max():.0e} rad/s². The report introduces no"
+        f" bodies it is at most {steady['spin_rate'].max():.0e} rad/s². The report introduces no"
         " angle phi_3, and as printed the equation would be wrong for either angle: the precession"
         f" and the rotation about the axis both go on, at {slowest:.2f} rad/s or faster."
         f" {TRANSCRIBED}",

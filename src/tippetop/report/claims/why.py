@@ -47,7 +47,7 @@ def _(states: xr.Dataset, chart: xr.Dataset, listing: xr.Dataset) -> Finding:
     )
     both = int((states["run_stable_jump"] == 2).sum())
     first, second = (float(printed) for printed in CRITICAL_SPINS)
-    spins, tilts = listing["spin_listing"].values, listing["final_theta_listing"].values
+    spins, tilts = listing["spin_listing"].values, listing["final_tilt_listing"].values
     tilted = (spins > first + 1.0) & (spins < second - 1.0)
     by_method = (
         bool((tilts[spins < first] < SETTLED).all())

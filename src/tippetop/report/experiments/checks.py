@@ -24,9 +24,9 @@ def _units(quick: bool) -> xr.Dataset:
     times = [_tilt_after(_in_tenths(report, int(power)), 10.0 * seconds) for power in time]
     return dataset(
         {"power_of_length": length, "power_of_time": time},
-        theta=(_tilt_after(report, seconds), "rad", "tilt after 2 s, in metres and seconds"),
-        theta_in_centimetres=(lengths, "rad", "the same in centimetres", "power_of_length"),
-        theta_in_tenths=(times, "rad", "the same in tenths of a second", "power_of_time"),
+        tilt=(_tilt_after(report, seconds), "rad", "tilt after 2 s, in metres and seconds"),
+        tilt_in_centimetres=(lengths, "rad", "the same in centimetres", "power_of_length"),
+        tilt_in_tenths=(times, "rad", "the same in tenths of a second", "power_of_time"),
     )
 
 
@@ -56,7 +56,7 @@ def _in_centimetres(problem: Problem, power: int) -> Problem:
 
 
 def _tilt_after(problem: Problem, duration: float) -> float:
-    return float(simulate(on_table(problem), duration, samples=2)["theta"].values[-1])
+    return float(simulate(on_table(problem), duration, samples=2)["tilt"].values[-1])
 
 
 @experiment("block", "a block on the table of Fig. 8", 0.1)

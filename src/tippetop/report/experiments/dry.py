@@ -94,10 +94,10 @@ def _rolling(quick: bool) -> xr.Dataset:
         simulate(with_friction(main, CoulombFriction(mu=mu)), 20.0, times=times)
         for mu in coefficients
     ]
-    lost = [float(abs(run["energy_lost"] / run["energy_start"])) for run in rolling]
+    lost = [float(abs(run["energy_lost"] / run["initial_energy"])) for run in rolling]
     slips = [len(event_times(run, "slip")) for run in rolling]
     less = with_friction(main, CoulombFriction(mu=0.999 * needed))
-    below = simulate(less, 0.1, samples=2, phase_limit=1)  # for more than a period of the nutation
+    below = simulate(less, 0.1, samples=2, mode_limit=1)  # for more than a period of the nutation
     slipping = with_friction(main, CoulombFriction(mu=SLIPPERY))
     slippery = simulate(slipping, 0.3 if quick else 3.0, **WITHOUT_COMPILING)
     return dataset(
@@ -111,11 +111,11 @@ def _rolling(quick: bool) -> xr.Dataset:
         {"spin_rad_per_s": SPIN, "tilt_rad": TILT, "slippery_mu": SLIPPERY},
         friction_needed=(least, "1", "least mu for rolling", "tilt", "spin"),
         needed_main=(needed, "1", "least mu for rolling, main launch"),
-        theta_held=([run["theta"].values for run in rolling], "rad", "tilt", "held", "time"),
+        tilt_held=([run["tilt"].values for run in rolling], "rad", "tilt", "held", "time"),
         slips_held=(slips, "1", "times of slipping", "held"),
         lost_held=(lost, "1", "energy lost, relative", "held"),
         held_below=(float(below["end_time"]), "s", "how long a little less holds it"),
-        theta_slips=(slippery["theta"].values, "rad", "tilt", "time_slips"),
+        tilt_slips=(slippery["tilt"].values, "rad", "tilt", "time_slips"),
     )
 
 
@@ -155,9 +155,9 @@ def _cohen(quick: bool) -> xr.Dataset:
     energy_change = float(np.ptp(sticking) / sticking[-1])
     return dataset(
         {"step": steps, "time": times},
-        theta_stepped=(tilts, "rad", "tilt, stepped", "step", "time"),
+        tilt_stepped=(tilts, "rad", "tilt, stepped", "step", "time"),
         slowest=(slowest, "m s-1", "least slip speed at a step", "step"),
-        theta=(exact["theta"].values, "rad", "tilt, exact", "time"),
+        tilt=(exact["tilt"].values, "rad", "tilt, exact", "time"),
         sticks=(stick, "s", "when slip ends"),
         slips_again=(len(event_times(exact, "slip")), "1", "how often it slips again"),
         energy_kept=(energy_change, "1", "largest relative change of the energy while it sticks"),
@@ -169,7 +169,7 @@ def turning_time(problem: Problem, window: float) -> float:
 
     nan is returned if it does not do so within the window, or before the top sticks.
     """
-    return float(simulate(problem, window, samples=2, phase_limit=1)["turns_over"])
+    return float(simulate(problem, window, samples=2, mode_limit=1)["turnover_time"])
 
 
 @experiment("dry-smoothed", "smoothed Coulomb friction as the smoothing goes away", 4.0)
@@ -186,13 +186,13 @@ def _smoothed(quick: bool) -> xr.Dataset:
     exact = simulate(
         with_friction(base, CoulombFriction(mu=SMOOTHED)), float(windows.max()), samples=2001
     )
-    turns, slopes = float(exact["turns_over"]), np.diff(np.log(times)) / np.diff(np.log(eps))
+    turns, slopes = float(exact["turnover_time"]), np.diff(np.log(times)) / np.diff(np.log(eps))
     return dataset(
         {"eps": (eps, "m s-1", "slip speed below which friction falls to zero")},
         {"mu": SMOOTHED, "spin_rad_per_s": SMOOTHED_SPIN},
         turning_time=(times, "s", "first tilt of more than pi/2", "eps"),
         last_exponent=(slopes[-1], "1", "d ln t / d ln eps at the least eps"),
-        highest=(float(exact["theta"].max()), "rad", "largest tilt on exact Coulomb friction"),
+        highest=(float(exact["tilt"].max()), "rad", "largest tilt on exact Coulomb friction"),
         followed=(float(exact["end_time"]), "s", "how long that top was followed"),
         exact_turns=(turns, "s", "when that top turns over; nan if never"),
     )

@@ -51,7 +51,7 @@ def _printed(quick: bool) -> xr.Dataset:
     misses["(2.15)"] = np.abs(force / now["normal_force"].values - 1.0).max()
     misses["a"] = max(_arm_miss(now.isel(time=k), top) for k in range(len(_INSTANTS)))
     falling = now["velocity"].values[:, 2]
-    rising = _STENCIL @ _arm_height(run["theta"].values, top).reshape(-1, 5).T
+    rising = _STENCIL @ _arm_height(run["tilt"].values, top).reshape(-1, 5).T
     misses["(s + a).z = 0"] = np.abs(falling + rising).max() / np.abs(falling).max()
     return dataset(
         {"equation": list(misses)},
@@ -180,14 +180,14 @@ def _steady(quick: bool) -> xr.Dataset:
         rows.append((y[0], y[3], y[4], *_residuals(y, problem.top), abs(rates[4]), *turning, *slip))
     table = np.array(rows).T
     names = {
-        "theta": ("rad", "tilt"),
-        "phi_dot": ("rad s-1", "precession"),
-        "omega3": ("rad s-1", "axial spin"),
+        "tilt": ("rad", "tilt"),
+        "precession": ("rad s-1", "precession"),
+        "spin": ("rad s-1", "axial spin"),
         "residual_217": ("rad s-1", "omega3 - phi' (cos theta - alpha), equation (2.17)"),
         "residual_216": ("1", "largest of the lines of (2.16), each over the largest of its terms"),
-        "omega3_rate": ("rad s-2", "rate of the axial spin"),
-        "phi_ddot": ("1", "rate of the precession, over its square"),
-        "theta_dot": ("1", "rate of the tilt, over the precession"),
+        "spin_rate": ("rad s-2", "rate of the axial spin"),
+        "azimuth_ddot": ("1", "rate of the precession, over its square"),
+        "tilt_rate": ("1", "rate of the tilt, over the precession"),
         "slip": ("1", "slip speed, over R omega3"),
         "slip_rate": ("1", "rates of its components, over R omega3 phi'"),
     }
@@ -217,9 +217,9 @@ def _residuals(y: list[float], top: Top) -> tuple[float, float]:
     return residual_of_217(theta, precession, spin, alpha), residual
 
 
-def residual_of_217(theta: Scalar, phi_dot: Scalar, omega3: Scalar, alpha: float) -> Scalar:
+def residual_of_217(tilt: Scalar, precession: Scalar, spin: Scalar, alpha: float) -> Scalar:
     """Return the residual of (2.17), omega3 = phi' (cos(theta) - alpha), rad/s."""
-    return omega3 - phi_dot * (np.cos(theta) - alpha)
+    return spin - precession * (np.cos(tilt) - alpha)
 
 
 @experiment("rotation", "the equations of section 2.1 at random states", 0.1)

@@ -25,7 +25,7 @@ SAMPLES_PER_SECOND = 100
 
 def leaves_at(problem: Problem, window: float) -> float:
     """Return when a launch first leaves the table, s; nan if it does not within the window."""
-    return float(simulate(stopping(problem), window, samples=2)["first_lift_off"])
+    return float(simulate(stopping(problem), window, samples=2)["liftoff_time"])
 
 
 def first_onset(
@@ -69,7 +69,7 @@ def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: b
     name = field.partition(".")[2]
     spins = np.arange(60.0, 600.1, 120.0 if quick else 30.0)
     base = stopping(report_problem(tilt=TILT, mu=MU))
-    times = swept(base, {field: values, "launch.spin": spins}, windows[-1])["first_lift_off"].values
+    times = swept(base, {field: values, "launch.spin": spins}, windows[-1])["liftoff_time"].values
 
     def onset(window: float, value: float, row: np.ndarray) -> float:
         def leaves(spin: float) -> float:
@@ -82,7 +82,7 @@ def _onsets(field: str, values: np.ndarray, windows: tuple[float, ...], quick: b
     onset_name = "least spin of the scan that leaves the table, refined by halving"
     return dataset(
         {"spin": spins, "window": list(windows), name: values},
-        first_lift_off=(times, "s", "when the top first leaves the table", name, "spin"),
+        liftoff_time=(times, "s", "when the top first leaves the table", name, "spin"),
         onset=(onsets, "rad s-1", onset_name, "window", name),
     )
 
@@ -102,12 +102,12 @@ def _over_tilt(quick: bool) -> xr.Dataset:
 def followed(spins: tuple[float, ...], restitution: float) -> xr.Dataset:
     """Return launches with these spins (rad/s) on a table that only pushes, with all their flights.
 
-    Variables over restitution and spin: those of `flight_readings`, and first_lift_off, s.
+    Variables over restitution and spin: those of `flight_readings`, and liftoff_time, s.
     """
     samples = int(SAMPLES_PER_SECOND * FLIGHTS_WINDOW) + 1
     problems = [unilateral(report_problem(spin), restitution) for spin in spins]
     runs = [simulate(problem, FLIGHTS_WINDOW, samples=samples) for problem in problems]
-    read = [flight_readings(run).assign(first_lift_off=run["first_lift_off"]) for run in runs]
+    read = [flight_readings(run).assign(liftoff_time=run["liftoff_time"]) for run in runs]
     data = dataset(
         {"spin": list(spins), "restitution": [restitution]}, {"window_s": FLIGHTS_WINDOW}
     )

@@ -37,8 +37,8 @@ class Times(NamedTuple):
 def converged_times(spins: Array, mu: Array, window: float = WINDOW) -> Times:
     """Return the converged times, on a table that pulls."""
     runs = swept(on_table(report_problem()), {"launch.spin": spins, "friction.mu": mu}, window)
-    over = runs["final_theta"] > math.pi / 2
-    return Times(runs["arrives"].where(over).values, runs["turns_over"].values)
+    over = runs["final_tilt"] > math.pi / 2
+    return Times(runs["arrival_time"].where(over).values, runs["turnover_time"].values)
 
 
 def listing_times(spins: Array, mu: Array) -> Times:
@@ -51,7 +51,7 @@ def _listing_times(spin: float, mu: float) -> tuple[float, float]:
     run = listing_run(report_problem(spin, mu=mu), WINDOW)
     if run.attrs["failure"]:
         return math.nan, math.nan
-    times, theta = run["time"].values, run["theta"].values
+    times, theta = run["time"].values, run["tilt"].values
     passed = crossings(times, theta - 0.5 * math.pi)
     return flip_time(times, theta), float(passed[0]) if len(passed) else math.nan
 
@@ -135,5 +135,5 @@ def _extremes(quick: bool) -> xr.Dataset:
     return dataset(
         {"mu": mu},
         {"spin_rad_per_s": SPIN, "window_s": window},
-        turning_time=(runs["turns_over"].values, *_TURNING, "mu"),
+        turning_time=(runs["turnover_time"].values, *_TURNING, "mu"),
     )

@@ -66,7 +66,7 @@ def _order(quick: bool) -> xr.Dataset:
         return float(state[0])
 
     final = by_taylor(span)
-    tilt = float(final["theta"][-1])
+    tilt = float(final["tilt"][-1])
     errors = {
         "rk4_in_all": [_distance(by_rk4(span, h), final) for h in steps],
         "rk4_in_a_step": [_distance(by_rk4(h, h), by_taylor(float(h))) for h in steps],
@@ -173,7 +173,7 @@ def _stiffness(quick: bool) -> xr.Dataset:
     ]
     counts = np.array([[one.evaluations for one in row] for row in made])
     runs = [simulate(on_table(report_problem(*launch)), _SPAN, samples=2) for launch in LAUNCHES]
-    true = [float(run["final_theta"]) for run in runs]
+    true = [float(run["final_tilt"]) for run in runs]
     bdf = np.array([row[methods.index("bdf")].tilt for row in made])
     spins, tilts, frictions = np.array(LAUNCHES).T
     counted = np.where(counts < 0, np.nan, counts)

@@ -55,10 +55,10 @@ def _map(quick: bool) -> xr.Dataset:
     grid = [
         [with_friction(report_problem(float(s)), patch(MU, float(r))) for s in spins] for r in radii
     ]
-    runs = [[simulate(one, MAP_WINDOW, samples=2, phase_limit=1) for one in row] for row in grid]
-    times = [[float(run["turns_over"]) for run in row] for row in runs]
-    least = min(float(run["least_normal_force"]) for row in runs for run in row)
-    theirs = float(simulate(ALONE, 3.0, samples=2)["turns_over"])
+    runs = [[simulate(one, MAP_WINDOW, samples=2, mode_limit=1) for one in row] for row in grid]
+    times = [[float(run["turnover_time"]) for run in row] for row in runs]
+    least = min(float(run["min_normal_force"]) for row in runs for run in row)
+    theirs = float(simulate(ALONE, 3.0, samples=2)["turnover_time"])
     limit = critical_spin(SteadyKind.UPRIGHT, report_problem().top)
     return dataset(
         {"radius": (radii, "m", "radius of the contact patch"), "spin": spins},

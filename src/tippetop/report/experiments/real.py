@@ -102,7 +102,7 @@ def _leine(quick: bool) -> xr.Dataset:
     errors = [float(run["energy_error"]) for run in runs]
     return dataset(
         {"pressure": pressures, "time": runs[0]["time"].values},
-        theta=([run["theta"].values for run in runs], "rad", "tilt", "pressure", "time"),
+        tilt=([run["tilt"].values for run in runs], "rad", "tilt", "pressure", "time"),
         energy_error=(errors, "1", "energy", "pressure"),
         **{
             name: ([each[name] for each in times], "s", long, "pressure")
@@ -138,12 +138,12 @@ def _stems(quick: bool) -> xr.Dataset:
         brought.append(abs(jellett_about(1, axis, momentum, problem.top)))
         needed.append(least_jellett_to_stand(problem.body))
         struck.append(touch)
-        final.append(float(run["theta"][-1]))
+        final.append(float(run["tilt"][-1]))
     over = "radius"
     return dataset(
         {"radius": (radii, "m", "radius of the stem's tip")},
         {"window_s": STEM_WINDOW, "upright_rad": UPRIGHT_ON_STEM, "reach_m": REACH},
-        final_theta=(final, "rad", "tilt at the end", over),
+        final_tilt=(final, "rad", "tilt at the end", over),
         jellett=(brought, "kg m3 s-1", "Jellett's integral about the tip at its touch", over),
         jellett_needed=(needed, "kg m3 s-1", "least Jellett's integral to stand on the tip", over),
         touch=(struck, "s", "first touch of the stem", over),
@@ -158,15 +158,15 @@ def _egg(quick: bool) -> xr.Dataset:
     launches = [Launch(tilt=1.5, spin=0.0, precession=rate) for rate in rates]
     problems = [Problem(body=EGG, friction=friction, launch=launch) for launch in launches]
     runs = [simulate(problem, EGG_WINDOW, samples=401) for problem in problems]
-    lifts = [first_of(event_times(run, "lift-off")) for run in runs]
+    lifts = [first_of(event_times(run, "liftoff")) for run in runs]
     return dataset(
         {
             "rate": (rates, "rad s-1", "rate of turning about the vertical at launch"),
             "time": runs[0]["time"].values,
         },
         {"mu_s_per_m": EGG_MU},
-        theta=([run["theta"].values for run in runs], "rad", "tilt", "rate", "time"),
-        lift_off=(lifts, "s", "lift-off", "rate"),
+        tilt=([run["tilt"].values for run in runs], "rad", "tilt", "rate", "time"),
+        liftoff=(lifts, "s", "lift-off", "rate"),
     )
 
 
@@ -192,8 +192,8 @@ def _rolling(quick: bool) -> xr.Dataset:
             rolls = rolling(body, tilt)
             if rolls is not None:
                 motion, run = rolls
-                precession = float(run["phi_dot"].mean())
-                drift = float(np.abs(run["theta"] - tilt).max())
+                precession = float(run["precession"].mean())
+                drift = float(np.abs(run["tilt"] - tilt).max())
                 measured[name].append((tilt, motion.precession, precession, drift))
     columns = {
         f"{name}_{label}": (list(values), *meaning, name)

@@ -22,7 +22,7 @@ from tippetop.report.readings import (
     turning_points,
 )
 from tippetop.run import simulate
-from tippetop.sweeps import Ending, Product, Sweep, compute
+from tippetop.sweeps import Outcome, Product, Sweep, compute
 
 WINDOW = 20.0
 """Length of the report's runs, s (its listing, line 13)."""
@@ -41,7 +41,7 @@ CAPPED_SPINS = (165.0, 175.0, 200.0)
 SLOW_SPINS = (10.0, 20.0, 25.0)
 """Spins of launches below omega_c1, rad/s."""
 
-SERIES = ("theta", "theta_dot", "phi_dot", "omega3", "slip_x", "slip_y", "normal_force", "energy")
+SERIES = ("tilt", "tilt_rate", "precession", "spin", "slip_x", "slip_y", "normal_force", "energy")
 """Variables that are compared over time."""
 
 _DRAWN = 10_000
@@ -73,7 +73,9 @@ def swept(problem: Problem, values: Mapping[str, np.ndarray], window: float = WI
     Results of launches that failed, were inaccurate or could not be set up are nan.
     """
     sweep = compute(Sweep(problem, Product.of(values), window, SWEPT))
-    return sweep.where(~sweep["outcome"].isin([Ending.FAILED, Ending.INACCURATE, Ending.BAD]))
+    return sweep.where(
+        ~sweep["outcome"].isin([Outcome.FAILED, Outcome.INACCURATE, Outcome.INVALID])
+    )
 
 
 def event_times(run: xr.Dataset, kind: str, surface: int | None = None) -> np.ndarray:
@@ -86,16 +88,16 @@ def event_times(run: xr.Dataset, kind: str, surface: int | None = None) -> np.nd
 
 
 _FLIGHT = {
-    "turns_over": "turning_time",
-    "impact_energy_lost": "energy_in_impacts",
-    "final_theta": "final_theta_flight",
+    "turnover_time": "turning_time",
+    "energy_lost_impacts": "energy_in_impacts",
+    "final_tilt": "final_tilt_flight",
 }
 """Names in experiments of some numbers of a run on a table that only pushes."""
 
 
 def flight_readings(run: xr.Dataset) -> xr.Dataset:
     """Return numbers of a run on a table that only pushes."""
-    readings = run[["flights", "airborne_time", "highest_gap", *_FLIGHT]].rename(_FLIGHT)
+    readings = run[["flights", "airborne_time", "max_gap", *_FLIGHT]].rename(_FLIGHT)
     last, rise = max(run["flight_end"].values, default=0.0), np.diff(run["energy"].values).max()
     readings["last_touchdown"] = variable(last, "s", "end of the last flight; 0 without one")
     readings["energy_rise"] = variable(
@@ -119,12 +121,12 @@ def comparison(problem: Problem, quick: bool) -> xr.Dataset:
         published = published_energy([true[name].values for name in VARIABLES], problem.top, np)
     true = true.assign(energy_published=("time", np.asarray(published)))
     data = _series(true, listing).assign(_readings(true, "")).assign(_readings(listing, "_listing"))
-    stopped = float(simulate(stopping(problem), WINDOW, samples=2)["first_lift_off"])
+    stopped = float(simulate(stopping(problem), WINDOW, samples=2)["liftoff_time"])
     data["lift_off_time"] = variable(stopped, "s", "when the table would first have to pull")
-    data["arrives"] = true["arrives"]
+    data["arrival_time"] = true["arrival_time"]
     if math.isfinite(stopped):
         data = data.assign(_continuation(problem, data["time"].values))
-    data.attrs = {"problem": problem.to_json(), "outcome": true.attrs["outcome"]}
+    data.attrs = {"problem": problem.to_json(), "outcome": true.attrs["status"]}
     return data
 
 
@@ -150,10 +152,10 @@ def _series(true: xr.Dataset, listing: xr.Dataset) -> xr.Dataset:
     data["time_listing"] = variable(thinned["time"].values, "s", label, "time_listing")
     labels = {
         "energy": f"{published} and its method",
-        "theta_integrated": "theta before it is wrapped",
+        "tilt_integrated": "theta before it is wrapped",
     }
-    for name in (*SERIES, "theta_integrated"):
-        attrs = data["theta" if name not in data else name].attrs
+    for name in (*SERIES, "tilt_integrated"):
+        attrs = data["tilt" if name not in data else name].attrs
         label = labels.get(name, f"{attrs['long_name']}, by the report's method")
         data[f"{name}_listing"] = variable(
             thinned[name].values, attrs["units"], label, "time_listing"
@@ -165,19 +167,19 @@ def _continuation(problem: Problem, times: np.ndarray) -> dict[str, object]:
     """Return the launch on a table that only pushes: its series, its flights and its readings."""
     run = simulate(unilateral(problem), WINDOW, times=times)
     drawn: dict[str, object] = {}
-    for name in ("theta", "normal_force", "energy"):
+    for name in ("tilt", "normal_force", "energy"):
         label = f"{run[name].attrs['long_name']}, on a table that only pushes"
         drawn[f"{name}_flight"] = variable(
             run[name].values, run[name].attrs["units"], label, "time"
         )
-    for name in ("flight_start", "flight_end", "flight_highest_gap"):
+    for name in ("flight_start", "flight_end", "flight_max_gap"):
         drawn[name] = run[name]
     return drawn | {str(name): value for name, value in flight_readings(run).items()}
 
 
 def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
     """Return the readings of a run; see `tippetop.report.readings`."""
-    times, theta, turning = run["time"].values, run["theta"].values, run["phi_dot"].values
+    times, theta, turning = run["time"].values, run["tilt"].values, run["precession"].values
     changes = crossings(times, turning)
     quiet = longest_quiet(times, turning)
     slip = np.hypot(run["slip_x"].values, run["slip_y"].values)
@@ -193,9 +195,9 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
         "quiet_start": variable(quiet[0], "s", "start of the longest time between two reversals"),
         "quiet_end": variable(quiet[1], "s", "end of the longest time between two reversals"),
         "last_reversal": variable(changes[-1] if len(changes) else np.nan, "s", "last reversal"),
-        "end_theta": variable(theta[-1], "rad", "tilt at the end"),
-        "end_phi_dot": variable(turning[-1], "rad s-1", "precession at the end"),
-        "end_omega3": variable(run["omega3"].values[-1], "rad s-1", "axial spin at the end"),
+        "end_tilt": variable(theta[-1], "rad", "tilt at the end"),
+        "end_precession": variable(turning[-1], "rad s-1", "precession at the end"),
+        "end_spin": variable(run["spin"].values[-1], "rad s-1", "axial spin at the end"),
         "end_slip": variable(slip[-1], "m s-1", "slip speed at the end"),
         "largest_slip": variable(slip.max(), "m s-1", "largest slip speed"),
         "least_force": variable(force.min(), "N", "least normal force"),
@@ -236,7 +238,7 @@ def _settling(quick: bool) -> xr.Dataset:
         float(ends[-1]),
         samples=int(200 * ends[-1]) + 1,
     )
-    swings = [float(np.ptp(run["theta"].sel(time=slice(end - 1.0, end)).values)) for end in ends]
+    swings = [float(np.ptp(run["tilt"].sel(time=slice(end - 1.0, end)).values)) for end in ends]
     return dataset(
         {"end": (ends, "s", "end of that second")},
         swing=(swings, "rad", "swing of the tilt in the second before", "end"),
@@ -249,7 +251,7 @@ def _windows(quick: bool) -> xr.Dataset:
     ends = [listing_run(problem, float(window)).isel(time=-1) for window in windows]
     true = simulate(on_table(problem), float(windows[-1]), times=windows)
     data = dataset({"window": (windows, "s", "length of the run")})
-    for name, units in (("theta", "rad"), ("phi_dot", "rad s-1"), ("omega3", "rad s-1")):
+    for name, units in (("tilt", "rad"), ("precession", "rad s-1"), ("spin", "rad s-1")):
         theirs, label = [float(end[name]) for end in ends], "at the end of a run of this length"
         data[f"{name}_after_listing"] = variable(
             theirs, units, f"{label}, by the report's method", "window"
@@ -277,12 +279,12 @@ def _capped(quick: bool) -> xr.Dataset:
 
     def ends(unilateral: bool) -> list[float]:
         runs = [listing_run(report_problem(spin), WINDOW, unilateral=unilateral) for spin in spins]
-        return [float(run["theta"][-1]) for run in runs]
+        return [float(run["tilt"][-1]) for run in runs]
 
     return dataset(
         {"spin": list(spins)},
-        final_theta=(ends(unilateral=False), "rad", "tilt at the end", "spin"),
-        final_theta_capped=(ends(unilateral=True), "rad", "the same, g_n >= 0", "spin"),
+        final_tilt=(ends(unilateral=False), "rad", "tilt at the end", "spin"),
+        final_tilt_capped=(ends(unilateral=True), "rad", "the same, g_n >= 0", "spin"),
     )
 
 
@@ -294,7 +296,7 @@ def _slow(quick: bool) -> xr.Dataset:
         problem = report_problem(spin)
         true = simulate(on_table(problem), WINDOW, samples=2_001 if quick else 20_001)
         for suffix, run in (("", true), ("_listing", listing_run(problem, WINDOW))):
-            theta = run["theta"].values
+            theta = run["tilt"].values
             turns = turning_points(theta)
             swings = int((np.abs(np.diff(theta[[0, *turns]])) > SETTLED).sum())
             for name, value in (("highest", theta.max()), ("final", theta[-1]), ("swings", swings)):

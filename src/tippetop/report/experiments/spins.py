@@ -36,7 +36,7 @@ def final_tilt(spin: float, window: float = WINDOW) -> float:
     singular.
     """
     run = simulate(on_table(report_problem(spin)), window, samples=2)
-    return float(run["theta"].values[-1]) if run.attrs["outcome"] == "completed" else math.nan
+    return float(run["tilt"].values[-1]) if run.attrs["status"] == "completed" else math.nan
 
 
 def _listing_spins(quick: bool) -> np.ndarray:
@@ -54,7 +54,7 @@ def _listing_spins(quick: bool) -> np.ndarray:
 def _by_listing(quick: bool) -> xr.Dataset:
     spins = _listing_spins(quick)
     runs = (listing_run(report_problem(float(spin)), WINDOW) for spin in spins)
-    tilts = np.array([float(run["theta"].values[-1]) for run in runs])
+    tilts = np.array([float(run["tilt"].values[-1]) for run in runs])
     low, high = (spins >= 24) & (spins < 32), (spins > 76) & (spins < 81)
     upright = [
         _where(spins[low], np.log(tilts[low]), math.log(margin)) for margin in LISTED_MARGINS
@@ -67,7 +67,7 @@ def _by_listing(quick: bool) -> xr.Dataset:
     name_inverted = "spin above which the final tilt is pi, by the report's method"
     return dataset(
         {"spin_listing": spins, "margin_listing": LISTED_MARGINS},
-        final_theta_listing=(tilts, *_TILT, "spin_listing"),
+        final_tilt_listing=(tilts, *_TILT, "spin_listing"),
         critical_upright_listing=(upright, "rad s-1", name, "margin_listing"),
         critical_inverted_listing=(inverted, "rad s-1", name_inverted, "margin_listing"),
         lost_listing=_least_lost(
@@ -91,7 +91,7 @@ def _where(x: np.ndarray, y: np.ndarray, level: float) -> float:
 @experiment("final-tilt", "final tilt against spin, converged", 2.5)
 def _converged(quick: bool) -> xr.Dataset:
     spins = np.arange(5.0, 210.1, 2.5 if quick else 0.5)
-    tilts = swept(on_table(report_problem()), {"launch.spin": spins})["final_theta"].values
+    tilts = swept(on_table(report_problem()), {"launch.spin": spins})["final_tilt"].values
 
     def leaves(spin: float) -> float:
         return leaves_at(report_problem(spin), WINDOW)
@@ -100,12 +100,12 @@ def _converged(quick: bool) -> xr.Dataset:
     pulling = "least spin at which the table would have to pull within the window"
     only = "tilt at the end of the run on a table that only pushes"
     flying = np.arange(FLYING[0], FLYING[1] + 0.1, 7.5 if quick else 2.5)
-    true_tilts = swept(unilateral(report_problem()), {"launch.spin": flying})["final_theta"].values
+    true_tilts = swept(unilateral(report_problem()), {"launch.spin": flying})["final_tilt"].values
     return dataset(
         {"spin": spins, "spin_flight": flying},
         {"window_s": WINDOW},
-        final_theta=(tilts, *_TILT, "spin"),
-        final_theta_flight=(true_tilts, "rad", only, "spin_flight"),
+        final_tilt=(tilts, *_TILT, "spin"),
+        final_tilt_flight=(true_tilts, "rad", only, "spin_flight"),
         lift_off_onset=(onset, "rad s-1", pulling),
         lost=_least_lost(spins, ~(np.abs(tilts - math.pi) < TURNED), " on a table that pulls"),
     )

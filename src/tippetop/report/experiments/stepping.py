@@ -81,10 +81,10 @@ def _stepping(quick: bool) -> xr.Dataset:
     meanings["strikes"] = ("1", "strikes of the rocking")
     return dataset(
         {"step": [history.step for history in histories], "time": times[shown]},
-        final_theta=(last, "rad", "tilt at the end", "step"),
-        theta=(tilts, "rad", "tilt", "step", "time"),
-        exact_theta=(run["theta"].values[shown], "rad", "tilt of an exact run", "time"),
-        exact_final_theta=(float(run["theta"][-1]), "rad", "tilt at the end of an exact run"),
+        final_tilt=(last, "rad", "tilt at the end", "step"),
+        tilt=(tilts, "rad", "tilt", "step", "time"),
+        exact_tilt=(run["tilt"].values[shown], "rad", "tilt of an exact run", "time"),
+        exact_final_tilt=(float(run["tilt"][-1]), "rad", "tilt at the end of an exact run"),
         **{
             name: ([each[name] for each in events], *meaning, "step")
             for name, meaning in meanings.items()

@@ -125,7 +125,7 @@ def _diagram(
     spins = branch.jellett / jellett_line(base).per_spin
     problems = [_launched(base, spin, tilt) for spin, tilt in launches]
     runs = [simulate(problem, LONG_RUN, samples=2).isel(time=-1) for problem in problems]
-    ends = [float(run["theta"]) for run in runs]
+    ends = [float(run["tilt"]) for run in runs]
     predicted = [predict(problem) for problem in problems]
     of_runs = {
         "spin": [spin for spin, _ in launches],
@@ -157,9 +157,9 @@ def _diagram(
 def _relative_residual_217(end: xr.Dataset, problem: Problem) -> float:
     """Return the residual of (2.17) at the end of a run over phi'."""
     residual = residual_of_217(
-        end["theta"], end["phi_dot"], end["omega3"], groups.eccentricity(problem.top)
+        end["tilt"], end["precession"], end["spin"], groups.eccentricity(problem.top)
     )
-    return float(abs(residual / end["phi_dot"]))
+    return float(abs(residual / end["precession"]))
 
 
 def _launched(base: Problem, spin: float, tilt: float) -> Problem:

@@ -13,7 +13,7 @@ from tippetop.report.experiments.runs import WINDOW, on_table
 from tippetop.report.readings import SETTLED, crossings, flip_time
 from tippetop.run import simulate
 from tippetop.theory.apparent import growth_rates_of_launches
-from tippetop.theory.averaging import averaged_flow, flip_time_limit, local_exponent
+from tippetop.theory.averaging import arrival_time_limit, averaged_flow, local_exponent
 from tippetop.theory.diagnostics import (
     gyroscopic_balance,
     nutation_envelope,
@@ -40,15 +40,15 @@ def _collapse(quick: bool) -> xr.Dataset:
     """Return the tilt against mu t: the averaged flow, and runs at several frictions."""
     problem = report_problem(SPIN)
     flow = averaged_flow(problem, samples=400)
-    end = 1.1 * flip_time_limit(problem)
+    end = 1.1 * arrival_time_limit(problem)
     edges = np.linspace(0.0, end, _BINS + 1)
     middle = 0.5 * (edges[1:] + edges[:-1])
     low, high = flow.tilts(middle)
     frictions = FRICTIONS[:2] if quick else FRICTIONS
     bounds = np.array([_band(mu, edges) for mu in frictions])
     swing = simulate(on_table(problem), end / FRICTIONS[0], samples=2501)
-    tilts, swings = swing["theta"].values, FRICTIONS[0] * swing["time"].values
-    limit = flip_time_limit(problem, SETTLED)
+    tilts, swings = swing["tilt"].values, FRICTIONS[0] * swing["time"].values
+    limit = arrival_time_limit(problem, SETTLED)
     of_run = ("friction", "mu_time")
     return dataset(
         {
@@ -61,7 +61,7 @@ def _collapse(quick: bool) -> xr.Dataset:
         flow_high=(high, "rad", "largest tilt of the nutation, averaged flow", "mu_time"),
         run_low=(bounds[:, 0], "rad", "least tilt of the run around this time", *of_run),
         run_high=(bounds[:, 1], "rad", "largest tilt of the run around this time", *of_run),
-        theta_swing=(tilts, "rad", "tilt of the run with most friction", "mu_time_swing"),
+        tilt_swing=(tilts, "rad", "tilt of the run with most friction", "mu_time_swing"),
         flip_limit=(limit, "s2 m-1", "limit of mu times flip time"),
     )
 
@@ -71,7 +71,7 @@ def _band(mu: float, edges: Array) -> tuple[Array, Array]:
     each = 60
     times = np.linspace(edges[0], edges[-1], each * (len(edges) - 1) + 1) / mu
     run = simulate(on_table(report_problem(SPIN, mu=mu)), float(times[-1]), times=times)
-    theta = run["theta"].values
+    theta = run["tilt"].values
     parts = np.concatenate([theta[:-1].reshape(-1, each), theta[each::each, None]], axis=1)
     return parts.min(axis=1), parts.max(axis=1)
 
@@ -94,7 +94,7 @@ def _exponent(quick: bool) -> xr.Dataset:
         data[f"exponent_{name}"] = variable(exponent, "1", f"d ln t / d ln mu, {name}", "mu_flip")
     data["limit_crossing"] = variable(half, "s2 m-1", "limit of mu t at the first tilt of pi/2")
     data["limit_arrival"] = variable(
-        flip_time_limit(problem, SETTLED), "s2 m-1", "limit of mu t, arrival"
+        arrival_time_limit(problem, SETTLED), "s2 m-1", "limit of mu t, arrival"
     )
     return data
 
@@ -115,7 +115,7 @@ def _times(mu: float, final: float) -> tuple[float, float, float, float]:
     """
     duration = max(WINDOW, 3.5 / mu + 8.0 / _decay_rate(mu))
     run = simulate(on_table(report_problem(SPIN, mu=mu)), duration, samples=40_001)
-    times, theta = run["time"].values, run["theta"].values
+    times, theta = run["time"].values, run["tilt"].values
     far = np.abs(theta - final) >= SETTLED
     last = int(np.flatnonzero(far)[-1])
     first = int(np.argmin(far))
@@ -147,7 +147,7 @@ def _diagnostics(quick: bool) -> xr.Dataset:
     xi = gyroscopic_balance(axis, momentum, top)
     low, high = nutation_envelope(axis, momentum, top)
     values = smooth_constants(axis, momentum, top)
-    axial = top.axial_inertia * run["omega3"].values
+    axial = top.axial_inertia * run["spin"].values
     instants = np.array([0.0, 3.0, 5.0, 5.5, 6.0, 8.0])
     index = np.searchsorted(run["time"].values, instants)
     tilts = np.linspace(1e-3, math.pi - 1e-3, 1201)
@@ -157,15 +157,15 @@ def _diagnostics(quick: bool) -> xr.Dataset:
         {
             "time_diagnosed": run["time"].values,
             "instant": (run["time"].values[index], "s", "instant of the run"),
-            "well_theta": (tilts, "rad", "tilt"),
+            "well_tilt": (tilts, "rad", "tilt"),
         },
         {"spin_rad_per_s": quoted.SPIN},
-        theta_diagnosed=(run["theta"].values, "rad", "tilt", *over),
+        tilt_diagnosed=(run["tilt"].values, "rad", "tilt", *over),
         balance=(xi, "kg m2 s-1", "xi = I1 phi' cos(theta) - I3 omega3", *over),
         balance_ratio=(xi / float(abs(axial[0])), "1", "xi over I3 omega3 at launch", *over),
         envelope_low=(low, "rad", "least tilt a smooth table would allow", *over),
         envelope_high=(high, "rad", "largest tilt a smooth table would allow", *over),
-        potential=(wells, "J", "effective potential", "instant", "well_theta"),
+        potential=(wells, "J", "effective potential", "instant", "well_tilt"),
         level=(np.asarray(values.energy)[index], "J", "energy", "instant"),
-        instant_theta=(run["theta"].values[index], "rad", "tilt", "instant"),
+        instant_tilt=(run["tilt"].values[index], "rad", "tilt", "instant"),
     )
