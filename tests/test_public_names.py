@@ -73,6 +73,9 @@ def afresh(code):
     'Run code as if the package had not been imported yet.'
     for name in [name for name in sys.modules if name.partition(".")[0] == "tippetop"]:
         del sys.modules[name]
+    dataset = getattr(sys.modules.get("xarray"), "Dataset", None)
+    if "tippetop" in vars(dataset or object):  # the accessor of the package imported before
+        del dataset.tippetop
     names = {}
     exec(code, names)
     return names

@@ -134,7 +134,8 @@ def test_a_file_of_draws_is_swept_resumed_and_swept_over_fields_instead(tmp_path
     (tmp_path / "top.toml").write_text(report_problem(spin=77.0).to_toml())
     (tmp_path / "sweep.toml").write_text(
         'problem = "top.toml"\nduration = 0.1\ncount = 3\nseed = 4\n[draw]\n'
-        'launch.spin = { distribution = "norm", loc = 150, scale = 5 }\nfriction.mu = [0.1, 0.2, 0.3]\n'
+        'launch.spin = { distribution = "norm", loc = 150, scale = 5 }\n'
+        "friction.mu = [0.1, 0.2, 0.3]\n"
     )
     alone = ("--workers", 1, "--no-maps", "--out")
     run(tmp_path / "sweep.toml", *alone, tmp_path / "a.zarr")
@@ -293,7 +294,9 @@ def test_messages_name_options_at_the_command_line_and_arguments_in_python(
     package = Path(tt.__file__).parent
     for file in package.rglob("*.py"):
         if "cli" not in file.parts:
-            assert not re.search(r"--(force|resume|out)\b", file.read_text(encoding="utf-8")), file
+            assert not re.search(
+                r"--(force|resume|out)(?![-\w])", file.read_text(encoding="utf-8")
+            ), file
 
 
 @pytest.mark.parametrize("name", ["x" * 300, "x" * 250])
