@@ -262,7 +262,7 @@ class Part(BaseModel):
             """Return how to make a copy with another value of a field."""
             shown = repr(value) if isinstance(value, str) else short(value)
             copy = f"model_copy(update={{'{name}': {shown}}})"
-            place = self.places.get(name)
+            place = PLACES.get(name)
             if place is None:
                 return f"make a changed copy by {copy}"
             of_part = f", or of this part alone by {copy}" if "." in place else ""
