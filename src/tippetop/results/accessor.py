@@ -27,10 +27,6 @@ WRITERS = {
 """Functions that write a result, by the suffix of the file."""
 
 
-if hasattr(xr.Dataset, "tippetop"):  # the package is imported anew
-    del xr.Dataset.tippetop
-
-
 @xr.register_dataset_accessor("tippetop")  # type: ignore[no-untyped-call]
 class TippetopAccessor:
     """Methods of a run or a sweep, as ``run.tippetop``; functions of the package do the same.

@@ -413,8 +413,8 @@ def fields_of_kind(variant: type[Variant], kind: Any) -> set[str]:
     """
     base = next(part for part in variant.__mro__ if Variant in part.__bases__)
     kinds: Any = base.kinds  # type: ignore[attr-defined]
-    known = kinds.get(kind, variant) if isinstance(kind, str) else variant
-    return set(known.model_fields)
+    chosen = kinds.get(kind, variant) if isinstance(kind, str) else variant
+    return set(chosen.model_fields)
 
 
 class _OfItsKind:
