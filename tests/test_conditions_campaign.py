@@ -28,7 +28,7 @@ LEAST = -1e-12
 """Least gap over the size, and least normal force and friction left over the weight."""
 
 IMBALANCE = 1e-11
-"""Largest imbalance of energy and work over the largest energy of a run."""
+"""Largest imbalance of energy and work over the energy at launch, which is the largest of a run."""
 
 TERMS = 17
 """Coefficients of an oval's support function."""
@@ -138,7 +138,7 @@ class Least:
             self.friction = min(self.friction, float(np.min(friction_left(mode, y))))
 
 
-@pytest.mark.parametrize("seed", seeds(check=12, sample=60, claim=2000))
+@pytest.mark.parametrize("seed", seeds(check=20, sample=100, claim=2000))
 @pytest.mark.filterwarnings("ignore::tippetop.Implausible")
 def test_random_bodies_keep_what_contact_keeps(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     (problem, duration), least, take = problem_of(seed), Least(), Recorder.take
@@ -155,5 +155,4 @@ def test_random_bodies_keep_what_contact_keeps(seed: int, monkeypatch: pytest.Mo
     assert least.gap >= LEAST
     assert least.force >= LEAST
     assert least.friction >= LEAST
-    largest = max(abs(float(run["energy_start"])), float(run["energy"].max()))
-    assert float(run["energy_error"]) * abs(float(run["energy_start"])) <= IMBALANCE * largest
+    assert float(run["energy_error"]) <= IMBALANCE

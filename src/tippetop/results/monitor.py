@@ -25,14 +25,14 @@ the largest normal force.
 """
 
 BREACHES = (
-    ("The energy differs from that at launch and the work of the table by", "of itself"),
-    ("The axis is no unit vector: its length is off by", "of itself"),
-    ("Jellett's integral, which the motion keeps, drifts by", "of itself"),
     ("The body sinks into the table by", "of its size"),
     ("A contact stays closed though the table would have to pull with", "of the weight"),
     ("What friction holds needs more than it can exert, by", "of N^2"),
+    ("The energy differs from that at launch and the work of the table by", "of itself"),
+    ("The axis is no unit vector: its length is off by", "of itself"),
+    ("Jellett's integral, which the motion keeps, drifts by", "of itself"),
 )
-"""Sentences that name each of `Monitor.errors`, before and after its number."""
+"""Sentences that name each of `Monitor.errors`, before and after its number: causes come first."""
 
 NEGATIVE = -1e-12
 """Least of `tippetop.contact.readings.conditions`, in natural units, from which on it is rounding,
@@ -89,8 +89,8 @@ class Monitor:
 
     @property
     def errors(self) -> tuple[Scalar, ...]:
-        """Errors of energy and work, |n| and Jellett's integral, depth in the table, pull, and
-        friction beyond its bounds; nan if one is.
+        """Depth in the table, pull, and friction beyond its bounds, and errors of energy and work,
+        |n| and Jellett's integral; nan if one is.
         """
         is_large = self._moment > LEAST_MOMENT
         drift = np.where(is_large, self.jellett_drift, 0.0) if self.top.conserves_jellett else 0.0
@@ -98,7 +98,7 @@ class Monitor:
             imbalance = self._imbalance / self._largest
         pulled = self._pulled / self._heaviest
         overdrawn = self._overdrawn / self._heaviest**2
-        return imbalance, self._off_unit, drift, self._sunk, pulled, overdrawn
+        return self._sunk, pulled, overdrawn, imbalance, self._off_unit, drift
 
     @property
     def inaccuracy(self) -> Scalar:
