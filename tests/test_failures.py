@@ -14,6 +14,7 @@ from test_painleve_on_two import drawn
 from tippetop.contact import slip_onset
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import mode_on_two
+from tippetop.contact.impact import impact
 from tippetop.contact.mode import BOTH, BROKEN, EventKind, Status
 from tippetop.contact.slip_onset import UNSEEN
 from tippetop.contact.two_closed import Before, TwoClosed
@@ -23,18 +24,15 @@ from tippetop.mechanics.flight import touchdown as flight_end
 from tippetop.mechanics.flight.complex_disc import Disc
 from tippetop.mechanics.flight.separation import CLEAR
 from tippetop.mechanics.flight.touchdown import Start, touchdown
-from tippetop.mechanics.impacts.impact import impact
-from tippetop.mechanics.impacts.impact_on_two import SlipEndsInImpact
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.laws.contensou import EllipsoidalLaw
-from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
+from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table, sliding_contact
 from tippetop.mechanics.roots import first_root
 from tippetop.mechanics.series import PLAIN, Series, unknown
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull
-from tippetop.mechanics.surfaces.surface import RingSurface, SphereSurface, SpheroidSurface
+from tippetop.mechanics.surfaces.surface import RingSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.problem.presets import REPORT, report_problem
@@ -281,22 +279,6 @@ def test_velocities_that_rounding_hides_are_not_followed(monkeypatch: pytest.Mon
     run = tt.simulate(SLIPPERY, 0.5, samples=3)
     assert run.attrs["status"] == "failed"
     assert UNSEEN in run.attrs["message"]
-
-
-@pytest.mark.parametrize(
-    ("law", "resistance", "ends"),
-    [(CoulombLaw(0.6), None, "slip"), (ViscousLaw(0.6), RollingResistance(1e-3), "rolling")],
-    ids=["slip", "rolling"],
-)
-def test_what_ends_in_an_impact_on_two_surfaces_is_named(
-    law: Any, resistance: Any, ends: str
-) -> None:
-    """A rod falls flat, without turning and without slip."""
-    hull = Hull.of((SphereSurface(1.0, 1.0), SphereSurface(1.0, -1.0)))
-    top = Top(1.0, 0.5, 0.1, hull, law, 1.0, rolling_resistance=resistance)
-    falling = State((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), 1.0)
-    with pytest.raises(SlipEndsInImpact, match=f"^{ends} ends in an impact on two surfaces"):
-        impact(falling, 0.0, *top.each)
 
 
 def test_mistakes_in_the_use_of_the_mechanics_are_said() -> None:

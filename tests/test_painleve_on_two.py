@@ -11,6 +11,7 @@ from tippetop.contact.automaton import Automaton, opens_by_zero
 from tippetop.contact.contact_mode import ContactMode, sliding_on_two
 from tippetop.contact.flight import Flight
 from tippetop.contact.guards import OPENING, SLIP
+from tippetop.contact.impact import begins_without_approach
 from tippetop.contact.mode import EventKind, ModeEnd, Status, Transition
 from tippetop.contact.trajectory import Trajectory
 from tippetop.contact.two_closed import Before
@@ -19,7 +20,6 @@ from tippetop.mechanics.contacts.branches import off_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.pair import Tops
 from tippetop.mechanics.contacts.wrench import Wrench
-from tippetop.mechanics.impacts.impact import begins_without_approach
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.laws.coulomb import CoulombLaw
 from tippetop.mechanics.motion import along_table, on_table, sliding_contact

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import tippetop as tt
-from tippetop.contact import automaton, collision, touching
+from tippetop.contact import automaton, touching
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import sliding_on_two
 from tippetop.contact.mode import EventKind, Mode
@@ -122,7 +122,7 @@ def test_the_end_of_rocking_converges_at_first_order(monkeypatch: pytest.MonkeyP
     bounds = np.array([1e-4, 1e-5, 1e-6])
     ends, tilts = [], []
     for bound in (*bounds, touching.SLOWEST_ROCKING):
-        for module in (touching, collision, automaton):
+        for module in (touching, automaton):
             monkeypatch.setattr(module, "SLOWEST_ROCKING", bound)
         run = tt.simulate(LEINE_GLOCKER, 5.0, samples=11)
         ends.append(times(run, "double contact")[0])

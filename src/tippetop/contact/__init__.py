@@ -6,6 +6,6 @@ functions. `slip_onset` and `slip_end` are transforms of a contact mode: the fir
 moments of one of its velocities, by `slip_phase` and `slip_end_motion`. `flight` is free flight.
 `automaton` decides which mode follows: it asks `touching`, `collision`, `soonest_end`,
 `settling_flat` (how a disk comes to lie flat) and `two_closed` (the resolver of two contacts), and
-it alone names next modes. `trajectory` follows one launch; `readings` and `block` read results off
-modes.
+it alone names next modes. `impact` is the one process of every impact, with the equations of
+`impact_motion`. `trajectory` follows one launch; `readings` and `block` read results off modes.
 """

@@ -84,7 +84,6 @@ from tippetop.mechanics.contacts.slip_onset import Onset, find_onset, resolve_on
 from tippetop.mechanics.contacts.slip_variables import (
     HORIZON,
     come_to_rest,
-    inner,
     is_near,
     is_slipping,
     slip_of,
@@ -665,12 +664,17 @@ class Automaton:
         *,
         approaches: bool,
     ) -> Transition:
-        """Go on where an impact had no impulse; one without approach is not tried again."""
+        """Go on where an impact had no impulse; one without approach is not tried again.
+
+        What does not slip sticks only if friction can hold it.
+        """
         if isinstance(contact.surface, Hull) and approaches:
             return self.resting(contact, time, state, events)
-        slip = slip_of(*along_table(state), contact)
-        slips = not is_set_valued(contact.friction) or inner(slip, slip) > 0.0
-        return Transition(events, self.mode_for(contact, state, slips=slips), state)
+        stuck = is_set_valued(contact.friction) and not is_slipping(*along_table(state), contact)
+        held = not rolls_freely(contact, state)
+        if stuck or (held and not _jams_alone(contact, state)):
+            return self.resolve(contact, time, state, (stuck, held), events=events)
+        return Transition(events, self.mode_for(contact, state, slips=True), state)
 
     def jammed(self, contact: Top, time: float, state: State) -> Transition | None:
         """Return what follows where friction that turns made the normal force grow beyond all

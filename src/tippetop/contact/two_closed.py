@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.impact import begins_without_approach
 from tippetop.contact.mode import Event, EventKind
 from tippetop.mechanics.contacts.branches import off_branch
 from tippetop.mechanics.contacts.contact_forces import forces_on_two
@@ -29,7 +30,6 @@ from tippetop.mechanics.contacts.slip_onset import find_onset, resolve_onset
 from tippetop.mechanics.contacts.slip_variables import has_ended, is_rolling, slip_of
 from tippetop.mechanics.contacts.system import free_rates, rates_under
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.impacts.impact import begins_without_approach
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top

@@ -83,6 +83,11 @@ export const integrator = (tolerance) => ({
   },
 });
 
+const IMPACTS = 1e-13;
+
+/** The integrator where a run has named none, as for the impact that begins one. */
+export const unnamed_integrator = () => integrator(IMPACTS);
+
 export const room = (count) => new Float64Array(count);
 export const copied = (numbers) => numbers.slice();
 export const first_of = (numbers, count) => numbers.slice(0, count);

@@ -1,7 +1,7 @@
 """Which of two closed contacts stick, whether rolling is held, and how what cannot be goes on."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypeAlias
 
 from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_two
 from tippetop.mechanics.contacts.contact_point import contact_points
@@ -22,6 +22,12 @@ CUTS = 50
 LEAST_SPARE = 1e-3
 """Friction along e that is left beside the force across it, per unit normal force, at least: it
 bounds the first guess of the direction in which slip begins, from which the search goes on.
+"""
+
+
+OnTwo: TypeAlias = Callable[[ContactPair, Slips, float], ContactForces]
+"""From slips, None where they are held, and the sense of rolling to what the table does: in contact
+(`forces_on_two`), or in an impact.
 """
 
 
@@ -76,7 +82,13 @@ def rolling_direction(held: ContactForces) -> float:
     return -1.0 if held.holding > 0.0 else 1.0
 
 
-def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float) -> Resolution:
+def of_slips(
+    pair: ContactPair,
+    xi: Slip,
+    ended: tuple[bool, bool],
+    rolls: float,
+    moved: OnTwo = forces_on_two,
+) -> Resolution:
     """Return the resolution for slips, and for a given sense of rolling.
 
     What is tried first is that all stick that can, then that one of them slips, and then both;
@@ -84,7 +96,7 @@ def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float
     """
     first, second = slips_of(pair, xi)
     slips: Slips = (None if ended[0] else first, None if ended[1] else second)
-    held = forces_on_two(pair, slips, rolls)
+    held = moved(pair, slips, rolls)
     if not any(ended):
         return Resolution(held, (False, False), rolls)
     if not all(ended):
@@ -92,21 +104,23 @@ def of_slips(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float
         return (
             Resolution(held, (True, False), rolls)
             if sticks
-            else first_begins_to_slip(pair, xi, rolls)
+            else first_begins_to_slip(pair, xi, rolls, moved)
         )
     if slip_length(pair[0].top.friction) is not None:
-        return patches_begin_to_slip(pair, rolls) or Resolution(held, (True, True), rolls)
+        return patches_begin_to_slip(pair, rolls, moved) or Resolution(held, (True, True), rolls)
     if held.is_held:
         return Resolution(held, (True, True), rolls)
     for number in (0, 1):
         for sign in (1.0, -1.0):
-            trial = turning_about(pair, number, sign, rolls)
+            trial = turning_about(pair, number, sign, rolls, moved)
             if trial.motion.rate[2] * sign >= 0.0 and trial.motion.reserve(number) >= 0.0:
                 return trial
-    return both_begin_to_slip(pair, rolls)
+    return both_begin_to_slip(pair, rolls, moved)
 
 
-def first_begins_to_slip(pair: ContactPair, xi: Slip, rolls: float) -> Resolution:
+def first_begins_to_slip(
+    pair: ContactPair, xi: Slip, rolls: float, moved: OnTwo = forces_on_two
+) -> Resolution:
     """Return the resolution in which the first contact, which alone sticks, begins to slip.
 
     Raises
@@ -118,7 +132,7 @@ def first_begins_to_slip(pair: ContactPair, xi: Slip, rolls: float) -> Resolutio
     stiffness = _stiffness(pair)
 
     def motion(direction: Slip | None) -> ContactForces:
-        return forces_on_two(pair, (direction, slip), rolls)
+        return moved(pair, (direction, slip), rolls)
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         trial = motion(ways[0])
@@ -128,7 +142,7 @@ def first_begins_to_slip(pair: ContactPair, xi: Slip, rolls: float) -> Resolutio
     return Resolution(motion(direction), (False, False), rolls, (*direction, 0.0))
 
 
-def both_begin_to_slip(pair: ContactPair, rolls: float) -> Resolution:
+def both_begin_to_slip(pair: ContactPair, rolls: float, moved: OnTwo = forces_on_two) -> Resolution:
     """Both contacts begin to slip, which cannot be held.
 
     Raises
@@ -142,7 +156,7 @@ def both_begin_to_slip(pair: ContactPair, rolls: float) -> Resolution:
     drilled = abs(lever * float(rates_added(pair, 0, DRILLING).turning[2]))
 
     def motion(direction: Slip) -> ContactForces:
-        return forces_on_two(pair, slips_of(pair, direction), rolls)
+        return moved(pair, slips_of(pair, direction), rolls)
 
     def response(ways: Sequence[Slip]) -> list[Resisted]:
         trial = motion(ways[0])
@@ -152,7 +166,7 @@ def both_begin_to_slip(pair: ContactPair, rolls: float) -> Resolution:
         )
         return [Resisted(trial.rate, strength)]
 
-    direction = directions(response, [against(forces_on_two(pair, (None, None), rolls))])[0]
+    direction = directions(response, [against(moved(pair, (None, None), rolls))])[0]
     return Resolution(motion(direction), (False, False), rolls, direction)
 
 
@@ -177,7 +191,9 @@ def against(held: ContactForces) -> Slip:
     return (*v, -(ratios[1] - ratios[0]))
 
 
-def patches_begin_to_slip(pair: ContactPair, rolls: float) -> Resolution | None:
+def patches_begin_to_slip(
+    pair: ContactPair, rolls: float, moved: OnTwo = forces_on_two
+) -> Resolution | None:
     """Return how patches begin to slip that both stick; None where they can be held.
 
     They can where forces alone hold them, without moments of drilling. If not, moments may help:
@@ -188,11 +204,11 @@ def patches_begin_to_slip(pair: ContactPair, rolls: float) -> Resolution | None:
     ArithmeticError
         If nothing can hold them, and the search for such a direction fails.
     """
-    held = forces_on_two(pair, (None, None), rolls)
+    held = moved(pair, (None, None), rolls)
     if held.is_held:
         return None
     try:
-        return both_begin_to_slip(pair, rolls)
+        return both_begin_to_slip(pair, rolls, moved)
     except ArithmeticError:
         if moments_hold(held):
             return None
@@ -250,11 +266,13 @@ def rolling_of_slip(pair: ContactPair, rolls: float) -> float:
     return q**0.5 * float(abs(turning_along(pair))) if q else -1.0
 
 
-def turning_about(pair: ContactPair, number: int, sign: float, rolls: float) -> Resolution:
+def turning_about(
+    pair: ContactPair, number: int, sign: float, rolls: float, moved: OnTwo = forces_on_two
+) -> Resolution:
     """Return the resolution in which the body turns about one contact, and the other slips along
     sign.
     """
     across = scaled(sign if number == 0 else -sign, directions_of(pair[0].axis)[1][:2])
     slips: Slips = (None, across) if number == 0 else (across, None)
-    motion = forces_on_two(pair, slips, rolls)
+    motion = moved(pair, slips, rolls)
     return Resolution(motion, (number == 0, number == 1), rolls, (0.0, 0.0, sign))

@@ -4,6 +4,7 @@ then.
 
 import math
 
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import sticking_constraints, sum_at
 from tippetop.mechanics.contacts.slip_variables import plus, scaled, size, slip_of
 from tippetop.mechanics.contacts.system import (
@@ -12,7 +13,7 @@ from tippetop.mechanics.contacts.system import (
     ContactRates,
     solve_constraints,
 )
-from tippetop.mechanics.impacts.struck_body import StruckBody
+from tippetop.mechanics.impacts.struck_body import struck_state
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import (
     along_table,
@@ -101,9 +102,12 @@ def stuck_at_once(state: State, top: Top) -> State:
     """Return the state after the impulse that ends slip, and drilling if the law resists it,
     without opening.
     """
-    body, (x, y, *_) = StruckBody.of(state, top), slip_of(*along_table(state), top)
-    points, velocities = (body.contact,), ContactRates(((x, y, 0.0),), body.contact.turning)
+    point, (x, y, *_) = (
+        ContactPoint.of(state.axis, state.momentum, top),
+        slip_of(*along_table(state), top),
+    )
+    points, velocities = (point,), ContactRates(((x, y, 0.0),), point.turning)
     closed = Constraint.of(Component(0, VERTICAL))
     held = [*sticking_constraints(points, [True]), closed]
     impulse = sum_at(0, solve_constraints(points, held, velocities).wrenches)
-    return body.after((*impulse.force, *impulse.torque))
+    return struck_state(state, point, impulse)

@@ -1,136 +1,161 @@
-"""A body that is struck at its contact point, and what impulses of the table do to it."""
+"""A body that is struck at one or two contacts, and what impulses of the table do to it."""
 
 # translate module: numbers
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from operator import mul
 from typing import NamedTuple, TypeAlias
 
-from tippetop.mechanics.contacts.contact_point import ContactPoint, flat
+from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points, flat
 from tippetop.mechanics.contacts.slip_variables import inner, plus
 from tippetop.mechanics.contacts.wrench import COUPLES, DRILLING, FORCES, Slip, Wrench
+from tippetop.mechanics.impacts.unit_impulse import StruckContacts, at_second
+from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.motion import angular_velocity, point_velocity
-from tippetop.mechanics.roots import crossing
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Vector, add, length, scale
+from tippetop.mechanics.units import Units
+from tippetop.mechanics.vectors import Horizontal, Scalar, add, length, scale
 
 FUZZ = 1e-14
 """Round-off in the velocity of the contact point, relative to what it is made of."""
 
 Impulse: TypeAlias = tuple[float, ...]
-"""Impulse of the table's force so far, N s, that of its torque, N m s, and the work of the normal
-part, J; or that, and more.
+"""Impulse of the table's force so far and that of its torque about the first contact point, the
+normal impulse of the first contact, and the work of the normal impulses.
 """
 
-NORMAL, WORK = 2, 6
-"""Places of the normal impulse in it, and of its work."""
+UPWARDS, FIRST, WORK = 2, 6, 7
+"""Places in it of the normal impulse of all contacts, of that of the first, and of the work."""
 
-NO_IMPULSE: Impulse = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-Goal: TypeAlias = Callable[[Impulse], float]
-"""Negative as long as a phase of the impact lasts."""
+NO_IMPULSE: Impulse = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class StruckBody(NamedTuple):
-    """A body at the start of an impact, and what an impulse does to it there."""
+    """A body at the start of an impact, and what an impulse does to it there.
+
+    Its numbers are in units of the impact: the body's mass, its size, and the speed of approach of
+    the first contact, or that of its contact point where it does not approach.
+    """
 
     state: State
-    contact: ContactPoint
-    lever: float
-    """Length of the contact vector, m."""
-    speed: float
-    striking: float
-    """Speeds of the body's material, what rounding is measured by, and of its contact point, m/s.
-    """
+    """The state before, SI or in natural units."""
+    top: Top
+    """The body and its first contact, in the same."""
+    units: Units
+    """The units of the impact in those."""
+    points: tuple[ContactPoint, ...]
+    """The contact point that strikes, and one that strikes with it or is closed."""
+    rounding: float
+    """Round-off in velocities."""
     before: Slip
-    """Velocity of the contact point, m/s, and angular velocity, rad/s; what is but round-off of a
-    normal velocity is zero.
+    """Velocity of the first contact point and angular velocity; a normal velocity that is no more
+    than round-off is zero.
     """
-    response: tuple[Slip, ...]
-    """What an impulse adds to each of these six, per component of the force's and of the torque's:
-    first of all the inverse effective mass M (Delassus matrix), 1/kg.
-    """
+    normal_beside: float
+    """Normal velocity of the second contact point; zero without one."""
+    contacts: StruckContacts
+    """The contacts, with what an impulse adds to each of these six velocities."""
 
     @classmethod
-    def of(cls, state: State, top: Top) -> "StruckBody":
-        """Return the body in this state."""
-        contact = ContactPoint.of(state.axis, state.momentum, top)
-        lever = length(contact.arm)
-        speed = length(state.velocity) + length(contact.turning) * lever
-        x, y, z = point_velocity(state.velocity, contact.turning, contact.arm)
-        columns = [flat(contact.response(wrench)) for wrench in (*FORCES, *COUPLES, DRILLING)]
-        point = (x, y, 0.0 if abs(z) <= FUZZ * speed else z)
-        before, response = (*point, *contact.turning), tuple(zip(*columns, strict=True))
-        return cls(state, contact, lever, speed, length(point), before, response)
+    def of(cls, state: State, tops: Sequence[Top]) -> "StruckBody":
+        """Return the body in this state; it strikes with the surface of the first of some tops."""
+        top = tops[0]
+        arms = [contact_vector(state.axis, one.surface) for one in tops]
+        turning = angular_velocity(state.axis, state.momentum, top)
+        x, y, z = point_velocity(state.velocity, turning, arms[0])
+        fuzz = FUZZ * (length(state.velocity) + length(turning) * length(arms[0]))
+        normal = without_fuzz(z, fuzz)
+        speed = -normal if normal < 0.0 else length((x, y, normal)) or fuzz or 1.0
+        units = Units(top.mass, top.surface.size, top.surface.size / speed)
+        beside, apart = 0.0, (0.0, 0.0)
+        if len(tops) > 1:
+            sinking = point_velocity(state.velocity, turning, arms[1])[2]
+            beside = without_fuzz(sinking, fuzz) / speed
+            between = scale(1.0 / units.length, add(arms[1], scale(-1.0, arms[0])))
+            apart = (between[0], between[1])
+        scaled_tops = [in_units(one, units) for one in tops]
+        momentum = scale(1.0 / units.angular_momentum, state.momentum)
+        points = contact_points(state.axis, momentum, scaled_tops)
+        contacts = StruckContacts(
+            response_of(points[0]),
+            apart,
+            tuple([one.friction for one in scaled_tops]),
+            scaled_tops[0].rolling_resistance,
+        )
+        before = (x / speed, y / speed, normal / speed, *points[0].turning)
+        return cls(state, top, units, points, fuzz / speed, before, beside, contacts)
 
     def after(self, impulse: Impulse) -> State:
         """Return the state after an impulse."""
-        x, y, z, *torque = impulse[:6]
-        moment = self.contact.moment(Wrench((x, y, z), (torque[0], torque[1], torque[2])))
-        gained = scale(1.0 / self.contact.top.mass, (x, y, z))
+        x, y, z, along, across, upright = impulse[:6]
+        moment = self.points[0].moment(Wrench((x, y, z), (along, across, upright)))
+        gained = scale(self.units.speed, (x, y, z))
+        turned = scale(self.units.angular_momentum, moment)
         return self.state._replace(
-            momentum=add(self.state.momentum, moment), velocity=add(self.state.velocity, gained)
+            momentum=add(self.state.momentum, turned), velocity=add(self.state.velocity, gained)
         )
 
-    def change(self, impulse: Sequence[float]) -> Slip:
-        """Return the changes of the six velocities by an impulse."""
-        return tuple([sum(map(mul, row, impulse)) for row in self.response])
+    def change(self, impulse: Impulse) -> Slip:
+        """Return what an impulse adds to the six velocities of the first contact."""
+        return tuple([sum(map(mul, row, impulse)) for row in self.contacts.response])
 
     def velocities(self, impulse: Impulse) -> Slip:
-        """Return the six velocities after an impulse."""
+        """Return the six velocities of the first contact after an impulse."""
         return plus(self.before, self.change(impulse))
 
-    def approach(self, impulse: Impulse) -> float:
-        """Normal velocity of the contact point after an impulse, m/s."""
-        return float(self.before[2] + sum(map(mul, self.response[2], impulse)))
+    def normals(self, impulse: Impulse) -> Horizontal:
+        """Return the normal velocities of both contacts after an impulse."""
+        change = self.change(impulse)
+        return normal_velocities(self.before, self.normal_beside, change, self.contacts)
 
-    def friction(self, velocity: Slip) -> Slip:
-        """Force and torque per unit normal impulse under a law that says them at any slip, six
-        numbers.
+    def energy_lost(self, impulse: Impulse) -> float:
+        """Energy that goes with an impulse: minus its work, which is it times the mean velocity, as
+        that is linear in it (Thomson and Tait).
         """
-        x, y, _, *omega = velocity
-        force, torque = self.contact.top.traction((x, y), (omega[0], omega[1], omega[2]))
-        return (*force, 1.0, *torque)
-
-    def work(self, impulse: Impulse) -> float:
-        """Work of an impulse, J: times the mean velocity, as that is linear in it (Thomson and
-        Tait).
-        """
-        return float(0.5 * inner(impulse[:6], plus(self.before, self.velocities(impulse))))
-
-    def line_from(self, impulse: Impulse, unit: Slip) -> Callable[[float], Impulse]:
-        """Return the impulse as a function of the normal one, from an impulse on, at a constant
-        ratio.
-        """
-        approach, rise = self.approach(impulse), sum(map(mul, self.response[2], unit))
-
-        def along(q: float) -> Impulse:
-            moved = [a + q * b for a, b in zip(impulse, unit, strict=False)]
-            work = impulse[WORK] + q * (approach + 0.5 * q * rise)
-            return (*moved[:WORK], work, *moved[WORK + 1 :])
-
-        return along
+        twice = inner(impulse[:6], plus(self.before, self.velocities(impulse)))
+        return max(0.0, float(-0.5 * twice * self.units.energy))
 
 
-def contact_velocity(state: State, arm: Vector, top: Top) -> Vector:
-    """Velocity of the body's contact point, m/s."""
-    return point_velocity(state.velocity, angular_velocity(state.axis, state.momentum, top), arm)
+def normal_velocities(
+    before: Slip, normal_beside: Scalar, change: Slip, contacts: StruckContacts
+) -> Horizontal:
+    """Return the normal velocities of both contacts where those of the first have changed so.
 
-
-def first_reach(along: Callable[[float], Impulse], goal: Goal, guess: float) -> Impulse:
-    """Return the impulse on a curve at which the goal stops being negative, which it does once.
-
-    Where the goal is zero at the start, it is about to become negative: that start is passed over.
+    The second's change is that of the first and of the turning, which keeps digits.
     """
-    high = guess
-    ahead = goal(along(high))
-    while ahead < 0.0:
-        high *= 2.0
-        ahead = goal(along(high))
-    if ahead == 0.0:
-        return along(high)
-    low = 0.0 if goal(along(0.0)) < 0.0 else 0.5 * high
-    while goal(along(low)) >= 0.0:
-        low, high = 0.5 * low, low
-    return along(crossing(lambda q: goal(along(q)), low, high))
+    return before[2] + change[2], normal_beside + at_second(change, contacts.apart)[2]
+
+
+def without_fuzz(number: float, fuzz: float) -> float:
+    """Return a number, or zero where it is no more than round-off."""
+    return 0.0 if abs(number) <= fuzz else number
+
+
+def in_units(top: Top, units: Units) -> Top:
+    """Return a top with its numbers in these units of mass, length and time, and gravity 1."""
+    resistance = top.rolling_resistance
+    return Top(
+        top.mass / units.mass,
+        top.transverse_inertia / units.inertia,
+        top.axial_inertia / units.inertia,
+        top.kind.surface.from_proportions(top.surface.proportions),
+        type(top.friction)(*top.friction.coefficients(units)),
+        1.0,
+        None if resistance is None else RollingResistance(resistance.length / units.length),
+    )
+
+
+def response_of(point: ContactPoint) -> tuple[Slip, ...]:
+    """Return what unit wrenches at a contact point add to its velocity and the angular velocity."""
+    columns = [flat(point.response(unit)) for unit in (*FORCES, *COUPLES, DRILLING)]
+    return tuple(zip(*columns, strict=True))
+
+
+def struck_state(state: State, point: ContactPoint, impulse: Wrench) -> State:
+    """Return a state after the impulse of a force, N s, and a torque, N m s, at a contact point."""
+    gained = scale(1.0 / point.top.mass, impulse.force)
+    return state._replace(
+        momentum=add(state.momentum, point.moment(impulse)), velocity=add(state.velocity, gained)
+    )
