@@ -55,7 +55,7 @@ JAMMING = 1e-9
 jams: nearer, its share of the normal impulse is rounding.
 """
 
-STEADY, NOISE = 1e-14, 2e-15
+STEADY_SLIP, NOISE = 1e-14, 2e-15
 """Rate of slip, in units of the impact, that is none; and the same over the friction that rounding
 of slip makes: slip is as far from what friction holds it at as that over its stiffness.
 """
@@ -385,7 +385,7 @@ def _slip_rates(form: ImpactForm) -> Callable[[Struck, StruckNumbers], Scalar]:
 
 def settled_rate(stiffness: Scalar) -> Scalar:
     """Return the rate of slip below which friction holds it constant, but for rounding."""
-    return STEADY + NOISE * stiffness
+    return STEADY_SLIP + NOISE * stiffness
 
 
 def slip_rates(unit: UnitImpulse, numbers: Sequence[int], contacts: StruckContacts) -> Slip:

@@ -105,7 +105,6 @@ def status_at(
     beside: str,
     ratio: float = 0.0,
     least: float = 0.0,
-    settled: Sequence[int] = (),
 ) -> StruckStatus:
     """Return what the contacts do after an impulse.
 
@@ -115,9 +114,6 @@ def status_at(
         The body, and the impulse.
     beside, ratio, least
         What the second contact does: see `StruckStatus`.
-    settled
-        Numbers of the contacts whose slip friction holds constant, under a law whose friction
-        depends on the speed of slip.
 
     Raises
     ------
@@ -138,7 +134,7 @@ def status_at(
             ended = [all(ended), all(ended)]
     rolling, resisted = velocities[3:5], body.contacts.resistance is not None
     stopped = resisted and size(rolling) <= least_of
-    states = [HELD if number in settled else SLIDES for number in range(len(slips))]
+    states = [SLIDES for _ in slips]
     plain = StruckStatus(
         beside, ratio, least, tuple(states), SLIDES if resisted else HELD, (None,) * 3
     )
