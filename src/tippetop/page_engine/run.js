@@ -3,7 +3,7 @@ import { integrator, reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
 import * as m from "./mechanics.js";
 import { inUnits } from "./part.js";
-import { plain } from "./runtime.js";
+import { neg, plain } from "./runtime.js";
 import { CATALOGUE, FORCE_DEGREE, GAUSS } from "./tables.js";
 
 // A search for a root or a least value in a step first looks at the ends of this many intervals.
@@ -26,6 +26,7 @@ const FORCE = m.Rates.fields.indexOf("force");
 const MARGIN = m.Rates.fields.indexOf("margin");
 const conserved = (mode, y) => m.monitored_quantities(mode.state(y), mode.top);
 const CONSERVED = 3;
+const depth = (mode, y) => [neg(m.gap_at(mode, y))];
 
 // Places of what is summed up along a run, in the order of `RunSums`.
 const SUMS = m.RunSums.fields.length;
@@ -92,7 +93,7 @@ class Run {
     const { solution, mode, transition } = segment;
     this.steps += segment.steps;
     this.rolls = mode.status === "sticking" && mode.top.torque_free;
-    if (!mode.touching) this.flightRecord.take(segment);
+    if (!mode.touching) this.flightRecord.take(segment, highestGap(mode, solution));
     if (solution.count) this.includeSteps(mode, solution);
     const lost = transition?.energy_lost ?? 0;
     this.sums[STRUCK] += lost;
@@ -356,7 +357,7 @@ class SegmentReader {
     this.sums = new Float64Array(SUMS * solution.count);
     this.poles = [];
     // Gauss's rule with four nodes is exact up to degree 7.
-    this.rule = GAUSS[mode.touching && solution.degree > 7 ? 8 : 4];
+    this.rule = GAUSS[solution.degree > 7 ? 8 : 4];
   }
 
   /** The numbers at a part of a step, in an array that the next call overwrites. */
@@ -447,6 +448,18 @@ function leastInStep(values, threshold) {
   const dipValue = values(dip);
   if (dipValue < low) return { part: dip, value: dipValue };
   return { part: PROBES[lowest], value: low };
+}
+
+/** The highest gap in a segment of a flight. */
+function highestGap(mode, solution) {
+  const read = reader(mode, solution.size)(depth, 1);
+  const numbers = new Float64Array(solution.size);
+  let lowest = 0;
+  for (let step = 0; step < solution.count; step += 1) {
+    const values = (part) => read(solution.numbers(step, part, numbers))[0];
+    lowest = Math.min(lowest, leastInStep(values, lowest).value);
+  }
+  return -lowest;
 }
 
 /** Where a function on [0, 1] first falls to zero; NaN where it does not. With `fromAbove` it must be above first. */
