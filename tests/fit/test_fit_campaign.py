@@ -54,14 +54,14 @@ def measured(seed):
         return size if has_noise else None
 
     if kind == "tilt":
-        seen = run["theta"].values + random.normal(0.0, NOISES[kind], len(times))
+        seen = run["tilt"].values + random.normal(0.0, NOISES[kind], len(times))
         return (
             true,
-            tt.Measurement.of_variables(times, {"theta": seen}, noise(NOISES[kind])),
+            tt.Measurement.of_variables(times, {"tilt": seen}, noise(NOISES[kind])),
             random,
         )
     if kind == "turns a minute":
-        seen = np.abs(run["omega3"].values) * 30.0 / np.pi
+        seen = np.abs(run["spin"].values) * 30.0 / np.pi
         seen = seen + random.normal(0.0, NOISES[kind], len(times))
         return true, tt.Measurement.of_spin(times, seen, noise(NOISES[kind])), random
     axis, angle = TIP * run["axis"].values, float(random.uniform(-1.0, 1.0))

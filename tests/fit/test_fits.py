@@ -152,9 +152,9 @@ def tilt_film():
     """Return a second of the tilt, to a quarter of a degree, at 60 pictures a second."""
     times, noise = np.arange(0.0, 1.0, 1.0 / 60.0), np.radians(0.25)
     true = tt.presets.report_problem(spin=152.0, mu=0.27)
-    tilt = tt.simulate(true, 1.0, times=np.append(times, 1.0))["theta"].values[:-1]
+    tilt = tt.simulate(true, 1.0, times=np.append(times, 1.0))["tilt"].values[:-1]
     seen = tilt + np.random.default_rng(0).normal(0.0, noise, len(times))
-    film = tt.Measurement.of_variables(times, {"theta": seen}, noise=noise)
+    film = tt.Measurement.of_variables(times, {"tilt": seen}, noise=noise)
     return true, film
 
 
@@ -206,14 +206,16 @@ def test_the_error_of_a_time_in_steps_is_that_of_its_noise():
 
     data, noise = turned(0.4), 0.15
     slope = (turned(0.44) - turned(0.36)) / 0.08
-    clock = tt.Measurement.of_events({"turns_over": data + 0.05}, noise=noise)
+    clock = tt.Measurement.of_events({"turnover_time": data + 0.05}, noise=noise)
     fitted = tt.fit(true.replace({"friction.mu": 0.42}), clock, "friction.mu")
     # Both slopes are over some 0.8 s, whose ends are known to a step of at most 0.05 s.
     assert fitted.errors["friction.mu"] == pytest.approx(abs(noise / slope), rel=0.2)
     assert abs(fitted.values["friction.mu"] - 0.4) < fitted.errors["friction.mu"]
     sharp = tt.fit(fitted.problem, clock.with_noise(1e-6), "friction.mu", starts=1)
     assert sharp.errors["friction.mu"] > 0.01 / abs(slope)
-    unknown = tt.fit(fitted.problem, tt.Measurement.of_events({"turns_over": data}), "friction.mu")
+    unknown = tt.fit(
+        fitted.problem, tt.Measurement.of_events({"turnover_time": data}), "friction.mu"
+    )
     assert np.isnan(unknown.errors["friction.mu"])
     assert "without a stated noise" in unknown.cautions[0]
 
@@ -224,9 +226,9 @@ def test_several_launches_are_one_fit():
     pairs, alone = [], []
     for spin in (140.0, 150.0):
         true = tt.presets.report_problem(spin=spin)
-        tilt = tt.simulate(true, 0.5, times=np.append(times, 0.5))["theta"].values[:-1]
+        tilt = tt.simulate(true, 0.5, times=np.append(times, 0.5))["tilt"].values[:-1]
         seen = tilt + random.normal(0.0, 1e-3, len(times))
-        film = tt.Measurement.of_variables(times, {"theta": seen}, noise=1e-3)
+        film = tt.Measurement.of_variables(times, {"tilt": seen}, noise=1e-3)
         pairs.append((true, film))
         alone.append(tt.fit(true, film, BOTH, starts=1))
     fitted = tt.fit(pairs, vary=BOTH, shared=["friction.mu"], starts=1)
@@ -247,7 +249,7 @@ def test_a_table_of_launches_is_one_fit(tmp_path):
     true = tt.presets.report_problem(mu=0.6)
     spins = (140.0, 160.0)
     seen = [
-        float(tt.simulate(true.replace({"launch.spin": spin}), 9.0, samples=2)["turns_over"])
+        float(tt.simulate(true.replace({"launch.spin": spin}), 9.0, samples=2)["turnover_time"])
         for spin in spins
     ]
     rows = [f"{spin};{time:.2f}".replace(".", ",") for spin, time in zip(spins, seen, strict=True)]
@@ -261,7 +263,7 @@ def test_a_table_of_launches_is_one_fit(tmp_path):
 
 def test_noise_that_is_not_stated_has_no_chi2(run):
     noise = np.random.default_rng(8).normal(0.0, 0.01, len(TIMES))
-    data = tt.Measurement.of_variables(TIMES, {"theta": run["theta"].values + noise})
+    data = tt.Measurement.of_variables(TIMES, {"tilt": run["tilt"].values + noise})
     fitted = tt.fit(TRUE, data, "friction.mu", starts=1)
     assert np.isnan(fitted.chi2)
     assert fitted.summary()["chi2"] is None
@@ -270,7 +272,7 @@ def test_noise_that_is_not_stated_has_no_chi2(run):
 
 def test_noise_stated_too_large_or_too_small_is_named(run):
     noise = np.random.default_rng(9).normal(0.0, 0.01, len(TIMES))
-    data = tt.Measurement.of_variables(TIMES, {"theta": run["theta"].values + noise})
+    data = tt.Measurement.of_variables(TIMES, {"tilt": run["tilt"].values + noise})
     for stated, word in ((0.02, "smaller than"), (0.005, "larger than")):
         fitted = tt.fit(TRUE, data, "friction.mu", starts=1, noise=stated)
         assert any(word in caution for caution in fitted.cautions), stated

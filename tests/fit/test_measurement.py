@@ -170,13 +170,13 @@ def test_tracks_are_asked_for(written):
 
 def test_events_in_words(written):
     data = tt.read_measurement(written("Ereignis;t (s)\nsteht auf dem Stift;5,0\n"), noise=0.2)
-    assert data.observation.labels == ("arrives",)
+    assert data.observation.labels == ("arrival_time",)
     assert data.noise == pytest.approx([0.2])
 
 
 BAD = {
-    "a later start": ("t,theta\n0.35,0.1\n0.36,0.2\n", "write 0.35 if the top is launched"),
-    "an event of another kind": ("event,t\nfällt um,3.1\n", "turns_over"),
+    "a later start": ("t,tilt\n0.35,0.1\n0.36,0.2\n", "write 0.35 if the top is launched"),
+    "an event of another kind": ("event,t\nfällt um,3.1\n", "turnover_time"),
     "empty": ("", "has no numbers"),
     "no header": ("0,0.1\n0.1,0.2\n", "there is no header"),
     "shuffled": ("t,tilt\n0,0.1\n0.2,0.2\n0.1,0.3\n", "times must increase"),

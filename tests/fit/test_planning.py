@@ -12,11 +12,11 @@ def test_a_plan_foretells_the_scatter_of_fits():
     (way,) = tt.plan_measurement(TOP, 0.5, ["friction.mu"], noise={"tilt": 3e-4}, accuracy=0.02)
     assert way.error <= 0.02
     times = np.arange(0.0, way.duration, 1.0 / way.frame_rate)
-    tilt = tt.simulate(TOP, float(times[-1]), times=times)["theta"].values
+    tilt = tt.simulate(TOP, float(times[-1]), times=times)["tilt"].values
     random, values = np.random.default_rng(2), []
     for _ in range(16):
         seen = tilt + random.normal(0.0, 3e-4, len(times))
-        film = tt.Measurement.of_variables(times, {"theta": seen}, noise=3e-4)
+        film = tt.Measurement.of_variables(times, {"tilt": seen}, noise=3e-4)
         values.append(tt.fit(TOP, film, ["friction.mu"], starts=1).values["friction.mu"])
     # Of 16 fits the scatter is known to 18 %.
     assert 1.0 / 1.5 < np.std(values, ddof=1) / (0.3 * way.error) < 1.5

@@ -327,8 +327,8 @@ def test_the_end_of_a_range_is_named(restitution):
     )
     slopes = tt.sensitivities(problem, 0.2, ["contact.restitution", "launch.gap"], samples=3)
     assert "end of its range" in slopes["reason"].values[0]
-    assert np.isnan(slopes["final_theta"].values[0])
-    assert np.isfinite(slopes["final_theta"].values[1])
+    assert np.isnan(slopes["final_tilt"].values[0])
+    assert np.isfinite(slopes["final_tilt"].values[1])
 
 
 def evaluated(recorded, y, p):

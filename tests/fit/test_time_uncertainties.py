@@ -11,10 +11,10 @@ def test_the_uncertainty_of_a_smooth_time_is_its_derivative_times_the_change():
     problem = tt.presets.report_problem(spin=155.0)
     run = tt.simulate(problem, 7.0, samples=2)
     fields = ["launch.spin", "launch.tilt", "friction.mu"]
-    slopes = tt.sensitivities(problem, 7.0, fields, samples=2)["turns_over"].values
+    slopes = tt.sensitivities(problem, 7.0, fields, samples=2)["turnover_time"].values
     launch = abs(slopes[0] * 155.0 + slopes[1] * problem.launch.tilt) * 1e-6
     friction = abs(slopes[2] * problem.friction.mu) * 1e-6
-    moved = tt.time_uncertainties(run)["turns_over"]
+    moved = tt.time_uncertainties(run)["turnover_time"]
     assert moved == pytest.approx(max(launch, friction), rel=1e-3)
 
 

@@ -9,7 +9,7 @@ NAMES = {
     **dict.fromkeys(("t", "time", "zeit", "temps", "seconds", "sekunden"), "t"),
     **dict.fromkeys(
         ("theta", "tilt", "θ", "inclination", "neigung", "neigungswinkel", "kippwinkel", "winkel"),
-        "theta",
+        "tilt",
     ),
     **dict.fromkeys(
         (
@@ -29,7 +29,7 @@ NAMES = {
         ),
         "rpm",
     ),
-    **dict.fromkeys(("spin", "omega", "omega3", "ω3", "ω", "w", "winkelgeschwindigkeit"), "omega3"),
+    **dict.fromkeys(("spin", "omega", "omega3", "ω3", "ω", "w", "winkelgeschwindigkeit"), "spin"),
     **dict.fromkeys(("event", "ereignis", "what", "was"), "event"),
     **dict.fromkeys(("frame", "step", "bild", "bildnummer"), "frame"),
     **dict.fromkeys(("height", "höhe", "hoehe"), "height"),
@@ -57,7 +57,7 @@ EVENTS = {
             "kippt um 90°",
             "ist umgedreht",
         ),
-        "turns_over",
+        "turnover_time",
     ),
     **dict.fromkeys(
         (
@@ -68,9 +68,9 @@ EVENTS = {
             "steht auf dem stiel",
             "steht",
         ),
-        "arrives",
+        "arrival_time",
     ),
-    **dict.fromkeys(("lifts off", "hebt ab"), "first_lift_off"),
+    **dict.fromkeys(("lifts off", "hebt ab"), "liftoff_time"),
     **dict.fromkeys(("sticks", "haftet"), "stick"),
     **dict.fromkeys(("slips", "gleitet", "rutscht"), "slip"),
     **dict.fromkeys(("touches", "setzt auf"), "touchdown"),

@@ -32,7 +32,7 @@ from tippetop.fit.observations import (
 from tippetop.integrators.base import Array
 from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import SAMPLED
-from tippetop.support.errors import MISSING, Described, InvalidInput, is_number
+from tippetop.support.errors import MISSING, Described, InvalidInput, is_number, within_part
 from tippetop.support.files import made_of, read_text
 from tippetop.support.suggestions import not_one_of
 from tippetop.support.units import NUMBER, exponents_of, named_unit, number_in, unit_of
@@ -237,7 +237,7 @@ def read_measurement(
     r"""Read data of a video analysis, a spreadsheet or a sound's analysis: a file or a table.
 
     The header names the columns, with units in brackets, in English or German. There is a time `t`,
-    or a number `frame` of the picture; beside it `theta` or other scalar variables of a run; or `x`
+    or a number `frame` of the picture; beside it `tilt` or other scalar variables of a run; or `x`
     and `y` of a point in pictures; or `rpm`. A file with columns `event` and `t` has times of
     events. Tabs, semicolons, commas and spaces separate columns, numbers may have decimal commas,
     and cells of missing frames are empty. Files of Tracker are read as they are, places in metres.
@@ -421,7 +421,7 @@ def _measurement_of(
     if not names:
         shown = ", ".join(named)
         accepted = (
-            "t and theta (deg), t and x (mm) and y (mm), t and rpm, t and f (Hz), or event and t"
+            "t and tilt (deg), t and x (mm) and y (mm), t and rpm, t and f (Hz), or event and t"
         )
         raise InvalidInput("columns", shown, accepted)
     units_of = [SAMPLED[name].units for name in names]
@@ -498,7 +498,7 @@ def _factor(column: DataColumn, units: str) -> float:
     try:
         factor = unit_of(column.unit, column.unit, asked)
     except InvalidInput as error:
-        raise error.within(f"unit of column {column.name}") from None
+        raise within_part(error, f"unit of column {column.name}") from None
     return float(factor.over / factor.under * size)
 
 

@@ -109,11 +109,11 @@ class Model:
     @property
     def own_fields(self) -> Array:
         """The problem's own values of the fields."""
-        return np.array([float(get(self.problem, field)) for field in self.fields])
+        return np.array([float(self.problem.get(field)) for field in self.fields])
 
     def turning_over(self, fields: Array) -> float:
         """Return when the run of some fields turns over, s; infinity if it does not."""
-        turned = float(self.run(fields)["turns_over"])
+        turned = float(self.run(fields)["turnover_time"])
         return turned if np.isfinite(turned) else np.inf
 
     def with_instruments(self, fields: Array) -> Array:

@@ -16,7 +16,7 @@ from tippetop.fit.measurement import Measurement
 from tippetop.fit.model import Model, nutation_period
 from tippetop.fit.observations import Camera, EventTimes, Observation, SpinRate, Variables
 from tippetop.integrators.base import Array
-from tippetop.problem.problem import Problem, get, require_problem
+from tippetop.problem.problem import Problem, require_problem
 from tippetop.run import simulate
 from tippetop.support.errors import InvalidInput, NotConverged, is_number
 from tippetop.support.suggestions import not_one_of
@@ -197,7 +197,7 @@ def _confirmed(
         fitted = fit(problem, noisy, fields, starts=1)
     except (InvalidInput, NotConverged):
         return None
-    truth = float(get(problem, fields[0]))
+    truth = float(problem.get(fields[0]))
     error = fitted.errors[fields[0]]
     is_near = abs(fitted.values[fields[0]] - truth) <= MOST_OFF * error
     ratio = error / (plan.error * abs(truth))

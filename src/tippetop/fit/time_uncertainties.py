@@ -6,7 +6,7 @@ import warnings
 import xarray as xr
 
 from tippetop.problem.implausible import Implausible
-from tippetop.problem.problem import Problem, get
+from tippetop.problem.problem import Problem
 from tippetop.results.dataset import require_run
 from tippetop.results.description import describe
 from tippetop.run import simulate
@@ -43,9 +43,9 @@ def time_uncertainties(run: xr.Dataset, change: float = CHANGE) -> dict[str, flo
     -------
     dict
         Seconds, by the names of the clauses of `tippetop.describe` that tell a time, and of the
-        run's variables `turns_over`, `arrives`, `settled_since` and `first_lift_off`. Infinite
-        where a run beside it does not tell the same, or goes through other events before. Pass it
-        to `Account.rounded`, whose sentences have no more digits than that leaves.
+        run's variables `turnover_time`, `arrival_time`, `settling_time` and `liftoff_time`.
+        Infinite where a run beside it does not tell the same, or goes through other events before.
+        Pass it to `Account.rounded`, whose sentences have no more digits than that leaves.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def time_uncertainties(run: xr.Dataset, change: float = CHANGE) -> dict[str, flo
     --------
     >>> import tippetop as tt
     >>> run = tt.simulate(tt.presets.report_problem(spin=155.0), duration=20.0)
-    >>> tt.time_uncertainties(run)["turns_over"] < 1e-3
+    >>> tt.time_uncertainties(run)["turnover_time"] < 1e-3
     True
     """
     require_run(run)
@@ -64,7 +64,7 @@ def time_uncertainties(run: xr.Dataset, change: float = CHANGE) -> dict[str, flo
     times = _times(run)
     moved = dict.fromkeys(times, 0.0)
     end = float(run["end_time"])
-    duration = end if run.attrs["outcome"] == "completed" else LONGER * end
+    duration = end if run.attrs["status"] == "completed" else LONGER * end
     for fields in MOVED:
         beside = _beside(problem, fields, change)
         if not times or beside is None or not duration > 0.0:
@@ -80,7 +80,7 @@ def time_uncertainties(run: xr.Dataset, change: float = CHANGE) -> dict[str, flo
     return moved
 
 
-INSTANTS = ("turns_over", "arrives", "settled_since", "first_lift_off")
+INSTANTS = ("turnover_time", "arrival_time", "settling_time", "liftoff_time")
 """Variables of a run that are times."""
 
 
@@ -93,7 +93,7 @@ def _times(run: xr.Dataset) -> dict[str, float]:
     for clause in describe(run).clauses:
         if "time" in clause.numbers:
             times.setdefault(clause.name, clause.numbers["time"])
-    is_complete, end = run.attrs["outcome"] == "completed", float(run["end_time"])
+    is_complete, end = run.attrs["status"] == "completed", float(run["end_time"])
     return {
         name: time
         for name, time in times.items()
@@ -119,7 +119,7 @@ def _beside(problem: Problem, fields: tuple[str, ...], change: float) -> Problem
     changed = dict[str, float]()
     for field in fields:
         try:
-            number = get(problem, field)
+            number = problem.get(field)
         except InvalidInput:
             continue
         if is_number(number) and number != 0.0:
