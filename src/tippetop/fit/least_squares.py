@@ -57,7 +57,7 @@ range; the second where those of the first do not describe the data."""
 MOST_TEMPLATES = 120
 """Templates over the first part of the data. That is the longest which needs no more."""
 
-PARTS = tuple(0.5**halving for halving in range(7, -1, -1))
+DATA_PARTS = tuple(0.5**halving for halving in range(7, -1, -1))
 """Parts of the duration of the data."""
 
 REGULAR = 0.8
@@ -83,7 +83,7 @@ SAME = 3.0
 SPREAD = 3.0
 """Standard errors after a part of the data within which the truth is sought in the next."""
 
-GRID = {1: 9, 2: 5, 3: 3}
+EVENT_GRID = {1: 9, 2: 5, 3: 3}
 """Values of each field, by the number of fields, that are tried where data have no phase, such as
 times of events; of more fields the problem's own alone."""
 
@@ -454,7 +454,7 @@ class Search:
         fewest = FEWEST_PER_NUMBER * len(self.model.names)
         parts = [
             part
-            for part in PARTS
+            for part in DATA_PARTS
             if part == 1.0
             or sum(one.until(part * end).count for one in measurements if len(one.times)) >= fewest
         ]
@@ -502,7 +502,7 @@ class Search:
         fields = len(self.model.fields)
         metric = np.zeros((fields, fields))
         if self.model.is_event.all():
-            count = GRID.get(fields, 1)
+            count = EVENT_GRID.get(fields, 1)
             axes = [np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(1)] * fields
             grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, fields)
             changes = grid @ region.reach.T

@@ -37,7 +37,7 @@ from tippetop.support.files import made_of, read_text
 from tippetop.support.suggestions import not_one_of
 from tippetop.support.units import NUMBER, exponents_of, named_unit, number_in, unit_of
 
-TURN = 7.0
+MORE_THAN_A_TURN = 7.0
 """Angle without a unit, rad, that is more than a turn: it is taken for degrees."""
 
 SCALARS = tuple(name for name, variable in SAMPLED.items() if not variable.dimensions)
@@ -481,7 +481,12 @@ def _events(named: Mapping[str, DataColumn], noise: Any) -> Measurement:
 def _in_unit(column: DataColumn, units: str) -> Array:
     """Return the numbers of a column in a unit; pixels as they are."""
     numbers = column.numbers()
-    if not column.unit and units == "rad" and len(numbers) and np.nanmax(np.abs(numbers)) > TURN:
+    if (
+        not column.unit
+        and units == "rad"
+        and len(numbers)
+        and np.nanmax(np.abs(numbers)) > MORE_THAN_A_TURN
+    ):
         largest = f"{np.nanmax(np.abs(numbers)):.4g}"
         fault = "is more than a turn in rad, and the column has no unit"
         hint = f"write the unit into the header: {column.name} (deg) or {column.name} (rad)"

@@ -44,7 +44,7 @@ more it is bent.
 SHARPNESS = 12
 """Instants on each period of nutation at which the run's own phases are followed."""
 
-INSTANTS = (100, 4000)
+INSTANT_COUNTS = (100, 4000)
 """Fewest and most of these instants."""
 
 NEGLIGIBLE = 1e-8
@@ -170,7 +170,7 @@ class Model:
         """Return the model of the same instruments at instants that follow the fastest motion."""
         period = nutation_period(self.problem)
         instants = SHARPNESS * time / period if period else 0.0
-        grid = np.linspace(0.0, time, int(np.clip(instants, *INSTANTS)))
+        grid = np.linspace(0.0, time, int(np.clip(instants, *INSTANT_COUNTS)))
         parts = [
             replace(one, times=grid, values=np.full((len(grid), one.values.shape[1]), np.nan))
             for one in self.measurements

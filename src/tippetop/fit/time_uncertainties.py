@@ -80,7 +80,7 @@ def time_uncertainties(run: xr.Dataset, change: float = CHANGE) -> dict[str, flo
     return moved
 
 
-INSTANTS = ("turnover_time", "arrival_time", "settling_time", "liftoff_time")
+TOLD_TIMES = ("turnover_time", "arrival_time", "settling_time", "liftoff_time")
 """Variables of a run that are times."""
 
 
@@ -89,7 +89,7 @@ def _times(run: xr.Dataset) -> dict[str, float]:
 
     When a run ends as long as it was asked for is no result.
     """
-    times = {name: float(run[name]) for name in INSTANTS}
+    times = {name: float(run[name]) for name in TOLD_TIMES}
     for clause in describe(run).clauses:
         if "time" in clause.numbers:
             times.setdefault(clause.name, clause.numbers["time"])
