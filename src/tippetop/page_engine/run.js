@@ -79,6 +79,8 @@ class Run {
     this.steps = 0;
     this.rolls = false;
     this.firstHorizontal = NaN;
+    // Whether n_z was positive at the start of a step.
+    this.wasAbove = false;
     this.monitor = new m.Monitor(this.top, this.start, automaton.pulls);
     this.flightRecord = new m.Flights();
     this.leastForce = new LeastValue();
@@ -172,10 +174,14 @@ class Run {
     this.mostAxisZ.include(-start, -high, solution, step, () =>
       reading(solution, step, AXIS_Z, -1),
     );
-    if (low <= 0 && high >= 0 && Number.isNaN(this.firstHorizontal)) {
-      const part = firstZero(reading(solution, step, AXIS_Z), true);
+    if (low <= 0 && (high >= 0 || this.wasAbove) && Number.isNaN(this.firstHorizontal)) {
+      const value = reading(solution, step, AXIS_Z);
+      // Where one step ends and another begins with a level axis, as in an impact there, no step falls through zero.
+      const fallsFromStart = this.wasAbove && start <= 0 && value(PROBES[1]) < 0;
+      const part = fallsFromStart ? 0 : firstZero(value, true);
       this.firstHorizontal = solution.time(step, part);
     }
+    this.wasAbove ||= start > 0;
   }
 
   /** Take in how high the centre of mass is in a step of a flight. */
@@ -247,6 +253,13 @@ class Run {
   peakTime() {
     const { place } = this.leastAxisZ;
     return place ? place.source.time(place.step, place.part) : this.trajectory.time;
+  }
+
+  /** The flights that begin on the table: how many there are, and the largest gap below them, m. */
+  get jumps() {
+    const jumps = this.flights.filter(({ start }) => m.is_jump(start, this.problem));
+    const highest = Math.max(0, ...jumps.map(({ max_gap }) => max_gap));
+    return { count: jumps.length, highest };
   }
 
   /** What became of the launch, as clauses of a name and numbers. */
