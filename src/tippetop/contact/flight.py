@@ -29,6 +29,9 @@ TURN = 0.5
 points the quadrature of the marker's angle is exact to rounding then.
 """
 
+MOST_PARTS = 63.0
+"""Parts more than one of a step at most: a step of more turns does not follow the axis at all."""
+
 SIZE = 10
 """How many numbers the state of a flight has."""
 
@@ -113,7 +116,7 @@ class Flight(IntegratedMode):
         knots, y = arc.solution.knots, arc.end_state
         longest = max([knots[i + 1] - knots[i] for i in range(len(knots) - 1)], default=0.0)
         rate = length((y[3], y[4], y[5])) / self.top.transverse_inertia
-        return arc.solution.subdivided(1 + int(longest * rate / TURN))
+        return arc.solution.subdivided(1 + int(min(longest * rate / TURN, MOST_PARTS)))
 
     def end_by_guard(self, name: str, last: State) -> ModeEnd:
         """Return the end of the flight on a surface, which touches the table exactly."""
