@@ -236,3 +236,22 @@ def test_whole_powers_are_smooth_where_the_axis_is_level(upwards: float) -> None
     assert float(run["energy_error"]) < 1e-12
     assert float(run["gap"].min()) > -1e-14
     assert int(run["flights"]) >= (upwards > 0.0)
+
+
+def test_a_surface_with_a_whole_power_flies_from_level_as_its_gap_says() -> None:
+    """Thrown up off the table without turning, it lands after 2 u / g; and as a single launch in a
+    sweep.
+    """
+    body = tt.Body(mass=0.02, I1=3e-6, I3=3e-6, shape=Pear(radius=0.02, bump=1e-3))
+    launch = tt.Launch(tilt=np.pi / 2, spin=0.0, velocity=(0.0, 0.0, 0.5))
+    problem = tt.Problem(body=body, friction=tt.ViscousFriction(mu=0.3), launch=launch)
+    run = tt.simulate(problem, 0.15)
+    assert run.attrs["status"] == "completed"
+    touch = 2 * 0.5 / problem.gravity
+    assert float(run.event_time[0]) == pytest.approx(touch, rel=1e-12)
+    turning = problem.replace({"launch.tilt_rate": 20.0, "contact.restitution": 0.4})
+    runs = tt.simulate(turning, 0.15, samples=3)
+    swept = tt.sweep(turning, {"gravity": [problem.gravity]}, duration=0.15, tolerance=1e-12)
+    assert swept.outcome.values[0] in ("moving_tilted", "moving_upright", "moving_inverted")
+    for name in ("airborne_time", "max_gap", "final_tilt"):
+        assert float(swept[name][0]) == pytest.approx(float(runs[name]), rel=1e-8), name

@@ -106,16 +106,16 @@ def check_end(problem: tt.Problem) -> None:
     assert float(run["energy_error"]) < 1e-8
     end, unit = solution.end_time, math.sqrt(outer_radius(problem.body) / G)
     last = solution(end)
-    assert last.theta < 1e-10
-    if abs(last.theta_dot) > SLAPPING:
+    assert last.tilt < 1e-10
+    if abs(last.tilt_rate) > SLAPPING:
         lasts = 4e-6 * unit
         before = solution(end - lasts)
-        mean = 0.5 * (before.theta_dot + last.theta_dot)
-        assert before.theta == pytest.approx(-mean * lasts, rel=1e-4)
+        mean = 0.5 * (before.tilt_rate + last.tilt_rate)
+        assert before.tilt == pytest.approx(-mean * lasts, rel=1e-4)
         return
     tau = 0.02 * unit
     highest = [
-        float(solution(np.linspace(end - 2 * part, end - part, 2001)).theta.max())
+        float(solution(np.linspace(end - 2 * part, end - part, 2001)).tilt.max())
         for part in (tau, tau / 2)
     ]
     assert 2.5 < highest[0] / highest[1] < 6.5

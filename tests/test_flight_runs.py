@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 import tippetop as tt
 from campaigns import examples
+from free_flight import fly
 from independent_flights import Toy, slide_and_fly
 from tippetop.contact.automaton import Automaton
+from tippetop.mechanics.flight.free_motion import gap
 from tippetop.mechanics.motion import along_table, sliding_contact
 from tippetop.problem.presets import REPORT, report_problem
 
@@ -312,3 +315,40 @@ def test_a_flight_that_is_cut_short_rose_no_higher_than_it_was_followed():
     assert rise > 1.0
     assert abs(highest - 0.05 - rise) < 0.024
     assert highest == float(run["flight_max_gap"][-1])
+
+
+def test_a_body_with_two_maxima_of_its_support_function_lands_at_its_first_touch():
+    """It turns past the second maximum while it has fallen by little; in one run and in a sweep."""
+    radius, part = 0.02, 0.06
+    support = [radius * (1 + part), 0.0, -8 * part * radius, 0.0, 8 * part * radius]
+    inertia = 0.4 * 0.02 * radius**2
+    problem = tt.Problem(
+        body=tt.Body(
+            mass=0.02, shape=tt.Oval(support=support + [0.0] * 12), I1=inertia, I3=inertia
+        ),
+        friction=tt.ViscousFriction(mu=0.3),
+        launch=tt.Launch(
+            tilt=math.acos(0.8),
+            spin=188.0,
+            precession=-188 * 0.8 / 0.36,
+            gap=5e-4,
+            velocity=(0, 0, 0),
+        ),
+    )
+    top, state = problem.top, problem.start()
+
+    def gap_at(time):
+        return gap(fly(state, time, top, np), top)
+
+    looks = np.linspace(0.0, 0.02, 200_001)
+    first = int(np.flatnonzero(gap_at(looks) <= 0.0)[0])
+    touch = brentq(lambda time: float(gap_at(time)), looks[first - 1], looks[first], xtol=1e-18)
+    assert touch == pytest.approx(2.90750839e-3, abs=1e-11)
+    run = tt.simulate(problem, 0.05)
+    assert run.event_kind.values[0] == "touchdown"
+    assert float(run.event_time[0]) == pytest.approx(touch, abs=1e-14)
+    assert float(run.gap.min()) > -1e-12 * radius
+    swept = tt.sweep(problem, {"gravity": [9.8]}, duration=0.05, workers=1, tolerance=1e-12)
+    assert float(swept.final_tilt[0]) == pytest.approx(float(run.final_tilt), abs=1e-8)
+    airborne = tt.sweep(problem, {"gravity": [9.8]}, duration=3.1e-3, workers=1)
+    assert float(airborne.airborne_time[0]) == pytest.approx(touch, abs=1e-12)

@@ -233,7 +233,7 @@ def ends(
     method = make_integrator("dop853", 3e-14) if law is None else make_integrator("collocation")
     run = Trajectory(automaton, start, duration / units.time, method)
     modes = {segment.mode.label for segment in run.segments()}
-    assert run.outcome is not None
+    assert run.status is not None
     return np.array([*run.state.axis, *run.state.momentum, *run.state.velocity]), modes
 
 

@@ -3,6 +3,7 @@ is the laboratory, and ``{torque}`` its picture of the torque that lifts the ste
 """
 
 import shutil
+from html import escape
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -42,12 +43,15 @@ class Frame(SphinxDirective):
 
 
 class Laboratory(Frame):
-    """The laboratory, as `tippetop lab` opens it."""
+    """The laboratory, as `tippetop lab` opens it, or at what a link says."""
+
+    option_spec: ClassVar = {"link": directives.unchanged_required}
 
     def run(self) -> list[nodes.Node]:
         """Copy its page, and show it in a frame."""
         shutil.copyfile(page_path(), self.folder / "lab.html")
-        return self.frame("lab", "player laboratory")
+        link = self.options.get("link", "")
+        return self.frame("lab", "player laboratory", f"#{escape(link)}" if link else "")
 
 
 class Torque(Frame):

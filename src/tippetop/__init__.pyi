@@ -18,12 +18,12 @@ from .fit.improve import ImprovedTop as ImprovedTop
 from .fit.improve import improve as improve
 from .fit.least_squares import fit as fit
 from .fit.measurement import Measurement as Measurement
+from .fit.measurement import read_launches as read_launches
 from .fit.measurement import read_measurement as read_measurement
 from .fit.planning import PlannedMeasurement as PlannedMeasurement
 from .fit.planning import plan_measurement as plan_measurement
 from .fit.sensitivities import sensitivities as sensitivities
-from .fit.stored import read_fit as read_fit
-from .fit.stored import write_fit as write_fit
+from .fit.time_uncertainties import time_uncertainties as time_uncertainties
 from .lab.notebook import view as view
 from .lathe.design import design_bowl as design_bowl
 from .lathe.design import design_insert as design_insert

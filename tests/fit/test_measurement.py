@@ -1,6 +1,10 @@
 """Data as people have it become measurements, and what is no data gets one sentence."""
 
+import sys
+from types import SimpleNamespace
+
 import numpy as np
+import pandas as pd
 import pytest
 
 import tippetop as tt
@@ -88,7 +92,91 @@ def test_turns_a_minute_and_events_alone(written):
     assert np.allclose(events.values, [[3.1, 0.7]])
 
 
+HEADINGS = {
+    "degrees in German": ("t (s)", "Neigung (Grad)", 1.0, np.pi / 180.0),
+    "gon": ("t (s)", "theta (gon)", 1.0, np.pi / 200.0),
+    "a unit after an underscore": ("time_ms", "theta_deg", 1e-3, np.pi / 180.0),
+    "a unit in words": ("Zeit in ms", "theta in mrad", 1e-3, 1e-3),
+    "turns a second": ("T (s)", "omega (Hz)", 1.0, 2.0 * np.pi),
+    "turns a minute": ("t (s)", "w (1/min)", 1.0, np.pi / 30.0),
+}
+
+
+@pytest.mark.parametrize(("time", "column", "second", "size"), HEADINGS.values(), ids=HEADINGS)
+def test_headings_as_people_write_them(written, time, column, second, size):
+    data = tt.read_measurement(written(f"{time};{column}\n0;1,5\n1;2\n2;3\n"), noise=0.25)
+    assert np.allclose(data.times, second * np.arange(3), rtol=1e-14)
+    assert np.allclose(data.values[:, 0], size * np.array([1.5, 2.0, 3.0]), rtol=1e-12)
+    assert data.noise == pytest.approx([0.25 * size])
+
+
+@pytest.mark.parametrize(("unit", "size"), [("Hz", 60.0), ("1/min", 1.0), ("rad/s", 30.0 / np.pi)])
+def test_frequencies_are_turns_a_minute_without_sign(written, unit, size):
+    data = tt.read_measurement(written(f"t,Frequenz ({unit})\n0,-3\n1,2\n"), noise="0.1 rev/s")
+    assert np.allclose(data.values[:, 0], [3.0 * size, 2.0 * size])
+    assert data.noise == pytest.approx([6.0])
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+def test_encodings_of_spreadsheets(tmp_path, encoding):
+    path = tmp_path / "höhe.csv"
+    path.write_bytes("Zeit (s);Höhe (mm)\n0;20,5\n0,1;21\n".encode(encoding))
+    assert np.allclose(tt.read_measurement(path).values[:, 0], [0.0205, 0.021])
+
+
+def test_the_encoding_of_a_chinese_tracker(tmp_path):
+    path = tmp_path / "film.txt"
+    path.write_bytes("质量_A\nt\tx\ty\n0\t0.1\t0.2\n0.1\t0.3\t0.5\n".encode("gbk"))
+    data = tt.read_measurement(path, view="above")
+    assert data.values.tolist() == [[0.1, 0.2], [0.3, 0.5]]
+    assert data.observation.scale == 1.0  # Places are in metres.
+
+
+def test_a_workbook_is_read_by_openpyxl(tmp_path, monkeypatch):
+    path = tmp_path / "film.xlsx"
+    path.write_bytes(b"")
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    with pytest.raises(tt.Unavailable, match="install openpyxl"):
+        tt.read_measurement(path)
+    rows = (("Zeit (s)", "Neigung (Grad)"), (0, 5.5), (0.1, 6), (0.2, None))
+    sheet = SimpleNamespace(values=rows)
+    book = SimpleNamespace(worksheets=[sheet])
+    module = SimpleNamespace(load_workbook=lambda path, **options: book)
+    monkeypatch.setitem(sys.modules, "openpyxl", module)
+    assert np.allclose(np.degrees(tt.read_measurement(path).values[:2, 0]), [5.5, 6.0])
+
+
+def test_tables_in_memory_are_read_as_files_are():
+    columns = {"Zeit (ms)": [0, 20, 40], "tilt (deg)": [5.0, np.nan, 6.0]}
+    for source in (columns, pd.DataFrame(columns)):
+        data = tt.read_measurement(source, noise=0.5)
+        assert np.allclose(data.times, [0.0, 0.02, 0.04])
+        assert np.allclose(np.degrees(data.values[:, 0]), [5.0, np.nan, 6.0], equal_nan=True)
+        assert np.degrees(data.noise[0]) == pytest.approx(0.5)
+    with pytest.raises(tt.InvalidInput, match="a DataFrame, or a mapping"):
+        tt.read_measurement(3.0)
+
+
+def test_tracks_are_asked_for(written):
+    two = "t\tx\ty\tx\ty\n0\t1\t2\t3\t4\n0.1\t5\t6\t7\t8\n"
+    with pytest.raises(tt.InvalidInput, match="one of 1, 2"):
+        tt.read_measurement(written(two), view="side")
+    data = tt.read_measurement(written(two), view="side", track="2")
+    assert data.values.tolist() == [[3.0, 4.0], [7.0, 8.0]]
+    one = "mass_A\nt\tx\ty\n0\t1\t2\n0.1\t5\t6\n"
+    with pytest.raises(tt.InvalidInput, match="one of mass_A"):
+        tt.read_measurement(written(one), view="side", track="foo")
+
+
+def test_events_in_words(written):
+    data = tt.read_measurement(written("Ereignis;t (s)\nsteht auf dem Stift;5,0\n"), noise=0.2)
+    assert data.observation.labels == ("arrival_time",)
+    assert data.noise == pytest.approx([0.2])
+
+
 BAD = {
+    "a later start": ("t,tilt\n0.35,0.1\n0.36,0.2\n", "write 0.35 if the top is launched"),
+    "an event of another kind": ("event,t\nfällt um,3.1\n", "turnover_time"),
     "empty": ("", "has no numbers"),
     "no header": ("0,0.1\n0.1,0.2\n", "there is no header"),
     "shuffled": ("t,tilt\n0,0.1\n0.2,0.2\n0.1,0.3\n", "times must increase"),

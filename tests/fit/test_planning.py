@@ -8,31 +8,36 @@ import tippetop as tt
 TOP = tt.presets.report_problem(spin=155.0)
 
 
-def test_a_plan_foretells_the_errors_of_the_fit():
-    ways = tt.plan_measurement(TOP, 1.0, ["friction.mu", "launch.tilt"], noise={"tilt": 2e-4})
-    (way,) = [way for way in ways if way.duration == 1.0]
-    times = np.linspace(0.0, 1.0, 61)
-    tilt = tt.simulate(TOP, 1.0, times=times)["tilt"].values
-    noisy = tilt + np.random.default_rng(2).normal(0.0, 2e-4, 61)
-    film = tt.Measurement.of_variables(times, {"tilt": noisy}, noise=2e-4)
-    fitted = tt.fit(TOP, film, ["friction.mu", "launch.tilt"])
-    # One frame more than 60, and derivatives at the fit instead of the truth.
-    assert way.error == pytest.approx(fitted.errors["friction.mu"] / 0.3, rel=0.05)
+def test_a_plan_foretells_the_scatter_of_fits():
+    (way,) = tt.plan_measurement(TOP, 0.5, ["friction.mu"], noise={"tilt": 3e-4}, accuracy=0.02)
+    assert way.error <= 0.02
+    times = np.arange(0.0, way.duration, 1.0 / way.frame_rate)
+    tilt = tt.simulate(TOP, float(times[-1]), times=times)["tilt"].values
+    random, values = np.random.default_rng(2), []
+    for _ in range(16):
+        seen = tilt + random.normal(0.0, 3e-4, len(times))
+        film = tt.Measurement.of_variables(times, {"tilt": seen}, noise=3e-4)
+        values.append(tt.fit(TOP, film, ["friction.mu"], starts=1).values["friction.mu"])
+    # Of 16 fits the scatter is known to 18 %.
+    assert 1.0 / 1.5 < np.std(values, ddof=1) / (0.3 * way.error) < 1.5
 
 
-def test_the_frames_needed_grow_with_the_square_of_the_accuracy():
-    coarse, fine = (
-        tt.plan_measurement(TOP, 0.5, ["friction.mu"], accuracy=accuracy, noise={"tilt": 0.02})
-        for accuracy in (0.1, 0.01)
-    )
-    rates = [{way.duration: way.frame_rate for way in ways} for ways in (coarse, fine)]
-    for duration in (0.125, 0.25, 0.5):
-        assert rates[1][duration] == pytest.approx(100.0 * rates[0][duration], rel=1e-9)
+def test_plans_can_be_filmed():
+    ways = tt.plan_measurement(TOP, 1.0, ["friction.mu"], accuracy=0.3)
+    nutation = TOP.body.I3 * 155.0 / TOP.body.I1 / (2.0 * np.pi)
+    assert len({way.quantity for way in ways}) == len(ways) > 1
+    for way in ways:
+        assert way.frame_rate in (30.0, 60.0, 120.0, 240.0)
+        assert way.frame_rate > 2.0 * nutation
+        assert way.frame_rate * way.duration >= 2.0
+        assert way.error <= 0.45
+    pictures = [way.frame_rate * way.duration for way in ways]
+    assert pictures == sorted(pictures)
 
 
-def test_what_cannot_be_seen_is_not_known_by_any_number_of_frames():
-    (way, *_) = tt.plan_measurement(TOP, 0.5, ["launch.azimuth"], noise={"tilt": 0.02})
-    assert way.frame_rate == np.inf
+def test_what_cannot_be_seen_has_no_plan():
+    with pytest.raises(tt.InvalidInput, match="nothing at best"):
+        tt.plan_measurement(TOP, 0.5, ["launch.azimuth"], noise={"tilt": 0.02})
 
 
 @pytest.mark.parametrize(

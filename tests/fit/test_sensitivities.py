@@ -320,6 +320,17 @@ def test_rules_of_the_graph_are_those_of_dual_numbers():
     assert Dual(2.0, np.ones(1)) > 1.0
 
 
+@pytest.mark.parametrize("restitution", [0.0, 1.0])
+def test_the_end_of_a_range_is_named(restitution):
+    problem = tt.presets.report_problem(mu=0.0).replace(
+        {"contact.liftoff": "fly", "contact.restitution": restitution, "launch.gap": 0.02}
+    )
+    slopes = tt.sensitivities(problem, 0.2, ["contact.restitution", "launch.gap"], samples=3)
+    assert "end of its range" in slopes["reason"].values[0]
+    assert np.isnan(slopes["final_tilt"].values[0])
+    assert np.isfinite(slopes["final_tilt"].values[1])
+
+
 def evaluated(recorded, y, p):
     """Return the outputs of a recorded function, node by node."""
     values = {}

@@ -76,24 +76,6 @@ def pieces():
     return DenseSolution(np.array([1.0, 2.0, 4.0, 5.0]), np.arange(3.0).reshape(3, 1, 1))
 
 
-@pytest.mark.parametrize("frequency", [0.3, 1.0, 40.0])
-def test_numbers_that_swing_and_numbers_that_fall_are_as_they_are_in_closed_form(frequency):
-    def turning(times, order):
-        return frequency**order * np.sin(frequency * times + 0.4 + 0.5 * np.pi * order)
-
-    def moving(times):
-        falling = (1.0 + times * (2.0 - 1.5 * times), 2.0 - 3.0 * times, -3.0)
-        return [(turning(times, order), falling[order], 7.0 * (order == 0)) for order in range(3)]
-
-    knots = 0.5 / frequency * np.arange(6)
-    solution = DenseSolution.swinging(moving, frequency, knots.tolist(), 14, 1)
-    times = np.linspace(0.0, knots[-1], 101)
-    swung, fell, stayed = solution(times).T
-    np.testing.assert_allclose(swung, turning(times, 0), rtol=0.0, atol=2e-15)
-    np.testing.assert_allclose(fell, moving(times)[0][1], rtol=0.0, atol=1e-15 * np.abs(fell).max())
-    assert set(stayed) == {7.0}
-
-
 def test_a_time_where_two_steps_meet_belongs_to_the_earlier():
     times = np.array([1.0, 1.5, 2.0, np.nextafter(2.0, 3.0), 4.0, 4.5, 5.0])
     assert pieces()(times)[:, 0].tolist() == [0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0]

@@ -9,13 +9,19 @@ from bundled import found_in_the_page
 Lab = Callable[..., Visit]
 
 RESULTS = """
-import { readResults, resultCode, resultLink, spinsOf } from "./results.js";
+import { launchQuery } from "./link.js";
+import { FIRST, changed } from "./setup.js";
+import { readResults as readAll, resultCode, resultLink, spinsOf } from "./results.js";
+const readResults = (text) => readAll(text, FIRST);
 const run = { problem: { launch: { spin: 123.456 } }, metrics: { final_tilt: Math.PI / 2 } };
 const code = resultCode(run);
 export const found = {
   code,
   back: readResults(code),
   link: readResults(resultLink("https://school/lab.html", new URLSearchParams("tab=class"), run)),
+  none: readResults(resultLink(
+    "https://school/lab.html", launchQuery(changed(FIRST, { "friction.mu": 0 })), run)),
+  odd: readResults("99999 90\\n-155 179.9\\n−50 86.1"),
   bare: readResults("https://school/lab.html#launch.spin=155"),
   mixed: readResults("155 179,9\\n\\nabout 12\\n50;86.1°\\n20 200\\n"),
   spins: spinsOf(4, 10, 100),
@@ -26,10 +32,12 @@ export const found = {
 def test_result_codes_are_read_back() -> None:
     found = found_in_the_page(RESULTS)
     assert found["code"] == "123.5 90.0"
-    assert found["back"] == {"points": [[123.5, 90.0]], "wrong": []}
+    assert found["back"] == {"points": [[123.5, 90.0]], "wrong": [], "others": []}
     assert found["link"] == found["back"], "a link brings its result along"
-    assert found["bare"] == {"points": [], "wrong": [1]}
-    assert found["mixed"] == {"points": [[155, 179.9], [50, 86.1]], "wrong": [3, 5]}
+    assert found["none"] == {"points": [], "wrong": [], "others": [1]}, "from another table"
+    assert found["odd"] == {"points": [[-155, 179.9], [-50, 86.1]], "wrong": [1], "others": []}
+    assert found["bare"] == {"points": [], "wrong": [1], "others": []}
+    assert found["mixed"] == {"points": [[155, 179.9], [50, 86.1]], "wrong": [3, 5], "others": []}
     assert found["spins"] == [10, 40, 70, 100]
 
 

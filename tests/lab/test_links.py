@@ -7,6 +7,7 @@ import { readLink, writeLink } from "./link.js";
 import { PRESETS } from "./presets.js";
 import { changed } from "./setup.js";
 import { bodyOf, FIRST } from "./turning.js";
+import { SPEEDS } from "../player/speeds.js";
 
 let seed = 50;
 const random = () => {
@@ -41,11 +42,15 @@ const state = () => ({
     time: random() < 0.5 ? 0 : Math.round(1e5 * random()) / 1e4,
     camera: random() < 0.7 ? null : [number(0.3, 1), number(0.3, 1), number(2, 5)].map(
       (v) => Number(v.toFixed(3))),
+    speed: random() < 0.5 ? null : one(SPEEDS),
     shown: random() < 0.5 ? null : some(["axis", "momentum", "friction", "trace", "glass"]),
   },
   tab: one(["story", "story", "launch", "own", "compare", "map", "keep"]),
   step: one([0, 0, 1, 4, 9]),
   plots: random() < 0.5 ? null : some(["tilt", "spin", "slip", "energy"]),
+  own: random() < 0.6 ? null : { ...FIRST, hollow: number(0.2, 0.8), material: "cork" },
+  classroom: random() < 0.6 ? null : {
+    groups: one([2, 8, 30]), low: 20, high: number(100, 200), results: "155 179.9\\n50 86,1" },
   free: random() < 0.6 ? null : [one(["time", "tilt", "slip"]), one(["spin", "energy"])],
   lang: one([null, "en", "de"]),
   theme: one(["auto", "light", "dark"]),
@@ -58,7 +63,7 @@ const sorted = (value) => {
 };
 export const found = Array.from({ length: 200 }, () => {
   const asked = state();
-  const { timed, ...reopened } = readLink(writeLink(asked));
+  const { timed, flaw, unread, ...reopened } = readLink(writeLink(asked));
   return [JSON.stringify(sorted(asked)), JSON.stringify(sorted(reopened)), writeLink(asked)];
 });
 """

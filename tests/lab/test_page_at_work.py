@@ -106,6 +106,7 @@ def test_time_goes_slower_while_the_top_turns_over(lab: Lab) -> None:
     passed = """(from) => { const { player } = tippetopLab; player.seek(from);
       player.playing = true; player.last = 1000; player.advance(1010); player.playing = false;
       return player.time - from; }"""
+    visitor.ask("() => tippetopLab.player.goAt(1)")
     turned = visitor.ask("() => tippetopLab.player.turnsOver")
     assert visitor.ask(passed, 1.0) == pytest.approx(0.01)
     assert visitor.ask(passed, turned) == pytest.approx(0.0015)

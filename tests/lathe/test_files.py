@@ -68,6 +68,15 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
     assert inserts == [{"profile": "hole.csv", "density": 0}]
 
 
+def test_spreadsheets_that_write_decimal_commas_are_read(tmp_path):
+    (tmp_path / "comma.csv").write_text("0;0\n1,5;2\n0;3\n")
+    (tmp_path / "point.csv").write_text("0,0\n1.5,2\n0,3\n")
+    comma, point = (
+        read_workpiece(tmp_path / f"{name}.csv", density=700.0) for name in ("comma", "point")
+    )
+    assert comma.profile == point.profile
+
+
 @pytest.mark.parametrize(
     ("name", "text", "sentence"),
     [
@@ -75,7 +84,7 @@ def test_inserts_given_are_left_as_they_were(tmp_path):
         ("a.csv", "r,z\n0,0\n1,,2\n0,1\n", ": 1,,2 is not"),
         ("a.csv", "0,O\n1,2\n0,1\n", ": 0,O is not"),
         ("a.csv", "O,-2O\n1,2\n0,1\n", ": 'O,-2O' is not"),
-        ("a.csv", "0;0\n1,5;2\n0;3\n", "1,5,2"),
+        ("a.csv", "0;0\n1,5 mm;2\n0;3\n", "1.5 mm,2"),
         ("a.csv", "", "0 points"),
         ("a.svg", "<svg", "is not XML"),
         ("a.svg", "<html/>", "a file whose outermost element is <svg>"),

@@ -34,5 +34,5 @@ def gaps_by_name(texts: Any, name: str = "") -> Iterator[tuple[str, set[str]]]:
 def test_german_has_the_texts_and_the_gaps_of_english() -> None:
     english = read(TEXTS / "en.json") | {"account": read(ACCOUNT), "doubts": dict(SENTENCES)}
     german = read(TEXTS / "de.json")
-    del german["patterns"]  # sentences of the engine, which is in English
+    del german["refusals"]  # of the engine, which is in English
     assert dict(gaps_by_name(german)) == dict(gaps_by_name(english))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.integrators.polynomial_minima import first_fall
+from tippetop.integrators.first_fall import single_fall
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.contacts.branches import on_branch, on_numbered_branch
 from tippetop.mechanics.contacts.forces import velocity_without_slip
@@ -12,13 +12,12 @@ from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.motion import along_table, angular_velocity
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.sweeps.launch_arrays import Launches
-from tippetop.sweeps.taylor_step import PROBES
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
 
 
 def told(terms, span):
     with np.errstate(all="ignore"):
-        time, doubt = first_fall(list(terms), span, PROBES, NumPyArithmetic())
+        time, doubt = single_fall(list(terms), span, NumPyArithmetic())
     return time, doubt > 0.0
 
 

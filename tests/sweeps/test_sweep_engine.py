@@ -58,8 +58,10 @@ def check_against_runs(sweep, cells=None, closeness=1e-7, **options):
             summary["final"]["spin"], rel=closeness, abs=closeness
         )
         if summary["final"]["precession"] is not None and abs(math.sin(here["final_tilt"])) > 1e-2:
+            # A spin about an axis at rest has a precession that is rounding of it.
+            rounding = 1e-14 * abs(here["final_spin"]) / math.sin(here["final_tilt"]) ** 2
             assert here["final_precession"] == pytest.approx(
-                summary["final"]["precession"], rel=10 * closeness
+                summary["final"]["precession"], rel=10 * closeness, abs=max(1e-12, rounding)
             )
         assert here["end_time"] == pytest.approx(summary["end_time"], rel=closeness)
         assert here["energy_lost"] == pytest.approx(
@@ -307,7 +309,7 @@ def test_a_launch_that_ends_in_its_first_flight_has_not_settled():
 
 
 def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
-    monkeypatch.setattr(flights, "PIECES", 1)
+    monkeypatch.setattr(flights, "STEP_LIMIT", 2)
     problem = report_problem(spin=2000.0, tilt=1.0).replace({"launch.precession": 3000.0})
     axis = Axis.of("launch.gap", [1.0])
     found = follow_cells(Sweep(problem, Product((axis,)), 0.3, 1e-9), np.arange(1))

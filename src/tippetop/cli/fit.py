@@ -17,12 +17,13 @@ from tippetop.cli.options import (
     of_a_problem,
     write_figure,
 )
-from tippetop.cli.terminal import listing, show, show_json
+from tippetop.cli.terminal import listing, progress_bar, show, show_json
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, require_ending
 
 if TYPE_CHECKING:
     from tippetop.fit.fitted import FitResult
+    from tippetop.fit.least_squares import FitProgress
 
 
 @of_a_problem
@@ -39,7 +40,9 @@ def fit(
     ] = "",
     noise: Annotated[
         str | None,
-        typer.Option(help="Standard deviation of the data in their unit; one for each column."),
+        typer.Option(
+            help="Standard deviation of each column, in its unit or as in '0.3 mm', with commas."
+        ),
     ] = None,
     view: Annotated[
         str | None, typer.Option(help="Where pictures were taken from: above or side.")
@@ -50,15 +53,18 @@ def fit(
     ] = None,
     frame_rate: Annotated[float | None, number_option(float, "Pictures a second.")] = None,
     start: Annotated[
-        str, typer.Option(metavar=NUMBER, help="Time of the launch in the data, s.")
-    ] = "0",
+        str | None, typer.Option(metavar=NUMBER, help="Time of the launch in the data, s.")
+    ] = None,
     y_down: Annotated[
         bool, typer.Option("--y-down", help="y grows downwards in pictures.")
     ] = False,
     track: Annotated[str | None, typer.Option(help="Track, of several in a file.")] = None,
     starts: Annotated[
         int | None,
-        number_option(int, "Points from which the search begins; as many as it needs by default."),
+        number_option(int, "Points that are followed to minima; 1: the problem's own, no scan."),
+    ] = None,
+    most_runs: Annotated[
+        int | None, number_option(int, "Runs after which the search ends with its best fit.")
     ] = None,
     plot: Annotated[
         Path | None, typer.Option(help="Draw data and fit as .png, .svg or .pdf.")
@@ -74,18 +80,28 @@ def fit(
         if path is not None:
             require_ending(option, path, endings)
             place_for(path, force)
-    measurement: Any = tt.read_measurement(
+    noises = None if noise is None else [part.strip() for part in noise.split(",")]
+    launches = tt.read_launches(data, choice.problem(), noise=noises)
+    measurement: Any = launches or tt.read_measurement(
         data,
         view=view,  # type: ignore[arg-type]
         point=point,
         scale=number_of("--scale", scale, "m"),
-        noise=None if noise is None else [_number("--noise", part) for part in noise.split(",")],
+        noise=noises,
         frame_rate=frame_rate,
-        start=number_of("--start", start, "s") or 0.0,
+        start=number_of("--start", start, "s"),
         y_down=y_down,
         track=track,
     )
-    result = tt.fit(choice.problem(), measurement, _vary(vary), starts=starts)
+    with progress_bar() as tell:
+
+        def callback(now: "FitProgress") -> None:
+            tell(now.part, 1.0, f"{now.runs:,} runs, {now.part:.0%} of the data")
+
+        limit: dict[str, Any] = {} if most_runs is None else {"most_runs": most_runs}
+        subject: Any = launches or choice.problem()
+        seen = None if launches else measurement
+        result = tt.fit(subject, seen, _vary(vary), starts=starts, callback=callback, **limit)
     if plot is not None:
         from tippetop.figures.fits import plot_fit  # noqa: PLC0415 - slow to import
 
@@ -104,10 +120,14 @@ def _lines(result: "FitResult") -> list[Any]:
         (name, f"{value:.5g}", "±", f"{result.errors[name]:.2g}")
         for name, value in result.values.items()
     ]
-    sums = f"chi² = {result.chi2:.4g} for {result.degrees_of_freedom} degrees of freedom"
     words = [f"[bold]not determined:[/] {direction}" for direction in result.undetermined]
     headings = ("number", "value", "", "standard error")
-    return [listing(None, headings, rows, words=("number", "")), sums, *words, *result.cautions]
+    return [
+        listing(None, headings, rows, words=("number", "")),
+        result.goodness,
+        *words,
+        *result.cautions,
+    ]
 
 
 def _vary(text: str) -> dict[str, tuple[float, float] | None]:

@@ -21,6 +21,7 @@ from tippetop.cli.options import (
     write_figure,
 )
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
+from tippetop.results.description import digits_left
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, refuse_ending_of_others, require_ending
 
@@ -61,6 +62,9 @@ ROWS = (
 
 A row without a text for a missing value is then omitted.
 """
+
+USUAL_DIGITS = 7
+"""Digits of a time that a minute change of the launch does not move."""
 
 LOSS_ROWS = (
     ("of it to sliding", "energy_lost_sliding", "J", ".7g", ""),
@@ -155,7 +159,9 @@ def simulate(
     elapsed = time.perf_counter() - began
     for kind, path in requested.items():
         _write(run, kind, path, force)
-    summary = tt.summarize(run)
+    uncertainties = tt.time_uncertainties(run)
+    account = tt.describe(run).rounded(uncertainties)
+    summary = {**tt.summarize(run), "description": str(account), "uncertainties": uncertainties}
     if as_json:
         written = {kind: path and str(path) for kind, path in files.items()}
         show_json({**summary, **written, "problem": chosen.model_dump()})
@@ -234,7 +240,10 @@ def _rows(summary: dict[str, Any], jellett_conserved: bool) -> list[tuple[str, s
         if key == "jellett_drift" and not jellett_conserved:
             continue
         value = numbers[key]
-        if value is not None:
+        if value is not None and key in summary["uncertainties"]:
+            digits = digits_left(value, summary["uncertainties"][key], USUAL_DIGITS)
+            rows.append((text, f"{value:.{digits}g}" if digits else "chance decides", unit))
+        elif value is not None:
             rows.append((text, format(value, form), unit))
         elif missing:
             rows.append((text, missing, ""))

@@ -13,7 +13,7 @@ from typing import Any
 from tippetop.contact.closed_contacts import ClosedContacts
 from tippetop.contact.collision import collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
-from tippetop.contact.flight import TOUCHING, Flight
+from tippetop.contact.flight import TOUCHING, Flight, Start
 from tippetop.contact.guards import (
     BRANCH,
     ENDING,
@@ -90,7 +90,6 @@ from tippetop.mechanics.contacts.slip_variables import (
 )
 from tippetop.mechanics.contacts.wrench import Slip, Wrench
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
-from tippetop.mechanics.flight.touchdown import Start
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, falls_by_zero, on_table, sliding_contact

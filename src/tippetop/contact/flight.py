@@ -1,34 +1,21 @@
-"""The top flies, in closed form."""
+"""Free flight: the mode without closed contacts, its equations of motion and its guards."""
 
-# translate module: numbers
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from functools import lru_cache
+from typing import Any, ClassVar
 
-import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import ClassVar
-
-from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Segment, explanation
-from tippetop.integrators.base import Integrator
-from tippetop.integrators.dense import ELEMENTARY, DenseSolution
-from tippetop.mechanics.flight.free_motion import flight_rates, fly, gap, gap_rate, precession
-from tippetop.mechanics.flight.touchdown import Start, highest_gap, touchdown
+from tippetop.contact.mode import IntegratedMode, ModeEnd, Segment, numbered
+from tippetop.integrators.base import Arc, Guard, Integrator, Motion
+from tippetop.integrators.dense import DenseSolution, as_array
+from tippetop.integrators.opening import opening
+from tippetop.mechanics.flight.free_motion import free_rates, gap, gap_rate
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.surface import support_at
-from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Row, Scalar
-
-DEGREE = 14
-"""Degree of the polynomials that stand for a flight in a solution."""
-
-TURN = 0.5
-"""Angle through which the axis turns in each of them, rad: what they leave out is below rounding.
-
-It is TURN^(DEGREE + 1) / (DEGREE + 1)!, 2e-17. The marker's angle is a quadrature over each,
-whose rate is singular at the farther pole: longer ones would come near that.
-"""
-
-MOST_STEPS = 4096
-"""Polynomials in a segment at most."""
+from tippetop.mechanics.surfaces.hull import each_surface, is_edge
+from tippetop.mechanics.surfaces.surface import Surface, gap_guard, support_at
+from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.vectors import Row, Scalar, length
 
 LANDING = "landing"
 """Cause of the end of a flight on the table."""
@@ -37,76 +24,140 @@ TOUCHING = 1e-12
 """Gap, and gap rate, in natural units, up to which a surface touches, and neither opens nor closes.
 """
 
+TURN = 0.5
+"""Angle through which the axis turns in a step of a solution at most, rad: with Gauss's eight
+points the quadrature of the marker's angle is exact to rounding then.
+"""
+
+MOST_PARTS = 63.0
+"""Parts more than one of a step at most: a step of more turns does not follow the axis at all."""
+
+SIZE = 10
+"""How many numbers the state of a flight has."""
+
+
+class Start(IntEnum):
+    """How a flight starts: how many of gap, gap rate and gap acceleration are then zero."""
+
+    AIRBORNE = 0
+    REBOUND = 1
+    RELEASE = 2
+    LIFT_OFF = 3
+
 
 @dataclass(frozen=True)
-class Flight(Mode):
-    """Free flight, until the body's lowest point touches the table again."""
+class Flight(IntegratedMode):
+    """Free flight, until a surface touches the table."""
 
     start: Start = Start.AIRBORNE
-    """How the flight starts: thrown, rebounding, released or lifting off."""
+    """How the flight starts for the active surface: thrown, rebounding, released or lifting off."""
 
     name: ClassVar[str] = "flight"
     touching: ClassVar[bool] = False
+
+    @property
+    def lasting(self) -> bool:
+        """Whether what is read off its numbers is worth compiling: it is quick without."""
+        return False
+
+    @property
+    def motion(self) -> Motion:
+        """Equations of motion and guards, which are the same whichever surface is active."""
+        return flight_motion(self.top.each[0].kind)
+
+    def numbers(self, state: State) -> tuple[Scalar, ...]:
+        """Return the numbers of the state."""
+        return state.pack()
 
     def state(self, y: Row) -> State:
         """Return the state, whose numbers are those of a flight."""
         return State.unpack(y)
 
+    def vanishing(self, state: State) -> tuple[int, ...] | None:
+        """Return how many Taylor coefficients of each guard vanish at the start of the flight.
+
+        None where every surface is above the table.
+        """
+        if all(gap(state, top) > TOUCHING for top in self.top.each):
+            return None
+        counts = list[int]()
+        for top in self.top.each:
+            start = self.start if top.active == self.top.active else start_of(state, top)
+            # The product that is an edge's gap guard vanishes as the gap does, its face's gap not.
+            counts += [int(start), 0] if is_edge(top.surface) else [int(start)]
+        return tuple(counts)
+
     def segments(
         self, time: float, state: State, end: float, integrator: Integrator
     ) -> Iterator[Segment]:
-        """Evaluate the flight, which needs no integrator."""
-        try:
-            landing, lowest = self._landing(state, end - time)
-        except ArithmeticError as error:
-            empty = DenseSolution.empty(time, len(state.pack()))
-            why = explanation("The end of the flight", error)
-            yield Segment(self, empty, state, ModeEnd(FAILURE, state, detail=why))
-            return
-        duration = end - time if landing is None else landing
-        count = 1 + int(duration * precession(state, self.top) / TURN)
-        for first in range(0, count, MOST_STEPS):
-            last = min(first + MOST_STEPS, count)
-            elapsed = [duration / count * step for step in range(first, last + 1)]
-            elapsed[-1] = duration if last == count else elapsed[-1]
-            later = fly(state, elapsed[-1], self.top, math)
-            how, reach = None, time + elapsed[-1]
-            if last == count:
-                reach = end if landing is None else reach
-                how = self._end(later, None if landing is None else lowest)
-            solution = self._solution(state, elapsed).moved(time, reach)
-            highest = highest_gap(state, self.top, elapsed[-1])
-            yield Segment(self, solution, later, how, highest_gap=highest)
+        """Integrate the equations of motion, the first step with guards that vanish at the start.
 
-    def _solution(self, state: State, elapsed: Sequence[float]) -> DenseSolution:
-        """Return the flight from a state on, in steps of equal length."""
+        See `tippetop.integrators.opening`.
+        """
+        vanishing = self.vanishing(state)
+        if vanishing is not None:
+            begin = time, as_array(self.numbers(state))
+            arc = opening(self.motion, self.parameters, begin, end, vanishing)
+            segment = self.segment(arc, end)
+            yield segment
+            if segment.mode_end is not None:
+                return
+            time, state = segment.end_time, segment.end_state
+        begin = time, as_array(self.numbers(state))
+        for arc in integrator.integrate(self.motion, self.parameters, begin, end):
+            yield self.segment(arc, end)
 
-        def moving(time: Scalar) -> tuple[Row, Row, Row]:
-            later = fly(state, time, self.top, ELEMENTARY)
-            rate, second = flight_rates(later, self.top)
-            return later.pack(), rate.pack(), second.pack()
+    def solution_of(self, arc: Arc) -> DenseSolution:
+        """Return the solution of an arc, in steps in which the axis turns by at most `TURN`.
 
-        swinging = precession(state, self.top), elapsed, DEGREE, len(state.axis)
-        return DenseSolution.swinging(moving, *swinging)
+        The marker's angle is a quadrature over each, whose rate is singular at the farther pole:
+        longer ones would come near that.
+        """
+        knots, y = arc.solution.knots, arc.end_state
+        longest = max([knots[i + 1] - knots[i] for i in range(len(knots) - 1)], default=0.0)
+        rate = length((y[3], y[4], y[5])) / self.top.transverse_inertia
+        return arc.solution.subdivided(1 + int(min(longest * rate / TURN, MOST_PARTS)))
 
-    def _landing(self, state: State, horizon: float) -> tuple[float | None, Top]:
-        """Return when the first surface touches the table, and the top with that surface active."""
-        first_time = touchdown(state, self.top, horizon, self.start)
-        lowest = self.top
-        for top in self.top.each:
-            if top != self.top:
-                limit = horizon if first_time is None else first_time
-                sooner = touchdown(state, top, limit, start_of(state, top))
-                if sooner is not None and (first_time is None or sooner < first_time):
-                    first_time, lowest = sooner, top
-        return first_time, lowest
+    def end_by_guard(self, name: str, last: State) -> ModeEnd:
+        """Return the end of the flight on a surface, which touches the table exactly."""
+        ended = ModeEnd.by_guard(name, last)
+        landed = self.top.each[ended.contact]
+        height = support_at(last.axis, landed.surface)[0]
+        return replace(ended, state=last._replace(height=height))
 
-    def _end(self, state: State, lowest: Top | None) -> ModeEnd:
-        """Return how the flight ends: on a surface, or with the run."""
-        if lowest is None:
-            return ModeEnd(COMPLETED, state)
-        later = state._replace(height=support_at(state.axis, lowest.surface)[0])
-        return ModeEnd(LANDING, later, lowest.active)
+
+@lru_cache
+def flight_motion(kind: Kind) -> Motion:
+    """Return the equations of free motion of tops of a kind: of axis, angular momentum, velocity
+    and height. Every surface has a guard, its gap.
+    """
+
+    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        return free_rates(State.unpack(y), kind.top(tuple(numbers))).pack()
+
+    def guard(number: int, value: Callable[[Surface, State], Scalar]) -> Guard:
+        def of_surface(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+            surface = each_surface(kind.top(tuple(numbers)).surface)[number]
+            return value(surface, State.unpack(y))
+
+        return Guard(numbered(LANDING, number), of_surface)
+
+    guards = list[Guard]()
+    for number, surface in enumerate(each_surface(kind.example.surface)):
+        guards.append(guard(number, surface_gap))
+        if is_edge(surface):
+            guards.append(guard(number, face_gap))
+    return Motion(rates, SIZE, kind.numbers, tuple(guards))
+
+
+def surface_gap(surface: Surface, state: State) -> Scalar:
+    """Return what falls through zero as the gap of a surface does."""
+    return gap_guard(state.axis, state.height, 0.0, surface)
+
+
+def face_gap(surface: Any, state: State) -> Scalar:
+    """Return what falls through zero where a body falls flat on the face of an edge."""
+    return surface.face_gap(state.axis, state.height)
 
 
 def start_of(state: State, top: Top) -> Start:

@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, ClassVar, NamedTuple, Self
 
-from tippetop.integrators.base import Integrator, Motion
+from tippetop.integrators.base import Arc, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
-from tippetop.mechanics.flight.touchdown import highest_gap
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.top import Top
@@ -233,8 +232,6 @@ class Segment:
     steps: int = 0
     evaluations: int = 0
     """Work done by the integrator."""
-    highest_gap: float = 0.0
-    """How high the lowest point rose above the table in this flight so far."""
     method: Integrator | None = None
     """The integrator that took the steps, if it is not the one that was asked."""
     transition: Transition | None = None
@@ -248,11 +245,6 @@ class Segment:
     # translate: skip
     def until(self, solution: DenseSolution, end_state: State) -> "Segment":
         """Return the segment that ends earlier, with the solution and the state up to there."""
-        mode, begin = self.mode, solution.knots[0]
-        gap = 0.0
-        if not mode.touching:
-            start = mode.state(solution.terms[0, :, 0].tolist())
-            gap = highest_gap(start, mode.top, float(solution.end - begin))
         return replace(
             self,
             solution=solution,
@@ -260,7 +252,6 @@ class Segment:
             mode_end=None,
             transition=None,
             steps=min(self.steps, len(solution.terms)),
-            highest_gap=gap,
         )
 
 
@@ -361,14 +352,25 @@ class IntegratedMode(Mode):
         """Integrate the equations of motion."""
         begin = time, as_array(self.numbers(state))
         for arc in integrator.integrate(self.motion, self.parameters, begin, end):
-            last = self.state(arc.end_state.tolist())
-            how = None
-            if arc.failure is not None:
-                how = ModeEnd(FAILURE, last, detail=arc.failure)
-            elif arc.guard is not None:
-                how = ModeEnd.by_guard(arc.guard, last)
-            elif arc.solution.end >= end:
-                how = ModeEnd(COMPLETED, last)
-            yield Segment(
-                self, arc.solution, last, how, arc.steps, arc.evaluations, method=arc.method
-            )
+            yield self.segment(arc, end)
+
+    def segment(self, arc: Arc, end: float) -> Segment:
+        """Return an arc of the motion as a segment of a run that lasts until `end`."""
+        last = self.state(arc.end_state.tolist())
+        how = None
+        if arc.failure is not None:
+            how = ModeEnd(FAILURE, last, detail=arc.failure)
+        elif arc.guard is not None:
+            how = self.end_by_guard(arc.guard, last)
+        elif arc.solution.end >= end:
+            how = ModeEnd(COMPLETED, last)
+        solution = self.solution_of(arc)
+        return Segment(self, solution, last, how, arc.steps, arc.evaluations, method=arc.method)
+
+    def solution_of(self, arc: Arc) -> DenseSolution:
+        """Return the solution of an arc, in steps that what is read off the mode is smooth in."""
+        return arc.solution
+
+    def end_by_guard(self, name: str, last: State) -> ModeEnd:
+        """Return the end of the mode by a guard of some name, in a last state."""
+        return ModeEnd.by_guard(name, last)

@@ -11,7 +11,7 @@ from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.lying_down import (
     Wobble,
     scaled_wobble,
-    slap_guard,
+    slaps_soon,
     time_to_slap,
     wobble_guard,
 )
@@ -87,7 +87,7 @@ class SettlingFlat(Mode):
 
 def settling_flat(mode: ContactMode, state: State) -> SettlingFlat | None:
     """Return the mode in which a body on an edge comes to lie flat; None if it does not soon."""
-    if slap_guard(state.axis, state.momentum, mode.top) <= 0.0:
+    if slaps_soon(state.axis, state.momentum, mode.top):
         return SettlingFlat(mode.top, mode, slaps=True)
     normal = mode.contacts(mode.numbers(state)).normal_if_stuck()
     if wobble_guard(state.axis, state.momentum, normal, mode.top) <= 0.0:

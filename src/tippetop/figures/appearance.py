@@ -58,8 +58,9 @@ SCENES: Mapping[str, Mapping[str, Any]] = {
 """Colours and brightness of the surroundings of the toy, by theme."""
 
 _PALE, _CREAM, _SAND, _WOOD = "#66C5F0", "#F4E7CF", "#E4D2AE", ("#D9AE78", "#C79A62")
-_BOWL = (CONVERGED, CONVERGED, _PALE) * 2
-_BAND = (_CREAM, _CREAM, _CREAM, _CREAM, REPORT, REPORT)
+_BOWL = (*(CONVERGED,) * 5, _PALE)
+_BAND = (*(_CREAM,) * 5, REPORT)
+# One mark a turn: with several, a top seems to turn backwards at a fraction of the speed.
 
 
 class ToyPart(NamedTuple):

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 import xarray as xr
-from scipy.optimize import brentq
 from scipy.stats import norm, t
 
 from tippetop.fit.measurement import Measurement
@@ -16,6 +15,7 @@ from tippetop.support.errors import InvalidInput, NotConverged, is_number
 from tippetop.support.suggestions import not_one_of
 
 if TYPE_CHECKING:
+    from tippetop.fit.joint_model import JointModel
     from tippetop.fit.least_squares import Search
     from tippetop.fit.model import Model
 
@@ -29,15 +29,20 @@ WEAK = 1.0
 SHARE = 0.3
 """Least component of a number in an undetermined direction to be named."""
 
-CORRELATED_RESIDUALS = 1.0
-"""Statistic of Durbin and Watson below which residuals are not random: 2 for random ones."""
+CORRELATED_RESIDUALS = 3.0
+"""Standard deviations of the statistic of Durbin and Watson of random residuals, below its mean, at
+which residuals count as correlated: one table in a thousand is named wrongly."""
 
-FEWEST_RESIDUALS = 20
+FEWEST_RESIDUALS = 8
 """Residuals from which on their statistic says something."""
 
-MOST_ABOVE = 5.0
-"""Standard deviations of a sum of squares above which noise of the stated size does not explain
-it."""
+OUTLIER = 5.0
+"""Standardised residual from which on a number counts as an outlier: one in a million random ones
+is larger."""
+
+MOST_ABOVE = 4.0
+"""Standard deviations of a sum of squares from its expected value beyond which noise of the stated
+size does not explain it."""
 
 RIVAL = 6.0
 """Sum of squares above the least, in variances, up to which another minimum is reported."""
@@ -54,6 +59,8 @@ class Minimum(NamedTuple):
     """Sum of the squares of the residuals."""
     converged: bool
     message: str
+    slopes: Array = np.zeros((0, 0))
+    """Derivatives of the residuals, by differences, shape (data, numbers)."""
 
 
 class Interval(NamedTuple):
@@ -70,11 +77,15 @@ class FitResult:
     Attributes
     ----------
     problem
-        The problem with its fitted numbers.
+        The problem with its fitted numbers; of several launches the first.
+    problems
+        Those of all launches.
     values, errors
         Fitted numbers and their standard errors, by name: fields of the problem, then numbers of
         the instruments. An error is infinite where the data do not determine the number, and NaN
-        where the derivative does not exist: see `cautions`, and use `profile`.
+        where there are no data left to estimate their noise from. Where the run has no derivative,
+        it follows from runs over the interval. A time of an event that moves in steps counts as
+        known no better than the height of a step.
     covariance
         Labelled matrix.
     residuals
@@ -83,13 +94,14 @@ class FitResult:
         Standard deviation that the errors rest on: of each measurement's columns, as it was stated,
         or the estimated one.
     chi2, degrees_of_freedom
-        Sum of squared standardised residuals, and the count it is expected to be.
+        Sum of squared standardised residuals, and the count it is expected to be. NaN where the
+        noise was not stated: estimated from the residuals it makes the two equal.
     aic, bic
         Akaike's and Schwarz's criteria of the model; smaller is better.
     undetermined
         Directions that the data do not determine, in words.
     cautions
-        What else a reader must know, in words.
+        Assumptions that the data contradict, and what else a reader must know, in words.
     alternatives
         Other minima that are almost as good, as numbers by name.
     runs
@@ -108,6 +120,7 @@ class FitResult:
     """
 
     problem: Problem
+    problems: tuple[Problem, ...]
     values: Mapping[str, float]
     errors: Mapping[str, float]
     covariance: xr.DataArray
@@ -129,17 +142,23 @@ class FitResult:
         """Return the result of a search that ended in a minimum."""
         model, numbers = search.model, best.numbers
         residuals = search.residuals(numbers)
-        jacobian = search.jacobian(numbers, exact=True)
-        smooth = np.isfinite(jacobian).all(axis=0)
-        if not smooth.all():
-            jacobian[:, ~smooth] = search.jacobian(numbers)[:, ~smooth]
+        jacobian = search.jacobian(numbers)
         count, fitted = jacobian.shape
         degrees = count - fitted
         variance = 1.0 if search.is_noise_known else best.cost / max(degrees, 1)
+        for place in np.flatnonzero(~np.isfinite(jacobian).all(axis=0)):
+            jacobian[:, place] = search.slopes_over_interval(numbers, int(place), variance)
+        scaled = _with_steps(jacobian, search, variance)
         covariance, undetermined = _covariance(
-            jacobian, model.scales(numbers), model.names, len(model.fields), variance
+            scaled, model.scales(numbers), model.names, len(model.fields), variance
         )
-        errors = np.where(smooth, np.sqrt(np.diag(covariance)), np.nan)
+        if not search.is_noise_known:
+            covariance *= max(
+                (correlation_time(one) for _, one in search.columns(residuals)), default=1.0
+            )
+        if degrees < 1 and not search.is_noise_known:
+            covariance[:] = np.nan
+        errors = np.sqrt(np.diag(covariance))
         standardised = np.full(len(model.data), np.nan)
         standardised[search.measured] = residuals / np.sqrt(variance) if variance else residuals
         ends = np.cumsum([one.values.size for one in model.measurements])[:-1]
@@ -152,8 +171,15 @@ class FitResult:
         log_likelihood, parameters = _log_likelihood(search, best.cost, count)
         parameters += fitted
         names = list(model.names)
+        near = [
+            rival
+            for rival in rivals
+            if rival.cost - best.cost < RIVAL * variance
+            and not np.all(np.abs(rival.numbers - numbers) < 3.0 * errors)
+        ]
         return cls(
             model.problem_of(numbers),
+            tuple(model.problems_of(numbers)),
             dict(zip(names, numbers.tolist(), strict=True)),
             dict(zip(names, errors.tolist(), strict=True)),
             xr.DataArray(
@@ -166,19 +192,14 @@ class FitResult:
                 level.reshape(one.values.shape)[0]
                 for level, one in zip(deviations, model.measurements, strict=True)
             ),
-            best.cost / variance if variance else 0.0,
+            best.cost if search.is_noise_known else np.nan,
             degrees,
             2.0 * parameters - 2.0 * log_likelihood,
             float(np.log(count)) * parameters - 2.0 * log_likelihood,
             undetermined,
-            _cautions(search, numbers, shaped, degrees, best.cost),
-            tuple(
-                dict(zip(names, rival.numbers.tolist(), strict=True))
-                for rival in rivals
-                if rival.cost - best.cost < RIVAL * variance
-                and np.any(np.abs(rival.numbers - numbers) > 3.0 * errors)
-            ),
-            model.runs,
+            _cautions(search, best, residuals, degrees, near),
+            tuple(dict(zip(names, rival.numbers.tolist(), strict=True)) for rival in near),
+            search.runs,
             model.measurements,
             search,
         )
@@ -208,7 +229,7 @@ class FitResult:
         """
         place = list(self.values).index(self._checked(name))
         best = np.array(list(self.values.values()))
-        variance = 1.0 if self.search.is_noise_known else self._cost / self.degrees_of_freedom
+        variance = 1.0 if self.search.is_noise_known else self.cost / self.degrees_of_freedom
         reach = self._reach(level)
         error = self.errors[name]
         scale = float(self.search.model.scales(best)[place])
@@ -229,7 +250,7 @@ class FitResult:
                         f" ({minimum.message})"
                     )
                 nearest[0] = minimum.numbers
-                return float(np.sqrt(max(minimum.cost - self._cost, 0.0) / variance) - reach)
+                return float(np.sqrt(max(minimum.cost - self.cost, 0.0) / variance) - reach)
 
             ends.append(best[place] + side * _crossing(excess, step))
         return Interval(float(ends[0]), float(ends[1]))
@@ -250,7 +271,7 @@ class FitResult:
             "values": dict(self.values),
             "errors": dict(self.errors),
             "covariance": self.covariance.values.tolist(),
-            "chi2": self.chi2,
+            "chi2": self.chi2 if self.search.is_noise_known else None,
             "degrees_of_freedom": self.degrees_of_freedom,
             "noise": [one.tolist() for one in self.noise],
             "aic": self.aic,
@@ -266,12 +287,22 @@ class FitResult:
         lines = [
             f"{name} = {value:.5g} ± {self.errors[name]:.2g}" for name, value in self.values.items()
         ]
-        lines.append(f"chi² = {self.chi2:.4g} for {self.degrees_of_freedom} degrees of freedom")
+        lines.append(self.goodness)
         lines += [f"not determined: {direction}" for direction in self.undetermined]
         return "\n".join([*lines, *self.cautions])
 
     @property
-    def _cost(self) -> float:
+    def goodness(self) -> str:
+        """How well the run fits the data, in words."""
+        if self.search.is_noise_known:
+            return f"chi² = {self.chi2:.4g} for {self.degrees_of_freedom} degrees of freedom"
+        unit = self.measurements[0].observation.units[0]
+        size = f"{float(self.noise[0][0]):.3g} {unit}".strip()
+        return f"the noise was not stated: estimated from the residuals, {size}"
+
+    @property
+    def cost(self) -> float:
+        """Sum of the squared residuals, over the stated variances where there are any."""
         residuals = np.concatenate([one.ravel() for one in self.residuals])
         scale = 1.0 if self.search.is_noise_known else float(self.noise[0][0]) ** 2
         return float(np.nansum(residuals**2)) * scale
@@ -303,10 +334,26 @@ def _crossing(excess: Any, step: float) -> float:
         if height == np.inf:
             outer = 0.5 * (inner + outer)
         elif height > 0.0:
-            return float(brentq(excess, inner, outer, xtol=1e-3 * step, rtol=1e-3))
+            return _halved(excess, inner, outer, 1e-3 * step)
         else:
             inner, outer = outer, 2.0 * outer
     return np.inf
+
+
+def _halved(excess: Any, inner: float, outer: float, width: float) -> float:
+    """Return where a function, negative at the inner end, passes zero or ceases to be finite."""
+    while outer - inner > width:
+        middle = 0.5 * (inner + outer)
+        inner, outer = (middle, outer) if excess(middle) <= 0.0 else (inner, middle)
+    return 0.5 * (inner + outer)
+
+
+def _with_steps(jacobian: Array, search: "Search", variance: float) -> Array:
+    """Return the derivatives of the residuals over a noise that has the heights of steps in it."""
+    steps = (search.model.steps / search.deviations)[search.measured]
+    noise = np.sqrt(variance + steps**2)
+    weights = np.divide(np.sqrt(variance), noise, out=np.ones_like(noise), where=noise > 0.0)
+    return np.asarray(jacobian * weights[:, None])
 
 
 def _covariance(
@@ -361,28 +408,69 @@ def _log_likelihood(search: "Search", cost: float, count: int) -> tuple[float, i
 
 
 def _cautions(
-    search: "Search", numbers: Array, residuals: Sequence[Array], degrees: int, cost: float
+    search: "Search",
+    best: Minimum,
+    residuals: Array,
+    degrees: int,
+    rivals: Sequence[Minimum],
 ) -> tuple[str, ...]:
     """Return what a reader of the errors must know."""
     model, words = search.model, list[str]()
+    is_stated = search.is_noise_known
+    if search.stopped:
+        words.append(f"{search.stopped}: there may be a better fit")
+    for rival in rivals:
+        numbers = ", ".join(
+            f"{name} = {number:.4g}"
+            for name, number in zip(model.fields, rival.numbers, strict=False)
+        )
+        words.append(f"other numbers fit nearly as well: {numbers}")
     for name, reason in model.reasons.items():
-        words.append(f"{name} has no linear error: {reason}; use profile()")
-    for name, number, low, high in zip(model.names, numbers, search.low, search.high, strict=True):
+        words.append(f"{name} has no linear error: {reason}; its error is from runs beside the fit")
+    for name, number, low, high in zip(
+        model.names, best.numbers, search.low, search.high, strict=True
+    ):
         if min(abs(number - low), abs(number - high)) <= 1e-6 * max(abs(number), 1e-300):
             words.append(f"{name} is at the end of its range: its error means nothing")
-    if search.is_noise_known and exceeds_noise(cost, degrees):
+    if degrees < 1 and not is_stated:
+        words.append("there are as many numbers as data: without a stated noise they have no error")
+    if is_stated and exceeds_noise(best.cost, degrees):
         words.append(
-            f"chi² is {cost:.4g} where {degrees} is expected: the noise is larger than stated, or"
-            " the model lacks something (law of friction, air, wear)"
+            f"chi² is {best.cost:.4g} where {degrees} is expected: the noise is larger than stated,"
+            " or the model lacks something (law of friction, air, wear)"
         )
-    for label, column in columns_of(model, np.concatenate([one.ravel() for one in residuals])):
-        if are_correlated(column):
-            words.append(
-                f"the residuals of {label} are not random (Durbin-Watson"
-                f" {durbin_watson(column):.2f}): the model lacks something, and the errors are too"
-                " small"
-            )
+    if is_stated and best.cost < degrees - MOST_ABOVE * (2.0 * max(degrees, 0)) ** 0.5:
+        words.append(
+            f"chi² is {best.cost:.4g} where {degrees} is expected: the noise is smaller than"
+            " stated, and so are the errors"
+        )
+    for label, column in search.columns(residuals):
+        deviation = 1.0 if is_stated else np.sqrt(best.cost / max(degrees, 1))
+        words += _cautions_of_column(label, column / (deviation or 1.0), is_stated)
     return tuple(words)
+
+
+def _cautions_of_column(label: str, column: Array, is_stated: bool) -> list[str]:
+    """Return in words what the standardised residuals of a column contradict."""
+    words = list[str]()
+    outliers = int(np.sum(np.abs(column) > OUTLIER))
+    if outliers and len(column) >= FEWEST_RESIDUALS:
+        words.append(
+            f"{outliers} of {len(column)} values of {label} are farther from the run than"
+            f" {OUTLIER:g} standard deviations, {np.abs(column).max():.3g} at most: check them"
+        )
+    if are_correlated(column):
+        effect = (
+            "the errors are too small"
+            if is_stated
+            else f"the errors take the data for {len(column) / correlation_time(column):.2g}"
+            " independent ones"
+        )
+        words.append(
+            f"the residuals of {label} are not random (Durbin-Watson {durbin_watson(column):.2f}):"
+            f" the model lacks something, and {effect}"
+        )
+    return words
 
 
 def exceeds_noise(cost: float, degrees: int, deviations: float = MOST_ABOVE) -> bool:
@@ -390,7 +478,7 @@ def exceeds_noise(cost: float, degrees: int, deviations: float = MOST_ABOVE) -> 
     return degrees > 0 and cost > degrees + deviations * (2.0 * degrees) ** 0.5
 
 
-def columns_of(model: "Model", residuals: Array) -> Iterator[tuple[str, Array]]:
+def columns_of(model: "Model | JointModel", residuals: Array) -> Iterator[tuple[str, Array]]:
     """Yield the label and the residuals of each column of the data, without missing ones."""
     ends = np.cumsum([one.values.size for one in model.measurements])[:-1]
     for one, part in zip(model.measurements, np.split(residuals, ends), strict=True):
@@ -405,9 +493,34 @@ def durbin_watson(series: Array) -> float:
 
 
 def are_correlated(series: Array) -> bool:
-    """Return whether residuals, where there are enough, are no random ones."""
-    enough = len(series) >= FEWEST_RESIDUALS and np.any(series)
-    return bool(enough and durbin_watson(series) < CORRELATED_RESIDUALS)
+    """Return whether residuals, where there are enough, are no random ones.
+
+    For random ones the statistic of Durbin and Watson has the mean 2 and the variance
+    4 (n - 2) / (n^2 - 1).
+    """
+    count = len(series)
+    if count < FEWEST_RESIDUALS or not np.any(series):
+        return False
+    deviation = (4.0 * (count - 2.0) / (count**2 - 1.0)) ** 0.5
+    return bool(durbin_watson(series) < 2.0 - CORRELATED_RESIDUALS * deviation)
+
+
+def correlation_time(series: Array) -> float:
+    """Return how many successive residuals count as one: the sum of their autocorrelation.
+
+    It is 1 for residuals that are not correlated. The sum ends where the autocorrelation of two
+    neighbouring lags is negative together: C. J. Geyer, Practical Markov chain Monte Carlo,
+    Statistical Science 7 (1992), 473.
+    """
+    if not are_correlated(series):
+        return 1.0
+    size, total = float(series @ series), 1.0
+    for lag in range(1, len(series) - 1, 2):
+        pair = series[lag:] @ series[:-lag] + series[lag + 1 :] @ series[: -lag - 1]
+        if pair <= 0.0:
+            break
+        total += 2.0 * float(pair) / size
+    return min(total, len(series) / 2.0)
 
 
 class Comparison(NamedTuple):

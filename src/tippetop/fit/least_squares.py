@@ -1,122 +1,167 @@
 """Fit numbers of a problem to measurements by least squares.
 
-The search is SciPy's trust region with bounds. lmfit, which wraps the same search, was not taken:
-its parameters must be Python names, and a problem's fields have dots; what its reports add (errors,
-correlations, profiles) needs the directions that the data do not determine, which it leaves out.
+The search goes from `Search.minima` to templates (see `template_bank`) over a first part of the
+data, the best of them are polished there, and followed over longer parts to all data. The polish is
+SciPy's trust region with bounds. lmfit, which wraps the same one, was not taken: its parameters
+must be Python names, and a problem's fields have dots; what its reports add (errors, correlations,
+profiles) needs the directions that the data do not determine, which it leaves out.
 """
 
 import contextlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
-from scipy.stats import qmc
 
 from tippetop.fit.fitted import FitResult, Minimum, are_correlated, columns_of, exceeds_noise
-from tippetop.fit.measurement import Measurement
+from tippetop.fit.joint_model import JointModel
+from tippetop.fit.measurement import Measurement, read_measurement
 from tippetop.fit.model import Model
+from tippetop.fit.template_bank import SPACING, lattice, phase_metric, template_count
 from tippetop.integrators.base import Array
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
-from tippetop.support.errors import InvalidInput, NotConverged, is_number, is_whole
+from tippetop.support.errors import MISSING, InvalidInput, NotConverged, is_number, is_whole
+from tippetop.support.suggestions import not_one_of
 from tippetop.sweeps.axes import in_si_of
 
-TOLERANCE = 1e-9
-"""Relative change of the sum of squares, and of the numbers, at which the search ends: far below a
-standard error, above the rounding of runs."""
+TOLERANCE, STEPPED_TOLERANCE = 1e-9, 1e-4
+"""Relative change of the sum of squares, and of the numbers, at which a search ends: far below a
+standard error, above the rounding of runs; and above the steps in which times of events move."""
 
 STATIONARY = 0.05
 """Standard errors by which a last step of Gauss and Newton would still move a fit that counts as
 converged."""
 
 UNLIKELY = 1.0
-"""Standard deviations of a sum of squares above the expected one from which on another minimum is
-sought: one fit in six that is right has more, and false ones may have little more than 1.5."""
+"""Standard deviations of a sum of squares above the expected one from which on the search goes on
+in a wider region: one fit in six that is right has more, and false ones may have little more than
+1.5."""
 
 REPRODUCED = 1e-16
 """Variance of residuals, where their noise is not known, that is rounding."""
 
-MOST_STEPS = 100
-"""Trial points of one search."""
+MOST_STEPS, FEW_STEPS = 100, 12
+"""Trial points of a search in all data, and in a part of them."""
 
-BEGINNING, WHOLE = ((1 / 4, 3.0), (1 / 2, 3.0)), ((1.0, 3.0), (1.0, 1.0))
-"""Parts of the data that are fitted first, and over how many periods of nutation they are averaged.
+ROUGH = 1e-3
+"""Relative change of the sum of squares at which a search in a part of the data ends: what it finds
+is refined."""
 
-A phase of nutation that is half a turn off makes a minimum of its own, and there are hundreds of
-turns. Without nutation there is one minimum for each turn of precession; over a short time the
-phase of that is nearly right.
-"""
+REACHES = (0.2, 0.5)
+"""Relative distances from the problem's numbers within which minima are sought where there is no
+range; the second where those of the first do not describe the data."""
 
-GUESS = 0.1
-"""Relative error ascribed to the numbers of a start in those fits: a part of the data does not
-determine all of them, and would move them far."""
+MOST_TEMPLATES = 120
+"""Templates over the first part of the data. That is the longest which needs no more."""
 
-SPREAD = 0.2
-"""Relative distance up to which several starts lie from the problem's numbers without a range."""
+DATA_PARTS = tuple(0.5**halving for halving in range(7, -1, -1))
+"""Parts of the duration of the data."""
 
-HOPELESS = 50.0
-"""Sum of squares above that of the best start, in variances, from which on a start is dropped."""
+REGULAR = 0.8
+"""Part of the time until the top turns over that the first part of the data ends before: beyond it
+a change of the launch moves the run more and more."""
 
 FEWEST_PER_NUMBER = 4
-"""Data for each fitted number from which on a part of them is fitted first."""
+"""Data for each fitted number that the first part has at least."""
 
-ROUGH, ROUGH_STEPS = 1e-3, 30
-"""Tolerance and trial points of those searches: what they find is refined."""
+FOLLOWED, KEPT, MOST_REFINED = 12, 6, 4
+"""Templates that are polished, minima that are followed to the next part of the data, and minima
+that are refined in all of them."""
 
-MOST_REFINED = 3
-"""How many of several starts are refined."""
+FOLLOWED_OF_EVENTS = 2
+"""Points that are refined where data are times of events, which have few minima."""
 
-SCANNED, MORE_STARTS = 64, 12
-"""Points whose runs are compared with the data where the fit from the problem's own numbers does
-not describe them, and how many of them, the nearest, are fitted.
+HOPELESS = 50.0
+"""Sum of squares above the least, in variances, from which on a minimum is dropped."""
 
-Minima that differ by a phase of nutation over a second lie 8 % of the spin apart. Averaged over
-nutation they are as wide as that, and several of the points lie in each.
-"""
+SAME = 3.0
+"""Standard errors within which two minima are one."""
+
+SPREAD = 3.0
+"""Standard errors after a part of the data within which the truth is sought in the next."""
+
+EVENT_GRID = {1: 9, 2: 5, 3: 3}
+"""Values of each field, by the number of fields, that are tried where data have no phase, such as
+times of events; of more fields the problem's own alone."""
+
+INTERVAL_ROUNDS = 3
+"""How often a change about as large as a standard error is sought."""
+
+MOST_RUNS = 20_000
+"""Runs after which a search returns what it has."""
 
 Vary = Sequence[str] | Mapping[str, Any] | str
 
 
+class FitProgress(NamedTuple):
+    """How far a fit is."""
+
+    runs: int
+    """Runs that were followed."""
+    part: float
+    """Part of the data that is searched."""
+    candidates: int
+    """Points of this part that were compared with the data."""
+
+
+class SearchStopped(Exception):
+    """The search has followed as many runs as it may."""
+
+
 def fit(
-    problem: Problem,
-    data: Measurement | Sequence[Measurement],
-    vary: Vary,
+    problem: Problem | Sequence[tuple[Problem, Any]],
+    data: Any = None,
+    vary: Vary | None = None,
     *,
+    shared: Sequence[str] | None = None,
     noise: Any = None,
     starts: int | None = None,
-    seed: int = 0,
+    most_runs: int = MOST_RUNS,
+    callback: Callable[[FitProgress], None] | None = None,
 ) -> FitResult:
     """Return the problem whose run is nearest to measurements, with errors.
+
+    A run oscillates, and the misfit has a minimum for each turn by which its phases may be off. The
+    region around the problem's numbers is therefore scanned in steps of a quarter of a turn over a
+    first part of the data; what is near the data there is followed over all of them. Ctrl-C ends
+    the search: the best fit so far is returned, with a caution.
 
     Parameters
     ----------
     problem
-        The problem to start from: its numbers are where the search begins.
+        The problem to start from: its numbers may be 20 % off, or, where nothing nearer describes
+        the data, 50 %. Or several launches: a list of pairs of a problem and its data.
     data
-        A measurement, or several of the same launch.
+        A measurement, or several of the same launch; or what `read_measurement` reads: a file, a
+        DataFrame, or a mapping of headings to numbers. None for several launches.
     vary
         Fields of numbers that are fitted, such as ``["friction.mu", "launch.spin"]``; or a mapping
         of fields to ranges ``(low, high)`` that they stay in, or None for none. Missing initial
-        conditions are fitted like anything else: "launch.tilt_rate", "launch.precession".
+        conditions are fitted like anything else: "launch.tilt_rate", "launch.precession". None for
+        those that are shared.
+    shared
+        Fields among them that are the same in all of several launches; None for all. The others are
+        fitted for each launch, and named by its number: "2.launch.spin".
     noise
         Standard deviation of the data in their unit, a number for each column or one for all; for
         several measurements, a list. None for what the measurements say; if they say nothing, it
         is estimated from the residuals.
     starts
-        From how many points the search begins: the problem's own, and others spread over the
-        ranges, or over 20 % where there are none. All are fitted to the first part of the data, and
-        those that stay near it to longer ones. None for the problem's own alone, and where that fit
-        does not describe the data, for those of 64 points too whose runs are nearest to them, until
-        a fit does: nutation makes other minima.
-    seed
-        Of the points.
+        How many points are followed from the first part of the data; None for 12, 1 for the
+        problem's own numbers alone, without a scan.
+    most_runs
+        Number of runs after which the search ends; the best fit so far is returned, with a caution.
+    callback
+        Function that is called with the progress from time to time.
 
     Raises
     ------
     InvalidInput
-        If there is no such field, fewer data than numbers to fit, or the run of the start does not
-        show what was measured.
+        If there is no such field, fewer data than numbers to fit, or no run near the start shows
+        what was measured.
     NotConverged
         If the search does not reach a minimum.
 
@@ -132,47 +177,61 @@ def fit(
     >>> round(fitted.problem.friction.mu, 6)
     0.3
     """
-    require_problem(problem)
-    measurements = _measurements(data, noise)
-    fields, low, high = _ranges(problem, vary)
-    model = Model(problem, measurements, fields)
+    launches = _launches(problem, data)
+    for one, _ in launches:
+        require_problem(one)
+    fields, low, high = _ranges(launches[0][0], shared if vary is None else vary)
+    common = fields if shared is None else tuple(shared)
+    for field in common:
+        if field not in fields:
+            raise not_one_of("shared", field, fields)
+    each = [_measurements(rows, noise) for _, rows in launches]
+    measurements = [one for several in each for one in several]
+    models = [Model(one, some, fields) for (one, _), some in zip(launches, each, strict=True)]
+    model: Model | JointModel = models[0]
+    if len(models) > 1:
+        model = JointModel(models, common)
+        places = [
+            fields.index(name.partition(".")[2] if name not in common else name)
+            for name in model.fields
+        ]
+        low, high = low[places], high[places]
     if not (starts is None or (is_whole(starts) and starts >= 1)):
         raise InvalidInput("starts", starts, "a whole number, at least 1; or None for enough")
-    warn_if_implausible(problem)
+    if not (is_whole(most_runs) and most_runs >= 1):
+        raise InvalidInput("most_runs", most_runs, "a whole number, at least 1")
+    for one, _ in launches:
+        warn_if_implausible(one)
     measured = np.isfinite(model.data)
     if measured.sum() < len(model.names):
         shown = f"{measured.sum()} numbers"
         fewest = f"at least {len(model.names)}, as many as are fitted: {', '.join(model.names)}"
         raise InvalidInput("data", shown, fewest)
     search = Search(model, _deviations(measurements), low, high)
-    minima = search.minima(search.starts(starts or 1, seed))
-    if starts is None and not search.describes(minima[0]):
-        beside = [one for one in search.first_description(seed) if one.converged]
-        minima = sorted([*minima, *beside], key=by_cost)
+    search.most_runs, search.callback = most_runs, callback
+    minima, stopped = search.minima(starts), search.stopped
     best = minima[0]
-    if not best.converged:
+    if not (best.converged or stopped):
         pairs = zip(model.names, best.numbers, strict=True)
         nearest = ", ".join(f"{name} = {number:.4g}" for name, number in pairs)
         raise NotConverged(
-            f"the fit did not reach a minimum in {model.runs} runs ({best.message}; nearest so far:"
-            f" {nearest}); start nearer to the data, fit fewer numbers, or give ranges and several"
-            " starts"
+            f"the fit did not reach a minimum in {search.runs} runs ({best.message}; nearest so"
+            f" far: {nearest}); start nearer to the data, fit fewer numbers, or give ranges"
         )
     return FitResult.of(search, best, [one for one in minima[1:] if one.converged])
 
 
-class Branch(NamedTuple):
-    """A start, fitted to a part of the data."""
-
-    numbers: Array
-    guess: Array
-    """Values of the fields at the start."""
-    cost: float = 0.0
-
-
-def by_cost(one: Branch | Minimum) -> float:
+def by_cost(one: Minimum) -> float:
     """Return the sum of the squares of the residuals."""
     return one.cost
+
+
+class Region(NamedTuple):
+    """Part of the space of the fields in which the truth is sought."""
+
+    center: Array
+    reach: Array
+    """Matrix whose columns span the region from its centre, shape (fields, fields)."""
 
 
 class Search:
@@ -188,20 +247,16 @@ class Search:
         Whether they are known.
     low, high
         Bounds of all numbers.
-    guess
-        Values of the fields that are taken for measured ones, to `GUESS`; None for none.
-    average
-        Matrix that averages residuals over time; None for none.
+    most_runs
+        Runs after which the search is stopped.
+    callback
+        Function that is called with the progress.
+    stopped
+        Why the search was stopped; empty if it was not.
     """
 
     def __init__(
-        self,
-        model: Model,
-        deviations: Array | None,
-        low: Array,
-        high: Array,
-        guess: Array | None = None,
-        average: Array | None = None,
+        self, model: Model | JointModel, deviations: Array | None, low: Array, high: Array
     ) -> None:
         instruments = len(model.names) - len(model.fields)
         self.model, self.is_noise_known = model, deviations is not None
@@ -209,89 +264,74 @@ class Search:
         self.deviations = np.ones(len(model.data)) if deviations is None else deviations
         self.low = np.append(low, np.full(instruments, -np.inf))
         self.high = np.append(high, np.full(instruments, np.inf))
-        self.guess, self.average = guess, average
+        self.callback: Callable[[FitProgress], None] | None = None
+        self.most_runs, self.stopped = MOST_RUNS, ""
+        self._runs_of_parts = 0
+        self._best = list[Minimum]()
+        self._leading: Array | None = None
 
-    def starts(self, count: int, seed: int) -> list[Array]:
-        """Return the points to begin at: the problem's own, and others beside it."""
-        first = self.model.start
-        if not np.isfinite(self.residuals(first)).all():
-            raise InvalidInput(
-                "problem",
-                f"the run of {self._written(first)}",
-                "",
-                "does not show all that was measured",
-                "start from a problem whose run lasts as long and has those events",
-            )
-        fields = len(self.model.fields)
-        reach = SPREAD * self.model.scales(first)[:fields]
-        low = np.where(np.isfinite(self.low[:fields]), self.low[:fields], first[:fields] - reach)
-        high = np.where(np.isfinite(self.high[:fields]), self.high[:fields], first[:fields] + reach)
-        points = [first]
-        for point in qmc.LatinHypercube(fields, rng=seed).random(count - 1):
-            with contextlib.suppress(InvalidInput, np.linalg.LinAlgError):
-                points.append(self.model.with_instruments(low + point * (high - low)))
-        return points
+    @property
+    def runs(self) -> int:
+        """How many runs the search has followed."""
+        return self._runs_of_parts + self.model.runs
 
     def residuals(self, numbers: Array) -> Array:
         """Return prediction minus data over the noise; NaN where there is no prediction."""
         try:
             values = self.model.predict(numbers).values
         except InvalidInput:
-            guesses = 0 if self.guess is None else len(self.guess)
-            return np.full(int(self.measured.sum()) + guesses, np.nan)
-        residuals: Array = ((values - self.model.data) / self.deviations)[self.measured]
-        if self.average is not None:
-            residuals = self.average @ residuals
-        if self.guess is None:
-            return residuals
-        return np.append(residuals, (numbers[: len(self.guess)] - self.guess) / self._guess_errors)
+            return np.full(int(self.measured.sum()), np.nan)
+        return np.asarray(((values - self.model.data) / self.deviations)[self.measured])
 
-    def jacobian(self, numbers: Array, *, exact: bool = False) -> Array:
-        """Return the derivatives of the residuals."""
-        matrix: Array = self.model.jacobian(numbers, exact=exact) / self.deviations[:, None]
-        matrix = matrix[self.measured]
-        if self.average is not None:
-            matrix = self.average @ matrix
-        if self.guess is None:
-            return matrix
-        rows = np.eye(len(self.guess), len(numbers)) / self._guess_errors[:, None]
-        return np.concatenate([matrix, rows])
+    def jacobian(self, numbers: Array) -> Array:
+        """Return the derivatives of the residuals; NaN where the run has none."""
+        matrix = self.model.jacobian(numbers) / self.deviations[:, None]
+        return np.asarray(matrix[self.measured])
 
-    @property
-    def _guess_errors(self) -> Array:
-        assert self.guess is not None
-        return GUESS * self.model.scales(self.guess)
+    def linearized(self, numbers: Array) -> tuple[Array, Array]:
+        """Return the residuals and their derivatives, by differences of runs."""
+        values, slopes = self.model.differences(numbers)
+        scaled = (values - self.model.data) / self.deviations
+        return scaled[self.measured], (slopes / self.deviations[:, None])[self.measured]
 
-    def minima(self, points: list[Array]) -> list[Minimum]:
-        """Return the minima that the search reaches from points, the least first."""
-        branches = [self._branch(point) for point in points]
-        branches = self.approach(branches, (*BEGINNING, *WHOLE))
-        return sorted([self.refine(one.numbers) for one in branches[:MOST_REFINED]], key=by_cost)
+    def minima(self, starts: int | None) -> list[Minimum]:
+        """Return the minima that the search reaches, the least first.
 
-    def first_description(self, seed: int) -> list[Minimum]:
-        """Return the minima from points whose runs are near the data, one after the other, up to
-        one that describes them.
+        Raises
+        ------
+        InvalidInput
+            If no run near the start shows the data.
         """
-        minima = list[Minimum]()
-        branches = [self._branch(point) for point in self.nearest(seed)]
-        for branch in self.approach(branches, WHOLE[:1])[:MOST_REFINED]:
-            minima += [self.refine(one.numbers) for one in self.approach([branch], WHOLE[1:])]
-            if minima and self.describes(minima[-1]):
-                break
-        return minima
+        bounds = np.stack([self.low, self.high])[:, : len(self.model.fields)]
+        reaches = REACHES[:1] if np.isfinite(bounds).all() else REACHES
+        followed = FOLLOWED_OF_EVENTS if self.model.is_event.all() else FOLLOWED
+        try:
+            if starts == 1:
+                self._best = [self.refine(self._own_start())]
+                return self._best
+            for reach in reaches:
+                self._scan(self._region(reach), starts or followed)
+                if self._best and self.describes(self._best[0]):
+                    break
+        except (KeyboardInterrupt, SearchStopped) as stop:
+            bound = f"the search was ended at its bound of {self.most_runs} runs"
+            is_bound = isinstance(stop, SearchStopped)
+            if not self._best and self._leading is None:
+                if is_bound:
+                    raise NotConverged(f"{bound}, before it found a minimum: allow more") from None
+                raise
+            self.stopped = bound if is_bound else f"the search was ended after {self.runs} runs"
+            if not self._best and self._leading is not None:
+                self._best = [self._unfinished(self._leading)]
+        if not self._best:
+            self._own_start()
+        return self._best
 
-    def nearest(self, seed: int) -> list[Array]:
-        """Return those of many points whose runs are nearest to the data without nutation."""
-        measurements, fields = self.model.measurements, len(self.model.fields)
-        average = None
-        if all(len(one.times) for one in measurements):
-            average = _average(measurements, WHOLE[0][1] * nutation_period(self.model.problem))
-        deviations = self.deviations if self.is_noise_known else None
-        bounds = self.low[:fields], self.high[:fields]
-        averaged = Search(self.model, deviations, *bounds, average=average)
-        points = self.starts(SCANNED, seed)
-        costs = np.array([averaged.sum_of_squares(point) for point in points])
-        return [points[place] for place in np.argsort(costs)[:MORE_STARTS]]
+    def _unfinished(self, numbers: Array) -> Minimum:
+        """Return where a search stands that has only seen a part of the data."""
+        complete = self.model.with_instruments(numbers[: len(self.model.fields)])
+        values = self.residuals(complete)
+        return Minimum(complete, float(values @ values), False, self.stopped)
 
     def describes(self, minimum: Minimum) -> bool:
         """Return whether a minimum was reached whose residuals may be noise."""
@@ -303,127 +343,315 @@ class Search:
             return not exceeds_noise(minimum.cost, degrees, UNLIKELY)
         if minimum.cost < REPRODUCED * max(degrees, 1):
             return True
-        residuals = np.full(len(self.model.data), np.nan)
-        residuals[self.measured] = values
-        return not any(are_correlated(one) for _, one in columns_of(self.model, residuals))
+        return not any(are_correlated(one) for _, one in self.columns(values))
 
-    def approach(
-        self, branches: list["Branch"], stages: Sequence[tuple[float, float]]
-    ) -> list["Branch"]:
-        """Return branches nearer to minima, by fits of parts of the data without nutation.
+    def columns(self, residuals: Array) -> list[tuple[str, Array]]:
+        """Return the label and the residuals of each column of the data."""
+        complete = np.full(len(self.model.data), np.nan)
+        complete[self.measured] = residuals
+        return list(columns_of(self.model, complete))
 
-        Those far above the least are left out, which comes first.
+    def slopes_over_interval(self, numbers: Array, place: int, variance: float) -> Array:
+        """Return how the residuals move with a number over about its standard error.
+
+        It stands for derivatives where the run has none: it begins with a change of a thousandth,
+        and goes on with the errors that follow.
         """
-        model, fields = self.model, len(self.model.fields)
-        for part, periods in stages:
-            first = [one.until(part * model.times[-1]) for one in model.measurements]
-            count = sum(one.count for one in first)
-            if count < FEWEST_PER_NUMBER * len(model.names) or not all(
-                len(one.times) > 1 for one in first
-            ):
-                continue
-            shorter = Model(model.problem, first, model.fields)
-            deviations = _deviations(first) if self.is_noise_known else None
-            average = _average(first, periods * nutation_period(model.problem))
-            bounds = self.low[:fields], self.high[:fields]
-            ends = list[Branch]()
-            for one in branches:
-                search = Search(shorter, deviations, *bounds, one.guess, average)
-                if np.isfinite(search.residuals(one.numbers)).all():
-                    end = search.refine(one.numbers, tolerance=ROUGH, steps=ROUGH_STEPS)
-                    ends.append(Branch(end.numbers, one.guess, end.cost))
-            model.runs += shorter.runs
-            if not ends:
-                break
-            least = min(one.cost for one in ends)
-            hopeless = least + HOPELESS * (1.0 if self.is_noise_known else least / count)
-            branches = sorted([one for one in ends if one.cost < hopeless], key=by_cost)
-        return branches
+        scale = float(self.model.scales(numbers)[place])
+        change, slopes = 1e-3 * scale, np.zeros(int(self.measured.sum()))
+        for _ in range(INTERVAL_ROUNDS):
+            ends = list[Array]()
+            for sign in (1.0, -1.0):
+                moved = numbers.copy()
+                moved[place] += sign * change
+                ends.append(self.residuals(moved))
+            slopes = np.nan_to_num((ends[0] - ends[1]) / (2.0 * change))
+            size = float(np.linalg.norm(slopes))
+            error = np.sqrt(variance) / size if size else scale
+            change = float(np.clip(error, 1e-6 * scale, 0.1 * scale))
+        return slopes
 
-    def refine(
-        self,
-        start: Array,
-        held: int | None = None,
-        tolerance: float = TOLERANCE,
-        steps: int = MOST_STEPS,
-    ) -> Minimum:
+    def _own_start(self) -> Array:
+        """Return the problem's own numbers, if their run shows the data."""
+        first = self.model.start
+        if np.isfinite(self.residuals(first)).all():
+            return first
+        raise InvalidInput(
+            "problem",
+            f"the run of {self._written(first)}",
+            "",
+            "does not show all that was measured",
+            "start from a problem whose run lasts as long and has those events",
+        )
+
+    def _scan(self, region: Region, followed: int) -> None:
+        """Follow points of a region from a first part of the data to minima in all of them."""
+        fields = len(self.model.fields)
+        regions, ends = [region], list[Minimum]()
+        for part in self._parts(region):
+            search = self if part == 1.0 else self._until(part * self.model.times[-1])
+            ranked = list[tuple[float, Array]]()
+            for one in regions:
+                for pair in search.ranked(one):
+                    ranked.append(pair)
+                    self._leading = min(ranked, key=itemgetter(0))[1]
+                    self._tell(part, self.runs + search.runs * (search is not self), len(ranked))
+            ranked = sorted(ranked, key=itemgetter(0))[:followed]
+            if not ranked:
+                break
+            prior = None if part == 1.0 else region
+            variance = search.variance(ranked[0][0])
+            if search.model.is_event.all():  # Nothing is gained before all of them are refined.
+                ends = [Minimum(point, cost, False, "") for cost, point in ranked]
+                break
+            ends = [search.polish(point, prior, variance) for _, point in ranked]
+            ends = search.distinct(ends)[:KEPT]
+            self._leading = ends[0].numbers if ends else None
+            regions = [search.uncertainty(one, region) for one in ends]
+            if search is not self:
+                self._runs_of_parts += search.runs
+        for end in ends[:MOST_REFINED]:
+            with contextlib.suppress(InvalidInput):
+                start = self.model.with_instruments(end.numbers[:fields])
+                self._best = sorted([*self._best, self.refine(start)], key=by_cost)
+            self._check()
+        self._best = self.distinct(self._best)
+
+    def variance(self, cost: float) -> float:
+        """Return the variance of the data, in that which is known, by a sum of squares."""
+        degrees = max(int(self.measured.sum()) - len(self.model.names), 1)
+        return max(1.0 if self.is_noise_known else 0.0, cost / degrees)
+
+    def _until(self, time: float) -> "Search":
+        """Return the search in the data up to a time."""
+        fields, model = len(self.model.fields), self.model.until(time)
+        deviations = _deviations(model.measurements) if self.is_noise_known else None
+        search = Search(model, deviations, self.low[:fields], self.high[:fields])
+        search.most_runs = self.most_runs - self.runs
+        return search
+
+    def _tell(self, part: float, runs: int, candidates: int) -> None:
+        if self.callback is not None:
+            self.callback(FitProgress(runs, part, candidates))
+
+    def _check(self) -> None:
+        if self.runs > self.most_runs:
+            raise SearchStopped
+
+    def _region(self, distance: float) -> Region:
+        """Return the region to search: the ranges, or what is near the problem's own numbers."""
+        fields = len(self.model.fields)
+        center = self.model.own_fields
+        sizes = np.where(center == 0.0, self.model.scales(center), np.abs(center))
+        reach = distance * sizes
+        low = np.where(np.isfinite(self.low[:fields]), self.low[:fields], center - reach)
+        high = np.where(np.isfinite(self.high[:fields]), self.high[:fields], center + reach)
+        return Region(0.5 * (low + high), np.diag(0.5 * (high - low)))
+
+    def _parts(self, region: Region) -> Iterator[float]:
+        """Yield the parts of the duration of the data that are searched one after the other."""
+        measurements, end = self.model.measurements, float(self.model.times[-1])
+        fewest = FEWEST_PER_NUMBER * len(self.model.names)
+        parts = [
+            part
+            for part in DATA_PARTS
+            if part == 1.0
+            or sum(one.until(part * end).count for one in measurements if len(one.times)) >= fewest
+        ]
+        regular = REGULAR * self.model.turning_over(region.center)
+        times, bends = self._bends(region.center)
+        first = 0
+        for place, part in enumerate(parts):
+            count = template_count(region.reach, phase_metric(bends[times <= part * end]))
+            if place and (count > MOST_TEMPLATES or part * end > regular):
+                break
+            first = place
+        yield from parts[first:]
+
+    def _bends(self, fields: Array) -> tuple[Array, Array]:
+        """Return second differences over time of what a run shows, and of its derivatives.
+
+        Returns
+        -------
+        tuple
+            Times, shape (instants,), and the differences over the noise, of the values in the first
+            column and of their derivatives in the others, shape (instants, 1 + fields).
+        """
+        if self.model.is_event.all():
+            return np.zeros(0), np.zeros((0, 1 + len(fields)))
+        model = self.model.on_fine_grid(float(self.model.times[-1]))
+        values, slopes = model.differences(self.model.with_instruments(fields))
+        self._runs_of_parts += model.runs
+        table = np.column_stack([values, slopes[:, : len(fields)]])
+        ends = np.cumsum([one.values.size for one in model.measurements])[:-1]
+        times, bends = list[Array](), list[Array]()
+        for one, rows in zip(model.measurements, np.split(table, ends), strict=True):
+            series = rows.reshape(*one.values.shape, -1)
+            if one.noise is not None:
+                series = series / one.noise[:, None]
+            bends.append(np.diff(series, n=2, axis=0).reshape(-1, table.shape[1]))
+            times.append(np.repeat(one.times[2:], one.values.shape[1]))
+        return np.concatenate(times), np.concatenate(bends)
+
+    def ranked(self, region: Region) -> Iterator[tuple[float, Array]]:
+        """Yield points of a region from which searches find the minima in it.
+
+        Each stands after the sum of squares that the linear model at it promises within the region
+        that it stands for. Points whose runs do not show the data are left out.
+        """
+        fields = len(self.model.fields)
+        metric = np.zeros((fields, fields))
+        if self.model.is_event.all():
+            count = EVENT_GRID.get(fields, 1)
+            axes = [np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(1)] * fields
+            grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, fields)
+            changes = grid @ region.reach.T
+        else:
+            metric = phase_metric(self._bends(region.center)[1])
+            changes = lattice(region.reach, metric)[: 2 * MOST_TEMPLATES]
+        for change in changes:
+            center = np.clip(region.center + change, self.low[:fields], self.high[:fields])
+            with contextlib.suppress(InvalidInput, np.linalg.LinAlgError):
+                point = self.model.with_instruments(center)
+                promised = 0.0
+                if len(changes) > 1:
+                    promised = self._promised(point, region, metric)
+                if np.isfinite(promised):
+                    yield promised, point
+            self._check()
+
+    def _promised(self, point: Array, region: Region, metric: Array) -> float:
+        """Return the sum of squares after the linear model's step, no longer than a template's.
+
+        Times of events move in steps, and have none.
+        """
+        if self.model.is_event.all():
+            values = self.residuals(point)
+            return float(values @ values)
+        values, slopes = self.linearized(point)
+        if not (np.isfinite(values).all() and np.isfinite(slopes).all()):
+            return np.inf
+        fields, sizes = len(self.model.fields), self.model.scales(point)
+        step = -np.linalg.lstsq(slopes * sizes, values, rcond=1e-6)[0] * sizes
+        moved = step[:fields]
+        lengths = [float(np.sqrt(moved @ metric @ moved)) / SPACING]
+        lengths.append(float(np.abs(np.linalg.solve(region.reach, moved)).max()))
+        promised = values + slopes @ step / max(1.0, *lengths)
+        return float(promised @ promised)
+
+    def polish(self, start: Array, prior: Region | None, variance: float) -> Minimum:
+        """Return where a short search in a part of the data ends.
+
+        A part of the data does not determine all fields, and would move them far: the region that
+        is searched counts as a measurement of them.
+        """
+        fields = len(self.model.fields)
+        weights = np.zeros((0, len(start)))
+        if prior is not None:
+            weights = np.eye(fields, len(start))
+            weights[:, :fields] = np.linalg.inv(prior.reach) * np.sqrt(variance)
+        try:
+            return self._descend(start, np.ones(len(start), dtype=bool), ROUGH, FEW_STEPS, weights)
+        except InvalidInput:
+            return Minimum(start, np.inf, False, "the run does not show the data")
+
+    def uncertainty(self, minimum: Minimum, region: Region) -> Region:
+        """Return where the truth lies after a search in a part of the data, within a region."""
+        fields = len(self.model.fields)
+        slopes = minimum.slopes
+        if slopes.shape[1] > fields:  # The instrument's numbers are fitted again with the rest.
+            basis = np.linalg.qr(slopes[:, fields:])[0]
+            slopes = slopes - basis @ (basis.T @ slopes)
+        inside = slopes[:, :fields] @ region.reach / np.sqrt(self.variance(minimum.cost))
+        _, strengths, directions = np.linalg.svd(inside, full_matrices=True)
+        strengths = np.append(strengths, np.zeros(fields - len(strengths)))
+        widths = np.minimum(1.0, SPREAD / np.hypot(strengths, 1.0))
+        return Region(minimum.numbers[:fields], region.reach @ directions.T * widths)
+
+    def distinct(self, minima: Sequence[Minimum]) -> list[Minimum]:
+        """Return minima, the least first, without repetitions and without those far above it."""
+        ordered = sorted((one for one in minima if np.isfinite(one.cost)), key=by_cost)
+        chosen = list[Minimum]()
+        for one in ordered:
+            variance = self.variance(ordered[0].cost)
+            if one.cost > ordered[0].cost + HOPELESS * variance:
+                break
+            apart = [before.slopes @ (one.numbers - before.numbers) for before in chosen]
+            if all(rows @ rows > SAME**2 * variance for rows in apart):
+                chosen.append(one)
+        return chosen
+
+    def refine(self, start: Array, held: int | None = None) -> Minimum:
         """Return the minimum that the search reaches from a point, with one number held or none."""
         free = np.array([place != held for place in range(len(start))])
-
-        def all_numbers(free_numbers: Array) -> Array:
-            numbers = start.copy()
-            numbers[free] = free_numbers
-            return numbers
-
         if not free.any():
             values = self.residuals(start)
             return Minimum(start, float(values @ values), True, "nothing is free")
+        tolerance = STEPPED_TOLERANCE if self.model.is_event.any() else TOLERANCE
+        return self._descend(start, free, tolerance, MOST_STEPS, np.zeros((0, len(start))))
+
+    def _descend(
+        self, start: Array, free: Array, tolerance: float, steps: int, weights: Array
+    ) -> Minimum:
+        """Return where SciPy's search ends.
+
+        Its residuals are those of the data and, after them, the matrix `weights` times the way from
+        the start.
+        """
+
+        def all_numbers(scaled: Array) -> Array:
+            numbers = start.copy()
+            numbers[free] = scaled * sizes
+            return numbers
+
         # In units of each number's size: pixels of an origin must not hide a small coefficient.
         sizes = self.model.scales(start)[free]
         low, high = self.low[free] / sizes, self.high[free] / sizes
 
         def residuals_of(scaled: Array) -> Array:
-            return self.residuals(all_numbers(scaled * sizes))
+            numbers = all_numbers(scaled)
+            return np.append(self.residuals(numbers), weights @ (numbers - start))
 
         def jacobian_of(scaled: Array) -> Array:
-            matrix: Array = self.jacobian(all_numbers(scaled * sizes))[:, free] * sizes
-            return matrix
+            self._check()
+            slopes = np.concatenate([self.linearized(all_numbers(scaled))[1], weights])
+            return np.asarray(np.nan_to_num(slopes[:, free] * sizes))
 
+        first = np.clip(start[free] / sizes, low, high)
+        if not np.isfinite(residuals_of(first)).all():
+            return Minimum(start, np.inf, False, "the run does not show the data")
         result: OptimizeResult = least_squares(
             residuals_of,
-            np.clip(start[free] / sizes, low, high),
+            first,
             jacobian_of,
             bounds=(low, high),
             x_scale="jac",
             ftol=tolerance,
-            xtol=TOLERANCE,
+            xtol=tolerance,
             gtol=None,
             max_nfev=steps,
         )
-        inside = (result.active_mask == 0) & (np.abs(result.jac).max(axis=0) > 0.0)
-        remaining = _step_left(result.jac[:, inside], result.fun, self.is_noise_known)
-        converged = bool(result.status > 0 and remaining < STATIONARY)
+        data = int(self.measured.sum())
+        values, slopes = result.fun[:data], result.jac[:data]
+        inside = (result.active_mask == 0) & (np.abs(slopes).max(axis=0) > 0.0)
+        remaining = _step_left(slopes[:, inside], values, self.is_noise_known)
+        # On a step of a time of an event the linear model leads to where another step begins.
+        converged = bool(
+            result.status > 0 and (remaining < STATIONARY or self.model.is_event.any())
+        )
         message = (
             "too many steps"
             if result.status == 0
             else f"the last step still moves by {remaining:.2g} standard errors"
         )
-        numbers = all_numbers(result.x * sizes)
-        return Minimum(numbers, 2.0 * float(result.cost), converged, message)
-
-    def _branch(self, point: Array) -> "Branch":
-        return Branch(point, point[: len(self.model.fields)])
-
-    def sum_of_squares(self, numbers: Array) -> float:
-        """Return the sum of the squares of the residuals; infinity without a prediction."""
-        values = self.residuals(numbers)
-        total = float(values @ values)
-        return total if np.isfinite(total) else np.inf
+        all_slopes = np.zeros((data, len(start)))
+        all_slopes[:, free] = slopes / sizes
+        cost = float(values @ values)
+        return Minimum(all_numbers(result.x), cost, converged, message, all_slopes)
 
     def _written(self, numbers: Array) -> str:
         names = zip(self.model.fields, numbers, strict=False)
         return ", ".join(f"{name} = {number:.4g}" for name, number in names)
-
-
-def nutation_period(problem: Problem) -> float:
-    """Return the period of a fast nutation at launch, 2 pi I1 / (I3 omega3), s; 0 without spin."""
-    rate = problem.body.I3 * abs(problem.launch.spin) / problem.body.I1
-    return 2.0 * np.pi / rate if rate else 0.0
-
-
-def _average(measurements: Sequence[Measurement], width: float) -> Array:
-    """Return the matrix that averages each column of the data over a time, weighted by a bell."""
-    rows, columns = list[Array](), list[Array]()
-    for place, one in enumerate(measurements):
-        several = one.values.shape[1]
-        rows.append(np.repeat(one.times, several))
-        columns.append(place + np.tile(np.arange(several) / several, len(one.times)))
-    measured = np.concatenate([np.isfinite(one.values).ravel() for one in measurements])
-    times, kinds = np.concatenate(rows)[measured], np.concatenate(columns)[measured]
-    apart = (times[:, None] - times) / max(0.5 * width, 1e-300)
-    weights = np.exp(-0.5 * np.minimum(apart**2, 1e3)) * (kinds[:, None] == kinds)
-    average: Array = weights / weights.sum(axis=1, keepdims=True)
-    return average
 
 
 def _step_left(jacobian: Array, residuals: Array, is_noise_known: bool) -> float:
@@ -440,25 +668,34 @@ def _step_left(jacobian: Array, residuals: Array, is_noise_known: bool) -> float
     return float(np.linalg.norm(projected) / np.sqrt(variance))
 
 
+def _launches(problem: Any, data: Any) -> list[tuple[Problem, Any]]:
+    """Return pairs of a problem and its data."""
+    if isinstance(problem, Problem) or data is not None:
+        return [(problem, data)]
+    pairs = list(problem) if isinstance(problem, list | tuple) else []
+    if not (pairs and all(isinstance(pair, list | tuple) and len(pair) == 2 for pair in pairs)):
+        accepted = "a problem with data, or a list of pairs (problem, data)"
+        raise InvalidInput("problem", problem, accepted)
+    return [(one, rows) for one, rows in pairs]
+
+
 def _measurements(data: Any, noise: Any) -> list[Measurement]:
     """Return the measurements with their noise."""
-    several = [data] if isinstance(data, Measurement) else data
-    if not (
-        isinstance(several, list | tuple)
-        and several
-        and all(isinstance(one, Measurement) for one in several)
-    ):
-        accepted = "a measurement, or a list of them: see tt.read_measurement"
-        raise InvalidInput("data", data, accepted)
-    if noise is None:
-        return list(several)
-    noises = [noise] if len(several) == 1 else noise
+    several = list(data) if isinstance(data, list | tuple) else [data]
+    if not several:
+        raise InvalidInput(
+            "data", data, "a measurement, or a list of them: see tt.read_measurement"
+        )
+    noises = [noise] if len(several) == 1 else [None] * len(several) if noise is None else noise
     if not (isinstance(noises, list | tuple) and len(noises) == len(several)):
         raise InvalidInput("noise", noise, "a list with the noise of every measurement")
-    return [
-        one if level is None else one.with_noise(level)
-        for one, level in zip(several, noises, strict=True)
-    ]
+    measurements = list[Measurement]()
+    for one, level in zip(several, noises, strict=True):
+        if not isinstance(one, Measurement):
+            measurements.append(read_measurement(one, noise=level))
+        else:
+            measurements.append(one if level is None else one.with_noise(level))
+    return measurements
 
 
 def _deviations(measurements: Sequence[Measurement]) -> Array | None:
@@ -483,6 +720,8 @@ def _deviations(measurements: Sequence[Measurement]) -> Array | None:
 
 def _ranges(problem: Problem, vary: Any) -> tuple[tuple[str, ...], Array, Array]:
     """Return the fields to fit, with the lower and upper ends of their ranges."""
+    if vary is None:
+        raise InvalidInput("vary", MISSING, "names of fields, such as friction.mu and launch.spin")
     ranges: Mapping[str, Any] = (
         vary
         if isinstance(vary, Mapping)

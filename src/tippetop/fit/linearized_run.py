@@ -62,11 +62,6 @@ READ_BESIDE = 5e-6
 that over the scale of the motion, as small as 1e-2 for normal forces, and rounding over it.
 """
 
-READ_ONE_SIDE = 1e-6
-"""The same where the run beside it is compared with the run itself: the error is 1e-6 over the
-scale of the motion. Rounding, 1e-10, stays below effects that count.
-"""
-
 TRIES, SHORTER = 3, 0.1
 """How often a junction is followed nearer to the run, and how much nearer each time, until the runs
 beside it go through the same events.
@@ -86,15 +81,15 @@ what the slip's direction changes.
 FOUR = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0))
 """Rule of fourth order for a first derivative: places and weights."""
 
-TWO = ((-1, -0.5), (1, 0.5))
-"""Rule of second order, for searches, which need no more than the direction of a step."""
-
 OTHER_EVENTS = (
     "runs nearby go through other events: a choice of the contact is at its edge, or at the limit"
     " of sticking"
 )
 GRAZES = "the motion grazes: the guard that ends it hardly falls"
 UNSOLVED = "the variational equations cannot be followed"
+AT_BOUND = (
+    "contact.restitution is at the end of its range, from 0 to 1: there is no run on the other side"
+)
 UNKNOWN = "what follows cannot be found beside the run"
 
 
@@ -218,8 +213,6 @@ class Beside:
 class LinearizedRun:
     """A run of a problem, and its derivatives in several directions.
 
-    If they are `rough`, junctions are differentiated by `TWO` instead of `FOUR`.
-
     Attributes
     ----------
     failures
@@ -234,10 +227,8 @@ class LinearizedRun:
         directions: Sequence[Direction],
         *,
         tolerance: float | None = None,
-        rough: bool = False,
     ) -> None:
         self.problem, self.duration, self.grid = problem, duration, grid
-        self.rule = TWO if rough else FOUR
         self.fields = tuple(directions)
         self.directions = tuple([one.rates for one in directions])
         self.numbers = StartNumbers.of(problem)
@@ -325,7 +316,7 @@ class LinearizedRun:
             change = self._change(junction, direction)
             for _ in range(TRIES):
                 try:
-                    for place, weight in self.rule:
+                    for place, weight in FOUR:
                         beside = self.beside(junction, direction, place * change)
                         mode_beside: Any = beside.transitions[-1].next
                         row = np.array(mode_beside.numbers(beside.state))
@@ -512,6 +503,8 @@ class LinearizedRun:
             If it goes through other events.
         """
         numbers = self._beside(direction, change, at_launch=junction.before is None)
+        if not 0.0 <= numbers.restitution <= 1.0:
+            raise Differs(AT_BOUND, self._start_of(junction))
         end = self._end_of(numbers) if end is None else end
         automaton, nominal = self._automaton(numbers), self._start_of(junction)
         segments = list[list[Segment]]()

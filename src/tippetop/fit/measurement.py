@@ -1,6 +1,6 @@
 """Measurements: data, the times they were taken at, and what they show of a run."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
@@ -9,7 +9,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tippetop.fit.delimited import DataColumn, read_columns
+from tippetop.fit.delimited import (
+    DataColumn,
+    columns_of_frame,
+    read_columns,
+    text_of_bytes,
+    text_of_workbook,
+)
+from tippetop.fit.headings import event_of, plain_unit
 from tippetop.fit.observations import (
     EVENT_NAMES,
     VIEWS,
@@ -23,26 +30,25 @@ from tippetop.fit.observations import (
     View,
 )
 from tippetop.integrators.base import Array
+from tippetop.problem.problem import Problem
 from tippetop.results.catalogue import SAMPLED
-from tippetop.support.errors import MISSING, InvalidInput, is_number, within_part
+from tippetop.support.errors import MISSING, Described, InvalidInput, is_number, within_part
 from tippetop.support.files import made_of, read_text
 from tippetop.support.suggestions import not_one_of
-from tippetop.support.units import exponents_of, named_unit, number_in, unit_of
+from tippetop.support.units import NUMBER, exponents_of, named_unit, number_in, unit_of
 
-NAMES = {
-    **dict.fromkeys(("t", "time", "zeit", "temps", "seconds"), "t"),
-    **dict.fromkeys(("theta", "tilt", "θ", "inclination", "neigung"), "tilt"),
-    **dict.fromkeys(("rpm", "u/min", "1/min", "revolutions per minute"), "rpm"),
-    **dict.fromkeys(("spin", "omega", "omega3", "ω3", "ω"), "spin"),
-    **dict.fromkeys(("event", "ereignis", "what"), "event"),
-    **dict.fromkeys(("frame", "step", "bild"), "frame"),
-}
-"""Names of columns as people write them, in lower case."""
+MORE_THAN_A_TURN = 7.0
+"""Angle without a unit, rad, that is more than a turn: it is taken for degrees."""
 
 SCALARS = tuple(name for name, variable in SAMPLED.items() if not variable.dimensions)
 
 LONGEST_FILM = 3600.0
 """Seconds beyond which times without a unit are taken for milliseconds or frames."""
+
+LATE_START = 3.0
+"""Intervals between rows from which on a first time after 0 may mean another time of launch."""
+
+WORKBOOKS = (".xlsx", ".xlsm")
 
 LATE_EVENTS = 1.5
 """How much longer than to the last event of the data a run is followed: its own may come later."""
@@ -217,42 +223,45 @@ class Measurement:
 
 
 def read_measurement(
-    path: Path | str,
+    source: Any,
     *,
     view: View | None = None,
     point: Point = "tip",
     scale: Any = None,
     noise: Any = None,
     frame_rate: float | None = None,
-    start: float = 0.0,
+    start: Any = None,
     y_down: bool = False,
     track: str | None = None,
 ) -> Measurement:
-    r"""Read data from a text file of a video analysis, a spreadsheet or a sound's analysis.
+    r"""Read data of a video analysis, a spreadsheet or a sound's analysis: a file or a table.
 
-    The header names the columns, with units in brackets. There is a time `t`, or a number `frame`
-    of the picture; beside it `tilt` or other scalar variables of a run; or `x` and `y` of a point
-    in pictures; or `rpm`. A file with columns `event` and `t` has times of events. Tabs,
-    semicolons, commas and spaces separate columns, numbers may have decimal commas, and cells of
-    missing frames are empty. Files of Tracker are read as they are.
+    The header names the columns, with units in brackets, in English or German. There is a time `t`,
+    or a number `frame` of the picture; beside it `tilt` or other scalar variables of a run; or `x`
+    and `y` of a point in pictures; or `rpm`. A file with columns `event` and `t` has times of
+    events. Tabs, semicolons, commas and spaces separate columns, numbers may have decimal commas,
+    and cells of missing frames are empty. Files of Tracker are read as they are, places in metres.
+    Text is UTF-8, UTF-16 or a code page of Windows; workbooks of Excel (.xlsx) need openpyxl.
 
     Parameters
     ----------
-    path
-        The file.
+    source
+        The file; or a DataFrame of pandas, or a mapping of headings to lists of numbers.
     view, point, scale
         Of columns x and y, see `Measurement.of_point`. Where the header has a unit of length, it is
         the scale.
     noise
-        Standard deviation of each column; None if it is not known.
+        Standard deviation of each column, in its unit, or a text with another one, such as
+        "0.3 mm"; None if it is not known.
     frame_rate
         Pictures a second, where the file numbers pictures.
     start
-        Time in the file at which the top is launched, s; rows before it are left out.
+        Time in the data at which the top is launched, s; rows before it are left out. None for 0,
+        which is refused where the data begin later.
     y_down
         Whether y grows downwards, as pixels are counted.
     track
-        Name of a track, of files of Tracker that have several.
+        Name of a track, of files of Tracker that have several; of tracks without names the number.
 
     Raises
     ------
@@ -271,47 +280,168 @@ def read_measurement(
     >>> tt.read_measurement(file).values.round(3).tolist()
     [[0.099], [0.103], [0.11]]
     """
-    text = read_text(path, "a table of data")
-    with made_of(path):
-        named = {
-            NAMES.get(name, name): column for name, column in read_columns(text, track).items()
-        }
-        if "event" in named:
-            return _events(named, noise)
-        times = _times(named, frame_rate) - start
-        since = times >= 0.0
-        if not since.any():
-            raise InvalidInput("start", start, f"before the last time, {times[-1] + start:.4g} s")
+    if not isinstance(source, str | Path):
+        return _measurement_of(
+            _columns_of(source), view, point, scale, noise, frame_rate, start, y_down
+        )
+    text = _text_of(source)
+    with made_of(source):
+        columns = read_columns(text, track)
+        return _measurement_of(columns, view, point, scale, noise, frame_rate, start, y_down)
 
-        def column(name: str, units: str) -> Array:
-            return _in_unit(named[name], units)[since]
 
-        if "x" in named and "y" in named:
-            if view is None:
-                raise InvalidInput(
-                    "view", MISSING, "'above' or 'side': where the pictures were taken from"
-                )
-            metres = _is_length(named["x"].unit) and _is_length(named["y"].unit)
-            x, y = (column(name, "m" if metres else "px") for name in ("x", "y"))
-            return Measurement.of_point(
-                times[since],
-                x,
-                -y if y_down else y,
-                view,
-                point=point,
-                scale=1.0 if metres else scale,
-                unit="m" if metres else "px",
-                noise=noise,
+def read_launches(
+    source: Any, problem: Problem, *, noise: Any = None
+) -> list[tuple[Problem, Measurement]]:
+    """Read a table of launches: a row for each, with what it was launched with and when it did
+    what.
+
+    Headings are fields of the problem with units, such as "launch.spin (rad/s)", and events, such
+    as "turns over (s)". The list goes into `tippetop.fit`.
+
+    Parameters
+    ----------
+    source
+        A file, a DataFrame, or a mapping of headings to lists of numbers.
+    problem
+        The problem whose fields the rows replace.
+    noise
+        Standard deviation of the times, in their unit; None if it is not known.
+
+    Returns
+    -------
+    list
+        Problems and measurements; none if the table is not of launches.
+
+    Raises
+    ------
+    FileTrouble
+        If the file cannot be read.
+    InvalidInput
+        If a launch cannot have such numbers.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> table = {"launch.spin (rev/s)": [24.0, 25.0], "turns over (s)": [6.1, 5.7]}
+    >>> launches = tt.read_launches(table, tt.presets.report_problem(), noise=0.1)
+    >>> [round(problem.launch.spin, 1) for problem, _ in launches]
+    [150.8, 157.1]
+    """
+    if not isinstance(source, str | Path):
+        return _launches_of(_columns_of(source), problem, noise)
+    text = _text_of(source)
+    with made_of(source):
+        return _launches_of(read_columns(text), problem, noise)
+
+
+def _launches_of(
+    named: Mapping[str, DataColumn], problem: Problem, noise: Any
+) -> list[tuple[Problem, Measurement]]:
+    """Return the launches of some columns; none if they are not of launches."""
+    events = {event_of(name): column for name, column in named.items()}
+    events = {name: column for name, column in events.items() if name in EVENT_NAMES}
+    fields = {name: column for name, column in named.items() if "." in name}
+    if not events or not fields:
+        return []
+    times = {name: _in_unit(column, "s") for name, column in events.items()}
+    noises = _noises(list(events.values()), ["s"] * len(events), noise)
+    values = {
+        name: _in_unit(column, problem.quantity(name).units) for name, column in fields.items()
+    }
+    launches = list[tuple[Problem, Measurement]]()
+    for row in range(len(next(iter(times.values())))):
+        launched = problem.replace({name: float(column[row]) for name, column in values.items()})
+        seen = {name: column[row] for name, column in times.items() if np.isfinite(column[row])}
+        if seen:
+            spreads = None if noises is None else [noises[list(times).index(name)] for name in seen]
+            launches.append((launched, Measurement.of_events(seen, spreads)))
+    return launches
+
+
+def _text_of(path: Path | str) -> str:
+    """Return the text of a file with a table."""
+    if Path(path).suffix.lower() in WORKBOOKS:
+        return text_of_workbook(path)
+    return read_text(path, "a table of data", text_of_bytes)
+
+
+def _columns_of(source: Any) -> dict[str, DataColumn]:
+    """Return the columns of a table in memory."""
+    if isinstance(source, Mapping) or (hasattr(source, "columns") and hasattr(source, "to_csv")):
+        return columns_of_frame(source)
+    accepted = "a file, a DataFrame, or a mapping of headings to numbers"
+    raise InvalidInput("data", Described(f"a {type(source).__name__}"), accepted)
+
+
+def _measurement_of(
+    named: Mapping[str, DataColumn],
+    view: View | None,
+    point: Point,
+    scale: Any,
+    noise: Any,
+    frame_rate: float | None,
+    start: Any,
+    y_down: bool,
+) -> Measurement:
+    """Return the measurement of some columns."""
+    if "event" in named:
+        return _events(named, noise)
+    times = _times(named, frame_rate)
+    times = times - _launch_in(times, start)
+    since = times >= 0.0
+    if not since.any():
+        raise InvalidInput("start", start, "a time before the last one of the data")
+
+    def column(name: str, units: str) -> Array:
+        return _in_unit(named[name], units)[since]
+
+    if "x" in named and "y" in named:
+        if view is None:
+            raise InvalidInput(
+                "view", MISSING, "'above' or 'side': where the pictures were taken from"
             )
-        if "rpm" in named:
-            return Measurement.of_spin(times[since], column("rpm", "rpm"), noise)
-        names = [name for name in named if name in SCALARS]
-        if not names:
-            shown = ", ".join(named)
-            accepted = "t and tilt, t, x and y, t and rpm, or event and t"
-            raise InvalidInput("columns", shown, accepted)
-        columns = {name: column(name, SAMPLED[name].units) for name in names}
-        return Measurement.of_variables(times[since], columns, noise)
+        metres = _is_length(named["x"].unit) and _is_length(named["y"].unit)
+        units = "m" if metres else "px"
+        x, y = (column(name, units) for name in ("x", "y"))
+        return Measurement.of_point(
+            times[since],
+            x,
+            -y if y_down else y,
+            view,
+            point=point,
+            scale=1.0 if metres else scale,
+            unit=units,
+            noise=_noises([named["x"], named["y"]], [units, units], noise),
+        )
+    if "rpm" in named:
+        rates = np.abs(column("rpm", "rpm"))
+        return Measurement.of_spin(times[since], rates, _noises([named["rpm"]], ["rpm"], noise))
+    names = [name for name in named if name in SCALARS]
+    if not names:
+        shown = ", ".join(named)
+        accepted = (
+            "t and tilt (deg), t and x (mm) and y (mm), t and rpm, t and f (Hz), or event and t"
+        )
+        raise InvalidInput("columns", shown, accepted)
+    units_of = [SAMPLED[name].units for name in names]
+    columns = dict(zip(names, map(column, names, units_of), strict=True))
+    noises = _noises([named[name] for name in names], units_of, noise)
+    return Measurement.of_variables(times[since], columns, noises)
+
+
+def _launch_in(times: Array, start: Any) -> float:
+    """Return the time of the launch in the data."""
+    if start is not None:
+        return float(number_in("start", start, "s"))
+    steps = np.diff(times)
+    apart = float(np.nanmedian(steps)) if len(steps) else 0.0
+    if len(times) and times[0] > LATE_START * apart > 0.0:
+        first = f"{times[0]:.4g}"
+        fault = f"is not stated, and the data begin at {first} s"
+        hint = f"write {first} if the top is launched at the first row, or 0 if at time 0"
+        raise InvalidInput("start", MISSING, "", fault, hint)
+    return 0.0
 
 
 def _times(named: Mapping[str, DataColumn], frame_rate: Any) -> Array:
@@ -340,35 +470,73 @@ def _events(named: Mapping[str, DataColumn], noise: Any) -> Measurement:
     if "t" not in named:
         raise InvalidInput("columns", ", ".join(named), "", "have no time", "name a column t")
     times = _in_unit(named["t"], "s")
-    names = [cell.strip() for cell in named["event"].cells]
+    names = [event_of(cell) for cell in named["event"].cells]
     for name in names:
         if names.count(name) > 1:
             raise InvalidInput("event", name, "", "stands twice", "keep the first of a kind")
-    return Measurement.of_events(dict(zip(names, times.tolist(), strict=True)), noise)
+    noises = _noises([named["t"]], ["s"], noise)
+    return Measurement.of_events(dict(zip(names, times.tolist(), strict=True)), noises)
 
 
 def _in_unit(column: DataColumn, units: str) -> Array:
-    """Return the numbers of a column in a unit; pixels and turns a minute as they are."""
+    """Return the numbers of a column in a unit; pixels as they are."""
     numbers = column.numbers()
-    unit = column.unit.lower() if column.unit.lower() in ("px", "pixel", "rpm") else column.unit
-    if not unit or units in ("px", "rpm"):
-        if not unit and units == "rad" and len(numbers) and np.nanmax(np.abs(numbers)) > 7.0:
-            largest = f"{np.nanmax(np.abs(numbers)):.4g}"
-            fault = "is more than a turn in rad, and the column has no unit"
-            hint = f"write the unit into the header: {column.name} (deg) or {column.name} (rad)"
-            raise InvalidInput(column.name, largest, "", fault, hint)
-        return numbers
+    if (
+        not column.unit
+        and units == "rad"
+        and len(numbers)
+        and np.nanmax(np.abs(numbers)) > MORE_THAN_A_TURN
+    ):
+        largest = f"{np.nanmax(np.abs(numbers)):.4g}"
+        fault = "is more than a turn in rad, and the column has no unit"
+        hint = f"write the unit into the header: {column.name} (deg) or {column.name} (rad)"
+        raise InvalidInput(column.name, largest, "", fault, hint)
+    converted: Array = numbers * _factor(column, units)
+    return converted
+
+
+def _factor(column: DataColumn, units: str) -> float:
+    """Return the size of a column's unit in another one."""
+    if not column.unit or column.unit in ("px", units):
+        return 1.0
+    asked, size = ("rad s-1", 30.0 / np.pi) if units == "rpm" else (units, 1.0)
     try:
-        factor = unit_of(unit, unit, units)
+        factor = unit_of(column.unit, column.unit, asked)
     except InvalidInput as error:
         raise within_part(error, f"unit of column {column.name}") from None
-    converted: Array = numbers * factor.over / factor.under
-    return converted
+    return float(factor.over / factor.under * size)
+
+
+def _noises(columns: Sequence[DataColumn], units: Sequence[str], noise: Any) -> list[float] | None:
+    """Return the standard deviations of columns in units, from numbers in the columns' own."""
+    if noise is None:
+        return None
+    several = list(noise) if isinstance(noise, list | tuple | np.ndarray) else [noise]
+    if len(several) not in (1, len(columns)):
+        accepted = f"one number, or {len(columns)}, one for each column"
+        raise InvalidInput("noise", noise, accepted)
+    several *= len(columns) // len(several)
+    return [
+        _noise_in(one, column, unit)
+        for one, column, unit in zip(several, columns, units, strict=True)
+    ]
+
+
+def _noise_in(noise: Any, column: DataColumn, units: str) -> float:
+    """Return a standard deviation in a unit, from a number in the column's or a text."""
+    value = noise
+    if isinstance(noise, str) and (match := NUMBER.fullmatch(noise)):
+        value = float(match[1])
+        column = column._replace(unit=plain_unit(match[2]) or column.unit)
+    if not (is_number(value) and value > 0.0):
+        accepted = f"a number greater than 0 in the unit of column {column.name}"
+        raise InvalidInput("noise", noise, f"{accepted}, or with a unit, such as '0.3 mm'")
+    return float(value) * _factor(column, units)
 
 
 def _is_length(unit: str) -> bool:
     """Return whether a unit measures lengths of the world."""
-    measured = named_unit(unit) if unit and unit.lower() not in ("px", "pixel") else None
+    measured = named_unit(unit) if unit and unit != "px" else None
     return measured is not None and measured.exponents == exponents_of("m")
 
 

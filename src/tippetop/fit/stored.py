@@ -98,10 +98,13 @@ def read_fit(path: Path | str) -> FitResult:
 def _content(fit: FitResult) -> dict[str, Any]:
     """Return a fit as plain data."""
     search = fit.search
+    if len(fit.problems) > 1:
+        raise InvalidInput("fit", Described("a fit of several launches"), "a fit of one launch")
     content = {one.name: getattr(fit, one.name) for one in fields(fit)}
     return content | {
         "format": FORMAT,
         "problem": json.loads(fit.problem.to_json()),
+        "problems": [],
         "covariance": fit.covariance.values,
         "measurements": [_measurement_content(one) for one in fit.measurements],
         "search": {
@@ -142,6 +145,7 @@ def _fit(content: dict[str, Any]) -> FitResult:
     names = list(content["values"])
     restored: dict[str, Any] = {
         "problem": problem,
+        "problems": (problem,),
         "values": _numbers(content["values"]),
         "errors": _numbers(content["errors"]),
         "covariance": xr.DataArray(

@@ -4,6 +4,7 @@ method.
 
 # translate module: by hand in dense.js
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,12 +13,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tippetop.mechanics.vectors import Functions, Row
+from tippetop.mechanics.vectors import Row
 
 Array: TypeAlias = NDArray[np.float64]
-
-ELEMENTARY: Functions = np
-"""Elementary functions of what is asked for here: of times."""
 
 TIME_CORRECTIONS = 6
 """Improvements of a time at which a component has some value."""
@@ -108,6 +106,16 @@ class DenseSolution:
         knots = start + self.knots
         knots[-1] = end
         return DenseSolution(knots, self.terms)
+
+    def subdivided(self, parts: int) -> "DenseSolution":
+        """Return the same solution with every step in so many of equal length."""
+        if parts == 1 or not len(self.terms):
+            return self
+        count, (size, powers_) = len(self.terms), self.terms.shape[1:]
+        terms = np.einsum("sni,jim->sjnm", self.terms, _parts(powers_, parts))
+        begins = self.knots[:-1, None] + np.diff(self.knots)[:, None] * (np.arange(parts) / parts)
+        knots = np.append(begins.ravel(), self.knots[-1])
+        return DenseSolution(knots, terms.reshape(count * parts, size, powers_))
 
     def knots_of(self, number: int, end: float) -> list[float]:
         """Values of a component that grows, where every other step begins before it reaches `end`;
@@ -215,46 +223,6 @@ class DenseSolution:
         # Through Chebyshev's polynomials, whose coefficients fall off, so that no digits are lost.
         return cls(knots, np.swapaxes(to_powers @ (transform @ values), 1, 2))
 
-    @classmethod
-    def swinging(
-        cls,
-        moving: Callable[[Array], Sequence[Row]],
-        frequency: float,
-        knots: Sequence[float],
-        degree: int,
-        count: int,
-    ) -> "DenseSolution":
-        """Power series, in steps of equal length, of numbers that obey y''' = -w^2 y', or y''' = 0.
-
-        Parameters
-        ----------
-        moving
-            Takes k times, and returns the numbers, their rates, and rates of those: n rows each, of
-            k values or of one for all.
-        frequency
-            That is w.
-        knots
-            Ends of the steps.
-        degree
-            Of the polynomials.
-        count
-            How many of the numbers have that w, and not none: the first ones.
-        """
-        ends = np.array(knots)
-        begin, rate, second = (table(rows, len(ends) - 1) for rows in moving(ends[:-1]))
-        span = ends[1] - ends[0]
-        terms = np.zeros((len(begin), begin.shape[1], degree + 1))
-        terms[:, :, 0], terms[:, :, 1], terms[:, :, 2] = (
-            begin,
-            span * rate,
-            0.5 * span * span * second,
-        )
-        for k in range(3, degree + 1):
-            terms[:, :count, k] = (
-                -((frequency * span) ** 2) / (k * (k - 1)) * terms[:, :count, k - 2]
-            )
-        return cls(ends, terms)
-
 
 def table(rows: Row, count: int) -> Array:
     """Numbers, of so many values each, or of one for all, beside one another: shape (count, n)."""
@@ -312,6 +280,21 @@ def powers(numbers: Array, count: int) -> Array:
     for power in range(1, count):
         np.multiply(rows[power - 1], numbers, out=rows[power])
     return rows.T
+
+
+@lru_cache
+def _parts(count: int, parts: int) -> Array:
+    """Return the matrices from coefficients in powers of a place in [0, 1] to those in powers of a
+    place in each of its equal parts, shape (parts, count, count).
+    """
+    matrices = np.zeros((parts, count, count))
+    for part in range(parts):
+        for power in range(count):
+            for place in range(power + 1):
+                matrices[part, power, place] = (
+                    math.comb(power, place) * part ** (power - place) / parts**power
+                )
+    return matrices
 
 
 @lru_cache

@@ -1,23 +1,16 @@
-"""Where polynomials of many launches at once fall to zero, and how low they come: by looks in a
-step.
+"""How low polynomials of many launches at once come: by looks in a step.
 
 It is written in plain operators and a few choices, for arrays and for what is compiled.
 """
 
-import math
 from collections.abc import Sequence
 
 from tippetop.mechanics.series import Arithmetic, horner
 from tippetop.mechanics.vectors import Scalar
 
-PLACE_CORRECTIONS, BRACKETED = 3, 8
+PLACE_CORRECTIONS = 3
 """Improvements of a least value, by Newton's method from the least look, which cube its small
-distance, and of a zero between two looks.
-"""
-
-CONVERGED = 1e-9
-"""Last improvement of a zero, over it, beyond which it is not found: the next would be the square
-of that.
+distance.
 """
 
 TINY = 1e-300
@@ -58,47 +51,6 @@ def may_fall(
 ) -> Scalar:
     """Return whether a guard may fall through zero in a step, from its values at the probes."""
     return plain.below(lowest(values, plain) - slack(terms, length, len(values) - 1, plain), TINY)
-
-
-def first_fall(
-    terms: Sequence[Scalar], length: Scalar, count: int, plain: Arithmetic
-) -> tuple[Scalar, Scalar]:
-    """Return the time in a step at which a polynomial first falls through zero, and whether that is
-    undecided.
-
-    The time is inf if no probe is negative. It is undecided if the polynomial begins at or below
-    zero, if it may dip between probes first, or if the iteration for its root does not converge.
-    """
-    values, part = looked_at(terms, length, count), length * (1.0 / count)
-    falls = high = late = 0.0 * length
-    nearest = before = math.inf + 0.0 * length
-    for k in range(count, 0, -1):
-        under = plain.below(values[k], TINY)
-        falls, high = plain.choose(under, under, falls), plain.choose(under, part * float(k), high)
-        before = plain.choose(under, values[k - 1], before)
-        nearest = plain.choose(
-            under + late, math.inf + 0.0 * length, plain.least(values[k], nearest)
-        )
-        late = under
-    nearest = plain.choose(late, nearest, plain.least(values[0], nearest))
-    slopes = [float(k) * terms[k] for k in range(1, len(terms))]
-    first = low = high - part
-    place = high - 0.5 * part
-    for _ in range(BRACKETED):
-        value = horner(terms, place)
-        above, better = plain.below(0.0, value), place - value / horner(slopes, place)
-        low, high = plain.choose(above, place, low), plain.choose(above, high, place)
-        outside = plain.below(better, low) + plain.below(high, better)
-        better = plain.choose(outside, 0.5 * (low + high), better)
-        place, moved = better, plain.size(better - place)
-    # Where it rises at the look before its fall, it may have dipped before that, too.
-    rises = plain.below(0.0, horner(slopes, first))
-    nearest = plain.choose(rises, plain.least(before, nearest), nearest)
-    before_fall = nearest - slack(terms, length, count, plain)
-    least = plain.choose(falls, before_fall, least_value(terms, values, length, plain))
-    begins, converged = plain.below(values[0], TINY), plain.below(moved, CONVERGED * place)
-    fall = plain.choose(falls * (1.0 - begins), place, math.inf + 0.0 * length)
-    return fall, begins + plain.below(least, TINY) + falls * (1.0 - converged)
 
 
 def least_value(

@@ -4,15 +4,14 @@
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.integrators.dense import Array, powers
-from tippetop.integrators.falls import first_zero
-from tippetop.mechanics.series import horner
+from tippetop.integrators.first_fall import bernstein, first_fall
 from tippetop.mechanics.vectors import Row, Scalar
 
 Choice: TypeAlias = Callable[[Any, Any, Any], Any]
@@ -45,6 +44,12 @@ def _of_the_rest(count: int) -> Array:
         [(-1) ** row * math.comb(power, row) for power in range(count)] for row in range(count)
     ]
     return np.array(signed, dtype=float)
+
+
+@lru_cache
+def _bernstein_matrix(count: int) -> Array:
+    """Return the matrix from coefficients in powers to Bernstein's, shape (count, count)."""
+    return np.array([bernstein(row) for row in np.eye(count).tolist()]).T
 
 
 class Polynomials:
@@ -121,19 +126,14 @@ class Polynomials:
         """First times at which the polynomials fall to zero from above, nan where they do not,
         shape (n,).
 
-        See `tippetop.integrators.falls.first_zero`, to whose search they are left that may come so
-        low; `after_rise` is of all, or of each.
+        See `tippetop.integrators.first_fall`; `after_rise` is of all, or of each.
         """
         zeros = np.full(len(self.span), np.nan)
-        which = np.flatnonzero(self.floor <= 0.0)
+        bounds = times(_bernstein_matrix(len(self.unit)), self.unit)
+        which = np.flatnonzero((bounds <= 0.0).any(axis=0))
         rising = np.broadcast_to(after_rise, zeros.shape)[which].tolist()
-        each = zip(
-            self.unit[:, which].T.tolist(), self.values[:, which].T.tolist(), rising, strict=True
-        )
-        zeros[which] = [
-            first_zero(partial(horner, terms), values, from_above, rises)
-            for terms, values, rises in each
-        ]
+        each = zip(self.unit[:, which].T.tolist(), rising, strict=True)
+        zeros[which] = [first_fall(terms, from_above, rises) for terms, rises in each]
         return zeros * self.span
 
     def refined_least(self) -> tuple[Array, Array]:

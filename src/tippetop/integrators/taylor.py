@@ -16,8 +16,9 @@ from tippetop.graph.recording import Recorded, record, recordable
 from tippetop.graph.taylor_coefficients import NodeArithmetic
 from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Guard, Motion
 from tippetop.integrators.dense import DenseSolution
+from tippetop.integrators.first_fall import single_fall
 from tippetop.integrators.machine_code import loaded
-from tippetop.integrators.polynomial_minima import first_fall, looked_at, may_fall
+from tippetop.integrators.polynomial_minima import looked_at, may_fall
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar
@@ -513,6 +514,21 @@ def _stepper(motion: Motion, order: int, tolerance: float) -> CompiledSteps:
     return CompiledSteps(motion, recorded, order, tolerance)
 
 
+def coefficients_at(
+    motion: Motion, parameters: Sequence[float], state: Array
+) -> tuple[list[list[float]], list[list[float]], list[list[float]]]:
+    """Return what `tippetop.integrators.expansion.expanded` does, by compiled code."""
+    tolerance = TOLERANCES["taylor"]
+    stepper = _stepper(motion, order_for(tolerance), tolerance)
+    layout, jet = stepper.layout, stepper.jet
+    raw, room = np.zeros(layout.raw), jet.room()
+    numbers, y = np.array([*parameters, 0.0], dtype=float), np.array(state, dtype=float)
+    jet.expand(*[part.ctypes.data for part in (y, numbers, room, raw)])
+    terms = raw[: layout.terms].reshape(layout.size, layout.order + 1).tolist()
+    falls = raw[layout.terms : layout.clock].reshape(layout.guards, layout.order).tolist()
+    return terms, falls[: stepper.guards], falls[stepper.guards :]
+
+
 @lru_cache(maxsize=64)
 def _slowed(motion: Motion) -> Motion:
     """Return a motion by another clock, whose unit of time is the last parameter."""
@@ -615,7 +631,7 @@ def doubt_about(terms: Sequence[Scalar], looked: Sequence[Scalar]) -> list[Scala
 
 def fall_of(terms: Sequence[Scalar], spans: Sequence[Scalar]) -> list[Scalar]:
     """Return when a guard first falls in a step, inf if never, and whether that is undecided."""
-    return [*first_fall(terms, spans[0], PROBES_PER_STEP, NODES)]
+    return [*single_fall(terms, spans[0], NODES)]
 
 
 def with_number(measures: Measures, terms: Sequence[Scalar], left_out: float) -> list[Scalar]:

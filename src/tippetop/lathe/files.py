@@ -163,10 +163,15 @@ def _are_on_both_sides(points: list[tuple[float, ...]]) -> bool:
 
 
 def _from_csv(text: str, path: Path) -> list[tuple[float, ...]]:
-    """Return the points in rows of numbers separated by commas, semicolons, tabs or spaces."""
+    """Return the points in rows of numbers separated by commas, semicolons, tabs or spaces.
+
+    Between semicolons or tabs a comma is a decimal sign, as some spreadsheets write it.
+    """
     lines = [line.partition("#")[0].strip() for line in text.splitlines()]
     between = next((mark for mark in ";\t," if any(mark in line for line in lines)), None)
     cells = [[cell.strip(' "') for cell in line.split(between)] for line in lines]
+    if between in (";", "\t"):  # then a comma is a decimal sign
+        cells = [[cell.replace(",", ".") for cell in row] for row in cells]
     rows = [(number, row) for number, row in enumerate(cells, 1) if any(row)]
     if rows and not any(cell[:1] in STARTS for cell in rows[0][1] if cell):
         rows = rows[1:]

@@ -170,6 +170,17 @@ def slap_guard(axis: Vector, momentum: Vector, top: Top) -> Scalar:
     return sine * (sine + SLAP * axis[2] * across) + turning * turning
 
 
+def slaps_soon(axis: Vector, momentum: Vector, top: Top) -> bool:
+    """Return whether a face slaps onto the table within `SLAP`, of floats.
+
+    It does where `slap_guard` has fallen. A body that begins nearer to the table passes flat within
+    less than a step shows of that guard.
+    """
+    sine, along, across, _ = Tilting.of(axis, momentum, top)
+    falling = -axis[2] * across
+    return bool(falling > 0.0 and sine <= SLAP * falling and TURNING * abs(along) <= falling)
+
+
 def time_to_slap(axis: Vector, momentum: Vector, moment: Vector, top: Top) -> Scalar:
     """Time until a face slaps onto the table, at the present acceleration of the tilt, s.
 

@@ -1,84 +1,14 @@
-"""Roots of functions of one number: the first one, with proof, and the one between two signs."""
+"""The root of a function of one number between two signs, and its least value."""
 
 # translate module: numbers
 
 from collections.abc import Callable
-from typing import TypeAlias
-
-from tippetop.mechanics.unsolved import Unsolved
-
-FINEST = 1e-10
-"""Step, relative to its piece, below which a gap that is neither open nor closing counts as closed.
-"""
 
 GOLDEN = 0.5 * (3.0 - 5.0**0.5)
 """Smaller part of an interval in the golden ratio."""
 
 DIVISIONS = 29
 """How often an interval is divided for a least value."""
-
-Triple: TypeAlias = tuple[float, float, float]
-"""A function's value and its first two derivatives."""
-
-
-def first_root(
-    function: Callable[[float], Triple], low: float, high: float, jerk: float
-) -> float | None:
-    """First root from `low` to `high`, or `low` if not positive there; `jerk` bounds the third
-    derivative.
-
-    Raises `Unsolved` where it takes steps that are lost in rounding.
-    """
-    time, step, finest = low, high - low, FINEST * (high - low)
-    value, rate, acceleration = function(time)
-    while value > 0.0:
-        step = min(step, high - time)
-        end = high if step == high - time else time + step
-        if end == time:
-            raise Unsolved("steps of time are lost in its rounding")
-        positive = stays_positive(value, rate, acceleration, jerk, step)
-        if positive or is_one_way(rate, acceleration, jerk, step):
-            if end == high and positive:
-                return None
-            later = function(end)
-            if later[0] <= 0.0 and not positive:
-                return crossing(lambda t: function(t)[0], time, end)
-            if end == high and later[0] > 0.0:
-                return None
-            time, step = end, 2.0 * step
-            value, rate, acceleration = later
-        else:
-            step *= 0.5
-            if step < finest:
-                break
-    return time
-
-
-def stays_positive(
-    value: float, rate: float, acceleration: float, jerk: float, step: float
-) -> bool:
-    """Return whether value + rate s + acceleration s^2/2 - jerk s^3/6 is positive for all s in [0,
-    step].
-    """
-
-    def cubic(s: float) -> float:
-        return value + s * (rate + s * (acceleration / 2.0 - s * jerk / 6.0))
-
-    if cubic(step) <= 0.0:
-        return False
-    discriminant = acceleration * acceleration + 2.0 * jerk * rate
-    if rate >= 0.0 or acceleration <= 0.0 or discriminant <= 0.0:
-        return True
-    dip = -2.0 * rate / (acceleration + discriminant**0.5)
-    return dip >= step or cubic(dip) > 0.0
-
-
-def is_one_way(rate: float, acceleration: float, jerk: float, step: float) -> bool:
-    """Return whether a function falls, or is concave, all along a step, so that it has at most one
-    root.
-    """
-    falls = rate < 0.0 and rate + step * (acceleration + 0.5 * step * jerk) < 0.0
-    return falls or acceleration + step * jerk < 0.0
 
 
 def dip(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:

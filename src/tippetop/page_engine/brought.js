@@ -7,18 +7,24 @@ const ACCEPTED_ROW = "two or three numbers, with a decimal point and commas betw
 const UNIT_OF_DRAWINGS = "mm";
 const TOLERANCE = SCHEMA.Workpiece.fields.tolerance.default;
 
-/** The points in rows of numbers with commas, semicolons, tabs or spaces between them. */
+/**
+ * The points in rows of numbers with commas, semicolons, tabs or spaces between them. Between semicolons or tabs a comma
+ * is a decimal sign.
+ */
 export function pointsOf(text) {
   const lines = text.split(/\r\n|\r|\n/).map((line) => line.split("#")[0].trim());
   const between = [";", "\t", ","].find((mark) => lines.some((line) => line.includes(mark)));
+  const isPointed = between !== ";" && between !== "\t";
   const rows = lines
     .map((line, k) => [k + 1, (between ? line.split(between) : line.split(/\s+/)).map(bare)])
+    .map(([number, cells]) => [number, isPointed ? cells : cells.map(withPoint)])
     .filter(([, cells]) => cells.some(Boolean));
   const isHeading = ([, cells]) => !cells.some((cell) => /^[0-9+\-.]/.test(cell));
   if (rows.length && isHeading(rows[0])) rows.shift();
   return rows.map(([number, cells]) => numbersOf(number, cells));
 }
 
+const withPoint = (cell) => cell.replaceAll(",", ".");
 const bare = (cell) => cell.replace(/^[ "]+|[ "]+$/g, "");
 
 function numbersOf(number, cells) {
@@ -31,11 +37,10 @@ function numbersOf(number, cells) {
 
 /** A workpiece from points beside the axis, or on both sides of it; what else it has is in fields. */
 export function fromPoints(points, fields) {
-  const across = points.map(([r]) => r);
   const isWhole =
     points.every((point) => point.length === 2) &&
-    Math.min(...across) < 0 &&
-    Math.max(...across) > 0;
+    points.some(([r]) => r < 0) &&
+    points.some(([r]) => r > 0);
   if (!isWhole) return { table: { ...fields, profile: points }, remarks: [] };
   const corners = [...points, points[0]].map(([r, z]) => new Complex(r, z));
   const outline = corners

@@ -1,8 +1,7 @@
 // Solutions as polynomials in time, one a step, as in tippetop.integrators.dense.
-import { crossing, POWERS, within } from "./mechanics.js";
+import { crossing, PLAIN, POWERS, Series, solved, unknown, within } from "./mechanics.js";
 import { CHEBYSHEV, SHORTEST } from "./tables.js";
 
-export const ELEMENTARY = Math;
 export const as_array = (numbers) => Float64Array.from(numbers);
 
 /** So many numbers: these, and zeros. */
@@ -22,6 +21,21 @@ export function earliest(count, holds) {
     else low = middle + 1;
   }
   return low;
+}
+
+// Degree of the power series that stand for a first step.
+const ORDER = 20;
+
+/** Coefficients of a motion's solution and of its guards from a state on; no law here has choices with margins. */
+export function expanded(motion, parameters, state) {
+  const series = Array.from(state, () => new Series(unknown, PLAIN));
+  solved(series, Array.from(state), (y) => motion.rates(y, parameters));
+  const guards = motion.guards.map((guard) => guard.value(series, parameters));
+  return [
+    series.map((one) => one.up_to(ORDER).slice(0, ORDER + 1)),
+    guards.map((one) => one.up_to(ORDER - 1).slice(0, ORDER)),
+    [],
+  ];
 }
 
 export class DenseSolution {
@@ -96,6 +110,28 @@ export class DenseSolution {
     const knots = this.knots.map((knot) => start + knot);
     knots[knots.length - 1] = end;
     return new DenseSolution(knots, this.terms, this.size);
+  }
+
+  /** The same solution with every step in so many of equal length. */
+  subdivided(parts) {
+    if (parts === 1 || !this.count) return this;
+    const width = this.degree + 1;
+    const terms = new Float64Array(this.terms.length * parts);
+    const knots = [];
+    let place = 0;
+    for (let step = 0; step < this.count; step += 1) {
+      for (let part = 0; part < parts; part += 1) {
+        knots.push(this.time(step, part / parts));
+        for (let number = 0; number < this.size; number += 1) {
+          const first = (step * this.size + number) * width;
+          const row = this.terms.slice(first, first + width);
+          terms.set(shifted(row, part / parts, 1 / parts), place);
+          place += width;
+        }
+      }
+    }
+    knots.push(this.end);
+    return new DenseSolution(Float64Array.from(knots), terms, this.size);
   }
 
   /** Values of an increasing number at the starts of steps, but for those next to its end, and that end. */
@@ -193,37 +229,14 @@ export class DenseSolution {
     const size = rows.length / Math.max(knots.length - 1, 1);
     return new DenseSolution(knots, Float64Array.from(rows.flat()), size);
   }
-
-  /**
-   * Power series, in steps of equal length, of numbers the first `count` of which obey y''' = -w^2 y', and the
-   * others y''' = 0; `moving` tells numbers and their first two derivatives at a time.
-   */
-  static swinging(moving, frequency, knots, degree, count) {
-    const span = knots[1] - knots[0];
-    const square = (frequency * span) ** 2;
-    const starts = knots.slice(0, -1).map(moving);
-    const size = starts[0][0].length;
-    const terms = new Float64Array(starts.length * size * (degree + 1));
-    let place = 0;
-    for (const [numbers, rates, accelerations] of starts) {
-      for (let number = 0; number < size; number += 1) {
-        const series = terms.subarray(place, place + degree + 1);
-        series[0] = numbers[number];
-        series[1] = span * rates[number];
-        series[2] = 0.5 * span * span * accelerations[number];
-        if (number < count) extendSwing(series, square);
-        place += series.length;
-      }
-    }
-    return new DenseSolution(knots, terms, size);
-  }
 }
 
-/** Fill a series from its first three terms on, so that it obeys y''' = -square y'. */
-function extendSwing(series, square) {
-  for (let k = 3; k < series.length; k += 1) {
-    series[k] = (-square / (k * (k - 1))) * series[k - 2];
+/** Coefficients in powers of a part that begins at a place and has a length, by Horner's scheme. */
+function shifted(row, place, length) {
+  for (let first = 0; first < row.length; first += 1) {
+    for (let k = row.length - 2; k >= first; k -= 1) row[k] += place * row[k + 1];
   }
+  return row.map((term, k) => term * length ** k);
 }
 
 function product(matrix, column) {

@@ -10,6 +10,16 @@ export function predict(problem) {
   const found = m.predict(new m.Problem(problem));
   return { ...plain(found), certain: found.is_certain };
 }
+/**
+ * How the friction of a table serves a launch of one sphere: it "creeps", as `predict` needs, takes spin because it
+ * "drills", "sticks" where slip ends, or there is "none".
+ */
+export function tableKind(problem) {
+  const { top, friction } = new m.Problem(problem);
+  if (friction.vanishes) return "none";
+  if (!m.creeps(top)) return "sticks";
+  return top.conserves_jellett ? "creeps" : "drills";
+}
 export const criticalSpins = (problem) => plain(m.critical_spins(new m.Problem(problem)));
 /** How many samples a run of a duration, s, needs so that it can be played at any speed. */
 export const sampleCount = (problem, duration) => m.sample_count(new m.Problem(problem), duration);

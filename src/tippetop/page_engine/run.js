@@ -3,7 +3,7 @@ import { integrator, reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
 import * as m from "./mechanics.js";
 import { inUnits } from "./part.js";
-import { plain } from "./runtime.js";
+import { neg, plain } from "./runtime.js";
 import { CATALOGUE, FORCE_DEGREE, GAUSS } from "./tables.js";
 
 // A search for a root or a least value in a step first looks at the ends of this many intervals.
@@ -26,6 +26,7 @@ const FORCE = m.Rates.fields.indexOf("force");
 const MARGIN = m.Rates.fields.indexOf("margin");
 const conserved = (mode, y) => m.monitored_quantities(mode.state(y), mode.top);
 const CONSERVED = 3;
+const depth = (mode, y) => [neg(m.gap_at(mode, y))];
 
 // Places of what is summed up along a run, in the order of `RunSums`.
 const SUMS = m.RunSums.fields.length;
@@ -78,6 +79,8 @@ class Run {
     this.steps = 0;
     this.rolls = false;
     this.firstHorizontal = NaN;
+    // Whether n_z was positive at the start of a step.
+    this.wasAbove = false;
     this.monitor = new m.Monitor(this.top, this.start, automaton.pulls);
     this.flightRecord = new m.Flights();
     this.leastForce = new LeastValue();
@@ -92,7 +95,7 @@ class Run {
     const { solution, mode, transition } = segment;
     this.steps += segment.steps;
     this.rolls = mode.status === "sticking" && mode.top.torque_free;
-    if (!mode.touching) this.flightRecord.take(segment);
+    if (!mode.touching) this.flightRecord.take(segment, highestGap(mode, solution));
     if (solution.count) this.includeSteps(mode, solution);
     const lost = transition?.energy_lost ?? 0;
     this.sums[STRUCK] += lost;
@@ -171,10 +174,14 @@ class Run {
     this.mostAxisZ.include(-start, -high, solution, step, () =>
       reading(solution, step, AXIS_Z, -1),
     );
-    if (low <= 0 && high >= 0 && Number.isNaN(this.firstHorizontal)) {
-      const part = firstZero(reading(solution, step, AXIS_Z), true);
+    if (low <= 0 && (high >= 0 || this.wasAbove) && Number.isNaN(this.firstHorizontal)) {
+      const value = reading(solution, step, AXIS_Z);
+      // Where one step ends and another begins with a level axis, as in an impact there, no step falls through zero.
+      const fallsFromStart = this.wasAbove && start <= 0 && value(PROBES[1]) < 0;
+      const part = fallsFromStart ? 0 : firstZero(value, true);
       this.firstHorizontal = solution.time(step, part);
     }
+    this.wasAbove ||= start > 0;
   }
 
   /** Take in how high the centre of mass is in a step of a flight. */
@@ -246,6 +253,13 @@ class Run {
   peakTime() {
     const { place } = this.leastAxisZ;
     return place ? place.source.time(place.step, place.part) : this.trajectory.time;
+  }
+
+  /** The flights that begin on the table: how many there are, and the largest gap below them, m. */
+  get jumps() {
+    const jumps = this.flights.filter(({ start }) => m.is_jump(start, this.problem));
+    const highest = Math.max(0, ...jumps.map(({ max_gap }) => max_gap));
+    return { count: jumps.length, highest };
   }
 
   /** What became of the launch, as clauses of a name and numbers. */
@@ -356,7 +370,7 @@ class SegmentReader {
     this.sums = new Float64Array(SUMS * solution.count);
     this.poles = [];
     // Gauss's rule with four nodes is exact up to degree 7.
-    this.rule = GAUSS[mode.touching && solution.degree > 7 ? 8 : 4];
+    this.rule = GAUSS[solution.degree > 7 ? 8 : 4];
   }
 
   /** The numbers at a part of a step, in an array that the next call overwrites. */
@@ -447,6 +461,18 @@ function leastInStep(values, threshold) {
   const dipValue = values(dip);
   if (dipValue < low) return { part: dip, value: dipValue };
   return { part: PROBES[lowest], value: low };
+}
+
+/** The highest gap in a segment of a flight. */
+function highestGap(mode, solution) {
+  const read = reader(mode, solution.size)(depth, 1);
+  const numbers = new Float64Array(solution.size);
+  let lowest = 0;
+  for (let step = 0; step < solution.count; step += 1) {
+    const values = (part) => read(solution.numbers(step, part, numbers))[0];
+    lowest = Math.min(lowest, leastInStep(values, lowest).value);
+  }
+  return -lowest;
 }
 
 /** Where a function on [0, 1] first falls to zero; NaN where it does not. With `fromAbove` it must be above first. */

@@ -23,9 +23,18 @@ class Account(NamedTuple):
     """Account of a run as clauses; `str` gives English sentences."""
 
     clauses: tuple[Clause, ...]
+    uncertainties: Mapping[str, float] = {}
+    """How far a minute change of the launch moves the times, s, by the names of their clauses."""
+
+    def rounded(self, uncertainties: Mapping[str, float]) -> "Account":
+        """Return the account with no more digits of its times than `time_uncertainties` leaves."""
+        return self._replace(uncertainties=dict(uncertainties))
+
+    def _phrase(self, clause: Clause) -> str:
+        return phrase(clause, self.uncertainties.get(clause.name, 0.0))
 
     def __str__(self) -> str:
-        sentences = [phrase(clause) for clause in self.clauses]
+        sentences = [self._phrase(clause) for clause in self.clauses]
         subjects = [_english()["subject"], *[_english()["pronoun"]] * len(sentences)]
         return " ".join(
             f"{subject} {text}." for subject, text in zip(subjects, sentences, strict=False)
@@ -35,14 +44,14 @@ class Account(NamedTuple):
     def headline(self) -> str:
         """Motion and end, as one phrase without a subject."""
         clauses = [clause for clause in self.clauses if clause.part in ("motion", "end")]
-        return "; ".join(phrase(clause) for clause in clauses)
+        return "; ".join(map(self._phrase, clauses))
 
     @property
     def details(self) -> tuple[str, ...]:
         """Launch and theory, as sentences."""
         pronoun = _english()["pronoun"]
         clauses = [clause for clause in self.clauses if clause.part in ("launch", "theory")]
-        return tuple(f"{pronoun} {phrase(clause)}." for clause in clauses)
+        return tuple(f"{pronoun} {self._phrase(clause)}." for clause in clauses)
 
     def plain(self) -> list[dict[str, Any]]:
         """Return the clauses as plain dictionaries of name and numbers."""
@@ -91,10 +100,12 @@ def describe(run: xr.Dataset) -> Account:
     return Account(tuple(account_of(facts)))
 
 
-def phrase(clause: Clause) -> str:
-    """Return a clause in English, without its subject."""
+def phrase(clause: Clause, uncertainty: float = 0.0) -> str:
+    """Return a clause in English, without its subject, its time to an uncertainty, s."""
     texts = _english()
     gaps = {name: written(name, value, texts["units"]) for name, value in clause.numbers.items()}
+    if "time" in gaps and uncertainty > 0.0:
+        gaps["time"] = written_time(clause.numbers["time"], uncertainty, texts["units"])
     return str(texts["clauses"][clause.name].format(**gaps))
 
 
@@ -127,6 +138,27 @@ def written(gap: str, value: float, units: Mapping[str, str]) -> str:
         case "speed":
             return f"{_digits(value, 3)} {units['speed']}"
     return f"{value:.0f}"
+
+
+def digits_left(time: float, uncertainty: float, usual: int) -> int:
+    """Return how many digits an uncertainty leaves of a time, of the usual ones; 0 for none."""
+    if not uncertainty < 0.5 * time:
+        return 0
+    if uncertainty == 0.0:
+        return usual
+    digits = math.floor(math.log10(time)) - math.ceil(math.log10(uncertainty)) + 1
+    return min(max(digits, 1), usual)
+
+
+def written_time(time: float, uncertainty: float, units: Mapping[str, str]) -> str:
+    """Return a time without the digits that an uncertainty takes from it, both in s."""
+    digits = digits_left(time, uncertainty, 3 if time < TENS else 4)
+    size, unit = (1e3, "short") if time < MILLISECONDS else (1.0, "time")
+    return f"{_digits(size * time, digits)} {units[unit]}" if digits else CHANCE
+
+
+CHANCE = "a time that chance decides"
+"""What stands for a time that a minute change of the launch moves by as much as itself."""
 
 
 def _digits(value: float, count: int) -> str:

@@ -188,7 +188,7 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         "final_spin": axial_spin(end.axis, end.momentum, top) / units.time,
         "final_precession": precession / units.time,
         "is_settled": ends.settled == ends.settled,
-        "turnover_time": ends.turned * units.time,
+        "turnover_time": _turned_over(ends) * units.time,
         "arrival_time": ends.arrived * units.time,
         "max_tilt_ever": max_tilt_ever,
         "min_normal_force": ends.least_force * units.force,
@@ -205,6 +205,20 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         "end_time": ends.time * units.time,
         "steps": ends.steps,
     }
+
+
+PAST_LEVEL = 1e-6
+"""Tilt beyond a right angle, rad, from which a top has turned over. A body that strikes the table
+with both ends when its axis is level, such as two equal balls, passes the level only by rounding
+(1e-10 rad); what turns over goes on by far more.
+"""
+
+
+def _turned_over(ends: Ends) -> Array:
+    """Return the times of turning over; nan if n_z only touched 0 and the run went on."""
+    at_the_end = np.where(ends.turned >= ends.time, ends.turned, np.nan)
+    times: Array = np.where(ends.down < -PAST_LEVEL, ends.turned, at_the_end)
+    return times
 
 
 def highest_seen(ends: Ends) -> Array:

@@ -17,6 +17,7 @@ from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
+from tippetop.results.highest_gaps import highest_gaps
 from tippetop.results.metrics import (
     STATUSES,
     Ends,
@@ -72,11 +73,10 @@ class RunMetrics:
             if isinstance(segment.mode, IntegratedMode):
                 method = segment.method
                 self.methods.setdefault("" if method is None else method.name, method)
-            if not segment.mode.touching:
-                self.flights.take(segment)
         for segment in block.segments[-1:]:
             mode = segment.mode
             self._rolls = mode.status == STICKS and mode.top.torque_free
+        self._take_flights(block)
         for group in block.groups:
             self._take_tip(group, block.starts[group.which])
             if not group.mode.touching:
@@ -98,6 +98,21 @@ class RunMetrics:
         self._lowest.append(tip.some(lowest))
         self._lowest_begin.append(starts[lowest])
         self._turned = _first(self._turned, tip, starts, (low <= 0.0) & (high >= 0.0), turning_time)
+
+    def _take_flights(self, block: Block) -> None:
+        """Accumulate the flights, with the highest gap of each."""
+        flying = [segment for segment in block.segments if not segment.mode.touching]
+        if not flying:
+            return
+        highest = np.zeros(len(block.starts))
+        for group in block.groups:
+            if not group.mode.touching:
+                highest[group.which] = highest_gaps(group)
+        first = np.concatenate([[0], np.cumsum(block.lengths)])
+        for number, segment in enumerate(block.segments):
+            if not segment.mode.touching:
+                in_segment = highest[first[number] : first[number + 1]]
+                self.flights.take(segment, float(in_segment.max(initial=0.0)))
 
     def _take_height(self, group: ModeSteps) -> None:
         """Accumulate the height of the centre of mass in flights."""

@@ -7,7 +7,7 @@ import os
 import secrets
 import stat
 import sys
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -152,9 +152,12 @@ def put_in_place(beside: Path, path: Path | str, overwrite: bool) -> None:
         beside.unlink(missing_ok=True)  # replacing does not remove a second name of the same file
 
 
-def read_text(path: Path | str, accepted: str) -> str:
+def read_text(
+    path: Path | str, accepted: str, decode: Callable[[bytes], str | None] | None = None
+) -> str:
     """Return the text of a file; refusals say that the file is not `accepted`.
 
+    `decode` returns the text of its bytes, or None if they are none; by default they are UTF-8.
     Raises `FileTrouble` if the file cannot be read, is no text, or is longer than `LONGEST_TEXT`.
     """
     with in_words(path, "read"), Path(path).open("rb") as file:
@@ -163,10 +166,17 @@ def read_text(path: Path | str, accepted: str) -> str:
         raise FileTrouble(
             f"{named(path)} has more than {LONGEST_TEXT:,} bytes, and is not {accepted}"
         )
+    text = _utf8(content) if decode is None else decode(content)
+    if text is None:
+        raise FileTrouble(f"{named(path)} is not a text file, and not {accepted}")
+    return text
+
+
+def _utf8(content: bytes) -> str | None:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise FileTrouble(f"{named(path)} is not a text file, and not {accepted}") from None
+        return None
 
 
 @contextmanager

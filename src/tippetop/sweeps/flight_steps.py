@@ -1,127 +1,120 @@
-"""A piece of a flight of many tops at once: how far it goes, whether the table is touched, how high
-it leads.
-
-Within a piece the gap is a Taylor polynomial that is exact to rounding. LLVM compiles all that is
-usual of it. Where something is doubtful, or happens that is asked for, the polynomials are to be
-looked at.
-"""
+"""Flights of many tops at once: steps of free motion, until a surface touches the table."""
 
 from collections.abc import Callable, Sequence
 from functools import lru_cache
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from tippetop.graph.graph import COSINE, SINE, Node
+from tippetop.contact.flight import SIZE, Start, flight_motion
+from tippetop.graph.taylor_coefficients import SharedSeries
 from tippetop.integrators.base import Array
-from tippetop.integrators.polynomial_minima import first_fall, least_value, looked_at
-from tippetop.mechanics.flight.free_motion import fly
-from tippetop.mechanics.flight.separation import NARROWEST, Tip, support_terms
-from tippetop.mechanics.flight.touchdown import Start
-from tippetop.mechanics.series import Arithmetic
-from tippetop.mechanics.state import State
+from tippetop.integrators.first_fall import single_fall
+from tippetop.integrators.polynomial_minima import least_value, looked_at
+from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.surfaces.hull import is_edge
-from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Scalar
-from tippetop.mechanics.view import axis_sine
-from tippetop.sweeps.taylor_step import FINE_PROBES, PROBES, extremes, met, step_size
+from tippetop.sweeps.taylor_step import PROBES, extremes, met, order_for, step_size
 from tippetop.sweeps.taylor_stepper import NODES, compiled, padded
 
-STATE, TIME, LEFT, VANISHING, WANTED, GIVEN = slice(10), 10, 11, 12, slice(13, 16), 16
-"""Rows of what is given, and how many: the state at the start of the flight, the time since then
-and what is left, how many of gap, gap rate and gap acceleration vanish now, and what is wanted (see
-`met`).
+TOLERANCE = 1e-14
+"""What the polynomials of a step leave out, relative to the axis and the gap: a short flight has a
+gap that is as small a part of the size.
+"""
+
+ORDER = order_for(TOLERANCE)
+
+LEFT, VANISHING, WANTED, GIVEN = SIZE, SIZE + 1, slice(SIZE + 2, SIZE + 5), SIZE + 5
+"""Rows of what is given after the state, and how many: the time that is left, how many of gap, gap
+rate and gap acceleration vanish, and what is waited for (see `met`).
 """
 
 
-BESIDE = 0.5
-"""Part of the angle to flat that an edge turns in a piece at most: in one plane, series see no kink
-there.
-"""
+class FlightSteps(NamedTuple):
+    """Steps of n flights."""
 
-
-class Piece(NamedTuple):
-    """What became of pieces: all of shape (n,)."""
-
+    after: Array
+    """States at the end, shape (10, n)."""
+    full: Array
     span: Array
-    """How long each lasts."""
+    """How long the polynomials serve, and how long the step is, shape (n,)."""
     touches: Array
     """1 where the table is touched at its end, else 0."""
     doubt: Array
-    """Not 0 where the polynomials are to be looked at, and nothing here is to be used."""
+    """Not 0 where that is not sure, or happens what is waited for."""
     highest_gap: Array
+    highest: Array
+    """Largest gap, and height of the centre of mass."""
     floor: Array
     ceiling: Array
-    """Largest gap, and least and largest n_z."""
+    """Least and largest n_z."""
+    state: Array
+    guards: Array
+    """Coefficients in powers of time, shapes (10, ORDER + 1, n) and (guards, ORDER + 1, n)."""
 
 
-class NodeFunctions:
-    """Elementary functions of nodes."""
-
-    def sin(self, angle: Node) -> Node:
-        """Sine."""
-        return angle.graph.node(SINE, (angle,))
-
-    def cos(self, angle: Node) -> Node:
-        """Cosine."""
-        return angle.graph.node(COSINE, (angle,))
-
-
-def pieces(kind: Kind, starts: Array, numbers: Array) -> Piece:
-    """Return the parts of flights that begin with these numbers, of shape (GIVEN, n), of tops with
-    these numbers, (kind.numbers, n).
+def flight_steps(kind: Kind, starts: Array, numbers: Array) -> FlightSteps:
+    """Return the steps of flights that begin with these numbers, shape (GIVEN, n), of tops with
+    these numbers, shape (kind.numbers, n).
     """
     count = starts.shape[1]
     start, parameters = padded(starts), padded(numbers)
-    parts = np.empty((len(Piece._fields), start.shape[1]))
-    _code(kind)(start, parameters, parts)
-    return Piece(*parts[:, :count])
+    guards = len(flight_motion(kind).guards)
+    made = np.empty((SIZE + 8, start.shape[1]))
+    terms = np.empty(((SIZE + guards) * (ORDER + 1), start.shape[1]))
+    _code(kind)(start, parameters, made, terms)
+    state, falls = np.split(terms.reshape(-1, ORDER + 1, start.shape[1])[..., :count], [SIZE])
+    return FlightSteps._make([made[:SIZE, :count], *made[SIZE:, :count], state, falls])
 
 
 @lru_cache(maxsize=16)
-def _code(kind: Kind) -> Callable[[Array, Array, Array], None]:
-    def rows(start: Sequence[Scalar], numbers: Sequence[Scalar]) -> Sequence[Scalar]:
-        return flight_part(kind.top(tuple(numbers)), start, NODES)
+def _code(kind: Kind) -> Callable[..., None]:
+    def rows(start: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
+        step = flight_step(kind, start, numbers, NODES)
+        return [*step.after, *step[1:9], *chain(*step.state), *chain(*step.guards)]
 
-    return compiled(rows, GIVEN, kind.numbers, effort=0)
+    count = (SIZE + len(flight_motion(kind).guards)) * (ORDER + 1)
+    return compiled(rows, GIVEN, kind.numbers, count, effort=0)
 
 
-def flight_part(top: Top, start: Sequence[Any], plain: Arithmetic) -> Piece:
-    """Return the part of a flight that begins with these numbers."""
-    motion = fly(State.unpack(start[STATE]), start[TIME], top, NodeFunctions())
-    tip, gap, reach = flight_terms(motion, start[LEFT], top, plain)
-    zero, doubt = first_fall(divided(gap, start[VANISHING], plain), reach, FINE_PROBES, plain)
-    touches = plain.below(zero, reach)
-    span = plain.least(zero, reach)
-    floor, ceiling = extremes(tip, span, plain)
-    depth = [-term for term in gap]
-    highest = -least_value(depth, looked_at(depth, span, PROBES), span, plain)
-    if is_edge(top.surface):
-        doubt += 1.0 - plain.below(0.0, reach)
-    return Piece(
-        span, touches, doubt + met(floor, ceiling, start[WANTED], plain), highest, floor, ceiling
+def flight_step(
+    kind: Kind, start: Sequence[Any], numbers: Sequence[Scalar], plain: Arithmetic
+) -> FlightSteps:
+    """Return the step of one flight that begins with these numbers."""
+    motion = flight_motion(kind)
+    y = solved(
+        [SharedSeries(unknown, plain) for _ in range(SIZE)],
+        start[:SIZE],
+        lambda y: motion.rates(y, numbers),
     )
+    guards = [guard.value(y, numbers).up_to(ORDER)[: ORDER + 1] for guard in motion.guards]
+    state = [series.up_to(ORDER)[: ORDER + 1] for series in y]
+    # Beside a large gap what is left out of the axis is compared with less.
+    full = step_size([*state[:3], *guards], start[LEFT], plain, axis=3)
+    gap, *faces = guards
+    span, doubt = single_fall(divided(gap, start[VANISHING], plain), full, plain)
+    span = plain.least(span, full)
+    for face in faces:
+        fall, unsure = single_fall(face, full, plain)
+        span, doubt = plain.least(fall, span), doubt + unsure
+    touches = plain.below(span, full)
+    floor, ceiling = extremes(state[2], span, plain)
+    if is_edge(kind.example.surface):
+        # A guard that is no gap says nothing of its height.
+        doubt += 1.0
+    doubt += met(floor, ceiling, start[WANTED], plain)
+    highest = [highest_value(terms, span, plain) for terms in (gap, state[9])]
+    after = [horner(terms, span) for terms in state]
+    numbers_of_step = [after, full, span, touches, doubt, *highest, floor, ceiling, state, guards]
+    return FlightSteps._make(numbers_of_step)
 
 
-def flight_terms(
-    state: State, remaining: Scalar, top: Top, plain: Arithmetic
-) -> tuple[list[Scalar], list[Scalar], Scalar]:
-    """Polynomials of n_z and of the gap in flight, and how far they serve, all that is left at
-    most.
-
-    That is 0 where an edge lies flat, or almost.
-    """
-    moving = Tip.of(state, top)
-    tip = moving.terms
-    support = support_terms(top.surface, tip, plain)
-    fall = (state.height, state.velocity[2], -0.5 * top.gravity)
-    gap = [b - s for b, s in zip(fall, support[:3], strict=True)] + [-term for term in support[3:]]
-    reach = step_size([tip, support], remaining, plain)
-    if is_edge(top.surface):
-        sine = axis_sine(state.axis)
-        beside = plain.least(reach, BESIDE * sine / moving.frequency)
-        reach = plain.choose(plain.below(NARROWEST, sine), beside, 0.0 * remaining)
-    return tip, gap, reach
+def highest_value(terms: Sequence[Scalar], span: Scalar, plain: Arithmetic) -> Scalar:
+    """Return the largest value of a polynomial in a step."""
+    depth = [-term for term in terms]
+    return -least_value(depth, looked_at(depth, span, PROBES), span, plain)
 
 
 def divided(terms: Sequence[Scalar], vanishing: Scalar, plain: Arithmetic) -> list[Scalar]:

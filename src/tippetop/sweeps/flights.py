@@ -1,17 +1,17 @@
-"""Flights of many tops at once, and whether tops in contact slide on.
+"""Flights of many tops at once, followed by steps of Taylor's method, and whether tops in contact
+slide on.
 
-A flight is closed: the axis turns about the constant angular momentum and the centre of mass falls,
-so that the gap is a known function of time. Its first zero is found piece by piece, on Taylor
-polynomials that are exact to rounding there. What vanishes at the start of a flight
-(`tippetop.mechanics.flight.touchdown.Start`) is divided out.
+What vanishes at the start of a flight (`tippetop.contact.flight.Start`) is divided out in the first
+step.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.flight import SIZE, Flight
+from tippetop.contact.trajectory import STEP_LIMIT
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.contacts.forces import is_set_valued
@@ -21,37 +21,32 @@ from tippetop.mechanics.contacts.slip_variables import (
     is_slipping,
     rolling_stopping_guard,
 )
-from tippetop.mechanics.flight.free_motion import fly
-from tippetop.mechanics.flight.separation import NARROWEST, Separation, Tip
-from tippetop.mechanics.flight.touchdown import highest_gap
 from tippetop.mechanics.motion import (
     along_table,
     sliding_contact,
     sliding_rates,
 )
+from tippetop.mechanics.series import horner
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import is_edge
+from tippetop.mechanics.surfaces.surface import support_at
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.view import axis_sine
+from tippetop.results.highest_gaps import highest_gaps_of
 from tippetop.sweeps.flight_steps import (
+    GIVEN,
     LEFT,
-    STATE,
-    TIME,
     VANISHING,
     WANTED,
-    Piece,
+    FlightSteps,
     divided,
-    flight_terms,
-    pieces,
+    flight_steps,
 )
-from tippetop.sweeps.launch_arrays import Flags, Indices, single
+from tippetop.sweeps.launch_arrays import Flags, Indices
+from tippetop.sweeps.taylor_step import is_singular
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
 from tippetop.sweeps.tip_extremes import TipMotion
 
 PLAIN = NumPyArithmetic()
-
-PIECES = 100_000
-"""Pieces that a flight may have: each is a fraction of a turn."""
 
 
 class Flown(NamedTuple):
@@ -62,14 +57,14 @@ class Flown(NamedTuple):
     landed: Flags
     """Whether it ended on the table rather than at the horizon."""
     lost: Flags
-    """Whether it could not be followed, and is as it began: its polynomials are no numbers, or no
-    pieces.
-    """
+    """Whether it could not be followed to its end, as its polynomials are no numbers."""
     state: State
     """The states at the end."""
     highest_gap: Array
     highest: Array
     """Largest gap of each, and largest height of its centre of mass."""
+    steps: Array
+    """How many steps each took."""
 
 
 def fly_all(
@@ -87,112 +82,78 @@ def fly_all(
     axis, the numbers of the launches there, and the times at the start.
     """
     tip, launches, begins = seen
-    time, highest = np.zeros_like(horizon), np.zeros_like(horizon)
-    landed, lost = np.zeros((2, *horizon.shape), dtype=bool)
-    top = kind.top(tuple(numbers))
-    turns = Turns.of(state, top, horizon)
-
-    def separation(i: int) -> Separation:
-        return Separation.of(single(state, i), kind.top(tuple(numbers[:, i].tolist())))
-
-    starts = np.array([*state.pack(), time, horizon, vanishing, *tip.pauses(launches)])
-    for _ in range(PIECES):
-        active = np.flatnonzero(~landed & ~lost & (time < horizon))
-        if not len(active):
-            break
-        parts = pieces(kind, starts[:, active], numbers[:, active])
-        doubtful = np.flatnonzero(parts.doubt)
+    count = len(horizon)
+    time, steps, lost = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
+    landed, highest = lost.copy(), np.zeros((2, count))
+    starts = np.empty((GIVEN, count))
+    starts[:SIZE] = np.broadcast_arrays(*state.pack())
+    starts[LEFT], starts[VANISHING], starts[WANTED] = horizon, vanishing, tip.pauses(launches)
+    highest[1] = starts[SIZE - 1]
+    active = np.flatnonzero(horizon > 0.0)
+    while len(active):
+        every = len(active) == count
+        begin, tops = (starts, numbers) if every else (starts[:, active], numbers[:, active])
+        made = flight_steps(kind, begin, tops)
+        doubtful = np.flatnonzero(made.doubt)
         if len(doubtful):
             which = active[doubtful]
             moments = begins[which] + time[which]
-            seen_there = tip, launches[which], moments
-            looked = closer_extremes(kind, starts[:, which], numbers[:, which], seen_there)
-            for numbers_of_part, better in zip(parts, looked, strict=True):
-                numbers_of_part[doubtful] = better
+            look_closer(made, doubtful, kind, (begin, tops), (tip, launches[which], moments))
             starts[WANTED] = tip.pauses(launches)
         none = np.full(len(active), np.nan)
-        tip.put_of(launches[active], np.array([none, parts.floor, -parts.ceiling]))
-        highest[active] = np.fmax(highest[active], parts.highest_gap)
-        over, before = parts.span == starts[LEFT, active], time[active]
-        time[active] = np.where(over, horizon[active], before + parts.span)
-        landed[active] = parts.touches != 0.0
-        lost[active] = ~landed[active] & ~(time[active] > before)
-        flying = ~landed & ~lost & (time < horizon)
-        time = np.minimum(turns.leap(time, flying, separation), horizon)
-        starts[TIME], starts[LEFT], starts[VANISHING] = time, horizon - time, 0.0
-    time[lost] = 0.0
-    last = fly(state, time, top, np)
-    ground = top.surface.height(np.clip(last.axis[2], -1.0, 1.0))
-    summit = np.clip(state.velocity[2] / top.gravity, 0.0, time)
-    return Flown(
-        time,
-        landed,
-        lost,
-        last._replace(height=np.where(landed, ground, last.height)),
-        highest,
-        fly(state, summit, top, np).height,
-    )
-
-
-class Turns(NamedTuple):
-    """What of flights of many turns need not be looked at: all of shape (n,).
-
-    After a turn all has been seen of the tip's motion, and a turn nearer the summit the gap is
-    larger.
-    """
-
-    period: Array
-    """How long the axis takes for a turn."""
-    summit: Array
-    """When the centre of mass is highest while it may fly."""
-    clear: Array
-    """Until when it is too high for any touch; 0 where that is not known yet."""
-
-    @classmethod
-    def of(cls, state: State, top: Top, horizon: Array) -> "Turns":
-        """Return the flights from some states on, for so long at most."""
-        period: Array = np.asarray(2.0 * np.pi / Tip.of(state, top).frequency)
-        return cls(
-            period, np.clip(state.velocity[2] / top.gravity, 0.0, horizon), np.zeros_like(period)
+        tip.put_of(launches[active], np.array([none, made.floor, -made.ceiling]))
+        highest[:, active] = np.fmax(highest[:, active], (made.highest_gap, made.highest))
+        over, touches = made.span == starts[LEFT, active], made.touches != 0.0
+        moves = touches | (
+            (made.span > 0.0) & (over | ~is_singular(made.span, starts[LEFT, active]))
         )
+        lost[active] = ~moves
+        active, over, touches = active[moves], over[moves], touches[moves]
+        starts[:SIZE, active], starts[VANISHING, active] = made.after[:, moves], 0.0
+        passed = time[active] + made.span[moves]
+        time[active] = np.where(over & ~touches, horizon[active], passed)
+        starts[LEFT, active] = horizon[active] - time[active]
+        steps[active] += 1.0
+        landed[active] = touches
+        active = active[~touches & ~over & (steps[active] < STEP_LIMIT)]
+    last = State.unpack(list(starts[:SIZE]))
+    ground = support_at(last.axis, kind.top(tuple(numbers)).surface)[0]
+    last = last._replace(height=np.where(landed, ground, last.height))
+    return Flown(time, landed, lost, last, highest[0], highest[1], steps)
 
-    def leap(self, time: Array, flying: Flags, separation: Callable[[int], Separation]) -> Array:
-        """Times at which flights go on, of those that still fly, given the gap of each."""
-        turned = flying & (time >= self.period)
-        if not turned.any():
-            return time
-        for i in np.flatnonzero(turned & (self.clear == 0.0)).tolist():
-            gap = separation(i)
-            self.clear[i] = gap.clear_until(float(time[i]), gap.level)
-        goal = np.where(
-            time < self.summit, np.minimum(self.clear, self.summit - self.period), self.clear
-        )
-        leaps = turned & (np.abs(time - self.summit) > self.period)
-        return np.where(leaps, np.maximum(goal, time), time)
 
-
-def closer_extremes(
-    kind: Kind, starts: Array, numbers: Array, seen: tuple[TipMotion, Indices, Array]
-) -> Piece:
-    """Return parts of flights by a search of their polynomials, and take in their extremes."""
-    tip, launches, times = seen
-    top = kind.top(tuple(numbers))
-    motion = fly(State.unpack(list(starts[STATE])), starts[TIME], top, np)
-    height, gap, reach = flight_terms(motion, starts[LEFT], top, PLAIN)
-    rise, ahead = (np.array(np.broadcast_arrays(*terms)) for terms in (height, gap))
-    zero = Polynomials(np.array(divided(list(ahead), starts[VANISHING], PLAIN)), reach).first_fall()
-    touches = ~np.isnan(zero)
-    span = np.where(touches, zero, reach)
-    highest = -Polynomials(-ahead, span).refined_least()[1]
-    flat = axis_sine(motion.axis) <= NARROWEST if is_edge(top.surface) else np.zeros(span.shape)
-    for i in np.flatnonzero(flat).tolist():
-        one, its = single(motion, i), kind.top(tuple(numbers[:, i].tolist()))
-        end, root = Separation.of(one, its).across_flat(0.0, float(starts[LEFT, i]))
-        touches[i], span[i] = root is not None, end if root is None else root
-        highest[i] = highest_gap(one, its, float(span[i]))
-    tip.see(launches, times, Polynomials(rise, span))
-    missing = np.full(span.shape, np.nan)
-    return Piece(span, touches, missing, highest, missing, missing)
+def look_closer(
+    made: FlightSteps,
+    which: Indices,
+    kind: Kind,
+    inputs: tuple[Array, Array],
+    seen: tuple[TipMotion, Indices, Array],
+) -> None:
+    """Search the polynomials of some steps for the first touch, and put what is found into them."""
+    (starts, numbers), (tip, launches, times) = inputs, seen
+    state, full = made.state[..., which], made.full[which]
+    gap, *faces = made.guards[..., which]
+    opened = np.array(divided(list(gap), starts[VANISHING, which], PLAIN))
+    for _ in range(len(gap)):  # What vanishes beyond is divided out, too; a gap that stays zero is.
+        zero = opened[0] == 0.0
+        if not zero.any():
+            break
+        opened[:-1, zero], opened[-1, zero] = opened[1:, zero], 0.0
+    falls = [Polynomials(terms, full).first_fall() for terms in (opened, *faces)]
+    fall = np.where(opened[0] > 0.0, np.fmin.reduce(falls), 0.0)
+    touches = ~np.isnan(fall)
+    span = np.where(touches, fall, full)
+    made.touches[which], made.span[which] = touches, span
+    made.after[:, which] = [horner(terms, span) for terms in state]
+    made.highest[which] = -Polynomials(-state[9], span).refined_least()[1]
+    if is_edge(kind.example.surface):
+        flight = Flight(kind.top(tuple(numbers[:, which])))
+        terms = np.moveaxis(state, -1, 0) * span[:, None, None] ** np.arange(state.shape[1])
+        made.highest_gap[which] = highest_gaps_of(flight, terms, span)
+    else:
+        made.highest_gap[which] = -Polynomials(-gap, span).refined_least()[1]
+    tip.see(launches, times, Polynomials(state[2], span))
+    made.floor[which] = made.ceiling[which] = np.nan
 
 
 def slides(state: State, top: Top) -> Flags:

@@ -17,7 +17,7 @@ from tippetop.results.metrics import Ends
 from tippetop.sweeps.lane_arrays import Slots
 from tippetop.sweeps.launch_arrays import Checkpoint, Flags, Indices, Launches, picked
 from tippetop.sweeps.polynomial_arcs import arcs
-from tippetop.sweeps.taylor_step import LANES
+from tippetop.sweeps.taylor_step import LANES, is_singular
 from tippetop.sweeps.taylor_stepper import Stepper
 from tippetop.sweeps.tip_extremes import FORCE
 from tippetop.sweeps.transitions import Crossings
@@ -30,11 +30,6 @@ look at some costs Python as much as several steps of all.
 
 WINDOW = 64
 """Steps between checkpoints of the states, from which a part of the run can be done again."""
-
-SHORTEST, ROUNDED = 1e-13, float(np.finfo(float).eps)
-"""Step, in natural units and over the time left, both of which it is below where a motion is
-singular.
-"""
 
 CROWDED = 0.75
 """Share of lanes at work below which the others are taken out."""
@@ -157,8 +152,7 @@ class Lanes:
         ended = np.flatnonzero(slots.alive & (slots.remaining <= 0.0))
         if len(ended):
             slots.retire(ended, slots.states(ended), slots.end[ended], Status.COMPLETED)
-        shortest = np.minimum(SHORTEST, ROUNDED * slots.remaining)
-        singular = slots.rows[layout.step_time] < shortest
+        singular = is_singular(slots.rows[layout.step_time], slots.remaining)
         many = slots.rows[layout.steps] >= STEP_LIMIT
         for lost, status in (
             (singular, Status.FAILED),

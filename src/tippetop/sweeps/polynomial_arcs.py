@@ -12,12 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from tippetop.integrators.base import Array
-from tippetop.integrators.polynomial_minima import first_fall, least_value, looked_at
+from tippetop.integrators.first_fall import single_fall
+from tippetop.integrators.polynomial_minima import least_value, looked_at
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import Arithmetic, horner
 from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.launch_arrays import Indices
-from tippetop.sweeps.taylor_step import FINE_PROBES, LANES, PROBES, Jet, extremes, met, step_size
+from tippetop.sweeps.taylor_step import FINE_PROBES, LANES, Jet, extremes, met, step_size
 from tippetop.sweeps.taylor_stepper import NODES, compiled, padded
 
 
@@ -90,8 +91,7 @@ def arc(
     full = plain.choose(plain.below(0.0, step), step, step_size(state, longest, plain))
     span, fallen, doubt = full, 0.0 * full - 1.0, 0.0 * full
     for number, (terms, count) in enumerate(zip(falls, pauses, strict=False)):
-        # Few looks are enough: what they leave in doubt is looked at closer.
-        fall, unsure = first_fall(terms, full, PROBES, plain)
+        fall, unsure = single_fall(terms, full, plain)
         earlier = (1.0 - plain.below(span, fall)) * count
         span, fallen = (
             plain.choose(earlier, fall, span),

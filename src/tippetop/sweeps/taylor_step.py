@@ -22,9 +22,9 @@ from typing import Any, NamedTuple
 from tippetop.contact.guards import BRANCH
 from tippetop.graph.taylor_coefficients import SharedSeries
 from tippetop.integrators.base import Motion
+from tippetop.integrators.first_fall import single_fall
 from tippetop.integrators.polynomial_minima import (
     TINY,
-    first_fall,
     least_value,
     looked_at,
     lower_bound,
@@ -45,6 +45,11 @@ FAST = 10.0
 FASTER = 1e3
 """Size beyond which it needs yet more, as the square: by so much what the axis is off changes the
 force.
+"""
+
+SHORTEST, ROUNDED = 1e-13, 2.0**-52
+"""Step, in natural units and over the time left, both of which it is below where a motion is
+singular.
 """
 
 LANES = 16
@@ -206,7 +211,7 @@ def later_guards(
             continue
         need, (change, doubt) = (
             near * plain.below(0.0, full),
-            first_fall(terms, full, PROBES, plain),
+            single_fall(terms, full, plain),
         )
         shorter, usual = (
             (plain.least(change, full), plain.below(change, full), doubt),
@@ -254,6 +259,11 @@ def step_size(
     return plain.choose(
         plain.below(0.0, radius), plain.least(safety * radius, remaining), 0.0 * remaining
     )
+
+
+def is_singular(step: Any, remaining: Any) -> Any:
+    """Return whether steps, of arrays of one shape, are so short that a motion is singular."""
+    return (step < SHORTEST) & (step < ROUNDED * remaining)
 
 
 def order_for(tolerance: float) -> int:

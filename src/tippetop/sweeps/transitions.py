@@ -9,13 +9,12 @@ to its end.
 import numpy as np
 
 from tippetop.contact.contact_mode import ContactMode, sliding_motion
-from tippetop.contact.flight import TOUCHING, Flight
+from tippetop.contact.flight import TOUCHING, Flight, Start
 from tippetop.contact.guards import BRANCH, LIFT_OFF
 from tippetop.contact.mode import EventKind, Mode, ModeEnd, Status, Transition
 from tippetop.contact.surfaces import lands_flat, lies_flat
 from tippetop.integrators.base import Array
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
-from tippetop.mechanics.flight.touchdown import Start
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, falls_by_zero, sliding_contact
 from tippetop.mechanics.state import State
@@ -119,47 +118,48 @@ class Crossings:
                 highest_gap=flown.highest_gap,
                 highest=flown.highest,
             )
+            slots.rows[slots.layout.steps, lanes] += flown.steps
             over = ~flown.landed & (flown.duration >= horizon)
             time = np.where(over, slots.end[lanes], time + flown.duration)
             slots.retire(lanes[over], picked(flown.state, over), time[over], Status.COMPLETED)
             slots.retire(
                 lanes[flown.lost], picked(flown.state, flown.lost), time[flown.lost], Status.FAILED
             )
-            spent = ~over & (~flown.landed | (ends.flights[cells] >= FLIGHT_LIMIT))
-            which = spent & ~flown.lost
-            slots.retire(
-                lanes[which], picked(flown.state, which), time[which], Status.TOO_MANY_MODES
-            )
-            landed = flown.landed & ~spent
+            endless = ~over & ~flown.lost & ~flown.landed
+            bounced = flown.landed & (ends.flights[cells] >= FLIGHT_LIMIT)
+            for which, status in (
+                (endless, Status.TOO_MANY_STEPS),
+                (bounced, Status.TOO_MANY_MODES),
+            ):
+                slots.retire(lanes[which], picked(flown.state, which), time[which], status)
+            landed = flown.landed & ~bounced
             lanes, time, state = lanes[landed], time[landed], picked(flown.state, landed)
             lanes, state, time, vanishing = self._land(lanes, state, time)
 
-    def _land(
-        self, lanes: Indices, state: State, time: Array
-    ) -> tuple[Indices, State, Array, Indices]:
+    def _land(self, lanes: Indices, state: State, time: Array) -> "Flying":
         """Collide with the table; return the lanes that fly again, as `_fly` takes them."""
         slots = self.slots
         cells, launches = slots.cell[lanes], slots.launches
         top = branched(launches.tops(cells), state)
-        after, struck = collide(state, top)
-        sliding = (
-            struck
-            & ~np.asarray(lands_flat(top, state.axis))
-            & (launches.restitution[cells] == 0.0)
-            & slides(after, top)
-        )
-        sliding &= slips(after, top, far=True)
+        after, struck, rebounds = collide(state, top, launches.restitution[cells])
+        struck &= ~np.asarray(lands_flat(top, state.axis)) & slips(after, top, far=True)
+        rebounds &= struck
+        sliding = struck & ~rebounds & slides(after, top)
         slots.place(lanes[sliding], picked(after, sliding), time[sliding])
-        lost = np.broadcast_to(energy(state, top) - energy(after, top), sliding.shape)
-        accumulate(slots.ends, cells[sliding], struck=lost[sliding])
-        others = np.flatnonzero(~sliding)
+        settled = sliding | rebounds
+        lost = np.broadcast_to(energy(state, top) - energy(after, top), settled.shape)
+        accumulate(slots.ends, cells[settled], struck=lost[settled])
+        others = np.flatnonzero(~settled)
         transitions = []
         for i in others.tolist():
             automaton, one = launches.automaton(int(cells[i])), single(state, i)
             transitions.append(automaton.touchdown(automaton.top, float(time[i]), one))
-        return self._enter(
+        entered = self._enter(
             lanes[others], time[others], picked(state, others), transitions, fly=False
         )
+        again = np.flatnonzero(rebounds)
+        starts = np.full(len(again), int(Start.REBOUND), dtype=np.intp)
+        return joined((lanes[again], picked(after, again), time[again], starts), entered)
 
     def _enter(
         self,
@@ -168,7 +168,7 @@ class Crossings:
         state: State,
         transitions: list[Transition],
         fly: bool = True,
-    ) -> tuple[Indices, State, Array, Indices]:
+    ) -> "Flying":
         """Put lanes where transitions lead from their states.
 
         Those that fly do so, or are returned as `_fly` takes them.
@@ -241,6 +241,25 @@ class Crossings:
         tip.reached[where] = np.fmin(tip.reached[where], arrived)
         slots.rows[slots.layout.steps, where] += ended.steps
         slots.retire(where, ended.state, ended.time, STATUSES[ended.status])
+
+
+Flying = tuple[Indices, State, Array, Indices]
+"""Lanes that fly, their states and times at the start, and how many coefficients of the gap vanish
+there.
+"""
+
+
+def joined(first: Flying, second: Flying) -> Flying:
+    """Return lanes that fly together with others."""
+    lanes, state, time, vanishing = first
+    others, others_state, others_time, others_vanishing = second
+    pairs = zip(state.pack(), others_state.pack(), strict=True)
+    return (
+        np.concatenate((lanes, others)),
+        State.unpack([np.concatenate(pair) for pair in pairs]),
+        np.concatenate((time, others_time)),
+        np.concatenate((vanishing, others_vanishing)),
+    )
 
 
 def is_plain(mode: Mode) -> bool:

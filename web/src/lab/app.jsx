@@ -7,15 +7,17 @@ import { createPlayer } from "../player/player.js";
 import { Classroom } from "./classroom.jsx";
 import { Compare } from "./compare.jsx";
 import { Launch } from "./controls.jsx";
+import { Copy } from "./copy.jsx";
 import { Free } from "./free.jsx";
 import { Help } from "./help.jsx";
 import { LANGUAGES, part, t } from "./i18n.js";
 import { Keep } from "./keep.jsx";
-import { MapPanel } from "./map.jsx";
+import { MapPanel, MapUnderWay } from "./map.jsx";
 import { Own } from "./own.jsx";
-import { Plots, QUANTITIES, USUAL } from "./plots.js";
+import { Plots, USUAL } from "./plots.js";
 import { Speaker } from "./speaker.jsx";
 import { Story, veilOf } from "./story.jsx";
+import { QUANTITIES } from "./units.js";
 import { factsAt } from "./words.js";
 
 const PANELS = {
@@ -42,7 +44,9 @@ export function App({ lab }) {
     document.title = t("page.title");
     document.documentElement.dataset.theme = isDark(theme) ? "dark" : "light";
   });
-  const Panel = PANELS[tab] ?? Story;
+  const veil = veilOf(lab.state);
+  useEffect(() => lab.player?.lock(veil === "veiled"), [veil, language]);
+  const Panel = PANELS[tab];
   return (
     <>
       {/* biome-ignore lint/a11y/useValidAnchor: a link, but one that leaves the address as it is */}
@@ -57,7 +61,7 @@ export function App({ lab }) {
         {t("page.skip")}
       </a>
       <Header lab={lab} onHelp={() => turn(true)} />
-      <main class={veilOf(lab.state)}>
+      <main class={veil}>
         <section class="stage" aria-label={t("page.stage")}>
           <Stage lab={lab} key={language} dark={isDark(theme)} />
           <Speaker lab={lab} />
@@ -66,6 +70,7 @@ export function App({ lab }) {
           <Tabs lab={lab} />
           <div class="panel-body" role="tabpanel" aria-labelledby={`tab-${tab}`} tabIndex={0}>
             <Busy lab={lab} />
+            <MapUnderWay lab={lab} />
             {trouble && (!trouble.field || tab !== "launch") && (
               <p class="refused" role="alert">
                 {trouble.sentence}
@@ -87,17 +92,6 @@ export function isDark(theme) {
 }
 
 function Header({ lab, onHelp }) {
-  const [link, show] = useState(null);
-  const copy = async () => {
-    const address = lab.link();
-    try {
-      await navigator.clipboard.writeText(address);
-      show({ copied: true });
-    } catch {
-      show({ address });
-    }
-    setTimeout(() => show((now) => (now?.copied ? null : now)), 4000);
-  };
   const { theme } = lab.state;
   return (
     <header>
@@ -106,9 +100,7 @@ function Header({ lab, onHelp }) {
       <button type="button" disabled={!lab.changed} onClick={() => lab.undo()} title="Ctrl+Z">
         {t("page.undo")}
       </button>
-      <button type="button" onClick={copy}>
-        {t("page.link")}
-      </button>
+      <Copy name={t("page.link")} text={() => lab.link()} done={t("page.linked")} />
       <button type="button" onClick={onHelp} aria-haspopup="dialog">
         {t("page.help")}
       </button>
@@ -132,15 +124,6 @@ function Header({ lab, onHelp }) {
           </option>
         ))}
       </select>
-      <div class="linked" role="status">
-        {link?.copied && t("page.linked")}
-        {link?.address && (
-          <label>
-            {t("page.linkHere")}
-            <input readOnly value={link.address} ref={(field) => field?.select()} />
-          </label>
-        )}
-      </div>
     </header>
   );
 }
@@ -156,13 +139,12 @@ function Stage({ lab, dark }) {
       facts: (track, time) => factsAt(track, time, lab.state.units),
     });
     lab.player = player;
+    if (before) player.adopt(before);
     if (player.scene) new Flick(player.canvas, player.scene, (spin, tilt) => lab.flick(spin, tilt));
     player.addEventListener("time", () => lab.dispatchEvent(new Event("time")));
     player.addEventListener("view", () => lab.share());
     if (before && lab.track) {
-      player.seek(before.time);
       lab.show(lab.track, false, false);
-      player.seek(before.time);
       lab.raise();
     } else {
       lab.request(!lab.state.timed && lab.state.tab !== "story");
@@ -236,7 +218,9 @@ function PlotSection({ lab, dark }) {
     lab.addEventListener("time", () => lab.plots.move());
   }, []);
   useEffect(() => {
-    const fill = () => lab.track && lab.plots.load(lab.track, lab.pinned(), names, units, dark);
+    lab.drawPlots = (isDarkNow) =>
+      lab.track && lab.plots.load(lab.track, lab.pinned(), names, units, isDarkNow);
+    const fill = () => lab.drawPlots(dark);
     fill();
     lab.say();
     lab.addEventListener("run", fill);

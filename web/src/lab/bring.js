@@ -8,6 +8,9 @@ import { NoDrawing, readSvg } from "./drawing.js";
 const FOR_THE_COMMAND = ["stl", "dxf"];
 // Longer than any profile of 100,000 points.
 const LONGEST = 8_000_000;
+const MOST_POINTS = 20_000;
+// Letters of a line that are quoted.
+const MOST_QUOTED = 40;
 
 /** A file cannot be read here: the key of the sentence that says why, and its gaps. */
 export class Unreadable extends Error {
@@ -25,15 +28,26 @@ export function contentOf(name, text) {
   if (ending === "svg" || /^\s*(<\?xml|<!--|<!DOCTYPE|<svg)/.test(text)) return { svg: text };
   if (ending === "toml" || (ending !== "csv" && /^\s*[\w.]+\s*=|^\s*\[/m.test(text)))
     return ofTable(tableOf(name, text));
-  return { points: text };
+  return { points: requireFew(name, text) };
+}
+
+// A text of points, unless there are more than are fitted here while one waits.
+function requireFew(name, text) {
+  const count = text.split("\n").filter((line) => line.trim()).length;
+  if (count > MOST_POINTS) {
+    const every = Math.ceil(count / MOST_POINTS);
+    throw new Unreadable("points", { name, count, most: MOST_POINTS, every });
+  }
+  return text;
 }
 
 function tableOf(name, text) {
   try {
     return parse(text);
   } catch (error) {
-    const [message] = error.message.split("\n").slice(-1);
-    throw new Unreadable("toml", { name, line: error.line ?? 1, message });
+    const line = error.line ?? 1;
+    const words = (text.split(/\r?\n/)[line - 1] ?? "").trim().slice(0, MOST_QUOTED);
+    throw new Unreadable("toml", { name, line, text: words });
   }
 }
 
@@ -55,7 +69,7 @@ export function jobFor({ content, density, unit, whole }) {
   try {
     return { paths: readSvg(content.svg, Boolean(unit)), fields, whole };
   } catch (error) {
-    if (error instanceof NoDrawing) throw new Unreadable("svg", { message: error.message });
+    if (error instanceof NoDrawing) throw new Unreadable(`svg.${error.key}`, error.gaps);
     throw error;
   }
 }

@@ -5,6 +5,7 @@ import { useEffect, useState } from "preact/hooks";
 import { edge } from "../run/arc.js";
 import { contentOf, Unreadable } from "./bring.js";
 import { t, translated } from "./i18n.js";
+import { refusedOther } from "./refusal.js";
 import { changed, inSi } from "./setup.js";
 import { MATERIALS } from "./turning.js";
 import { digits } from "./units.js";
@@ -12,6 +13,8 @@ import { doubtInWords } from "./words.js";
 
 const LENGTHS = ["m", "cm", "mm", "in"];
 const MM = 1e3;
+// A ball of 30 mm: half of its outline, in two arcs.
+const EXAMPLE = "0, -15\n15, 0, 15\n0, 15, 15";
 // A height below this, in sizes of the body, is zero but for rounding.
 const NO_HEIGHT = 1e-9;
 
@@ -21,18 +24,33 @@ export function bring(lab, name, text) {
     const content = contentOf(name, text);
     const { setup } = lab.state;
     if (content.problem) {
-      lab.set({ brought: { name } });
-      lab.go(inSi({ problem: content.problem, duration: setup.duration }));
+      launch(lab, name, { problem: content.problem, duration: setup.duration });
     } else if (content.body) {
-      lab.set({ brought: { name } });
-      lab.go(inSi(changed(setup, { body: content.body })));
+      launch(lab, name, changed(setup, { body: content.body }));
     } else {
-      lab.set({ brought: { name, content, material: "beech", unit: null, whole: false } });
+      // Points have no unit of their own, and most people measure in millimetres.
+      const unit = content.points === undefined ? null : "mm";
+      lab.set({ brought: { name, content, material: "beech", unit, whole: false } });
     }
   } catch (error) {
     if (!(error instanceof Unreadable)) throw error;
     lab.set({ brought: { name, trouble: sentenceOf(error) } });
   }
+}
+
+// Launch what a file says; only of what was launched is it said that it was.
+async function launch(lab, name, setup) {
+  const brought = { name, isWaiting: true };
+  lab.set({ brought });
+  const isLaunched = await lab.go(inSi(setup));
+  if (lab.state.brought !== brought) return;
+  const { sentence } = lab.state.trouble ?? {};
+  if (isLaunched || !sentence) {
+    lab.set({ brought: isLaunched ? { name } : null });
+    return;
+  }
+  const trouble = t("brought.refused", { name, sentence });
+  lab.set({ brought: { name, trouble }, trouble: null });
 }
 
 const sentenceOf = ({ key, gaps }) => t(`brought.trouble.${key}`, gaps);
@@ -76,7 +94,7 @@ export function Bring({ lab }) {
         <textarea
           rows={5}
           aria-label={t("brought.points")}
-          placeholder={"0, -15\n10.6, -10.6\n15, 0"}
+          placeholder={EXAMPLE}
           value={text}
           onInput={(event) => write(event.target.value)}
         />
@@ -93,7 +111,7 @@ export function Bring({ lab }) {
           {brought.trouble}
         </p>
       )}
-      {brought && !brought.trouble && !brought.content && (
+      {brought && !brought.trouble && !brought.content && !brought.isWaiting && (
         <p role="status">{t("brought.launched", brought)}</p>
       )}
     </section>
@@ -118,7 +136,14 @@ export function Brought({ lab, children }) {
           {trouble}
         </p>
       )}
-      {!answer && !trouble && <p role="status">{t("page.computing")}</p>}
+      {!answer && !trouble && (
+        <div class="row">
+          <p role="status">{t("page.computing")}</p>
+          <button type="button" onClick={() => lab.engine.forget()}>
+            {t("page.stop")}
+          </button>
+        </div>
+      )}
       {answer && <Answer answer={answer} />}
       {answer?.body && children(answer.body)}
       <div class="row">
@@ -156,7 +181,7 @@ function Choices({ brought, set }) {
           value={brought.unit ?? ""}
           onChange={(event) => set({ unit: event.target.value || null })}
         >
-          <option value="">{t("brought.own")}</option>
+          {brought.content.points === undefined && <option value="">{t("brought.own")}</option>}
           {LENGTHS.map((name) => (
             <option value={name}>{name}</option>
           ))}
@@ -182,10 +207,11 @@ function useAnswer(lab, brought) {
     const tell = (one) => {
       if (isWanted) say(one);
     };
-    const refuse = (error) =>
-      tell({
-        trouble: error instanceof Unreadable ? sentenceOf(error) : refusalOf(error.message),
-      });
+    const refuse = (error) => {
+      if (!error) return tell({ trouble: t("brought.stopped") });
+      const trouble = error instanceof Unreadable ? sentenceOf(error) : refusalOf(error);
+      return tell({ trouble });
+    };
     say({});
     const { content, material, unit, whole } = brought;
     const choices = { density: MATERIALS[material], unit, whole };
@@ -197,8 +223,7 @@ function useAnswer(lab, brought) {
   return found;
 }
 
-const refusalOf = (message) =>
-  t("controls.refusedOther", { message: translated(message).replace(" with whole=True", "") });
+const refusalOf = (error) => refusedOther(error).replace(" with whole=True", "");
 
 function Answer({ answer: { weight, remarks, body, doubts = [], refusal } }) {
   const { mass, center, size, I1, I3, stated, edges, deviation } = weight;
@@ -207,7 +232,7 @@ function Answer({ answer: { weight, remarks, body, doubts = [], refusal } }) {
   return (
     <>
       {remarks.map((remark) => (
-        <p class="hint">{translated(remark)}</p>
+        <p class="hint">{translated(remark) ?? t("brought.axis")}</p>
       ))}
       {fitted && (
         <p class="hint">
@@ -228,7 +253,7 @@ function Answer({ answer: { weight, remarks, body, doubts = [], refusal } }) {
       ))}
       {refusal && (
         <p class="refused" role="alert">
-          {refusalOf(refusal.message)}
+          {refusalOf(refusal)}
         </p>
       )}
     </>
@@ -238,9 +263,11 @@ function Answer({ answer: { weight, remarks, body, doubts = [], refusal } }) {
 // The section of a body, with its centre of mass.
 function Outline({ profile }) {
   const points = profile.slice(1).flatMap((point, k) => edge(profile[k], point));
-  const across = Math.max(...points.map(([r]) => r));
+  const least = (a, b) => Math.min(a, b);
+  const most = (a, b) => Math.max(a, b);
+  const across = points.map(([r]) => r).reduce(most);
   const heights = points.map(([, z]) => z);
-  const [low, high] = [Math.min(...heights), Math.max(...heights)];
+  const [low, high] = [heights.reduce(least), heights.reduce(most)];
   const room = 0.08 * Math.max(2 * across, high - low);
   const text = (side) => points.map(([r, z]) => `${side * r},${-z}`).join(" ");
   const box = [-across - room, -high - room, 2 * (across + room), high - low + 2 * room];

@@ -2,6 +2,7 @@
 
 import { frictionKind } from "./dials.js";
 import { t } from "./i18n.js";
+import { changed, same } from "./setup.js";
 import { digits, shown } from "./units.js";
 
 const STOPS = ["#00224e", "#3c4e6c", "#7c7b78", "#bbae6c", "#fee838"].map((colour) =>
@@ -27,6 +28,13 @@ const MOVES = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDo
 export function fineness({ row, column }) {
   const coarsest = REACH.findLastIndex((reach) => row % reach === 0 && column % reach === 0);
   return REACH.length - 1 - coarsest;
+}
+
+// Whether a launch is one of a map's: all but its spin and its friction is as there.
+function isOnMap({ setup }, launch) {
+  const { launch: start, friction } = launch.problem;
+  const moved = changed(setup, { "launch.spin": start.spin, "friction.mu": friction.mu });
+  return same(moved, launch);
 }
 
 function colourOf(tilt) {
@@ -210,10 +218,12 @@ export class Chart {
     pen.restore();
   }
 
-  // A circle where the launch is that the player shows.
+  // A circle where the launch is that the player shows, if the map has it.
   drawLaunch(pen) {
     const { width, height } = this.box;
-    const { launch, friction } = this.state.setup.problem;
+    const { setup } = this.state;
+    if (!isOnMap(this.plan, setup)) return;
+    const { launch, friction } = setup.problem;
     const low = Math.log(this.plan.frictions[0]);
     const high = Math.log(this.plan.frictions.at(-1));
     const share = (Math.log(friction.mu) - low) / (high - low);

@@ -3,21 +3,23 @@
 import { useMemo } from "preact/hooks";
 import { encode } from "uqr";
 
+import { Copy } from "./copy.jsx";
 import { t } from "./i18n.js";
-import { launchQuery } from "./link.js";
+import { FIRST_CLASS, launchQuery } from "./link.js";
 import { readResults, resultCode, resultLink, spinsOf } from "./results.js";
 import { changed } from "./setup.js";
-import { digits, shown } from "./units.js";
+import { digits, roundStep, shown, unitOf } from "./units.js";
 
 const MOST_GROUPS = 30;
-const FIRST = { groups: 8, low: 10, high: 150, results: "" };
-// The plot: its size, the room for its numbers, and its highest spin, rad/s.
+// The plot: its size, the room for its numbers, its highest spin if none is higher, rad/s, and its numbers across.
 const [WIDTH, HEIGHT] = [340, 220];
 const ROOM = { left: 40, right: 10, top: 10, bottom: 36 };
 const HIGHEST = 250;
+const TICKS = 5;
 
 export function Classroom({ lab }) {
-  const state = lab.state.classroom ?? FIRST;
+  const state = lab.state.classroom ?? FIRST_CLASS;
+  const { units, setup } = lab.state;
   const set = (changes) => lab.set({ classroom: { ...state, ...changes } });
   const isFile = location.protocol === "file:";
   return (
@@ -25,8 +27,14 @@ export function Classroom({ lab }) {
       <p>{t("class.intro")}</p>
       <div class="row">
         <Count name="groups" value={state.groups} least={2} most={MOST_GROUPS} set={set} />
-        <Count name="low" value={state.low} least={0} most={HIGHEST} set={set} />
-        <Count name="high" value={state.high} least={0} most={HIGHEST} set={set} />
+        <Count name="low" value={state.low} most={HIGHEST} set={set} unit={unitOf("spin", units)} />
+        <Count
+          name="high"
+          value={state.high}
+          most={HIGHEST}
+          set={set}
+          unit={unitOf("spin", units)}
+        />
       </div>
       {isFile && (
         <p class="refused" role="note">
@@ -44,24 +52,28 @@ export function Classroom({ lab }) {
           onInput={(event) => set({ results: event.target.value })}
         />
       </label>
-      <Results text={state.results} />
+      <Results text={state.results} setup={setup} units={units} />
     </div>
   );
 }
 
-function Count({ name, value, least, most, set }) {
+function Count({ name, value, least = 0, most, set, unit = { name: "", size: 1 } }) {
+  const change = ({ target }) => {
+    const entered = Number(target.value) * unit.size || least;
+    const inside = Math.min(Math.max(entered, least), most);
+    target.value = written(inside);
+    set({ [name]: inside });
+  };
+  const written = (number) => Number((number / unit.size).toPrecision(4));
   return (
     <label class="choice">
-      <span>{t(`class.${name}`)}</span>
+      <span>{t(`class.${name}`, { unit: unit.name })}</span>
       <input
         type="number"
         class="dial-number"
-        min={least}
-        max={most}
-        value={value}
-        onChange={({ target }) =>
-          set({ [name]: Math.min(Math.max(Number(target.value) || least, least), most) })
-        }
+        step="any"
+        value={written(value)}
+        onChange={change}
       />
     </label>
   );
@@ -126,25 +138,20 @@ function Mine({ lab }) {
   if (!lab.track || lab.isAwaited) return null;
   const { header } = lab.track;
   const code = resultCode(header);
-  const copy = (text) => navigator.clipboard?.writeText(text);
   const link = () => resultLink(placeOfPage(), launchQuery(lab.state.setup), header);
   return (
-    <p class="row" role="status">
-      <span>
+    <div class="row">
+      <span role="status">
         {t("class.mine")} <b class="mine">{code}</b>
       </span>
-      <button type="button" onClick={() => copy(code)}>
-        {t("class.copyCode")}
-      </button>
-      <button type="button" onClick={() => copy(link())}>
-        {t("class.copyLink")}
-      </button>
-    </p>
+      <Copy name={t("class.copyCode")} text={() => code} />
+      <Copy name={t("class.copyLink")} text={link} />
+    </div>
   );
 }
 
-function Results({ text }) {
-  const { points, wrong } = readResults(text);
+function Results({ text, setup, units }) {
+  const { points, wrong, others } = readResults(text, setup);
   return (
     <>
       {wrong.length > 0 && (
@@ -152,18 +159,31 @@ function Results({ text }) {
           {t("class.wrong", { lines: wrong.join(", ") })}
         </p>
       )}
-      <Scatter points={points} />
+      {others.length > 0 && (
+        <p class="refused" role="alert">
+          {t("class.others", { lines: others.join(", ") })}
+        </p>
+      )}
+      <Scatter points={points} units={units} />
     </>
   );
 }
 
-function Scatter({ points }) {
+function Scatter({ points, units }) {
   const width = WIDTH - ROOM.left - ROOM.right;
   const height = HEIGHT - ROOM.top - ROOM.bottom;
+  const unit = unitOf("spin", units);
   const most = Math.max(HIGHEST, ...points.map(([spin]) => spin));
-  const x = (spin) => ROOM.left + (width * spin) / most;
+  const least = Math.min(0, ...points.map(([spin]) => spin));
+  const step = roundStep((most - least) / TICKS / unit.size);
+  const x = (spin) => ROOM.left + (width * (spin - least)) / (most - least);
+  const first = Math.ceil(least / unit.size / step);
+  const count = Math.floor(most / unit.size / step) - first + 1;
+  const ticks = Array.from({ length: count }, (_, k) => (first + k) * step);
   const y = (tilt) => ROOM.top + height * (1 - tilt / 180);
-  const words = points.map(([spin, tilt]) => `${digits(spin)}: ${digits(tilt)}°`).join("; ");
+  const words = points
+    .map(([spin, tilt]) => `${shown(spin, "spin", units)}: ${digits(tilt)}°`)
+    .join("; ");
   return (
     <svg
       class="scatter"
@@ -179,13 +199,13 @@ function Scatter({ points }) {
           </text>
         </>
       ))}
-      {[0, 50, 100, 150, 200, 250].map((spin) => (
-        <text x={x(spin)} y={HEIGHT - 20} text-anchor="middle">
-          {spin}
+      {ticks.map((tick) => (
+        <text x={x(tick * unit.size)} y={HEIGHT - 20} text-anchor="middle">
+          {digits(tick)}
         </text>
       ))}
       <text x={ROOM.left + width / 2} y={HEIGHT - 4} text-anchor="middle">
-        {t("class.across")}
+        {t("class.across", { unit: unit.name })}
       </text>
       <text transform={`translate(11 ${ROOM.top + height / 2}) rotate(-90)`} text-anchor="middle">
         {t("class.up")}

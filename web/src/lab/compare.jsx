@@ -11,8 +11,8 @@ const METRICS = {
   final_tilt: "angle",
   final_spin: "spin",
   energy_lost: "mJ",
-  flights: "",
-  max_gap: "mm",
+  jumps: "",
+  highest_jump: "mm",
   min_normal_force: "N",
 };
 

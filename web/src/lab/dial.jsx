@@ -5,6 +5,7 @@ import { useState } from "preact/hooks";
 import { kindOf, placeOf, scaleOf, valueAt } from "./dials.js";
 import { decimal, part } from "./i18n.js";
 import { fieldValue } from "./setup.js";
+import { typed } from "./typed.js";
 import { shown, unitOf } from "./units.js";
 
 export function Why({ name, text }) {
@@ -85,10 +86,11 @@ function textOf(value, size) {
   return decimal(String(Number((value / size).toPrecision(4))));
 }
 
-// What was entered in SI; as it stands where it is no number, for the engine to refuse.
+// What was entered in SI; with a unit, as the launch takes it; as it stands where it is no number, to be refused.
 function entered(input, size) {
-  const number = Number(input.replace(",", ".").replace("−", "-"));
-  return input.trim() && Number.isFinite(number) ? number * size : input;
+  const { number, unit } = typed(input);
+  if (number === null) return input;
+  return unit ? `${number} ${unit}` : number * size;
 }
 
 function Slider({ dial, lab, value, id, marks }) {

@@ -19,21 +19,26 @@ const GROUPS = ["svg", "g", "a", "switch"];
 const SHAPES = { path, circle: round, ellipse: round, rect, line, polyline, polygon: polyline };
 // What sentences call an element whose name is another thing's.
 const CALLED = { line: "simpleline" };
-// How deep elements may use one another.
+// How deep elements may use one another, and how many there may be with all that are used again.
 const DEEPEST = 20;
+const MOST_ELEMENTS = 20_000;
 
-/** A text is no drawing; the message says what is wrong with it. */
-export class NoDrawing extends Error {}
+/** A text is no drawing: the key of what it needs, and its gaps. */
+export class NoDrawing extends Error {
+  constructor(key, gaps = {}) {
+    super(key);
+    Object.assign(this, { key, gaps });
+  }
+}
 
 /** The paths of a drawing with what sentences call them: in mm of its physical size, or in its own numbers. */
 export function readSvg(text, isInOwnNumbers) {
   const content = new DOMParser().parseFromString(text, "image/svg+xml");
   const root = content.documentElement;
-  if (content.querySelector("parsererror") || root.localName !== "svg")
-    throw new NoDrawing("XML whose outermost element is <svg>");
+  if (content.querySelector("parsererror") || root.localName !== "svg") throw new NoDrawing("root");
   const scale = isInOwnNumbers ? 1 : millimetresOf(root);
   const place = new DOMMatrix([scale, 0, 0, -scale, 0, 0]);
-  const shapes = [...shapesIn(root, new DOMMatrix(), 0)];
+  const shapes = [...shapesIn(root, new DOMMatrix(), 0, { count: 0 })];
   return shapes.flatMap(({ element, matrix }, k) => {
     const kind = element.localName;
     const { id } = element;
@@ -49,7 +54,7 @@ function pathsOf(element) {
   try {
     return SHAPES[element.localName](element);
   } catch (error) {
-    throw new NoDrawing(`elements as SVG defines them; ${error.message}`);
+    throw new NoDrawing("element", { name: element.localName, message: error.message });
   }
 }
 
@@ -80,8 +85,10 @@ const numbersOf = (text) =>
   (text ?? "").match(/[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?/g)?.map(Number) ?? [];
 
 // The shapes that are drawn in an element, with what puts them in their place.
-function* shapesIn(element, outer, depth) {
+function* shapesIn(element, outer, depth, seen) {
   if (isHidden(element) || depth > DEEPEST) return;
+  seen.count += 1;
+  if (seen.count > MOST_ELEMENTS) throw new NoDrawing("many", { most: MOST_ELEMENTS });
   const own = element.transform?.baseVal.consolidate()?.matrix;
   const matrix = own ? outer.multiply(DOMMatrix.fromMatrix(own)) : outer;
   const kind = element.localName;
@@ -90,10 +97,10 @@ function* shapesIn(element, outer, depth) {
   } else if (kind === "use") {
     const used = usedBy(element);
     const [x, y] = [lengthOf(element, "x"), lengthOf(element, "y")];
-    if (used) yield* shapesIn(used, matrix.translate(x, y), depth + 1);
+    if (used) yield* shapesIn(used, matrix.translate(x, y), depth + 1, seen);
   } else if (GROUPS.includes(kind) || (kind === "symbol" && depth)) {
     const inner = kind === "svg" && depth ? matrix.multiply(viewport(element)) : matrix;
-    for (const child of element.children) yield* shapesIn(child, inner, depth + 1);
+    for (const child of element.children) yield* shapesIn(child, inner, depth + 1, seen);
   }
 }
 

@@ -101,8 +101,8 @@ export class Engine {
   }
 
   // What a body is good for, without a run.
-  prospects(body, { gravity, launch: { tilt } }) {
-    return this.asides.ask("body", { body, gravity, tilt });
+  prospects(body, problem) {
+    return this.asides.ask("body", { body, problem });
   }
 
   // What to change in a top so that it stands at spins up to a reach, rad/s; what was asked before is given up.
@@ -112,9 +112,16 @@ export class Engine {
     return this.adviser.ask("advice", { top, reach, gravity, tilt });
   }
 
-  // What a workpiece, points or a drawing is.
+  // What a workpiece, points or a drawing is; what was asked before is given up.
   brought(job) {
-    return this.asides.ask("brought", job);
+    this.forget();
+    this.reader ??= new Helper();
+    return this.reader.ask("brought", job);
+  }
+
+  // Give up what is being read.
+  forget() {
+    if (this.reader?.jobs.size) this.reader.end(null);
   }
 
   // The density of the uniform solid that a body is, null if it is none.
@@ -123,8 +130,8 @@ export class Engine {
   }
 
   // All numbers of a launch over time, as a text.
-  async csv(setup) {
-    return (await this.asides.ask("numbers", setup)).csv;
+  async csv(setup, point) {
+    return (await this.asides.ask("numbers", { ...setup, point })).csv;
   }
 }
 

@@ -67,31 +67,68 @@ export function picture(player) {
   return player.finely(FINE, () => new Promise((done) => player.canvas.toBlob(done, "image/png")));
 }
 
-// The run from its start as the scene plays it.
-export async function film(player) {
-  const kind = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((one) =>
-    MediaRecorder.isTypeSupported(one),
-  );
-  const recorder = new MediaRecorder(player.canvas.captureStream(FRAMES), { mimeType: kind });
-  const parts = [];
-  recorder.ondataavailable = ({ data }) => parts.push(data);
-  const ended = new Promise((done) => {
-    recorder.onstop = done;
-  });
-  const { loop } = player;
-  player.loop = false;
-  player.seek(0);
-  player.toggle(true);
-  recorder.start();
-  await new Promise((done) => {
-    const look = setInterval(() => {
-      if (player.playing) return;
-      clearInterval(look);
-      done();
-    }, 50);
-  });
-  recorder.stop();
-  await ended;
-  player.loop = loop;
-  return new Blob(parts, { type: "video/webm" });
+/** A film of a run from its start as the scene plays it, with its time and its speed written below. */
+export class Film {
+  // Begin to film; the caption says at what share of its speed the run is played.
+  constructor(player, caption) {
+    this.player = player;
+    this.caption = caption;
+    const { clientWidth, clientHeight } = player.canvas;
+    this.copy = Object.assign(document.createElement("canvas"), {
+      width: 2 * Math.round(clientWidth / 2),
+      height: 2 * Math.round(clientHeight / 2),
+    });
+    this.pen = this.copy.getContext("2d");
+    this.before = { loop: player.loop, picture: player.picture };
+    this.parts = [];
+    const kind = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((one) =>
+      MediaRecorder.isTypeSupported(one),
+    );
+    this.recorder = new MediaRecorder(this.copy.captureStream(FRAMES), { mimeType: kind });
+    this.recorder.ondataavailable = ({ data }) => this.parts.push(data);
+    this.content = new Promise((done) => {
+      this.recorder.onstop = () => done(new Blob(this.parts, { type: "video/webm" }));
+    });
+    this.draw = this.draw.bind(this);
+    this.wait = this.wait.bind(this);
+    this.end = this.end.bind(this);
+    player.addEventListener("time", this.draw);
+    player.addEventListener("view", this.wait);
+    player.addEventListener("run", this.end);
+    player.loop = false;
+    player.picture = 1 / FRAMES;
+    player.seek(0);
+    player.toggle(true);
+    this.recorder.start();
+  }
+
+  draw() {
+    const { player, pen, copy } = this;
+    const { width, height } = copy;
+    pen.drawImage(player.canvas, 0, 0, width, height);
+    pen.font = "600 14px system-ui, sans-serif";
+    pen.fillStyle = player.dark ? "#e6ebf0" : "#1e252d";
+    pen.fillText(this.caption(player.time, player.paceAt(player.time)), 12, height - 12);
+    if (player.time >= player.duration) this.end();
+  }
+
+  // While the run is not played nothing is filmed.
+  wait() {
+    const { player, recorder } = this;
+    if (player.time >= player.duration) return;
+    if (player.playing && recorder.state === "paused") recorder.resume();
+    if (!player.playing && recorder.state === "recording") recorder.pause();
+  }
+
+  // End the film, here or where the run does: `content` then has it.
+  end() {
+    const { player, recorder } = this;
+    if (recorder.state === "inactive") return;
+    player.removeEventListener("time", this.draw);
+    player.removeEventListener("view", this.wait);
+    player.removeEventListener("run", this.end);
+    Object.assign(player, this.before);
+    player.toggle(false);
+    recorder.stop();
+  }
 }

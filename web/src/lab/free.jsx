@@ -3,8 +3,7 @@
 import { useEffect, useState } from "preact/hooks";
 
 import { part, t } from "./i18n.js";
-import { QUANTITIES } from "./plots.js";
-import { AXES, digits, unitOf } from "./units.js";
+import { AXES, digits, QUANTITIES, roundStep, unitOf } from "./units.js";
 
 // The drawing's size, the room for its numbers, and most points of its curve.
 const [WIDTH, HEIGHT] = [520, 300];
@@ -141,12 +140,6 @@ function Graph({ lab, axes }) {
 }
 
 const symbolOf = (name) => (name === "time" ? "t" : part(`quantities.${name}`).symbol);
-
-// The least of 1, 2, 5 or 10 times a power of ten that is not below a step.
-function roundStep(step) {
-  const power = 10 ** Math.floor(Math.log10(step));
-  return power * [1, 2, 5, 10].find((one) => one * power >= step * (1 - 1e-9));
-}
 
 // How values lie between 0 and 1 along an axis, and the numbers beside it.
 function scaleOf(values) {

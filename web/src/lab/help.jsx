@@ -3,7 +3,7 @@
 import { useLayoutEffect, useRef } from "preact/hooks";
 
 import { part, t } from "./i18n.js";
-import { QUANTITIES } from "./plots.js";
+import { QUANTITIES } from "./units.js";
 
 const FIELDS = [
   "launch.spin",

@@ -37,13 +37,44 @@ export function t(name, gaps = {}) {
   return text.replace(/\{(\w+)\}/g, (whole, gap) => gaps[gap] ?? whole);
 }
 
-// What the engine says in English, in the page's language as far as it has words for it.
-export function translated(text) {
-  return (words.patterns ?? []).reduce(
-    (found, [pattern, other]) => found.replace(pattern, other),
-    text,
-  );
+// The engine's texts of a refusal in another language, each as a whole: what it is in English, with gaps, and in it.
+const wholes = new Map();
+function wholesOf(catalogue) {
+  if (!wholes.has(catalogue)) {
+    const letters = (template) => template.replaceAll("{}", "").length;
+    const all = Object.entries(catalogue)
+      .sort(([one], [other]) => letters(other) - letters(one))
+      .map(([template, text]) => [patternOf(template), text]);
+    wholes.set(catalogue, all);
+  }
+  return wholes.get(catalogue);
 }
+
+// What fills a gap: numbers, names and lists of these, and no words of a sentence.
+const GAP = String.raw`([^\s,]+(?:, [^\s,]+| or [^\s,]+| (?![a-z]{3,})[^\s,]+)*?)`;
+
+function patternOf(template) {
+  const parts = template.split("{}").map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"));
+  return new RegExp(`^${parts.join(GAP)}$`, "s");
+}
+
+/** Whether the page's language is another than the engine's. */
+export const isTranslated = () => Boolean(words.refusals);
+
+/** A text of the engine in the page's language; null if that has no words for all of it. */
+export function translated(text) {
+  const { refusals } = words;
+  if (!refusals || !text) return text;
+  for (const [pattern, other] of wholesOf(refusals)) {
+    const gaps = pattern.exec(text)?.slice(1);
+    if (!gaps) continue;
+    return other.replaceAll("{}", () => decimalsIn(gaps.shift()));
+  }
+  return null;
+}
+
+// A text with the decimal sign of the language in its numbers.
+const decimalsIn = (text) => text.replace(/(\d)\.(\d)/g, `$1${words.player.point}$2`);
 
 // A number with the language's decimal sign.
 export function decimal(text) {

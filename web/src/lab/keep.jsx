@@ -1,28 +1,40 @@
 // What can be taken along: numbers, launch, film, picture, print, command line.
 
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 
-import { commandLine, film, glb, picture, save } from "./files.js";
-import { t } from "./i18n.js";
+import { Copy } from "./copy.jsx";
+import { commandLine, Film, glb, picture, save } from "./files.js";
+import { decimal, part, t } from "./i18n.js";
 import { stl } from "./solid.js";
 import { toml } from "./toml.js";
 import { digits } from "./units.js";
 
 export function Keep({ lab }) {
   const [recording, record] = useState(false);
+  const film = useRef(null);
+  // Whoever leaves ends the film, and has what there is of it.
+  useEffect(() => () => film.current?.end(), []);
   const { track, player } = lab;
   const density = useSolid(lab, track?.header.problem.body);
   const video = async () => {
+    if (film.current) return film.current.end();
+    const caption = (time, share) =>
+      `${decimal(time.toFixed(2))} s · ${player.paceText(share) || t("player.realTime")}`;
+    film.current = new Film(player, caption);
     record(true);
-    const content = await film(player).catch(() => null);
+    const content = await film.current.content;
+    film.current = null;
     record(false);
-    if (content) save("tippetop.webm", content);
+    save("tippetop.webm", content);
   };
   const files = {
     csv: async () =>
       save(
         "tippetop.csv",
-        await lab.engine.csv({ problem: track.header.problem, duration: track.header.asked }),
+        await lab.engine.csv(
+          { problem: track.header.problem, duration: track.header.asked },
+          part("player.point"),
+        ),
       ),
     toml: () => save("tippetop.toml", toml(track.header.problem)),
     glb: async () => save("tippetop.glb", await glb(track)),
@@ -47,7 +59,7 @@ export function Keep({ lab }) {
         <button
           type="button"
           data-kind="video"
-          disabled={!track || recording || !globalThis.MediaRecorder}
+          disabled={!track || !globalThis.MediaRecorder}
           onClick={video}
         >
           {t(recording ? "keep.recording" : "keep.video")}
@@ -63,9 +75,9 @@ export function Keep({ lab }) {
       <pre tabIndex={0} role="region" aria-label={t("keep.command")}>
         {command}
       </pre>
-      <button type="button" onClick={() => navigator.clipboard?.writeText(command)}>
-        {t("keep.copy")}
-      </button>
+      <div class="row">
+        <Copy name={t("keep.copy")} text={() => command} />
+      </div>
     </div>
   );
 }

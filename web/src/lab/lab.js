@@ -3,10 +3,11 @@
 import { stillness } from "../player/player.js";
 import { jobFor } from "./bring.js";
 import { Engine } from "./engine.js";
-import { LANGUAGES, preferred, speak, t } from "./i18n.js";
-import { readLink, writeLink } from "./link.js";
+import { preferred, speak, t } from "./i18n.js";
+import { MOST_PINS, readLink, writeLink } from "./link.js";
+import { Mapping } from "./mapping.js";
 import { refusal } from "./refusal.js";
-import { changed, LONGEST, same } from "./setup.js";
+import { changed, FIRST, flawOf, inSi, LONGEST, same } from "./setup.js";
 import { stepOf } from "./steps.js";
 import { digits, shown } from "./units.js";
 import { happened, tell } from "./words.js";
@@ -17,7 +18,6 @@ const PATIENCE = 250;
 const SHARE = 300;
 // How long a launch is played whose slider was moved, s.
 const PREVIEW = 1;
-export const MOST_PINS = 3;
 
 function sameMembers(one, other) {
   return one.length === other.length && one.every((member, k) => member === other[k]);
@@ -37,22 +37,33 @@ export class Lab extends EventTarget {
     this.ghosts = new Map();
     // The number of the last request, by which an older one sees that it was overtaken.
     this.latest = 0;
+    const link = this.read(location.hash || location.search);
     this.state = {
-      ...this.read(location.hash || location.search),
+      ...link,
       busy: null,
-      trouble: null,
       prospect: null,
       guess: null,
+      map: null,
     };
-    this.good = this.state.setup;
+    this.state.trouble = this.troubleOf(link);
+    // The launch that was shown last: what stays where another is refused.
+    this.good = FIRST;
     addEventListener("popstate", () => this.restore());
   }
 
   read(text) {
     const link = readLink(text);
-    speak(link.lang ?? preferred());
-    document.documentElement.lang = link.lang in LANGUAGES ? link.lang : preferred();
+    const language = link.lang ?? preferred();
+    speak(language);
+    document.documentElement.lang = language;
     return link;
+  }
+
+  // What is not accepted of a link, to be told.
+  troubleOf({ flaw, unread, units, setup }) {
+    if (flaw) return refusal(flaw, { units, setup });
+    if (!unread.length) return null;
+    return { field: null, sentence: t("page.unread", { names: unread.join(", ") }) };
   }
 
   set(changes) {
@@ -70,13 +81,19 @@ export class Lab extends EventTarget {
 
   // Change fields of the launch; while a slider is dragged, history waits for its end.
   change(changes, dragged = false) {
-    this.set({ setup: changed(this.state.setup, changes), trouble: null });
+    if (dragged && !this.isDragged) {
+      // What was before the drag is gone back to, and nothing between.
+      this.keep(false);
+      this.isDragged = true;
+    }
+    this.set({ setup: inSi(changed(this.state.setup, changes)), trouble: null });
     if (dragged) this.request(false, true);
     else this.settle();
   }
 
   // What is set now can be gone back to; it is followed as exactly as can be, and its first second is played on request.
   settle(preview = false) {
+    this.isDragged = false;
     this.keep(true);
     this.request(false, false, preview);
   }
@@ -91,12 +108,17 @@ export class Lab extends EventTarget {
     this.go(changed(this.state.setup, launch));
   }
 
-  // Launch something else and play it.
-  go(setup, { play = true, ...others } = {}) {
+  // Launch something else and play it; returns whether it was launched.
+  async go(setup, { play = true, ...others } = {}) {
+    const flaw = flawOf(setup);
+    if (flaw) {
+      this.set({ trouble: refusal(flaw, this.state), ...others });
+      return false;
+    }
     this.set({ setup, trouble: null, ...others });
     if (play) showStage();
     this.keep(true);
-    this.request(play);
+    return this.request(play);
   }
 
   refused({ problem: { launch }, duration }) {
@@ -114,7 +136,7 @@ export class Lab extends EventTarget {
     };
   }
 
-  // Follow the launch that is set: quickly while a slider moves.
+  // Follow the launch that is set: quickly while a slider moves. Returns whether it was accepted.
   async request(play, quick = false, preview = false) {
     const { setup } = this.state;
     this.isAwaited = true;
@@ -122,10 +144,7 @@ export class Lab extends EventTarget {
     const request = this.latest;
     const isLatest = () => request === this.latest;
     const trouble = this.refused(setup);
-    if (trouble) {
-      this.refuse(trouble);
-      return;
-    }
+    if (trouble) return this.refuse(trouble);
     const late = setTimeout(() => this.set({ busy: this.state.busy ?? 0 }), PATIENCE);
     const onProgress = (share) => {
       if (isLatest() && this.state.busy !== null) this.set({ busy: share });
@@ -133,21 +152,26 @@ export class Lab extends EventTarget {
     try {
       const track = await this.engine.run({ ...setup, quick }, onProgress);
       clearTimeout(late);
-      if (!track) return;
+      if (!track) return false;
       this.good = setup;
       if (isLatest() || !this.playing) this.show(track, play, isLatest());
       if (preview && isLatest() && !stillness()) this.player.preview(PREVIEW);
+      return true;
     } catch (error) {
       clearTimeout(late);
-      if (isLatest()) this.refuse(refusal(error, this.state));
+      return isLatest() ? this.refuse(refusal(error, this.state)) : false;
     } finally {
       if (isLatest()) this.isAwaited = false;
       if (isLatest() && this.state.busy !== null) this.set({ busy: null });
     }
   }
 
+  // Keep the launch that was shown last; where none was, show the first.
   refuse(trouble) {
+    this.isAwaited = false;
     this.set({ setup: this.good, trouble, busy: null });
+    if (!this.track) this.request(false);
+    return false;
   }
 
   // Show a run: the picture first, then what is known without it.
@@ -157,7 +181,8 @@ export class Lab extends EventTarget {
     this.player.load(track);
     if (play) {
       this.player.scene?.eye.release();
-      this.player.seek(0);
+      // Where no motion is wanted, its end is seen.
+      this.player.seek(stillness() ? track.duration : 0);
       this.player.toggle(!stillness());
     }
     if (this.pending) this.look(this.pending);
@@ -190,6 +215,14 @@ export class Lab extends EventTarget {
       busy: null,
       trouble: { field: null, sentence: t("page.stopped") },
     });
+  }
+
+  // Compute the map around the launch that is set; what is left of another is given up.
+  draw() {
+    this.state.map?.stop();
+    const map = new Mapping(this.state.setup);
+    map.addEventListener("state", () => this.dispatchEvent(new Event("state")));
+    this.set({ map });
   }
 
   // What somebody brings is: its weight, and the body or why it cannot be simulated.
@@ -256,6 +289,7 @@ export class Lab extends EventTarget {
       time: player.playing ? 0 : player.time,
       camera: scene?.eye.held ? scene.eye.place : null,
       shown: usual ? null : on,
+      speed: player.speed,
     };
   }
 
@@ -265,6 +299,7 @@ export class Lab extends EventTarget {
 
   share() {
     clearTimeout(this.sharing);
+    if (this.isDragged) return;
     this.sharing = setTimeout(() => this.keep(false), SHARE);
   }
 
@@ -290,7 +325,9 @@ export class Lab extends EventTarget {
   restore() {
     const link = this.read(location.hash);
     clearTimeout(this.sharing);
-    this.state = { ...this.state, ...link, trouble: null };
+    // What a class has brought together is no step of a launch.
+    const { classroom } = this.state;
+    this.state = { ...this.state, ...link, classroom, trouble: this.troubleOf(link) };
     this.dispatchEvent(new Event("state"));
     this.request(false);
     this.raise();
@@ -309,6 +346,7 @@ export class Lab extends EventTarget {
       player.scene.eye.held = true;
       player.scene.controls.update();
     }
+    player.goAt(view.speed);
     if (timed) player.seek(view.time);
   }
 }

@@ -10,6 +10,7 @@ import { TorquePicture } from "./torque.jsx";
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
 
+const TYPED = "textarea, input:not([type=range], [type=checkbox], [type=radio], [type=file])";
 const host = document.getElementById("lab");
 const query = new URLSearchParams(location.hash.slice(1));
 if (query.get("picture") === "torque") showPicture(query.get("lang") ?? preferred());
@@ -20,7 +21,8 @@ function showLab() {
   globalThis.tippetopLab = lab;
   document.addEventListener("keydown", (event) => {
     const isUndo = (event.ctrlKey || event.metaKey) && event.key === "z";
-    if (!isUndo || event.target.matches("input[type=text]")) return;
+    // What is typed somewhere is taken back there.
+    if (!isUndo || event.target.matches(TYPED)) return;
     event.preventDefault();
     lab.undo();
   });

@@ -47,17 +47,13 @@ function Verdict({ lab, body, units }) {
 
 // A top that is shaped by its sliders.
 function Shaped({ lab }) {
-  const [top, make] = useState(lab.own ?? FIRST);
-  const { units } = lab.state;
-  const set = (changes) => {
-    const next = possible({ ...top, ...changes });
-    lab.own = next;
-    make(next);
-  };
+  const { units, own } = lab.state;
+  const top = own ?? FIRST;
+  const set = (changes) => lab.set({ own: possible({ ...top, ...changes }) });
   const { mass, alpha, ratio } = massesOf(top);
   const body = bodyOf(top);
   const ahead = useProspects(lab, body);
-  const least = ahead?.stem?.launch;
+  const least = ahead?.table === "creeps" ? ahead.stem?.launch : undefined;
   const spin = () => {
     const launch = { body, rolling_resistance: 0, "contact.liftoff": "fly", duration: 15 };
     if (least <= REACH) launch["launch.spin"] = Math.round(BEYOND * least);
@@ -83,7 +79,7 @@ function Shaped({ lab }) {
       <p class="own-verdict" role="status">
         {sentence(ahead, units)}
       </p>
-      {ahead !== undefined && !(least <= REACH) && (
+      {ahead !== undefined && !(ahead?.stem?.launch <= REACH) && (
         <Advice lab={lab} top={top} units={units} set={set} />
       )}
       <button type="button" class="strong" disabled={alpha <= 0} onClick={spin}>
@@ -180,20 +176,22 @@ function useProspects(lab, body) {
     return () => {
       isWanted = false;
     };
-  }, [JSON.stringify(body), problem.gravity, problem.launch.tilt]);
+  }, [JSON.stringify([body, problem.friction]), problem.gravity, problem.launch.tilt]);
   return ahead;
 }
 
 function sentence(ahead, units) {
   if (ahead === undefined) return "";
   if (ahead === null) return t("own.high");
-  const {
-    critical_spins: { upright },
-    touch,
-    stem,
-  } = ahead;
+  if (ahead.table === "none" || ahead.table === "sticks") return t(`own.table.${ahead.table}`);
+  const words = spinsInWords(ahead, units);
+  return ahead.table === "drills" ? `${t("own.table.drills")} ${words}` : words;
+}
+
+// What a body does at which spins where friction creeps and takes no spin.
+function spinsInWords({ group, critical_spins: { upright }, touch, stem }, units) {
   const text = (spin) => shown(spin, "spin", units, 3);
-  if (ahead.group.startsWith("I") && !ahead.group.startsWith("II")) return t("own.never");
+  if (group.startsWith("I") && !group.startsWith("II")) return t("own.never");
   if (!Number.isFinite(touch?.spin)) return t("own.half", { spin: text(upright) });
   if (!Number.isFinite(stem?.launch))
     return t("own.leans", { spin: text(upright), touch: text(touch.spin) });

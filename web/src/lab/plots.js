@@ -4,18 +4,8 @@ import uPlot from "uplot";
 
 import { READING } from "../player/player.js";
 import { part, t } from "./i18n.js";
-import { digits, unitOf } from "./units.js";
+import { digits, QUANTITIES, unitOf } from "./units.js";
 
-export const QUANTITIES = {
-  tilt: "angle",
-  spin: "spin",
-  precession: "spin",
-  slip: "m/s",
-  energy: "mJ",
-  normal_force: "N",
-  jellett_change: "",
-  height: "mm",
-};
 export const USUAL = ["tilt", "spin", "precession", "slip", "energy", "normal_force"];
 
 // Height of a plot and smallest gap between two, pixels.

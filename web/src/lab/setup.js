@@ -23,6 +23,14 @@ export function fieldValue({ problem, duration }, field) {
   return field.split(".").reduce((table, name) => table?.[name], problem);
 }
 
+/** A field is named where there can be none. */
+export class NoField extends Error {
+  constructor(field) {
+    super(field);
+    this.field = field;
+  }
+}
+
 // A copy with some fields replaced, named with dots; another law keeps the friction coefficient.
 export function changed(setup, changes) {
   const copy = structuredClone(setup);
@@ -47,9 +55,52 @@ function setField(problem, field, value) {
   for (const name of names) {
     table[name] ??= {};
     table = table[name];
+    if (!isTable(table)) throw new NoField(field);
   }
   table[last] = value;
 }
+
+const isTable = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+
+/**
+ * What keeps the page from showing a launch at all, before the engine sees it: the field of a part or a number that is
+ * missing, or that is none, with its value; null if there is nothing.
+ */
+export function flawOf({ problem, duration }) {
+  if (!isNumberLike(duration)) return { field: "duration", value: duration };
+  return flawIn(problem, ["Problem"], "");
+}
+
+function flawIn(value, titles, place) {
+  if (!isTable(value)) return { field: place, value };
+  const title = titleOf(value, titles);
+  for (const [name, field] of Object.entries(SCHEMA[title].fields)) {
+    const inner = Object.hasOwn(value, name) ? value[name] : undefined;
+    const where = place ? `${place}.${name}` : name;
+    const flaw = flawOfField(inner, field, where);
+    if (flaw) return flaw;
+  }
+  return null;
+}
+
+function flawOfField(inner, field, where) {
+  if (inner === undefined || inner === null)
+    return Object.hasOwn(field, "default") ? null : { field: where, missing: true };
+  if (field.parts) {
+    const isList = Array.isArray(inner) && (field.several || field.listed);
+    if (isList && !inner.length) return { field: where, value: inner };
+    for (const one of isList ? inner : [inner]) {
+      const flaw = flawIn(one, field.parts, where);
+      if (flaw) return flaw;
+    }
+    return null;
+  }
+  if (field.choices || field.count || field.points || field.units === undefined) return null;
+  return isNumberLike(inner) ? null : { field: where, value: inner };
+}
+
+// A number, or a text that may be one with a unit.
+const isNumberLike = (value) => typeof value === "number" || typeof value === "string";
 
 // A copy with texts such as "2200 rpm" as numbers in SI. Texts that are no numbers stay: the engine refuses them.
 export function inSi({ problem, duration }) {
@@ -59,7 +110,7 @@ export function inSi({ problem, duration }) {
 function partInSi(value, ...titles) {
   if (Array.isArray(value)) return value.map((one) => partInSi(one, ...titles));
   if (value === null || typeof value !== "object") return value;
-  const title = titles.find((one) => SCHEMA[one].fields.kind?.default === value.kind) ?? titles[0];
+  const title = titleOf(value, titles);
   const inside = ([name, inner]) => {
     const field = Object.hasOwn(SCHEMA[title].fields, name) ? SCHEMA[title].fields[name] : {};
     if (field.parts) return [name, partInSi(inner, ...field.parts)];
@@ -67,6 +118,10 @@ function partInSi(value, ...titles) {
   };
   return Object.fromEntries(Object.entries(value).map(inside));
 }
+
+// The title of a part of those that it may be, by its kind.
+const titleOf = ({ kind }, titles) =>
+  titles.find((one) => SCHEMA[one].fields.kind?.default === kind) ?? titles[0];
 
 function numberOf(value, units) {
   if (Array.isArray(value)) return value.map((one) => numberOf(one, units));

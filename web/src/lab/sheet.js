@@ -3,6 +3,7 @@
 import { ALL, kindOf, scaleOf } from "./dials.js";
 import { part, t } from "./i18n.js";
 import { fieldValue } from "./setup.js";
+import { questionOf, veilOf } from "./story.jsx";
 import { digits, shown } from "./units.js";
 import { tell } from "./words.js";
 
@@ -15,7 +16,13 @@ export function printSheet(lab) {
     if (!lab.track) return;
     const sheet = document.createElement("section");
     sheet.className = "print";
-    const { headline, details } = tell(lab.track, lab.state.units);
+    // Before a guess, the question is printed and not its answer.
+    const { headline, details } = veilOf(lab.state)
+      ? { headline: questionOf(lab.state.step), details: [] }
+      : tell(lab.track, lab.state.units);
+    // Paper is white.
+    lab.player.setTheme("light");
+    lab.drawPlots(false);
     sheet.append(
       text("h1", t("page.title")),
       text("h2", headline),
@@ -30,6 +37,9 @@ export function printSheet(lab) {
   addEventListener("afterprint", () => {
     for (const one of document.querySelectorAll(".print")) one.remove();
     lab.plots?.size();
+    const { theme } = document.documentElement.dataset;
+    lab.player.setTheme(theme);
+    lab.drawPlots(theme === "dark");
   });
 }
 

@@ -50,7 +50,7 @@ export const STEPS = [
   },
   {
     from: "jumps",
-    watch: "flight",
+    watch: "flip",
     setup: changed(preset("jumps"), { duration: 9 }),
     show: ["trace", "glass", "friction"],
     plots: ["tilt", "normal_force", "height"],

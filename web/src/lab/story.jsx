@@ -16,7 +16,6 @@ const LONGEST_WATCHED = 8;
 // When what a step asks for is to be seen in a run, s; NaN where it does not happen.
 const MOMENTS = {
   flip: ({ turnover_time }) => (turnover_time ?? NaN) + SPAN,
-  flight: ({ flights: [first] }) => (first?.[0] ?? NaN) + SPAN,
   arrival: ({ metrics: { arrival_time } }) => arrival_time ?? NaN,
 };
 
@@ -217,6 +216,12 @@ function setStep(lab, number, others, play = false) {
 // Show what happens in a step.
 function spin(lab, number, answer) {
   setStep(lab, number, { guess: { step: number, answer, seen: false } }, true);
+}
+
+/** The question of a step. */
+export function questionOf(step) {
+  const steps = part("story.steps");
+  return steps[Math.min(step, steps.length - 1)].question;
 }
 
 // CSS class that hides what would tell the answer: "veiled" before the guess, "watched" while it plays, "" after.

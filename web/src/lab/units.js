@@ -10,18 +10,19 @@ const SPINS = { "rad/s": 1, "turns/s": 2 * Math.PI, rpm: (2 * Math.PI) / 60 };
 const ANGLES = { rad: 1, deg: DEGREE };
 
 export const CHOICES = { spin: Object.keys(SPINS), angle: Object.keys(ANGLES) };
+/** What is plotted over time, with the kinds of its units. */
+export const QUANTITIES = {
+  tilt: "angle",
+  spin: "spin",
+  precession: "spin",
+  slip: "m/s",
+  energy: "mJ",
+  normal_force: "N",
+  jellett_change: "",
+  height: "mm",
+};
 /** What may be an axis of a graph. */
-export const AXES = [
-  "time",
-  "tilt",
-  "spin",
-  "precession",
-  "slip",
-  "energy",
-  "normal_force",
-  "jellett_change",
-  "height",
-];
+export const AXES = ["time", ...Object.keys(QUANTITIES)];
 
 export const FIRST = { spin: "rad/s", angle: "deg" };
 
@@ -61,4 +62,10 @@ export function cleared(value, size = 1) {
 export function withUnit(text, { name }) {
   if (name === "°") return `${text}°`;
   return name ? `${text} ${name}` : text;
+}
+
+// The least of 1, 2, 5 or 10 times a power of ten that is not below a step.
+export function roundStep(step) {
+  const power = 10 ** Math.floor(Math.log10(step));
+  return power * [1, 2, 5, 10].find((one) => one * power >= step * (1 - 1e-9));
 }

@@ -10,6 +10,7 @@ import {
   prospects,
   sampleCount,
   simulate,
+  tableKind,
   turned,
   weighed,
 } from "engine";
@@ -53,15 +54,29 @@ function answerRun({ id, problem, duration, quick }) {
 }
 
 function answerCell({ problem, duration }) {
-  const { metrics, status } = simulate(problem, { duration, tolerance: COARSE });
-  const { final_tilt: tilt, max_tilt_ever: highest, turnover_time: turnsOver, flights } = metrics;
+  const { metrics, status, jumps } = simulate(problem, { duration, tolerance: COARSE });
+  const { final_tilt: tilt, max_tilt_ever: highest, turnover_time: turnsOver } = metrics;
   const isBack = Number.isFinite(turnsOver) && tilt < Math.PI / 2;
   const fellBack = isBack || highest - Math.max(tilt, problem.launch.tilt ?? 0) > RISE;
-  return { tilt, highest, fellBack, flights, turnsOver, status };
+  return { tilt, highest, fellBack, flights: jumps.count, turnsOver, status };
 }
 
-function answerBody({ body, gravity, tilt }) {
-  return prospects(body, gravity, tilt);
+// What a body is good for on the table of a problem; null of one that does not stand on its ball.
+function answerBody({ body, problem }) {
+  const ahead = prospects(body, problem.gravity, problem.launch.tilt);
+  return ahead && { ...ahead, table: tableOf(body, problem) };
+}
+
+// How the friction of a table serves a ball that is to turn over, by the theory that predicts launches: it "creeps", as
+// that theory needs, "drills" spin away, "sticks", or there is "none".
+function tableOf(body, problem) {
+  const [ball] = [body.shape].flat();
+  const launch = {
+    ...problem,
+    body: { ...body, shape: ball, profile: null },
+    rolling_resistance: 0,
+  };
+  return tableKind(launch);
 }
 
 // What a workpiece, points or a drawing weighs, and the body that it is; or why it cannot be simulated.

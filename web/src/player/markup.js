@@ -1,8 +1,7 @@
 // What the player consists of, in the words of a language.
 
 import { ARROWS } from "./scene.js";
-
-export const SPEEDS = [1, 1 / 2, 1 / 5, 1 / 10, 1 / 30, 1 / 100, 1 / 300, 1 / 1000];
+import { SPEEDS } from "./speeds.js";
 
 const ICONS = {
   back: "M14 4 7 10l7 6z",
@@ -25,6 +24,7 @@ export function markup(words) {
     (speed) =>
       `<option value="${speed}">${speed === 1 ? words.realTime : `1/${Math.round(1 / speed)}`}</option>`,
   );
+  speeds.unshift(`<option value="">${words.seen}</option>`);
   const arrows = Object.entries(ARROWS).map(
     ([name, colour]) =>
       `<label><input type="checkbox" data-show="${name}"><i style="background:${colour}"></i> ${words[name]}</label>`,
@@ -33,12 +33,13 @@ export function markup(words) {
     (name) => `<option value="${name}">${words[name]}</option>`,
   );
   return `
+  <div class="tt-words" aria-live="polite"></div>
   <div class="tt-stage">
     <canvas class="tt-canvas" tabindex="0" role="img" aria-label="${words.canvas}"></canvas>
-    <div class="tt-words" aria-live="polite"></div>
     <div class="tt-facts"></div>
     <div class="tt-mode" hidden></div>
     <div class="tt-scale"></div>
+    <div class="tt-pace"></div>
     <p class="tt-trouble" role="alert" hidden></p>
   </div>
   <div class="tt-bar">

@@ -5,13 +5,22 @@ import { LEAD, nearness, pace } from "./climax.js";
 import { icon, markup } from "./markup.js";
 import { Scene } from "./scene.js";
 import { Sharpness } from "./sharpness.js";
+import { SPEEDS } from "./speeds.js";
 import { drawStrip } from "./strip.js";
 import { STYLE } from "./style.js";
 import { Tone } from "./tone.js";
 import { Track } from "./track.js";
 
+// The share of a new time between pictures in what is taken for it.
+const SMOOTHING = 0.05;
 // How often numbers that change are written anew, ms.
 export const READING = 80;
+
+// Steps of a run where no motion is wanted.
+const STILL_STEPS = 50;
+// Time from one picture to the next, s, at best, and how far a top may turn in it, so that an eye sees which way it does.
+const PICTURE = 1 / 60;
+const MOST_TURN = Math.PI / 3;
 
 // Turns of the camera by keys, rad: across and up.
 const TURNS = {
@@ -29,7 +38,11 @@ export class Player extends EventTarget {
     this.host = host;
     this.labels = words;
     this.time = 0;
-    this.speed = 1;
+    // The share of its speed at which a run is played; null for the fastest at which turns are seen as they are.
+    this.speed = null;
+    // Least time from one picture to the next, s, and how long it takes here.
+    this.picture = PICTURE;
+    this.interval = PICTURE;
     this.playing = false;
     this.loop = false;
     this.climax = !stillness();
@@ -105,7 +118,7 @@ export class Player extends EventTarget {
   choose({ dataset, value, checked }) {
     const choices = {
       speed: () => {
-        this.speed = Number(value);
+        this.speed = value ? Number(value) : null;
       },
       view: () => this.look(value),
       climax: () => {
@@ -131,8 +144,8 @@ export class Player extends EventTarget {
       " ": () => this.toggle(),
       ArrowLeft: () => this.step(-1),
       ArrowRight: () => this.step(1),
-      Home: () => this.seek(0),
-      End: () => this.seek(this.duration),
+      Home: () => this.isLocked || this.seek(0),
+      End: () => this.isLocked || this.seek(this.duration),
       "+": () => this.scene?.eye.zoom(0.9),
       "-": () => this.scene?.eye.zoom(1 / 0.9),
     };
@@ -160,12 +173,45 @@ export class Player extends EventTarget {
     this.range.max = this.duration;
     this.scene?.load(this.track);
     this.find(".tt-scale").textContent = this.scene?.scaleText(this.labels.squares) ?? "";
-    this.find("[data-do=flip]").disabled = !Number.isFinite(this.turnsOver);
+    this.find("[data-do=flip]").disabled = this.isLocked || !Number.isFinite(this.turnsOver);
     if (this.track.header.story) this.say(this.track.header.story);
     this.stale = true;
     this.dirty = true;
     this.dispatchEvent(new Event("run"));
     return this.track;
+  }
+
+  // Take over from a player before, of another language, how and what it plays.
+  adopt(before) {
+    const { time, playing, speed, loop, climax, until } = before;
+    Object.assign(this, { time, loop });
+    this.goAt(speed);
+    this.find("[data-do=loop]").checked = loop;
+    const { view, open } = before.choices;
+    this.find(".tt-more").open = open;
+    this.slow(climax);
+    if (before.tone) this.find("[data-do=tone]").checked = true;
+    this.sing(Boolean(before.tone));
+    const { scene } = before;
+    if (!scene || !this.scene) return;
+    this.show(scene.shown);
+    this.scene.following = scene.following;
+    this.find("[data-do=follow]").checked = scene.following;
+    this.find("[data-do=view]").value = view;
+    this.scene.eye.place = scene.eye.place;
+    this.scene.eye.held = scene.eye.held;
+    this.toggle(playing);
+    this.until = until;
+  }
+
+  // What was chosen below the buttons that nothing else holds; of a player that is gone, at its end.
+  get choices() {
+    const isThere = Boolean(this.find(".tt-more"));
+    if (isThere) {
+      const { value } = this.find("[data-do=view]");
+      this.chosen = { view: value, open: this.find(".tt-more").open };
+    }
+    return this.chosen;
   }
 
   // Show other runs as ghosts beside the run.
@@ -185,6 +231,7 @@ export class Player extends EventTarget {
   }
 
   toggle(playing = !this.playing) {
+    if (this.isLocked && playing) return;
     if (playing && this.time >= this.duration) this.time = this.track?.start ?? 0;
     const changed = this.playing !== playing;
     this.playing = playing;
@@ -199,10 +246,12 @@ export class Player extends EventTarget {
     if (changed) this.dispatchEvent(new Event("view"));
   }
 
-  // One frame of a sixtieth of a second, at the speed of play.
+  // One picture at the speed of play; where no motion is wanted, a share of the run that is seen as a change.
   step(direction) {
+    if (this.isLocked) return;
     this.toggle(false);
-    this.seek(this.time + (direction * this.speed) / 60);
+    const pictures = PICTURE * this.paceAt(this.time);
+    this.seek(this.time + direction * (stillness() ? this.duration / STILL_STEPS : pictures));
   }
 
   seek(time) {
@@ -223,6 +272,22 @@ export class Player extends EventTarget {
     this.scene?.eye.look(view);
     this.find("[data-do=view]").value = view;
     this.dirty = true;
+  }
+
+  // Play at a share of its speed; null for as fast as turns are seen.
+  goAt(speed) {
+    this.speed = speed;
+    this.find("[data-do=speed]").value = speed ?? "";
+    this.dirty = true;
+  }
+
+  // Whether a run may be played at all: before a guess it may not.
+  lock(isLocked) {
+    this.isLocked = isLocked;
+    for (const one of this.host.querySelectorAll(".tt-bar :is(button, input)"))
+      one.disabled = isLocked;
+    if (!isLocked) this.find("[data-do=flip]").disabled = !Number.isFinite(this.turnsOver);
+    if (isLocked) this.toggle(false);
   }
 
   // Whether time slows down, and the camera sinks, as the top turns over.
@@ -281,10 +346,20 @@ export class Player extends EventTarget {
     this.until = time;
   }
 
+  // The share of its speed at which a moment is played.
+  paceAt(time) {
+    const slower = this.climax ? pace(time, this.turnsOver) : 1;
+    if (this.speed !== null) return this.speed * slower;
+    const { rate } = this.track.turning(time);
+    const most = MOST_TURN / (rate * Math.max(this.picture, this.interval));
+    return (SPEEDS.find((speed) => speed <= most) ?? SPEEDS.at(-1)) * slower;
+  }
+
   advance(now) {
     const passed = this.last === undefined ? 0 : Math.min((now - this.last) / 1000, 0.25);
     this.last = now;
-    this.time += passed * this.speed * (this.climax ? pace(this.time, this.turnsOver) : 1);
+    if (passed) this.interval += SMOOTHING * (Math.max(passed, PICTURE) - this.interval);
+    this.time += this.gain(passed);
     this.sharpness?.pace(passed);
     if (this.time >= this.until) this.toggle(false);
     if (this.time >= this.duration) {
@@ -294,16 +369,24 @@ export class Player extends EventTarget {
     this.dirty = true;
   }
 
+  // How far a run goes on in a picture that is shown for so long, s: of what turns fast, no further than is seen.
+  gain(passed) {
+    const played = passed * this.paceAt(this.time);
+    if (this.speed !== null) return played;
+    return Math.min(played, MOST_TURN / this.track.turning(this.time).rate);
+  }
+
   draw() {
     const sunk = this.climax ? nearness(this.time, this.turnsOver) : 0;
     this.drawing = true;
-    this.scene?.draw(this.time, sunk);
+    const exposure = this.playing ? this.gain(Math.max(this.picture, this.interval)) : 0;
+    this.scene?.draw(this.time, sunk, exposure);
     this.drawing = false;
     if (this.stale) drawStrip(this.strip, this.track, this.dark, this.ghosts);
     this.stale = false;
     this.tellTime();
     this.tellMode();
-    this.tone?.sound(this.track.value("spin", this.time), this.speed, this.playing);
+    this.tone?.sound(this.track.value("spin", this.time), this.speed ?? 1, this.playing);
   }
 
   // Draw with `quality` pixels for each pixel of the screen, call `use`, draw as before, and return its result.
@@ -331,8 +414,18 @@ export class Player extends EventTarget {
     this.lastReading = now;
     const seconds = (count) => `${time.toFixed(count).replace(".", this.labels.point)} s`;
     this.range.setAttribute("aria-valuetext", seconds(3));
-    this.readout.textContent = seconds(this.speed < 0.02 ? 5 : 3);
+    const share = this.paceAt(time);
+    this.readout.textContent = seconds(share < 0.02 ? 5 : 3);
+    this.find(".tt-pace").textContent = this.paceText(share);
     if (this.facts) this.note.textContent = this.facts(track, time);
+  }
+
+  // The share of its speed at which a run is played, in words.
+  paceText(share) {
+    if (share > 0.995) return share > 1.005 ? "" : this.labels.realTime;
+    const times = 1 / share;
+    const factor = String(Number(times.toFixed(times < 10 ? 1 : 0)));
+    return this.labels.paced.replace("{factor}", factor.replace(".", this.labels.point));
   }
 
   // Whether the top slides, rolls, flies or stands on its stem.
@@ -347,6 +440,7 @@ export class Player extends EventTarget {
   }
 
   dispose() {
+    this.chosen = this.choices;
     cancelAnimationFrame(this.frame);
     this.tone?.close();
     this.resizing.disconnect();

@@ -22,7 +22,7 @@ import {
   pointArrow,
   traceMaterial,
 } from "./toy.js";
-import { welded } from "./weld.js";
+import { blur, welded } from "./weld.js";
 
 export const ARROWS = { axis: "#109b60", momentum: "#7b4fd0", friction: "#e03c31" };
 
@@ -32,6 +32,7 @@ export const MODES = {
   sticking: "#2b8a3e",
   double: "#7b4fd0",
   stem: "#7b4fd0",
+  other: "#7b4fd0",
 };
 
 // How long the longest arrow of a run is, in sizes of the top.
@@ -228,16 +229,19 @@ export class Scene {
     if (now && this.extent) this.resize(...this.extent);
   }
 
-  // Draw the track at a time.
-  draw(time, sunk = 0) {
+  // Draw the track at a time, with its turns blurred that are looked at for so long, s.
+  draw(time, sunk = 0, exposure = 0) {
     if (!this.track) return;
     if (this.resized && this.extent) this.resize(...this.extent);
     this.resized = false;
     const unit = this.track.header.body.size;
+    blur(this.toy, exposure && this.track.turning(time).spin * exposure);
     const pose = this.track.at(time);
     const [x, y, z] = place(this.toy, pose, unit);
     this.ghosts.forEach(({ track, toy }, k) => {
-      const [, , up] = place(toy, track.at(Math.min(time, track.duration)), unit, track);
+      const then = Math.min(time, track.duration);
+      blur(toy, exposure && track.turning(then).spin * exposure);
+      const [, , up] = place(toy, track.at(then), unit, track);
       const away = BESIDE[k % BESIDE.length];
       toy.position.set(x + away[0], y + away[1], up);
     });

@@ -11,7 +11,8 @@ export const STYLE = `
 .tt-canvas { position: absolute; inset: 0; width: 100%; height: 100%; display: block; touch-action: pan-y;
   outline-offset: -3px; }
 .tt-player :focus-visible { outline: 2px solid var(--tt-accent); }
-.tt-words { position: absolute; left: 12px; top: 10px; right: 12px; pointer-events: none; max-width: 46em; }
+.tt-words { flex: 0 0 auto; padding: 8px 12px; max-height: 34%; overflow-y: auto; }
+.tt-words:empty { display: none; }
 .tt-words strong { display: block; font-size: 1.25rem; line-height: 1.25; font-weight: 650; }
 .tt-words strong::first-letter { text-transform: uppercase; }
 .tt-words span { color: var(--tt-muted); }
@@ -21,13 +22,15 @@ export const STYLE = `
 .tt-facts { position: absolute; left: 12px; bottom: 34px; font-size: 12px; pointer-events: none;
   font-variant-numeric: tabular-nums; background: color-mix(in srgb, var(--tt-paper) 65%, transparent);
   padding: 1px 7px; border-radius: 5px; }
-:is(.tt-scale, .tt-facts):empty { display: none; }
+.tt-pace { position: absolute; right: 12px; top: 8px; font-size: 12px; font-weight: 600; pointer-events: none;
+  background: color-mix(in srgb, var(--tt-paper) 65%, transparent); padding: 1px 7px; border-radius: 5px; }
+:is(.tt-scale, .tt-facts, .tt-pace):empty { display: none; }
 .tt-mode { position: absolute; left: 12px; bottom: 8px; font-size: 12px; font-weight: 600; padding: 2px 9px;
   border-radius: 9px; color: #fff; background: #b34700; pointer-events: none; }
 .tt-mode[hidden] { display: none; }
 .tt-mode[data-mode=sticking] { background: #2b7a3a; }
 .tt-mode[data-mode=flight] { background: #0b5fa5; }
-.tt-mode[data-mode=stem], .tt-mode[data-mode=double] { background: #6a3fc0; }
+.tt-mode[data-mode=stem], .tt-mode[data-mode=other], .tt-mode[data-mode=double] { background: #6a3fc0; }
 .tt-trouble { position: absolute; inset: auto 12px 12px; margin: 0; padding: 8px 12px; border-radius: 6px;
   background: var(--tt-paper); border: 1px solid var(--tt-line); }
 .tt-trouble[hidden] { display: none; }

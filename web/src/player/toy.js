@@ -26,7 +26,9 @@ function makePart({ name, profile, colours }, opacity) {
     // three.js turns profiles about y, from z towards x.
     const start = k * angle + Math.PI / 2;
     const geometry = new THREE.LatheGeometry(points, steps, start, angle).rotateX(Math.PI / 2);
-    part.add(makeSector(geometry, colour, opacity));
+    const sector = makeSector(geometry, colour, opacity);
+    sector.sector = { colours, number: k };
+    part.add(sector);
   });
   return part;
 }

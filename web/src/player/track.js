@@ -41,10 +41,28 @@ export class Track {
     const label = this.header.modes?.[this.columns.mode[this.before(time)]];
     if (label === undefined) return undefined;
     const [kind, surfaces = "0", others] = label.split("_on_");
-    const last = [this.header.problem.body.shape].flat().length - 1;
     if (others !== undefined || surfaces.includes("_and_")) return "double";
-    if (surfaces !== "0") return Number(surfaces) === last ? "stem" : "rim";
+    if (surfaces !== "0") return this.kindOf(Number(surfaces));
     return kind.replace("_without_rolling", "");
+  }
+
+  // What a surface is that touches instead of the first: the stem's end is a smaller sphere above all others.
+  kindOf(number) {
+    const shapes = [this.header.problem.body.shape].flat();
+    const { kind, radius } = shapes[number];
+    if (kind === "ring") return "rim";
+    const isStem = number === shapes.length - 1 && kind === "sphere" && radius < shapes[0].radius;
+    return isStem ? "stem" : "other";
+  }
+
+  // How fast it turns at a time about whatever axis, and about its own, rad/s.
+  turning(time) {
+    const { axis, momentum } = this.at(time);
+    const { I1, I3 } = this.header.body;
+    const along = dot(momentum, axis);
+    const spin = along / I3;
+    const across = momentum.map((value, k) => (value - along * axis[k]) / I1);
+    return { rate: Math.hypot(spin, ...across), spin };
   }
 
   // A time, or the end that is nearer: a run that is a part of one begins later than at zero.

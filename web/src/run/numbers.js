@@ -9,8 +9,10 @@ const TOLERANCE = 1e-12;
 
 const PARTS = { 1: [""], 3: ["_x", "_y", "_z"], 4: ["_w", "_x", "_y", "_z"] };
 
-export function numbers({ problem, duration }) {
+// `point` is the decimal sign: with a comma, cells stand between semicolons, as spreadsheets take it.
+export function numbers({ problem, duration, point = "." }) {
   const track = simulate(problem, { duration, tolerance: TOLERANCE }).track();
+  const between = point === "," ? ";" : ",";
   const columns = [["time (s)", (i) => track.time[i]]];
   for (const [name, { units, width }] of Object.entries(CATALOGUE.sampled)) {
     const unit = units && units !== "1" ? ` (${units})` : "";
@@ -20,11 +22,12 @@ export function numbers({ problem, duration }) {
   }
   columns.push(["mode", (i) => track.mode[i]]);
   const rows = Array.from(track.time, (_, i) =>
-    columns.map(([, value]) => cellOf(value(i))).join(","),
+    columns.map(([, value]) => cellOf(value(i), point)).join(between),
   );
-  return { csv: `${[columns.map(([name]) => name).join(","), ...rows].join("\n")}\n` };
+  return { csv: `${[columns.map(([name]) => name).join(between), ...rows].join("\n")}\n` };
 }
 
-function cellOf(value) {
-  return Number.isNaN(value) ? "" : value;
+function cellOf(value, point) {
+  if (Number.isNaN(value)) return "";
+  return point === "." ? value : String(value).replace(".", point);
 }

@@ -53,7 +53,7 @@ export function pack(problem, run, samples) {
     doubts: doubts(problem),
     asked: run.duration,
     status: run.status,
-    metrics,
+    metrics: { ...metrics, jumps: run.jumps.count, highest_jump: run.jumps.highest },
     account: run.account,
     turnover_time: metrics.turnover_time ?? NaN,
     events: run.events,

@@ -2,7 +2,12 @@
 
 from typing import Any, NamedTuple
 
-from tippetop.mechanics.surfaces.surface import Support, Surface, gap_guard, support_at
+from tippetop.mechanics.surfaces.surface import (
+    Support,
+    Surface,
+    gap_guard,
+    support_at,
+)
 from tippetop.mechanics.vectors import Scalar, Vector
 
 SAME_HEIGHT = 1e-12
@@ -58,6 +63,14 @@ class Hull(NamedTuple):
         """Return what falls through zero as the gap of the active surface and a margin do."""
         size, unit = self.sizes[self.active], self.units[self.active]
         return gap_guard(axis, height / size, margin / size, unit)
+
+    def face_gap(self, axis: Vector, height: Scalar) -> Scalar:
+        """Return the height of the middle of the active ring above a table that its tube touches,
+        m.
+        """
+        size = self.sizes[self.active]
+        ring: Any = self.units[self.active]
+        return size * ring.face_gap(axis, height / size)
 
     @property
     def spherical(self) -> bool:

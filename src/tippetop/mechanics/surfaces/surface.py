@@ -247,9 +247,15 @@ class RingSurface(NamedTuple):
         above a table that its tube touches. This is its product with d + radius s, which is
         positive wherever the gap is not negative. The margin, added to d, adds 2 d margin.
         """
-        middle = height - self.tube + self.center * axis[2]
+        middle = self.face_gap(axis, height)
         product = middle * middle - self.radius * self.radius * _sine_squared(axis)
         return product + 2.0 * middle * margin
+
+    def face_gap(self, axis: Vector, height: Scalar) -> Scalar:
+        """Return the height of the ring's middle above a table that its tube touches, m: zero where
+        a body falls flat, and there the product of `gap_guard` has a double zero.
+        """
+        return height - self.tube + self.center * axis[2]
 
     def lies_flat(self, axis: Vector, sine: Scalar = POLE**0.5) -> Scalar:
         """Return whether the ring is parallel to the table, up to a sine of the tilt: by default
