@@ -41,6 +41,10 @@ def test_runs_and_sweeps_have_the_metrics_of_the_catalogue(spin):
     problem = tt.presets.report_problem(spin)
     run = tt.simulate(problem, 0.5, samples=2)
     cells = tt.sweep(problem, {"launch.spin": [spin]}, duration=0.5)
-    assert {name for name, one in run.data_vars.items() if one.dims == ()} == {*METRICS, *MONITORS}
+    assert {name for name, one in run.data_vars.items() if one.dims == ()} == {
+        "outcome",
+        *METRICS,
+        *MONITORS,
+    }
     assert set(cells.data_vars) == {"status", *SWEPT}
     assert set(SWEPT) == {"outcome", "fault", *METRICS}

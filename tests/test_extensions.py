@@ -44,6 +44,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row
 from tippetop.results.catalogue import SWEPT
+from tippetop.results.flags import decoded
 from tippetop.support.errors import InvalidInput
 
 DURATION = 0.6
@@ -550,7 +551,8 @@ def test_sweeps_find_what_runs_find(what: str) -> None:
         here = cells.isel(cell=place)
         changes = {path: float(here[name]) for path, name in names.items()}
         run = tt.simulate(PROBLEMS[what].replace(changes), DURATION, samples=11)
-        for name in set(SWEPT) & set(run.variables) - {"steps"}:
+        assert str(decoded(here)["outcome"].item()) == str(run["outcome"].item())
+        for name in set(SWEPT) & set(run.variables) - {"steps", "outcome"}:
             one, other = float(here[name]), float(run[name])
             assert one == pytest.approx(other, rel=1e-9, abs=1e-12, nan_ok=True), (name, changes)
     assert np.unique(found["final_tilt"].values).size == cells.sizes["cell"]

@@ -80,7 +80,7 @@ def test_steady_states_obey_2_16_and_2_17_for_every_body(computed: dict[str, xr.
         spoilt = everything | {"steady-bodies": steady.assign({left: steady[left] + 1e-4})}
         assert verdict(spoilt, name) is Verdict.CORRECTED
     assert verdict(computed, "eq-2.16-third") is Verdict.CORRECTED
-    still = computed | {"steady-bodies": steady.assign(phi_dot=0.0 * steady["precession"])}
+    still = computed | {"steady-bodies": steady.assign(precession=0.0 * steady["precession"])}
     assert verdict(still, "eq-2.16-third") is Verdict.REPRODUCED
 
 
@@ -205,7 +205,7 @@ def test_the_axis_goes_round_the_pole_before_it_passes_beside_it(
         assert verdict(computed, name) is Verdict.REPRODUCED
     run = computed["run-mu-100"]
     backwards = run.assign(
-        phi_dot=-run["precession"], precession_listing=-run["precession_listing"]
+        precession=-run["precession"], precession_listing=-run["precession_listing"]
     )
     assert verdict(computed | {"run-mu-100": backwards}, "fig08-around-pi") is Verdict.CORRECTED
     assert "11 a second" in CLAIMS["fig08-rapid"].judge(computed, quick=True).finding.note
@@ -294,7 +294,7 @@ def test_a_time_printed_without_around_is_true_to_its_digit(
 
 def test_one_threshold_serves_for_both_times_of_turning_over() -> None:
     def run(name: str, times: list[float]) -> xr.Dataset:
-        both = {f"arrival_time{suffix}": ("within", times) for suffix in ("", "_listing")}
+        both = {f"arrivals{suffix}": ("within", times) for suffix in ("", "_listing")}
         return xr.Dataset(
             {**both, "arrival_time": times[0]}, {"within": [0.01, 0.05]}, {"experiment": name}
         )

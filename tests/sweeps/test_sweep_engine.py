@@ -461,7 +461,8 @@ def test_every_variable_is_described():
     for name, kind in SWEPT.items():
         variable = dataset[name]
         assert variable.attrs["long_name"]
-        assert "units" in variable.attrs or "flag_meanings" in variable.attrs
+        is_flag = "flag_meanings" in variable.attrs or variable.dtype == bool
+        assert "units" in variable.attrs or is_flag
         assert variable.dtype == kind.dtype
         if "flag_meanings" in variable.attrs:
             assert len(variable.attrs["flag_meanings"].split()) == len(

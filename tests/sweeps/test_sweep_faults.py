@@ -23,7 +23,6 @@ from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble
 from tippetop.sweeps import (
     SWEPT,
-    Draws,
     Store,
     Sweep,
     compute,
@@ -33,6 +32,7 @@ from tippetop.sweeps import (
     store_layout,
     store_lock,
 )
+from tippetop.sweeps.draws import columns_of
 
 zarr = pytest.importorskip("zarr")
 
@@ -169,10 +169,8 @@ def test_a_damaged_chunk_is_named_and_is_computed_again_once_it_is_deleted(tmp_p
 
 
 def test_a_lost_coordinate_is_reported(tmp_path):
-    draws = Draws.of(
-        {"launch.spin": {"from": 10, "to": 200}, "friction.mu": {"from": 0, "to": 1}}, 5
-    )
-    sweep = Sweep(report_problem(), draws, 0.05)
+    fields = {"launch.spin": {"from": 10, "to": 200}, "friction.mu": {"from": 0, "to": 1}}
+    sweep = Sweep(problem=report_problem(), draw=columns_of(fields), count=5, duration=0.05)
     stored(sweep, tmp_path / "a.zarr", workers=1)
     shutil.rmtree(tmp_path / "a.zarr" / "mu")
     for read in (read_sweep, Store.resume):
@@ -386,5 +384,5 @@ def test_names_that_no_file_can_have_are_told_in_a_sentence(tmp_path, name):
 def test_another_layout_is_refused(tmp_path, monkeypatch):
     Store.create(tmp_path / "a.zarr", quick())
     monkeypatch.setattr(store_layout, "FORMAT", "tippetop sweep 99")
-    with pytest.raises(FileTrouble, match="laid out as 'tippetop sweep 4'"):
+    with pytest.raises(FileTrouble, match="laid out as 'tippetop sweep 5'"):
         read_sweep(tmp_path / "a.zarr")

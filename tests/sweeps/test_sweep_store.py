@@ -19,7 +19,6 @@ from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble, InvalidInput
 from tippetop.sweeps import (
     SWEPT,
-    Draws,
     Product,
     Store,
     Sweep,
@@ -30,6 +29,7 @@ from tippetop.sweeps import (
     store_layout,
 )
 from tippetop.sweeps.axes import Spaced
+from tippetop.sweeps.draws import columns_of
 
 zarr = pytest.importorskip("zarr")
 
@@ -60,11 +60,13 @@ def path(finished, tmp_path, small_tasks):
     [
         quick(),
         Sweep(
-            report_problem(),
-            Draws.of(
-                {"launch.spin": {"from": 10, "to": 200}, "launch.tilt": {"from": 0, "to": 4}}, 9, 5
+            problem=report_problem(),
+            draw=columns_of(
+                {"launch.spin": {"from": 10, "to": 200}, "launch.tilt": {"from": 0, "to": 4}}
             ),
-            0.1,
+            count=9,
+            seed=5,
+            duration=0.1,
         ),
     ],
 )
@@ -122,7 +124,7 @@ def test_a_task_with_a_damaged_status_is_computed_again(path, finished, damage):
         ),
         (Sweep(quick().problem, quick().grid, 0.2, 1e-9), "duration"),
         (Sweep(quick().problem, quick().grid, 0.1, 1e-8), "tolerance"),
-        (lively("fly", 7, 4, 0.1, 1e-9), r"axes\.launch\.spin\.count"),
+        (lively("fly", 7, 4, 0.1, 1e-9), r"over\.launch\.spin\.count"),
         (Sweep(quick().problem, Product(quick().grid.axes[::-1]), 0.1, 1e-9), "over"),
         (lively("stop", 6, 4, 0.1, 1e-9), "problem.contact.liftoff"),
     ],

@@ -336,9 +336,11 @@ def write_urdf(problem: tt.Problem, path: Path | str, overwrite: bool = False) -
 
     Examples
     --------
+    >>> import warnings
     >>> import tippetop as tt
     >>> problem = tt.presets.report_problem().replace({"friction.kind": "coulomb"})
-    >>> tt.write_urdf(problem, "top.urdf").name
+    >>> with warnings.catch_warnings(action="ignore"):  # of what a URDF file leaves out
+    ...     tt.write_urdf(problem, "top.urdf").name
     'top.urdf'
     """
     return _path_of(save_urdf(problem, path, overwrite))

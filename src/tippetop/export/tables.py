@@ -33,7 +33,7 @@ def write_csv(
     >>> import tippetop as tt
     >>> run = tt.simulate(tt.presets.report_problem(), duration=1.0, samples=11)
     >>> path = tt.write_csv(run, "run.csv")
-    >>> path.read_text().splitlines()[0][:40]
+    >>> path.read_text().splitlines()[0][:39]
     'time (s),tilt (rad),tilt_rate (rad s-1)'
     """
     frame = _with_columns_alone(to_dataframe(result, table))

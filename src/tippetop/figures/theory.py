@@ -53,7 +53,7 @@ def _branches(axes: Axes, states: xr.Dataset, suffix: str, right: float) -> None
     axes.plot([upright, right], [0, 0], **dashed, label="unstable")
     axes.plot([inverted, right], [np.pi, np.pi], **solid)
     axes.plot([0, inverted], [np.pi, np.pi], **dashed)
-    spin, tilt = states[f"branch_spin{suffix}"].values, states[f"branch_theta{suffix}"].values
+    spin, tilt = states[f"branch_spin{suffix}"].values, states[f"branch_tilt{suffix}"].values
     growing = states[f"branch_growth{suffix}"].values > _ROUNDING
     for which, line in ((~growing, solid), (growing, dashed)):
         axes.plot(np.where(which, spin, np.nan), tilt, **line)

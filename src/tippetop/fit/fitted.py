@@ -524,7 +524,15 @@ def correlation_time(series: Array) -> float:
 
 
 class Comparison(NamedTuple):
-    """Models compared by Schwarz's criterion."""
+    """Models compared by Schwarz's criterion.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> verdict = "the data prefer viscous friction"
+    >>> tt.Comparison({"viscous": 0.0}, {"viscous": 1.0}, "viscous", verdict).preferred
+    'viscous'
+    """
 
     differences: dict[str, float]
     """BIC above the least, by name of the model; least first."""

@@ -65,7 +65,14 @@ NOISES = {
 
 
 class PlannedMeasurement(NamedTuple):
-    """A plan to measure, and what it will tell."""
+    """A plan to measure, and what it will tell.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.PlannedMeasurement("tilt", duration=2.0, frame_rate=60.0, error=0.01).frame_rate
+    60.0
+    """
 
     quantity: str
     duration: float

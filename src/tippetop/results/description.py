@@ -20,7 +20,15 @@ MILLISECONDS, TENS = 0.01, 10.0
 
 
 class Account(NamedTuple):
-    """Account of a run as clauses; `str` gives English sentences."""
+    """Account of a run as clauses; `str` gives English sentences.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> account = tt.describe(tt.simulate(tt.presets.report_problem(spin=155.0), duration=8.0))
+    >>> len(account.clauses) > 1
+    True
+    """
 
     clauses: tuple[Clause, ...]
     uncertainties: Mapping[str, float] = {}

@@ -42,7 +42,15 @@ from tippetop.theory.steady import (
 
 @dataclass(frozen=True)
 class Prediction:
-    """Possible ends of a launch by Jellett's integral and the energy."""
+    """Possible ends of a launch by Jellett's integral and the energy.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> prediction = tt.predict(tt.presets.report_problem(spin=155.0))
+    >>> prediction.final in prediction.reachable
+    True
+    """
 
     jellett: float
     """lambda of the launch, kg m^3/s."""

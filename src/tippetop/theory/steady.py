@@ -51,6 +51,12 @@ class SteadyState(Generic[Number]):
     """Motion without slip that friction does not change, or many of one kind.
 
     The numbers are floats, or arrays of one shape; states with arrays cannot be compared.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.predict(tt.presets.report_problem(spin=155.0)).final.kind.value
+    'inverted'
     """
 
     kind: SteadyKind

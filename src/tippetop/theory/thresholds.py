@@ -35,7 +35,15 @@ whose centre of mass is on the table."""
 
 @dataclass(frozen=True)
 class CriticalSpins:
-    """Spins of a launch, rad/s, at which the two vertical spins change stability."""
+    """Spins of a launch, rad/s, at which the two vertical spins change stability.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> spins = tt.critical_spins(tt.presets.report_problem())
+    >>> 0.0 < spins.upright < spins.inverted
+    True
+    """
 
     upright: float
     """omega_c1: an eccentric sphere launched with more spin leaves theta = 0; inf if it never

@@ -16,7 +16,7 @@ from tippetop.report.tolerance import AROUND, ARRIVED, PLOTTED, Tolerance, round
 @examines("fig04-flip-time", "run-155", "run-50", tolerance=AROUND)
 @examines("fig05-flip-time", "run-50", "run-155", tolerance=AROUND)
 def _(run: xr.Dataset, other_run: xr.Dataset) -> Finding:
-    theirs, ours = run["arrival_time_listing"].values, run["arrival_time"].values
+    theirs, ours = run["arrivals_listing"].values, run["arrivals"].values
     k = _common_threshold(run, other_run)
     within = float(run["within"][k])
     return Finding(
@@ -37,7 +37,7 @@ def _common_threshold(*runs: xr.Dataset) -> int:
     """
     figures = {"run-155": "fig04", "run-50": "fig05"}
     misses = [
-        abs(run["arrival_time_listing"].values - float(TURNED_AT[figures[run.attrs["experiment"]]]))
+        abs(run["arrivals_listing"].values - float(TURNED_AT[figures[run.attrs["experiment"]]]))
         for run in runs
     ]
     return int(np.argmin(np.max(misses, axis=0)))

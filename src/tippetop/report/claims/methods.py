@@ -86,7 +86,7 @@ def _misses(run: xr.Dataset) -> tuple[float, ...]:
     ends = zip(("end_tilt", "end_precession", "end_spin"), spans, strict=True)
     parts = [abs(float(run[f"{end}_listing"] - run[end])) / span for end, span in ends]
     window = float(run["time"][-1])
-    return (*parts, abs(float(run["arrival_time_listing"][0] - run["arrival_time"])) / window)
+    return (*parts, abs(float(run["arrivals_listing"][0] - run["arrival_time"])) / window)
 
 
 def _name(run: xr.Dataset) -> str:

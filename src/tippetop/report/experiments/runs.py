@@ -126,7 +126,7 @@ def comparison(problem: Problem, quick: bool) -> xr.Dataset:
     data["arrival_time"] = true["arrival_time"]
     if math.isfinite(stopped):
         data = data.assign(_continuation(problem, data["time"].values))
-    data.attrs = {"problem": problem.to_json(), "outcome": true.attrs["status"]}
+    data.attrs = {"problem": problem.to_json(), "status": true.attrs["status"]}
     return data
 
 
@@ -190,7 +190,7 @@ def _readings(run: xr.Dataset, suffix: str) -> dict[str, object]:
     )
     arrived = "first time at which the tilt is within this of its last value"
     values = {
-        "arrival_time": variable(arrivals, "s", arrived, "within"),
+        "arrivals": variable(arrivals, "s", arrived, "within"),
         "reversals": variable(len(changes), "1", "how often the precession changes sign"),
         "quiet_start": variable(quiet[0], "s", "start of the longest time between two reversals"),
         "quiet_end": variable(quiet[1], "s", "end of the longest time between two reversals"),

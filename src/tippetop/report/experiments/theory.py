@@ -136,7 +136,7 @@ def _diagram(
         "stable": [len(one.stable) for one in predicted],
     }
     limits = list(astuple(critical_spins(base)))
-    run, over = f"run{suffix}", f"branch_theta{suffix}"
+    run, over = f"run{suffix}", f"branch_tilt{suffix}"
     return dataset(
         {
             over: (branch.tilt, "rad", "tilt of the steady precession"),
