@@ -46,5 +46,5 @@ def test_runs_and_sweeps_have_the_metrics_of_the_catalogue(spin):
         *METRICS,
         *MONITORS,
     }
-    assert set(cells.data_vars) == {"status", *SWEPT}
+    assert set(cells.data_vars) == {"is_done", *SWEPT}
     assert set(SWEPT) == {"outcome", "fault", *METRICS}

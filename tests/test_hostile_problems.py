@@ -301,7 +301,7 @@ def test_steps_within_impacts_count() -> None:
 def test_pieces_of_flights_count() -> None:
     run = tt.simulate(bouncing(**{"launch.spin": 1e6}), 0.2, samples=11, step_limit=1000)
     assert run.attrs["status"] == "too_many_steps"
-    assert int(run["steps"]) == 0
+    assert 1000 <= int(run["steps"]) < 3000
 
 
 def test_a_single_impact_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:

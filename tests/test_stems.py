@@ -23,6 +23,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_units
 from tippetop.results.catalogue import SWEPT, Fault
+from tippetop.results.flags import decoded
 
 LEINE_GLOCKER = tt.Problem(
     body=tt.Body(
@@ -260,7 +261,9 @@ def test_sweeps_follow_stems_as_runs_do() -> None:
         for spin in axes["launch.spin"]:
             changes = {"body.shape.1.center": center, "launch.spin": spin}
             run = tt.simulate(REPORT.replace(changes), 7.0, samples=11)
-            for name in set(SWEPT) & set(run.variables) - {"steps"}:
+            here = decoded(found.sel(center=center, spin=spin))
+            assert str(here["outcome"].item()) == str(run["outcome"].item())
+            for name in set(SWEPT) & set(run.variables) - {"steps", "outcome"}:
                 one, other = float(found[name].sel(center=center, spin=spin)), float(run[name])
                 assert one == pytest.approx(other, rel=1e-9, abs=1e-12, nan_ok=True), (
                     name,

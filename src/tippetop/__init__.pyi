@@ -23,6 +23,8 @@ from .fit.measurement import read_measurement as read_measurement
 from .fit.planning import PlannedMeasurement as PlannedMeasurement
 from .fit.planning import plan_measurement as plan_measurement
 from .fit.sensitivities import sensitivities as sensitivities
+from .fit.stored import read_fit as read_fit
+from .fit.stored import write_fit as write_fit
 from .fit.time_uncertainties import time_uncertainties as time_uncertainties
 from .lab.notebook import view as view
 from .lathe.design import design_bowl as design_bowl

@@ -171,7 +171,7 @@ def test_a_damaged_chunk_is_named_and_is_computed_again_once_it_is_deleted(tmp_p
 def test_a_lost_coordinate_is_reported(tmp_path):
     fields = {"launch.spin": {"from": 10, "to": 200}, "friction.mu": {"from": 0, "to": 1}}
     sweep = Sweep(problem=report_problem(), draw=columns_of(fields), count=5, duration=0.05)
-    stored(sweep, tmp_path / "a.zarr", workers=1)
+    fill(Store.create(tmp_path / "a.zarr", sweep), workers=1)
     shutil.rmtree(tmp_path / "a.zarr" / "mu")
     for read in (read_sweep, Store.resume):
         with pytest.raises(FileTrouble, match=r"a chunk of mu is missing.*overwrite=True"):

@@ -71,8 +71,9 @@ def path(finished, tmp_path, small_tasks):
     ],
 )
 def test_a_store_is_the_sweep_in_memory(tmp_path, sweep):
-    found = stored(sweep, tmp_path / "a.zarr", workers=1)
-    xr.testing.assert_identical(found.load(), compute(sweep))
+    store = Store.create(tmp_path / "a.zarr", sweep)
+    fill(store, workers=1)
+    xr.testing.assert_identical(store.dataset().load(), compute(sweep))
 
 
 def test_a_store_opens_with_plain_xarray(path):

@@ -24,6 +24,7 @@ from tippetop.contact.guards import ENDING
 from tippetop.contact.mode import (
     COMPLETED,
     FAILURE,
+    EventKind,
     IntegratedMode,
     Mode,
     ModeEnd,
@@ -503,12 +504,11 @@ class LinearizedRun:
             If it goes through other events.
         """
         numbers = self._beside(direction, change, at_launch=junction.before is None)
-        if not 0.0 <= numbers.restitution <= 1.0:
-            raise Differs(AT_BOUND, self._start_of(junction))
         end = self._end_of(numbers) if end is None else end
         automaton, nominal = self._automaton(numbers), self._start_of(junction)
         segments = list[list[Segment]]()
         try:
+            require_restitution(numbers, junction.transitions[0])
             if junction.before is None:
                 time, transition = 0.0, automaton.launch(numbers.start)
             else:
@@ -523,6 +523,7 @@ class LinearizedRun:
                     return Beside(done, segments, time, some[-1].end_state)
                 if how is None or visit.end is None or how.cause != visit.end.cause:
                     raise Differs(OTHER_EVENTS)
+                require_restitution(numbers, following)
                 mode: Any = done[-1].next
                 transition = automaton.follow(mode, how, time, self.integrator)
                 done.append(same(transition, following))
@@ -737,6 +738,15 @@ class RunReading(NamedTuple):
             dimensions = ("event", "space")[: one.ndim]
             named[name] = xr.Variable(dimensions, one, described.attributes)
         return {**{str(name): one for name, one in self.run.variables.items()}, **named}
+
+
+def require_restitution(numbers: StartNumbers, transition: Transition) -> None:
+    """Refuse, with `Differs`, an impact beside the run for which the coefficient of restitution is
+    out of its range.
+    """
+    strikes = any(event.kind is EventKind.IMPACT for event in transition.events)
+    if strikes and not 0.0 <= numbers.restitution <= 1.0:
+        raise Differs(AT_BOUND)
 
 
 def is_integrated(mode: object) -> bool:
