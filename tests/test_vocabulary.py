@@ -179,8 +179,10 @@ def test_the_glossary_lists_the_names_that_are_used() -> None:
         *(name.lower() for names in (public_names, result_names, file_names) for name in names()),
         *("from", "to", "spacing", "distribution", "parameter", "draw", "space", "path"),
         *(one.name.lower() for kind in (tt.Outcome, tt.Status) for one in kind),
+        *("sliding", "sticking", "flight"),
     }
     assert len(listed) > 40
+    assert {outcome.name.lower() for outcome in tt.Outcome} <= listed
     assert listed <= known, listed - known
     elsewhere = {word.strip() for row in rows for word in row[3].split(",")}
     assert not elsewhere & listed
