@@ -256,7 +256,7 @@ def test_a_drop_is_no_jump_and_two_balls_have_no_stem(lab: Lab) -> None:
     jumps.wait_for()
     count = int(jumps.inner_text())
     assert f"{count} times" in page.locator(".tt-words").inner_text()
-    highest = page.locator("tr[data-metric=highest_jump] td").first.inner_text()
+    highest = page.locator("tr[data-metric=max_jump_gap] td").first.inner_text()
     assert float(highest) < 1.0, "it was dropped from 2 mm"
     body = json.loads(tt.presets.HURRICANE_BALLS.model_dump_json(exclude_none=True))
     modes = visitor.ask(

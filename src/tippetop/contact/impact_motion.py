@@ -17,7 +17,7 @@ from tippetop.mechanics.contacts.branches import is_branched
 from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
 from tippetop.mechanics.contacts.slip_variables import inner, plus, slip_part
 from tippetop.mechanics.contacts.wrench import Slip
-from tippetop.mechanics.impacts.struck_body import FIRST, WORK, StruckBody, normal_velocities
+from tippetop.mechanics.impacts.struck_body import FIRST, WORK, StruckBody
 from tippetop.mechanics.impacts.struck_status import BOTH_END, HELD, SLIDES, StruckStatus
 from tippetop.mechanics.impacts.unit_impulse import (
     DRIVEN,
@@ -29,6 +29,7 @@ from tippetop.mechanics.impacts.unit_impulse import (
     acting,
     at_second,
     changed,
+    normal_velocities,
     unit_impulse,
 )
 from tippetop.mechanics.laws.coulomb import RollingResistance

@@ -258,8 +258,8 @@ class Run {
   /** The flights that begin on the table: how many there are, and the largest gap below them, m. */
   get jumps() {
     const jumps = this.flights.filter(({ start }) => m.is_jump(start, this.problem));
-    const highest = Math.max(0, ...jumps.map(({ max_gap }) => max_gap));
-    return { count: jumps.length, highest };
+    const max_gap = Math.max(0, ...jumps.map((jump) => jump.max_gap));
+    return { count: jumps.length, max_gap };
   }
 
   /** What became of the launch, as clauses of a name and numbers. */

@@ -12,7 +12,7 @@ const METRICS = {
   final_spin: "spin",
   energy_lost: "mJ",
   jumps: "",
-  highest_jump: "mm",
+  max_jump_gap: "mm",
   min_normal_force: "N",
 };
 

@@ -53,7 +53,7 @@ export function pack(problem, run, samples) {
     doubts: doubts(problem),
     asked: run.duration,
     status: run.status,
-    metrics: { ...metrics, jumps: run.jumps.count, highest_jump: run.jumps.highest },
+    metrics: { ...metrics, jumps: run.jumps.count, max_jump_gap: run.jumps.max_gap },
     account: run.account,
     turnover_time: metrics.turnover_time ?? NaN,
     events: run.events,

@@ -9,14 +9,14 @@ from typing import NamedTuple, TypeAlias
 from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points, flat
 from tippetop.mechanics.contacts.slip_variables import inner, plus
 from tippetop.mechanics.contacts.wrench import COUPLES, DRILLING, FORCES, Slip, Wrench
-from tippetop.mechanics.impacts.unit_impulse import StruckContacts, at_second
+from tippetop.mechanics.impacts.unit_impulse import StruckContacts, normal_velocities
 from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.motion import angular_velocity, point_velocity
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import Horizontal, Scalar, add, length, scale
+from tippetop.mechanics.vectors import Horizontal, add, length, scale
 
 FUZZ = 1e-14
 """Round-off in the velocity of the contact point, relative to what it is made of."""
@@ -116,16 +116,6 @@ class StruckBody(NamedTuple):
         """
         twice = inner(impulse[:6], plus(self.before, self.velocities(impulse)))
         return max(0.0, float(-0.5 * twice * self.units.energy))
-
-
-def normal_velocities(
-    before: Slip, normal_beside: Scalar, change: Slip, contacts: StruckContacts
-) -> Horizontal:
-    """Return the normal velocities of both contacts where those of the first have changed so.
-
-    The second's change is that of the first and of the turning, which keeps digits.
-    """
-    return before[2] + change[2], normal_beside + at_second(change, contacts.apart)[2]
 
 
 def without_fuzz(number: float, fuzz: float) -> float:

@@ -84,6 +84,16 @@ def at_second(velocities: Slip, apart: Horizontal) -> Slip:
     )
 
 
+def normal_velocities(
+    before: Slip, normal_beside: Scalar, change: Slip, contacts: StruckContacts
+) -> Horizontal:
+    """Return the normal velocities of both contacts where those of the first have changed so.
+
+    The second's change is that of the first and of the turning, which keeps digits.
+    """
+    return before[2] + change[2], normal_beside + at_second(change, contacts.apart)[2]
+
+
 def about_first(wrench: Slip, apart: Horizontal) -> Slip:
     """Return a wrench at the second contact as one about the first contact point."""
     x, y, z, along, across, upright = wrench
