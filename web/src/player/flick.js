@@ -47,7 +47,10 @@ export class Flick {
   }
 
   move(event) {
-    if (this.places && event.isPrimary) this.places.push(placeOf(event));
+    if (!this.places || !event.isPrimary) return;
+    // Where pictures come slowly, an event stands for several moves.
+    const moves = event.getCoalescedEvents?.() ?? [];
+    this.places.push(...(moves.length ? moves : [event]).map(placeOf));
   }
 
   end(event) {
@@ -74,4 +77,4 @@ export class Flick {
   }
 }
 
-const placeOf = ({ offsetX, offsetY, timeStamp }) => ({ x: offsetX, y: offsetY, time: timeStamp });
+const placeOf = ({ clientX, clientY, timeStamp }) => ({ x: clientX, y: clientY, time: timeStamp });

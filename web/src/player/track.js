@@ -18,6 +18,8 @@ export class Track {
       axis: [0, 0, 1],
       momentum: [0, 0, 0],
     };
+    // The time that the pose is of: in a picture several ask for the same one.
+    this.posedAt = NaN;
   }
 
   unpack(buffer) {
@@ -104,6 +106,8 @@ export class Track {
 
   // Where the top is: the same object every time, to be read at once.
   at(time) {
+    if (time === this.posedAt) return this.pose;
+    this.posedAt = time;
     const { i, j, h, u } = this.around(time);
     const { orientation, momentum, position, velocity } = this.columns;
     const { I1, I3 } = this.header.body;

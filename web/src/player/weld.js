@@ -51,11 +51,15 @@ function coloured({ geometry, material: { color } }) {
   return geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
 }
 
-// What blurring needs of a sector: the colours of its part, its number among them, and how far along it each corner is.
+// What blurring needs of a sector: the colours of its part, its number among them, the shares of it at which corners
+// are, and which of these each corner has.
 function sectorOf({ geometry, sector: { colours, number } }) {
   const { uv } = geometry.attributes;
-  const along = Float32Array.from({ length: uv.count }, (_, i) => uv.getX(i));
-  return { palette: colours.map((colour) => new THREE.Color(colour)), number, along };
+  const along = Array.from({ length: uv.count }, (_, i) => uv.getX(i));
+  const shares = [...new Set(along)];
+  const places = new Map(shares.map((share, place) => [share, place]));
+  const corners = Uint32Array.from(along, (share) => places.get(share));
+  return { palette: colours.map((colour) => new THREE.Color(colour)), number, shares, corners };
 }
 
 /** Blur the colours of a toy as if it had turned by an angle about its axis, rad, while it was looked at. */
@@ -66,12 +70,13 @@ export function blur(toy, angle) {
   for (const mesh of toy.children) {
     const colours = mesh.geometry.attributes.color;
     let place = 0;
-    for (const { palette, number, along } of mesh.userData.sectors) {
+    for (const { palette, number, shares, corners } of mesh.userData.sectors) {
       const width = FULL / palette.length;
-      for (const share of along) {
-        const colour = steps
-          ? mean(palette, (number + share) * width, steps * BLUR_STEP)
-          : palette[number];
+      const seen = shares.map((share) =>
+        steps ? mean(palette, (number + share) * width, steps * BLUR_STEP) : palette[number],
+      );
+      for (const corner of corners) {
+        const colour = seen[corner];
         colours.setXYZ(place, colour.r, colour.g, colour.b);
         place += 1;
       }
@@ -81,12 +86,11 @@ export function blur(toy, angle) {
 }
 
 // The mean of the colours of equal sectors from an angle on.
-const mixed = new THREE.Color();
 function mean(palette, from, length) {
   const width = FULL / palette.length;
   const low = Math.min(from, from + length);
   const high = Math.max(from, from + length);
-  mixed.setRGB(0, 0, 0);
+  const mixed = new THREE.Color(0, 0, 0);
   for (let k = Math.floor(low / width); k * width < high; k++) {
     const share = (Math.min((k + 1) * width, high) - Math.max(k * width, low)) / (high - low);
     const { r, g, b } = palette.at(((k % palette.length) + palette.length) % palette.length);
