@@ -37,7 +37,7 @@ def drawn(seed: int) -> Case:
             c = (r[0] - r[1]) / (zeta[0] - zeta[1])
             if r[0] - zeta[0] * c > 0.1:
                 break
-    across = 10.0 ** random.uniform(-1.5, -0.3)
+    across = 10.0 ** random.uniform(-2.5, -0.3)
     along = across * random.uniform(0.05, 1.8)
     law = Law(kind, float(random.uniform(0.0, 3.0)), float(10.0 ** random.uniform(-2.0, -0.5)))
     turn = random.uniform(0.0, 2.0 * np.pi)

@@ -161,7 +161,7 @@ def closed_alone(
         near = [e for e, starts in zip(both, begins, strict=True) if starts and e is not None]
         onset = find_onset(point, slip, rolling, begins, near=near)
         results.append(Answer((number,), onset, begins))
-    return sorted(results, key=_begun)
+    return sorted(results, key=_count_of_beginning)
 
 
 def moved_under(normal: float, share: float) -> Moved:
@@ -179,7 +179,7 @@ def moved_under(normal: float, share: float) -> Moved:
     return moved
 
 
-def _begun(answer: Answer) -> int:
+def _count_of_beginning(answer: Answer) -> int:
     """Return how many velocities begin."""
     if answer.resolution is not None:
         return 2 - sum(answer.resolution.sticks)
@@ -225,7 +225,7 @@ def closed_both(pair: tuple[ContactPoint, ...], slips: Slips, rolling: Slip | No
     for x in roots_of(opening, EDGE, 1.0 - EDGE, 1 if unique else PIECES):
         resolved = _kept_closed(pair, xi, ended, loaded(x))
         results.append(Answer((0, 1), resolution=resolved))
-    return sorted(results, key=_begun)
+    return sorted(results, key=_count_of_beginning)
 
 
 def _in_turn(
