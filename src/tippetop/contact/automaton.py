@@ -2,8 +2,9 @@
 
 A mode says what ended it (`ModeEnd`); the automaton says what follows (`Transition`). No other file
 names next modes. Read `Automaton.follow` first: one branch for every kind of mode. What comes to
-rest normally on the table goes through `Automaton.resting`, and from there to the resolver of one
-contact (`Automaton.resolve`) or of two (`Automaton.resolve_two`).
+rest normally on the table goes through `Automaton.resting`, and from there to one contact
+(`Automaton.resolve`) or two (`Automaton.resolve_two`). Both ask the resolver for every consistent
+answer (`tippetop.mechanics.contacts.resolver`), and `Automaton._chosen` takes one.
 """
 
 from collections.abc import Sequence
@@ -48,7 +49,7 @@ from tippetop.contact.slip_end_motion import (
     REOPENING,
     contacts_in_clock,
 )
-from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset, clause_of
+from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
 from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
 from tippetop.contact.surfaces import FACE, TOUCH, WOBBLE, lands_flat, lies_flat
 from tippetop.contact.touching import (
@@ -59,15 +60,7 @@ from tippetop.contact.touching import (
     stays_closed,
 )
 from tippetop.contact.transient import AT_REST, SLIP_AND_ROLLING, Resting, TransientMode
-from tippetop.contact.two_closed import (
-    BOTH_CLOSED,
-    FIRST_ALONE,
-    NONE_CLOSED,
-    SECOND_ALONE,
-    Before,
-    TwoClosed,
-    rolling_of,
-)
+from tippetop.contact.two_closed import Before, TwoClosed, rolling_of
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contacts.branches import (
     off_branch,
@@ -79,6 +72,7 @@ from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.pair import Tops, slips_of, without_tilting
 from tippetop.mechanics.contacts.pair_resolver import Resolution, rolling_direction
+from tippetop.mechanics.contacts.resolver import Answer, answers
 from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.slip_onset import Onset, find_onset, resolve_onset
 from tippetop.mechanics.contacts.slip_variables import (
@@ -102,11 +96,6 @@ from tippetop.support.errors import Described, InvalidInput
 
 REST = 1e-13
 """Velocities and accelerations, in natural units, that are rounding in a body at rest."""
-
-STRUCK, UNDETERMINED = "struck", "undetermined"
-"""What follows where no set of contacts is chosen to stay closed: an impact without approach, or it
-is not known.
-"""
 
 MOST_IN_TURNS = 200
 """Impacts at one instant, now of one surface and now of another, after which a run is given up."""
@@ -353,7 +342,16 @@ class Automaton:
             return self._release(contact, time, state, ())
         kind = EventKind.SLIP if begins.slip else EventKind.ROLL
         event = Event(kind, time, surface=contact.active)
-        return self._onset(contact, state, (begins,), held, (event,), wrench)
+        point = ContactPoint.of(state.axis, state.momentum, contact)
+        slip = None if begins.slip or held else slip_of(*along_table(state), contact)
+        rolling = None if held or not begins.slip else point.turning[:2]
+        try:
+            which = (begins.slip, not begins.slip)
+            onset = find_onset(point, slip, rolling, which, held=wrench)
+        except ArithmeticError as error:
+            what = f"The direction in which {'slip' if begins.slip else 'rolling'} begins"
+            return failed(what, error, state, (event,))
+        return self._onset(contact, state, (begins,), held, (event,), onset)
 
     def _onset(
         self,
@@ -362,25 +360,16 @@ class Automaton:
         components: tuple[SlipComponent, ...],
         held: bool,
         events: tuple[Event, ...],
-        wrench: Wrench | None = None,
+        onset: Onset,
     ) -> Transition:
-        """Return the mode in which velocities of one contact begin; `held` says whether the other
-        is held, if only one begins, and `wrench` what held it, if that is known.
+        """Return the mode in which velocities of one contact begin as `onset` says; `held` says
+        whether the other is held, if only one begins.
         """
         slip_begins, rolling_begins = (
             any(component.slip for component in components),
             not all(component.slip for component in components),
         )
         sticks, still = held and not slip_begins, held and not rolling_begins
-        point = ContactPoint.of(state.axis, state.momentum, contact)
-        slip = None if slip_begins or sticks else slip_of(*along_table(state), contact)
-        rolling = None if rolling_begins or still else point.turning[:2]
-        begins = slip_begins, rolling_begins
-        try:
-            onset = find_onset(point, slip, rolling, begins, held=wrench)
-        except ArithmeticError as error:
-            what = f"The direction in which {clause_of(components)}"
-            return failed(what, error, state, events)
         top = (
             on_limit_branch(contact, onset.wrench)
             if onset.slip is None
@@ -412,50 +401,59 @@ class Automaton:
         held: bool = False,
         events: tuple[Event, ...] = (),
     ) -> Transition:
-        """Hold what has ended, slip or rolling (new) or what was held already, if the table can; or
-        let it begin again.
-
-        What is tried first is to hold everything, then to let slip begin, rolling, and both.
+        """Go on on one contact: hold what has ended, slip or rolling (new) or what was held
+        already, if the table can, or let it begin again; or open, or be struck.
         """
         ended = (new[0] or (held and new[1]), new[1] or (held and new[0]))
-        state = on_table(come_to_rest(along_table(state), contact, *ended), contact)
+        if any(ended):
+            state = on_table(come_to_rest(along_table(state), contact, *ended), contact)
+        elif self.pulls:
+            return Transition(events, self.mode_for(contact, state, slips=True), state)
         point = ContactPoint.of(state.axis, state.momentum, contact)
         slip = None if ended[0] else slip_of(*along_table(state), contact)
         rolling = None if ended[1] else point.turning[:2]
         try:
-            resolved, begins = resolve_onset(point, slip, rolling)
+            if self.pulls:
+                consistent = [Answer((0,), *resolve_onset(point, slip, rolling))]
+            else:
+                consistent = answers((point,), (slip,), rolling)
         except ArithmeticError as error:
-            if not ended[0] and not self.pulls and _jams_alone(contact, state):
-                if self._opens_without_force(contact, state):
-                    return self._release(contact, time, state, events)
-                return self.inconsistent(contact, time, state, events)
             return failed("The force that holds the contact", error, state, events)
-        events = (*events, *self._changes(contact, time, new, begins))
-        return self._after_resolving(contact, time, state, resolved, begins, ended, events)
+        jams = not ended[0] and _jams_alone(contact, state)
+        chosen = self._chosen(consistent, jams=jams)
+        events = (*events, *_indeterminate(contact, time, consistent))
+        if chosen is None:
+            return self.inconsistent(contact, time, state, events)
+        if not chosen.closed:
+            return self._release(contact, time, state, events)
+        return self._after_resolving(contact, time, state, chosen, new, ended, events)
 
     def _after_resolving(
         self,
         contact: Top,
         time: float,
         state: State,
-        resolved: Onset,
-        begins: tuple[bool, bool],
+        answer: Answer,
+        new: tuple[bool, bool],
         ended: tuple[bool, bool],
         events: tuple[Event, ...],
     ) -> Transition:
-        """Return the mode of a contact of which is resolved what is held and what begins."""
-        if resolved.wrench.force[2] <= 0.0 and not self.pulls:
-            return self._release(contact, time, state, events)
+        """Return the mode of a contact that goes on as an answer says."""
+        onset, begins = answer.onset, answer.begins
+        assert onset is not None
+        events = (*events, *self._changes(contact, time, new, begins))
+        if any(ended):
+            state = on_table(come_to_rest(along_table(state), contact, *ended), contact)
         rolls = not (ended[1] and contact.resists_rolling)
         if begins[0] and rolls and self._opens_without_force(contact, state):
             return self._release(contact, time, state, events)
         if any(begins):
             components = SLIP_AND_ROLLING if all(begins) else (SlipComponent(begins[0]),)
             held = not all(begins) and (ended[1] if begins[0] else ended[0])
-            return self._onset(contact, state, components, held, events)
+            return self._onset(contact, state, components, held, events, onset)
         mode = self.mode_for(contact, state, slips=not ended[0])
-        at, turning = resolved.acceleration
-        if isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
+        at, turning = onset.acceleration
+        if any(ended) and isinstance(mode, IntegratedMode) and rests(state, *turning, *at[:2]):
             return Transition(events, Resting(contact, mode), state)
         return Transition(events, mode, state)
 
@@ -520,44 +518,34 @@ class Automaton:
         """
         if lies_flat(contact, state.axis):
             return Transition(events, Status.LYING_FLAT, state)
-        sliding = along_table(state)
-        stuck = is_set_valued(contact.friction) and not is_slipping(*sliding, contact)
+        stuck = is_set_valued(contact.friction) and not is_slipping(*along_table(state), contact)
         held = not rolls_freely(contact, state)
-        if stuck or held:
-            return self.resolve(contact, time, state, (stuck, held), events=events)
-        touch = sliding_contact(sliding.axis, sliding.momentum, sliding.velocity, contact)
-        if self.pulls:
-            return Transition(events, self.mode_for(contact, state, slips=True), state)
-        jammed, free = touch.delassus <= 0.0, touch.free_acceleration
-        consistent = [FIRST_ALONE] if (free > 0.0 if jammed else free < 0.0) else []
-        consistent += [NONE_CLOSED] if free > 0.0 or (free == 0.0 and not jammed) else []
-        chosen = self._chosen(consistent, jams=jammed)
-        events = (*events, *_indeterminate(contact, time, consistent))
-        if chosen == STRUCK:
-            return self.inconsistent(contact, time, state, events)
-        if chosen == NONE_CLOSED:
-            return self._release(contact, time, state, events)
-        return Transition(events, self.mode_for(contact, state, slips=True), state)
+        return self.resolve(contact, time, state, (stuck, held), events=events)
 
-    def _chosen(self, consistent: Sequence[str], *, jams: bool) -> str:
-        """Return the set of contacts that stays closed, or `STRUCK` or `UNDETERMINED`.
+    def _chosen(self, consistent: Sequence[Answer], *, jams: bool) -> Answer | None:
+        """Return the answer that the body takes; None where an impact without approach follows, or
+        it is not known.
+
+        What was closed before stays closed, and what is held stays so, where that is consistent.
 
         Parameters
         ----------
         consistent
-            The sets that may stay closed, of one contact `FIRST_ALONE` and `NONE_CLOSED`.
+            The answers that are consistent, of which those with the most closed contacts, and of
+            these those with the fewest velocities that begin, come first.
         jams
             Whether an impact without approach begins at one of the contacts. Under a force that is
             consistent there, too, the least disturbance grows without bound.
         """
         if len(consistent) == 1:
             return consistent[0]
-        may_lift_off = NONE_CLOSED in consistent
-        if may_lift_off and self.indeterminate == "liftoff":
-            return NONE_CLOSED
-        if jams:
-            return STRUCK
-        return BOTH_CLOSED if may_lift_off and BOTH_CLOSED in consistent else UNDETERMINED
+        if self.indeterminate == "liftoff" and consistent and not consistent[-1].closed:
+            return consistent[-1]
+        if jams or not consistent:
+            return None
+        first = consistent[0]
+        is_largest = all(number in first.closed for each in consistent for number in each.closed)
+        return first if is_largest else None
 
     # Leaving the table, and impacts.
 
@@ -732,40 +720,37 @@ class Automaton:
 
         Friction may jam one contact, and the other, which it presses, lift it again. No impact
         begins then: the force on both is finite and stable, and they stay closed where that is
-        consistent. Where no impact begins the run ends if each contact can carry the body alone,
-        and if no set is consistent.
+        consistent. Where no impact begins the run ends if each contact can carry the body alone.
         """
         contacts = TwoClosed.of(state, tops, rolls)
         try:
-            resolved = contacts.resolved()
-            consistent = contacts.consistent(resolved)
+            consistent = contacts.answers()
             jammed = contacts.jammed if len(consistent) != 1 else None
         except ArithmeticError as error:
             return failed("The forces on two surfaces that touch", error, state, events)
         chosen = self._chosen(consistent, jams=jammed is not None)
         events = (*events, *_indeterminate(contacts.tops[0], time, consistent))
-        if chosen == UNDETERMINED:
-            count = "more than one" if consistent else "no"
-            detail = f"{count} set of forces is consistent with two surfaces that touch"
-            if FIRST_ALONE in consistent and SECOND_ALONE in consistent:
+        if chosen is None:
+            if consistent and jammed is None:
                 detail = "each of two surfaces that touch can carry the body alone"
-            return Transition(events, Status.FAILED, contacts.state, detail)
-        if jammed is not None and chosen == STRUCK:
-            touching = on_table(along_table(contacts.state), jammed)
-            return self.inconsistent(jammed, time, touching, events)
-        if chosen == NONE_CLOSED and (len(consistent) > 1 or not contacts.holds):
+                return Transition(events, Status.FAILED, contacts.state, detail)
+            struck = jammed or contacts.tops[0]
+            touching = on_table(along_table(contacts.state), struck)
+            return self.inconsistent(struck, time, touching, events)
+        if not chosen.closed:
             return self._release(contacts.tops[0], time, contacts.state, events)
-        if chosen == BOTH_CLOSED:
+        if chosen.resolution is not None:
             if arrived:
                 lost = float(energy(state, tops[0]) - energy(contacts.state, tops[0]))
                 event = Event(EventKind.DOUBLE_CONTACT, time, 0.0, lost, tops[0].active)
                 events = (*events, event)
-            events = (*events, *contacts.changes(time, resolved, before))
-            return replace(self._mode_on_two(contacts, resolved), events=events)
-        # Strong friction may hold the first closed though it would open, as `resolve` tries.
-        opens, stays = contacts.tops if chosen == SECOND_ALONE else contacts.tops[::-1]
+            events = (*events, *contacts.changes(time, chosen.resolution, before))
+            return replace(self._mode_on_two(contacts, chosen.resolution), events=events)
+        (number,) = chosen.closed
+        stays, opens = contacts.tops[number], contacts.tops[1 - number]
         events = (*events, Event(EventKind.OPENING, time, surface=opens.active))
-        return self.resting_alone(stays, time, contacts.state, events)
+        ended = (contacts.ended[number], contacts.stopped)
+        return self._after_resolving(stays, time, contacts.state, chosen, ended, ended, events)
 
     def slip_on_two(self, time: float, state: State, mode: ContactMode, contact: int) -> Transition:
         """Return the mode in which a contact of two begins to slip at the limit of what the table
@@ -832,8 +817,8 @@ class Automaton:
         return Transition((), onset, contacts.state)
 
 
-def _indeterminate(contact: Top, time: float, consistent: Sequence[str]) -> tuple[Event, ...]:
-    """Return the event of an indeterminate contact force, if several sets are consistent."""
+def _indeterminate(contact: Top, time: float, consistent: Sequence[Answer]) -> tuple[Event, ...]:
+    """Return the event of an indeterminate contact force, if several answers are consistent."""
     if len(consistent) <= 1:
         return ()
     return (Event(EventKind.INDETERMINATE, time, surface=contact.active),)

@@ -10,7 +10,7 @@ from tippetop.contact.contact_mode import ContactMode, example_of, mode_with, pa
 from tippetop.contact.guards import lasting_guards
 from tippetop.contact.mode import COMPLETED, FAILURE, ModeEnd, Segment
 from tippetop.contact.slip_phase import follow_slip
-from tippetop.contact.transient import SLIP_AND_ROLLING, TransientMode, directed_contacts
+from tippetop.contact.transient import TransientMode, directed_contacts
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.contacts.slip_collocation import SlipMotion
@@ -135,10 +135,3 @@ def onset_motion(
 
     count = parameter_count(form, kinds)
     return SlipMotion(rates, free + sum(counts), velocities, count, len(guards))
-
-
-def clause_of(components: Sequence[SlipComponent]) -> str:
-    """Return the clause of a sentence that states what begins."""
-    if len(components) == len(SLIP_AND_ROLLING):
-        return "slip and rolling begin"
-    return "slip begins" if components[0].slip else "rolling begins"

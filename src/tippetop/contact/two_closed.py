@@ -1,4 +1,4 @@
-"""The resolver of two contacts that are closed and have no normal velocities: what they do."""
+"""Two contacts that are closed and have no normal velocities, as the resolver takes them."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from tippetop.contact.mode import Event, EventKind
 from tippetop.mechanics.contacts.branches import off_branch
 from tippetop.mechanics.contacts.contact_forces import forces_on_two
 from tippetop.mechanics.contacts.contact_point import contact_points
-from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
+from tippetop.mechanics.contacts.forces import directions_of, is_set_valued, slip_length
 from tippetop.mechanics.contacts.pair import (
     ContactPair,
     Tops,
@@ -22,26 +22,15 @@ from tippetop.mechanics.contacts.pair_resolver import (
     Resolution,
     both_begin_to_slip,
     first_begins_to_slip,
-    resolution,
     rolling_of_slip,
     turning_about,
 )
-from tippetop.mechanics.contacts.slip_onset import find_onset, resolve_onset
-from tippetop.mechanics.contacts.slip_variables import has_ended, is_rolling, slip_of
-from tippetop.mechanics.contacts.system import free_rates, rates_under
+from tippetop.mechanics.contacts.resolver import Answer, answers
+from tippetop.mechanics.contacts.slip_variables import has_ended, is_rolling, scaled, slip_of
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.unsolved import Unsolved
-
-FIRST_ALONE, SECOND_ALONE, BOTH_CLOSED, NONE_CLOSED = "first", "second", "both", "none"
-"""Sets of contacts that may stay closed."""
-
-OPENS, HELD, IMPOSSIBLE = "opens", "held", "impossible"
-"""Whether one contact can carry the body alone: it can, and the other opens; it can with rolling
-held, so that both may stay; or it cannot.
-"""
 
 
 class Before(NamedTuple):
@@ -106,11 +95,6 @@ class TwoClosed:
         return self.tops[0].resists_rolling and not self.rolls
 
     @property
-    def holds(self) -> bool:
-        """Whether slip has ended on a contact, or rolling has."""
-        return any(self.ended) or self.stopped
-
-    @property
     def xi(self) -> Slip:
         """How they slip."""
         if self.ended[0]:
@@ -118,53 +102,15 @@ class TwoClosed:
         slip = slip_of(*along_table(self.state), self.tops[0])
         return (slip[0], slip[1], slip_apart(self.pair))
 
-    def resolved(self) -> Resolution:
-        """Return how both contacts go on while they stay closed."""
-        return resolution(self.pair, self.xi, self.ended, self.rolls)
-
-    def consistent(self, resolved: Resolution) -> list[str]:
-        """Return the sets of contacts that may stay closed, the largest first; one is expected.
-
-        With rolling held, two contacts can hold whatever one of them can: both stay if both normal
-        forces are positive, else the one with the larger normal force.
-        """
-        normal, free = resolved.motion.normal, free_rates(self.pair).points
-        candidates = [BOTH_CLOSED] if normal[0] > 0.0 and normal[1] > 0.0 else []
-        if self.stopped and candidates and not resolved.rolls:
-            return candidates
-        results = [self._beside_pressed(number) for number in (0, 1)]
-        held = [number for number in (0, 1) if results[number] == HELD]
-        if held and not candidates:
-            return [(FIRST_ALONE, SECOND_ALONE)[max(held, key=lambda number: normal[number])]]
-        candidates += [
-            name
-            for result, name in zip(results, (FIRST_ALONE, SECOND_ALONE), strict=True)
-            if result == OPENS
-        ]
-        return candidates + ([NONE_CLOSED] if min(free[0][2], free[1][2]) >= 0.0 else [])
-
-    def _beside_pressed(self, number: int) -> str:
-        """Return whether this contact can carry the body alone, and what the other does then."""
-        point = self.pair[number]
-        slip = None if self.ended[number] else slip_of(*along_table(self.state), self.tops[number])
-        rolling = None if self.stopped else point.turning[:2]
-        if slip is not None and rolling is not None:
-            # Nothing is held, so that nothing is to be tried: friction may press the contact, too.
-            onset = find_onset(point, slip, rolling, (False, False))
-        elif point.free.point[2] >= 0.0:
-            return IMPOSSIBLE
-        else:
-            try:
-                onset, _ = resolve_onset(point, slip, rolling)
-            except Unsolved:  # Friction jams the contact, whatever is held.
-                return IMPOSSIBLE
-        if onset.wrench.force[2] <= 0.0:
-            return IMPOSSIBLE
-        if onset.rolling is None:
-            return HELD
-        rates = rates_under(self.pair, [(number, onset.wrench)], free_rates(self.pair))
-        opens = rates.points[1 - number][2] >= 0.0
-        return OPENS if opens else IMPOSSIBLE
+    def answers(self) -> list[Answer]:
+        """Return every consistent answer."""
+        pairs = zip(self.tops, self.ended, strict=True)
+        slips = [None if ended else slip_of(*along_table(self.state), top) for top, ended in pairs]
+        along = directions_of(self.state.axis)[0]
+        rolling = None if self.stopped else scaled(self.rolls, along[:2])
+        if not self.tops[0].resists_rolling:
+            rolling = self.pair[0].turning[:2]
+        return answers(self.pair, slips, rolling)
 
     @property
     def jammed(self) -> Top | None:

@@ -27,8 +27,8 @@ class Contact(Variant):
     indeterminate
         What happens where strong friction makes the contact force indeterminate (Painleve's
         paradox), so that both an impact and a lift-off satisfy the laws of mechanics and friction:
-        "impact" or "liftoff". A contact that sticks stays closed where friction can hold it, even
-        where opening would be consistent, too.
+        "impact" or "liftoff". Where friction jams nothing, "impact" begins none: what is closed
+        stays closed, and what friction can hold is held.
 
     Examples
     --------

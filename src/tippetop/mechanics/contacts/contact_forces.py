@@ -5,11 +5,13 @@ from typing import Any, NamedTuple
 
 from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
 from tippetop.mechanics.contacts.forces import (
+    Load,
     Slips,
     directions_of,
     forces_and_accelerations,
     slip_reserve,
     solve_contacts,
+    solve_loaded,
     sum_at,
     turning_with,
 )
@@ -153,7 +155,9 @@ def forces_on_one(
     )
 
 
-def forces_on_two(pair: ContactPair, slips: Slips, rolls: float) -> ContactForces:
+def forces_on_two(
+    pair: ContactPair, slips: Slips, rolls: float, load: Load | None = None
+) -> ContactForces:
     """Return the forces and accelerations of a body whose two contacts stay closed.
 
     Parameters
@@ -164,11 +168,17 @@ def forces_on_two(pair: ContactPair, slips: Slips, rolls: float) -> ContactForce
         How they slip.
     rolls
         Sign of omega_e, 0 where it is held at zero; without rolling resistance it does not matter.
+    load
+        Normal forces, if these are given and the contacts need not stay closed.
     """
     along = directions_of(pair[0].axis)[0]
     stopped = pair[0].top.resists_rolling and not rolls
     rolling = None if stopped else scaled(rolls, along[:2])
-    wrenches, rates = solve_contacts(pair, slips, rolling)
+    wrenches, rates = (
+        solve_contacts(pair, slips, rolling)
+        if load is None
+        else solve_loaded(pair, slips, rolling, load)
+    )
     holding = dot(wrenches[-1][1].torque, along) if stopped else 0.0
     return ContactForces(pair, (sum_at(0, wrenches), sum_at(1, wrenches)), rates, holding)
 

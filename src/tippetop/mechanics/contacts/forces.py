@@ -6,7 +6,7 @@ of the table, or it is held: its angular velocity stays constant.
 """
 
 from collections.abc import Sequence
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from tippetop.mechanics.contacts.branches import on_branch
 from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
@@ -16,9 +16,11 @@ from tippetop.mechanics.contacts.system import (
     Component,
     Constraint,
     ConstraintSolution,
+    ContactRates,
     delassus_matrix,
     free_rates,
     rates_added,
+    rates_under,
     responses_to,
     solve_constraints,
 )
@@ -87,6 +89,40 @@ def solve_contacts(
         contacts, where it is along the axis, a unit vector, or zero without rolling resistance.
     """
     return solve_constraints(points, constraints_of(points, slips, rolling), free_rates(points))
+
+
+class Load(NamedTuple):
+    """Normal forces that are given, N, and the share of the body's rates without contact forces."""
+
+    normal: tuple[float, ...]
+    share: float
+
+
+def solve_loaded(
+    points: Sequence[ContactPoint], slips: Slips, rolling: Slip | None, load: Load
+) -> ConstraintSolution:
+    """Return the wrenches of the table under given normal forces, and the accelerations.
+
+    The gaps are free to open or to close. The other arguments are those of `solve_contacts`.
+    """
+    driving = list[At]()
+    for number, constraint in enumerate(normal_constraints(points, slips, rolling)):
+        force, torque = constraint.wrench
+        size = load.normal[number]
+        driving.append((number, Wrench(scale(size, force), scale(size, torque))))
+    free = free_rates(points)
+    rates = ContactRates(
+        tuple([scale(load.share, rate) for rate in free.points]), scale(load.share, free.turning)
+    )
+    rates = rates_under(points, driving, rates)
+    held = [
+        *sticking_constraints(points, [slip is None for slip in slips]),
+        *rolling_constraints(points, rolling),
+    ]
+    if not held:
+        return ConstraintSolution(driving, rates)
+    solution = solve_constraints(points, held, rates)
+    return ConstraintSolution([*driving, *solution.wrenches], solution.rates)
 
 
 def constraints_of(

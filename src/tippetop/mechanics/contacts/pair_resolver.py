@@ -7,7 +7,7 @@ from tippetop.mechanics.contacts.contact_forces import ContactForces, forces_on_
 from tippetop.mechanics.contacts.contact_point import contact_points
 from tippetop.mechanics.contacts.forces import Slips, directions_of, slip_length
 from tippetop.mechanics.contacts.pair import ContactPair, apart, slips_of, turning_along
-from tippetop.mechanics.contacts.slip_direction import Resisted, directions
+from tippetop.mechanics.contacts.slip_direction import Resisted, directions, directions_near
 from tippetop.mechanics.contacts.slip_variables import plus, scaled, size
 from tippetop.mechanics.contacts.system import rates_added
 from tippetop.mechanics.contacts.wrench import DRILLING, EAST, NORTH, Slip, Wrench
@@ -44,7 +44,13 @@ class Resolution(NamedTuple):
     """Direction of xi where slip begins; None where nothing does."""
 
 
-def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: float) -> Resolution:
+def resolution(
+    pair: ContactPair,
+    xi: Slip,
+    ended: tuple[bool, bool],
+    rolls: float,
+    moved: OnTwo = forces_on_two,
+) -> Resolution:
     """Return how two contacts go on whose slip has ended: on both, on the first, or on none.
 
     What is tried first is to hold rolling, if that is resisted and has ended (rolls = 0), and then
@@ -57,22 +63,24 @@ def resolution(pair: ContactPair, xi: Slip, ended: tuple[bool, bool], rolls: flo
         on.
     """
     if rolls or not pair[0].top.resists_rolling:
-        return of_slips(pair, xi, ended, rolls)
-    held = _without_rolling(pair, xi, ended)
+        return of_slips(pair, xi, ended, rolls, moved)
+    held = _without_rolling(pair, xi, ended, moved)
     if held is not None and held.motion.rolling_reserve >= 0.0:
         return held
     direction = 1.0 if held is None else rolling_direction(held.motion)
     for sign in (direction, -direction):
-        trial = of_slips(pair, xi, ended, sign)
+        trial = of_slips(pair, xi, ended, sign, moved)
         if trial.motion.rolling_rate * sign >= 0.0:
             return trial
     raise Unsolved("nothing can hold the rolling of two contacts, and it can begin neither way")
 
 
-def _without_rolling(pair: ContactPair, xi: Slip, ended: tuple[bool, bool]) -> Resolution | None:
+def _without_rolling(
+    pair: ContactPair, xi: Slip, ended: tuple[bool, bool], moved: OnTwo
+) -> Resolution | None:
     """Return the resolution with rolling held; None where rolling cannot be held."""
     try:
-        return of_slips(pair, xi, ended, 0.0)
+        return of_slips(pair, xi, ended, 0.0, moved)
     except ArithmeticError:
         return None
 
@@ -119,9 +127,14 @@ def of_slips(
 
 
 def first_begins_to_slip(
-    pair: ContactPair, xi: Slip, rolls: float, moved: OnTwo = forces_on_two
+    pair: ContactPair,
+    xi: Slip,
+    rolls: float,
+    moved: OnTwo = forces_on_two,
+    near: Slip | None = None,
 ) -> Resolution:
-    """Return the resolution in which the first contact, which alone sticks, begins to slip.
+    """Return the resolution in which the first contact, which alone sticks, begins to slip; `near`
+    is an approximate direction of xi, if that is known.
 
     Raises
     ------
@@ -138,12 +151,19 @@ def first_begins_to_slip(
         trial = motion(ways[0])
         return [Resisted(trial.rates.points[0][:2], stiffness * size(trial.wrenches[0].force[:2]))]
 
-    direction = directions(response, [scaled(-1.0, motion(None).wrenches[0].force[:2])])[0]
+    (direction,) = (
+        directions(response, [scaled(-1.0, motion(None).wrenches[0].force[:2])])
+        if near is None
+        else directions_near(response, [near[:2]])
+    )
     return Resolution(motion(direction), (False, False), rolls, (*direction, 0.0))
 
 
-def both_begin_to_slip(pair: ContactPair, rolls: float, moved: OnTwo = forces_on_two) -> Resolution:
-    """Both contacts begin to slip, which cannot be held.
+def both_begin_to_slip(
+    pair: ContactPair, rolls: float, moved: OnTwo = forces_on_two, near: Slip | None = None
+) -> Resolution:
+    """Return the resolution in which both contacts begin to slip, which cannot be held; `near` is
+    an approximate direction of xi, if that is known.
 
     Raises
     ------
@@ -166,7 +186,11 @@ def both_begin_to_slip(pair: ContactPair, rolls: float, moved: OnTwo = forces_on
         )
         return [Resisted(trial.rate, strength)]
 
-    direction = directions(response, [against(moved(pair, (None, None), rolls))])[0]
+    (direction,) = (
+        directions(response, [against(moved(pair, (None, None), rolls))])
+        if near is None
+        else directions_near(response, [near])
+    )
     return Resolution(motion(direction), (False, False), rolls, direction)
 
 

@@ -91,6 +91,20 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
     raise Unsolved("no direction in which the contact can go on, though nothing can hold it")
 
 
+def directions_near(response: Response, ways: Sequence[Slip]) -> list[Slip]:
+    """Return the directions of which approximate ones are known, by Newton's method.
+
+    Raises
+    ------
+    ArithmeticError
+        If Newton's method does not converge, or velocities do not grow along them.
+    """
+    improved = _improved(response, [_unit(direction) for direction in ways])
+    if improved is None:
+        raise Unsolved("the directions in which the contact goes on are not found from near ones")
+    return improved
+
+
 def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
     """Return the directions by Newton's method from near ones; None if it fails."""
     last = DIRECTED

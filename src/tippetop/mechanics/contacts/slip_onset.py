@@ -10,15 +10,17 @@ from tippetop.mechanics.contacts.forces import (
     slip_length,
     slip_reserve,
 )
-from tippetop.mechanics.contacts.slip_direction import Resisted, directions
+from tippetop.mechanics.contacts.slip_direction import Resisted, directions, directions_near
 from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import inner, scaled, size
 from tippetop.mechanics.contacts.wrench import Slip, Wrench
 from tippetop.mechanics.motion import presses
 from tippetop.mechanics.unsolved import Unsolved
 
-CHOICES = ((False, False), (True, False), (False, True), (True, True))
-"""What is tried in turn where slip, and rolling, have ended: whether they go on all the same."""
+CHOICES = ((True, False), (False, True), (True, True))
+"""What is tried in turn where not all of slip and rolling that have ended is held: whether they go
+on all the same.
+"""
 
 Moved: TypeAlias = Callable[[ContactPoint, Slip | None, Slip | None], tuple[Wrench, Acceleration]]
 """From slip and rolling, None where they are held, to what the table does, and the acceleration."""
@@ -47,6 +49,7 @@ def find_onset(
     begins: tuple[bool, bool],
     *,
     held: Wrench | None = None,
+    near: Sequence[Slip] = (),
     moved: Moved = forces_and_accelerations,
 ) -> Onset:
     """Return the directions in which slip, or rolling, or both, begin, and the forces.
@@ -61,6 +64,8 @@ def find_onset(
         Whether slip, and rolling, begin; what is zero and does not is held.
     held
         What would hold what begins, if that is known and not both begin.
+    near
+        Approximate directions of what begins, slip first, if they are known.
     moved
         What the table does: in contact, or in an impact.
 
@@ -97,7 +102,9 @@ def find_onset(
         ]
 
     ways: list[Slip] = []
-    if parts:
+    if near:
+        ways = directions_near(response, near)
+    elif parts:
         # Against what would have held it; slip, if both begin, against what holds it once rolling
         # goes on.
         beside = (
@@ -134,29 +141,39 @@ def resolve_onset(
         If nothing can hold the contact, and it can go on in no direction.
     """
     ended = slip is None, rolling is None
+    held = find_onset(point, slip, rolling, (False, False), moved=moved)
+    within = _within_limits(point, held)
+    if _is_pressed(point, held) and all(within):
+        return held, (False, False)
+    # Where friction holds one beside the other, however much that takes, it does not begin alone.
+    holds = [_is_pressed(point, held) and part for part in within]
     for begins in CHOICES:
         if begins[0] > ended[0] or begins[1] > ended[1]:
+            continue
+        if not all(begins) and (holds[0] if begins[0] else holds[1]):
             continue
         try:
             onset = find_onset(point, slip, rolling, begins, moved=moved)
         except ArithmeticError:
             continue
-        if _admits(point, onset):
+        if _is_pressed(point, onset) and all(_within_limits(point, onset)):
             return onset, begins
     raise Unsolved("nothing can hold the contact, and there is no direction in which it can go on")
 
 
-def _admits(point: ContactPoint, onset: Onset) -> bool:
-    """Return whether the held components are within friction's limits, and the normal force
-    presses.
-    """
-    if onset.wrench.force[2] <= 0.0 and presses(point.axis, point.momentum, point.top):
-        return False
-    if onset.slip is None and slip_reserve(point.top, onset.wrench) < 0.0:
-        return False
-    return onset.rolling is not None or bool(
+def _is_pressed(point: ContactPoint, onset: Onset) -> bool:
+    """Return whether the table presses, or the weight does not."""
+    weight = presses(point.axis, point.momentum, point.top)
+    return bool(onset.wrench.force[2] > 0.0 or not weight)
+
+
+def _within_limits(point: ContactPoint, onset: Onset) -> tuple[bool, bool]:
+    """Return whether slip, and rolling, if they are held, are so within friction's limits."""
+    slip = onset.slip is not None or bool(slip_reserve(point.top, onset.wrench) >= 0.0)
+    rolling = onset.rolling is not None or bool(
         rolling_reserve(point, onset.wrench, onset.slip) >= 0.0
     )
+    return slip, rolling
 
 
 def _stiffness(part: SlipComponent, point: ContactPoint) -> float:
