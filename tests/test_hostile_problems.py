@@ -321,13 +321,13 @@ def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPa
         friction=tt.RegularizedCoulombFriction(mu=0.3, eps=1e-4),
         launch=tt.Launch(tilt=1.3, spin=5.0, gap=0.01),
     )
-    bounded = tt.simulate(rod, 0.1, samples=3, step_limit=500)
+    bounded = tt.simulate(rod, 0.1, samples=3, step_limit=400)
     assert bounded.attrs["status"] == "too_many_steps"
     with monkeypatch.context() as uncounted:
         uncounted.setattr(
             collision, "impact", lambda *given: contact_impact.impact(*given)._replace(steps=0)
         )
-        free = tt.simulate(rod, 0.1, samples=3, step_limit=500)
+        free = tt.simulate(rod, 0.1, samples=3, step_limit=400)
     assert free.attrs["status"] == "completed"
     monkeypatch.setattr(contact_impact, "MOST_IMPACT_STEPS", 5)
     given_up = tt.simulate(rod, 0.1, samples=3)

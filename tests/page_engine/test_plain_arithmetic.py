@@ -104,8 +104,8 @@ def test_operands_are_numbers_in_many_flights(checked, friction, flights):
 def test_what_is_no_number_is_seen(checked):
     asking = f"""
       import * as m from {json.dumps((checked / "mechanics.js").as_uri())};
-      for (const one of [[1], new m.Tip(), "1"]) {{
-        try {{ m.stays_positive(one, 0, 0, 0, 0.5); }}
+      for (const one of [[1], new m.SlipComponent(true), "1"]) {{
+        try {{ m.inner([one], [0.5]); }}
         catch (error) {{ console.log(error.message); }}
       }}
     """

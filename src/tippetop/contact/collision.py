@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from tippetop.contact.impact import Impact, impact
-from tippetop.contact.touching import other_touching
+from tippetop.contact.touching import farthest_touching
 from tippetop.integrators.base import Integrator
 from tippetop.mechanics.flight.free_motion import gap_rate
 from tippetop.mechanics.state import State
@@ -35,7 +35,7 @@ def collision(
     ArithmeticError
         If the impulse cannot be computed.
     """
-    beside = struck_beside(state, top)
+    beside = farthest_touching(top, state)  # it strikes too, is closed, or may close meanwhile
     struck = impact(state, restitution, top, beside, integrator)
     rebounds = bool(gap_rate(struck.state, top) > SLOWEST_REBOUND)
     if restitution and not rebounds:
@@ -43,13 +43,3 @@ def collision(
         struck = impact(state, 0.0, top, beside, integrator)
         struck = struck._replace(steps=steps + struck.steps)
     return Collision(struck, rebounds)
-
-
-def struck_beside(state: State, top: Top) -> Top | None:
-    """Return the top with the other surface active that touches too, so that it strikes as well, is
-    closed or may close meanwhile; None if none does.
-
-    Of several it is the one that sinks fastest: what touches between two others has no force.
-    """
-    touching = other_touching(top, state)
-    return touching[0] if touching else None

@@ -509,7 +509,7 @@ class ImpactProcess:
                 if arc.guard is not None or steps > MOST_IMPACT_STEPS:
                     break
             moved = tuple(start[1].tolist())
-            if arc.guard is None:
+            if arc.guard is None or steps > MOST_IMPACT_STEPS:
                 raise Unsolved("an impact does not come to its end")
             cause, *contact = arc.guard.split(NUMBER_SIGN)
             number = int(contact[0]) if contact else BOTH

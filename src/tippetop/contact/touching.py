@@ -54,6 +54,16 @@ def _place(top: Top, state: State) -> float:
     return float(support_at(state.axis, top.surface)[1]) * math.hypot(*state.axis[:2])
 
 
+def farthest_touching(top: Top, state: State) -> Top | None:
+    """Return the top with that other surface active which touches farthest from the active one.
+
+    None if no other touches. What lies between two that touch has no force (see `outermost`).
+    """
+    place = _place(top, state)
+    others = other_touching(top, state)
+    return max(others, key=lambda each: abs(_place(each, state) - place)) if others else None
+
+
 def stays_closed(top: Top, beside: Top, state: State) -> bool:
     """Return whether another touching surface stays closed.
 

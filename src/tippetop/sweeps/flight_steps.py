@@ -19,12 +19,12 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.sweeps.taylor_step import PROBES, extremes, met, order_for, step_size
 from tippetop.sweeps.taylor_stepper import NODES, compiled, padded
 
-TOLERANCE = 1e-14
+FLIGHT_TOLERANCE = 1e-14
 """What the polynomials of a step leave out, relative to the axis and the gap: a short flight has a
 gap that is as small a part of the size.
 """
 
-ORDER = order_for(TOLERANCE)
+ORDER = order_for(FLIGHT_TOLERANCE)
 
 LEFT, VANISHING, WANTED, GIVEN = SIZE, SIZE + 1, slice(SIZE + 2, SIZE + 5), SIZE + 5
 """Rows of what is given after the state, and how many: the time that is left, how many of gap, gap

@@ -31,7 +31,7 @@ from tippetop.sweeps.launch_arrays import Flags, Indices
 from tippetop.sweeps.polynomial_arcs import arcs
 from tippetop.sweeps.taylor_stepper import polynomials
 
-TOLERANCE = 1e-15
+IMPACT_TOLERANCE = 1e-15
 """What is left out of the polynomials, relative to the impulses: rebounds, of which a top may make
 hundreds, let errors grow.
 """
@@ -101,7 +101,9 @@ class ImpactsUnderWay:
         for _ in range(MOST_PIECES):
             if not len(work):
                 break
-            jet = polynomials(motion, TOLERANCE)(self.impulse[:, work], self.numbers[:, work])
+            jet = polynomials(motion, IMPACT_TOLERANCE)(
+                self.impulse[:, work], self.numbers[:, work]
+            )
             longest = LONGEST * self.impulse[-1, work]
             course = arcs(jet, np.zeros(len(work)), longest, pauses[:, work])
             course.look_closer(jet, pauses[:, work])
