@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -204,23 +205,23 @@ export const found = launches.map(([name, { problem, duration }]) => {
 
 
 def others() -> list[tuple[str, dict[str, object]]]:
-    """Launches of bodies that the page's presets do not have, and a drop that bounces."""
-    bouncing = tt.Contact(restitution=0.5)
-    bodies = {
-        "hurricane": (tt.presets.HURRICANE_BALLS, tt.Launch(tilt=0.5, spin=30.0), None),
-        "hurricane faster": (tt.presets.HURRICANE_BALLS, tt.Launch(tilt=0.3, spin=60.0), None),
-        "coin": (tt.presets.COIN, tt.Launch(tilt=0.5, spin=0.0), None),
-        "egg": (tt.presets.EGG, tt.Launch(tilt=0.1, spin=155.0), None),
+    """Launches of bodies that the page's presets do not have, one of which rocks on dry friction,
+    and a drop that bounces.
+    """
+    dry: dict[str, Any] = {"friction": tt.CoulombFriction(mu=0.3)}
+    bouncing: dict[str, Any] = {"contact": tt.Contact(restitution=0.5)}
+    bodies: dict[str, tuple[tt.Body, tt.Launch, dict[str, Any]]] = {
+        "hurricane": (tt.presets.HURRICANE_BALLS, tt.Launch(tilt=0.5, spin=30.0), {}),
+        "hurricane faster": (tt.presets.HURRICANE_BALLS, tt.Launch(tilt=0.3, spin=60.0), {}),
+        "hurricane dry": (tt.presets.HURRICANE_BALLS, tt.Launch(tilt=0.5, spin=30.0), dry),
+        "coin": (tt.presets.COIN, tt.Launch(tilt=0.5, spin=0.0), {}),
+        "egg": (tt.presets.EGG, tt.Launch(tilt=0.1, spin=155.0), {}),
         "drop": (tt.presets.REPORT, tt.Launch(tilt=0.3, spin=60.0, gap=0.002), bouncing),
     }
     launches = []
-    for name, (body, launch, contact) in bodies.items():
-        problem = tt.Problem(
-            body=body,
-            friction=tt.ViscousFriction(mu=0.3),
-            launch=launch,
-            contact=contact or tt.Contact(),
-        )
+    for name, (body, launch, table) in bodies.items():
+        fields = {"friction": tt.ViscousFriction(mu=0.3), **table}
+        problem = tt.Problem(body=body, launch=launch, **fields)
         plain = json.loads(problem.model_dump_json(exclude_none=True))
         launches.append((name, {"problem": plain, "duration": 2.0}))
     return launches
@@ -231,7 +232,7 @@ COMPARED = ("turnover_time", "arrival_time", "final_tilt", "final_spin", "energy
 
 def test_page_and_python_say_the_same_of_every_launch() -> None:
     found = found_in_the_page(FOLLOWED % json.dumps(others()))
-    assert len(found) == 17
+    assert len(found) == 18
     for name, problem, duration, account, metrics, jumps in found:
         run = tt.simulate(tt.Problem(**problem), duration, samples=2)
         ours = tt.describe(run)
