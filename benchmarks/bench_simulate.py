@@ -19,6 +19,7 @@ import tippetop as tt
 from benchmarks.surroundings import COMMAND_LINE, IMPORTS, markdown, new_process, seconds
 from tippetop.mechanics.top import natural_units
 from tippetop.problem.presets import report_problem
+from tippetop.problem.problem import top_of
 
 SPIN, DURATION, SAMPLES = 155.0, 20.0, 2001
 TOLERANCE = 2e-16
@@ -69,7 +70,7 @@ def bare_integration(problem: tt.Problem, duration: float) -> Callable[[], tuple
 
     Returns a function that integrates and returns the final tilt's cosine and the steps.
     """
-    numbers, units = problem.top.numbers, natural_units(problem.top)
+    numbers, units = top_of(problem).numbers, natural_units(top_of(problem))
     integrator = hy.taylor_adaptive(equations(), [0.0] * 8, pars=[1.0] * 4, tol=TOLERANCE)
 
     first = tt.simulate(problem, duration, times=[0.0])

@@ -21,7 +21,7 @@ from tippetop.mechanics.euler import published_rates
 from tippetop.mechanics.motion import sliding_contact, sliding_rates
 from tippetop.mechanics.state import SlidingState
 from tippetop.problem.presets import report_problem
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.ensemble import follow_cells
@@ -160,7 +160,7 @@ def diffrax_vmap(spins: Array, tolerance: float) -> Array:
 
 def scipy_published(spins: Array, tolerance: float) -> Array:
     """SciPy's DOP853 on the published equations."""
-    top = problem().top
+    top = top_of(problem())
     found = []
 
     def rates(_: float, y: Array) -> Array:

@@ -15,6 +15,7 @@ import tippetop as tt
 from node import NODE
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.page_engine import HERE
+from tippetop.problem.problem import top_of
 from tippetop.results.catalogue import LISTED, METRICS, SAMPLED
 
 SAMPLES = 41
@@ -175,7 +176,7 @@ def friction_apart(track: dict[str, Any], run: Any, count: int) -> float:
     The law is Python's in both, N. Where a top creeps, at a slip of 1e-6 m/s, friction multiplies a
     difference of slip by 1e5 N s/m: slips that agree to 1e-12 m/s give forces that agree to 1e-7 N.
     """
-    top = tt.Problem.from_json(run.attrs["problem"]).top
+    top = top_of(tt.Problem.from_json(run.attrs["problem"]))
     names = ("slip_x", "slip_y", "axis", "angular_momentum")
     forces = []
     for source in (track, run):

@@ -8,6 +8,7 @@ import pytest
 import tippetop as tt
 from tippetop.mechanics.contacts.slip_variables import is_slipping
 from tippetop.mechanics.motion import along_table
+from tippetop.problem.problem import top_of
 
 DISK_MASS, DISK_RADIUS, THICKNESS = 0.4, 0.0375, 0.0125
 DISK = tt.Body(
@@ -54,7 +55,7 @@ def test_a_disk_launched_without_slip_near_flat_has_none() -> None:
             tilt=tilt, spin=spin, precession=precession, tilt_rate=tilt_rate, azimuth=azimuth
         )
         problem = tt.Problem(body=DISK, friction=ROUGH, launch=launch)
-        assert not is_slipping(*along_table(problem.start()), problem.top), launch
+        assert not is_slipping(*along_table(problem.start()), top_of(problem)), launch
 
 
 @pytest.mark.parametrize("precession", [55.0, 80.0, 200.0])

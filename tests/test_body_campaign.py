@@ -13,6 +13,7 @@ from tippetop.integrators import make_integrator
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.problem.problem import top_of
 
 SIZE, MASS = 0.02, 0.02
 NAMED = {"completed", "at_rest", "lying_flat"}
@@ -129,7 +130,7 @@ def test_what_touches_within_rounding_does_not_sink_in(back: float) -> None:
     )
     launch = tt.Launch(tilt=float(np.arccos(0.1)), spin=10.0, slip=(0.1, 0.2))
     problem = tt.Problem(body=body, friction=tt.ViscousFriction(mu=0.1), launch=launch)
-    units, top = natural_units(problem.top), natural(problem.top)
+    units, top = natural_units(top_of(problem)), natural(top_of(problem))
     level = natural_state(problem.start(), units)
     first, second = top.each if back > 0.0 else top.each[::-1]
     lever = first.surface.slope(level.axis[2]) - second.surface.slope(level.axis[2])

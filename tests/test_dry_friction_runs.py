@@ -27,6 +27,7 @@ from tippetop.mechanics.motion import along_table, on_table, presses, sliding_co
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural, natural_state, natural_units
+from tippetop.problem.problem import top_of
 
 INTEGRATORS = ["taylor", "dop853"]
 LAWS = {
@@ -228,9 +229,9 @@ def test_slip_that_grows_is_not_followed_to_an_end(slip: float, mode: type) -> N
     problem = tt.Problem(
         body=tt.presets.REPORT, friction=tt.CoulombFriction(mu=0.01), launch=launch
     )
-    top = natural(problem.top)
+    top = natural(top_of(problem))
     automaton, slides = Automaton(top, "ignore", 0.0), ContactMode(top, pulls=True)
-    start = natural_state(problem.start(), natural_units(problem.top))
+    start = natural_state(problem.start(), natural_units(top_of(problem)))
     end = ModeEnd(STOPPING, start)
     assert type(automaton.follow(slides, end, 0.0).next) is mode
 

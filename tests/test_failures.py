@@ -32,6 +32,7 @@ from tippetop.mechanics.surfaces.surface import SpheroidSurface
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.problem.presets import REPORT, report_problem
+from tippetop.problem.problem import top_of
 
 THROWN = report_problem(spin=155.0).replace({"launch.gap": 0.01})
 SLIPPERY = tt.Problem(
@@ -128,7 +129,7 @@ def test_painleves_paradox_with_rolling_held_takes_slip_away() -> None:
     problem = report_problem(0.0, tilt=1.5, mu=10.0).replace(
         {"launch.slip": (10.0, 0.0), "rolling_resistance": 1e-6}
     )
-    start, top = problem.start(), problem.top
+    start, top = problem.start(), top_of(problem)
     assert sliding_contact(*along_table(start), top).delassus < 0.0
     after = Automaton(top, "fly", 0.0).resting(top, 0.0, start)
     assert [event.kind for event in after.events][:1] == [EventKind.IMPACT]
@@ -156,16 +157,18 @@ def test_at_the_singular_point_of_a_jam_it_is_open_what_follows() -> None:
 
     def delassus(mu: float) -> float:
         problem = rod(mu, 0.0)
-        touch = sliding_contact(*along_table(problem.start()), problem.top)
-        return float(touch.delassus * problem.top.mass)
+        touch = sliding_contact(*along_table(problem.start()), top_of(problem))
+        return float(touch.delassus * top_of(problem).mass)
 
     def opening(rate: float) -> float:
         problem = rod(mu, rate)
-        return float(sliding_contact(*along_table(problem.start()), problem.top).free_acceleration)
+        return float(
+            sliding_contact(*along_table(problem.start()), top_of(problem)).free_acceleration
+        )
 
     mu = brentq(delassus, 0.01, 10.0, xtol=1e-16)
     singular = rod(mu, brentq(opening, 0.0, 1000.0))
-    after = Automaton(singular.top, "fly", 0.0).jammed(singular.top, 0.0, singular.start())
+    after = Automaton(top_of(singular), "fly", 0.0).jammed(top_of(singular), 0.0, singular.start())
     assert after is not None
     assert after.detail.startswith("What follows where friction jams the contact cannot be found:")
     assert "whether it does or is struck rigid bodies do not tell" in after.detail

@@ -17,6 +17,7 @@ from tippetop.contact.automaton import Automaton
 from tippetop.mechanics.flight.free_motion import gap
 from tippetop.mechanics.motion import along_table, sliding_contact
 from tippetop.problem.presets import REPORT, report_problem
+from tippetop.problem.problem import top_of
 
 FIRST_LIFT_OFF = {175.0: 5.361332, 170.0: 5.85182}
 """Converged times of the first lift-off of the report's top launched at tilt 0.1 with mu 0.3 s/m.
@@ -212,7 +213,7 @@ def test_an_indeterminate_contact_force_is_reported_and_what_follows_can_be_chos
     paradox = report_problem(100.0, tilt=1.5, mu=100.0).replace(
         {"launch.slip": (10.0, 0.0), "launch.precession": 60.0}
     )
-    touch = sliding_contact(*along_table(paradox.start()), paradox.top)
+    touch = sliding_contact(*along_table(paradox.start()), top_of(paradox))
     assert touch.delassus < 0.0 < touch.free_acceleration
     struck = tt.simulate(paradox, 1e-4)
     assert struck.event_kind[:2].values.tolist() == ["indeterminate force", "impact"]
@@ -223,15 +224,15 @@ def test_an_indeterminate_contact_force_is_reported_and_what_follows_can_be_chos
     assert opened.gap.values == pytest.approx(rise, rel=1e-2)
     for run in (struck, opened):
         assert "indeterminate" in run.attrs["message"]
-    without_flights = Automaton(paradox.top, "stop", 0.0, "impact")
-    transition = without_flights.resting(paradox.top, 0.0, paradox.start())
+    without_flights = Automaton(top_of(paradox), "stop", 0.0, "impact")
+    transition = without_flights.resting(top_of(paradox), 0.0, paradox.start())
     assert transition.next is tt.Status.FAILED
     assert "needs contact.liftoff = fly" in transition.detail
 
 
 def test_a_force_that_friction_makes_inconsistent_is_not_called_indeterminate():
     paradox = report_problem(0.0, tilt=1.5, mu=100.0).replace({"launch.slip": (10.0, 0.0)})
-    touch = sliding_contact(*along_table(paradox.start()), paradox.top)
+    touch = sliding_contact(*along_table(paradox.start()), top_of(paradox))
     assert touch.delassus < 0.0
     assert touch.free_acceleration < 0.0
     for choice in ("impact", "liftoff"):
@@ -335,7 +336,7 @@ def test_a_body_with_two_maxima_of_its_support_function_lands_at_its_first_touch
             velocity=(0, 0, 0),
         ),
     )
-    top, state = problem.top, problem.start()
+    top, state = top_of(problem), problem.start()
 
     def gap_at(time):
         return gap(fly(state, time, top, np), top)

@@ -30,6 +30,7 @@ from tippetop.mechanics.motion import (
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
+from tippetop.problem.problem import top_of
 
 M, R, OFF, INERTIA, MU, G = 0.02, 0.02, 0.001, 4e-8, 0.3, 9.81
 """Mass, radius, distance of the centres, moments of inertia, friction and gravity, SI."""
@@ -127,7 +128,7 @@ def test_the_power_of_a_force_without_bound_adds_up(slip: float, integrator: str
 def test_past_jamming_no_rounding_decides_whether_friction_presses_the_contact(left: float) -> None:
     """However near to zero the Delassus number is where it is told that friction jams."""
     problem = jamming()
-    top, start = problem.top, along_table(problem.start())
+    top, start = top_of(problem), along_table(problem.start())
     swing = contact_swing(start.axis, start.momentum, top)
 
     def slipping(angle: float) -> SlidingState:
@@ -213,7 +214,7 @@ def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
     assert "rigid bodies do not tell" in run.attrs["message"]
     last = {name: run[name].values[-1] for name in ("axis", "angular_momentum", "velocity")}
     touch = sliding_contact(
-        last["axis"], last["angular_momentum"], last["velocity"][:2], problem.top
+        last["axis"], last["angular_momentum"], last["velocity"][:2], top_of(problem)
     )
     weight = problem.body.mass * problem.gravity
     # Slip is followed until a part of 1e-8 of it is left; the force at the end itself is 0 / 0.
@@ -301,12 +302,12 @@ def test_what_sticks_at_once_takes_the_energy_of_its_slip_and_does_not_open(
     for part in (1e-3, 1e-2):
         problem = jamming(slip=part * SLOW).replace({**law, "launch.spin": 40.0 * part})
         before = problem.start()
-        after = stuck_at_once(before, problem.top)
-        assert np.abs(slip_of(*along_table(after), problem.top)).max() < 1e-16
+        after = stuck_at_once(before, top_of(problem))
+        assert np.abs(slip_of(*along_table(after), top_of(problem))).max() < 1e-16
         assert after.velocity[2] == pytest.approx(
-            on_table(along_table(after), problem.top).velocity[2], abs=1e-17
+            on_table(along_table(after), top_of(problem)).velocity[2], abs=1e-17
         )
-        lost.append(energy(before, problem.top) - energy(after, problem.top))
+        lost.append(energy(before, top_of(problem)) - energy(after, top_of(problem)))
     assert lost[0] > 0.0
     assert lost[1] == pytest.approx(100.0 * lost[0], rel=1e-6)
 

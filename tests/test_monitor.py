@@ -13,18 +13,22 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.vectors import length
+from tippetop.problem.problem import top_of
 from tippetop.results.monitor import Monitor
 
 PROBLEM = tt.presets.report_problem()
 STEMMED = PROBLEM.replace({"body": tt.presets.REPORT_STEM})
-TOP = natural(PROBLEM.top)
-START = natural_state(PROBLEM.start(), natural_units(PROBLEM.top))
+TOP = natural(top_of(PROBLEM))
+START = natural_state(PROBLEM.start(), natural_units(top_of(PROBLEM)))
 ENERGY = float(energy(START, TOP))
 
 
 def seen(problem: tt.Problem = PROBLEM, **changes: Any) -> Monitor:
     """A monitor that saw three instants as the first, but for some changes to the last."""
-    top, start = natural(problem.top), natural_state(problem.start(), natural_units(problem.top))
+    top, start = (
+        natural(top_of(problem)),
+        natural_state(problem.start(), natural_units(top_of(problem))),
+    )
     monitor = Monitor(top, start)
     ones = np.array([1.0, 1.0, 1.0])
     told = {
@@ -177,7 +181,7 @@ def test_what_is_no_number_is_not_trusted(number: float) -> None:
 
 def test_many_launches_are_held_against_what_each_keeps() -> None:
     problems = [PROBLEM.replace({"launch.spin": spin}) for spin in (1e-8, 50.0, 155.0)]
-    starts = [natural_state(one.start(), natural_units(one.top)) for one in problems]
+    starts = [natural_state(one.start(), natural_units(top_of(one))) for one in problems]
     many = State.unpack(
         [np.array(numbers) for numbers in zip(*(one.pack() for one in starts), strict=True)]
     )

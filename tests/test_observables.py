@@ -15,6 +15,7 @@ from tippetop.mechanics.motion import along_table, angular_velocity, sliding_con
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.state import SlidingState
 from tippetop.problem.presets import report_problem
+from tippetop.problem.problem import top_of
 from tippetop.results.samples import continuous
 
 RANDOM = np.random.default_rng(2).normal(size=(1000, 4))
@@ -74,7 +75,7 @@ def test_place_orientation_and_work_of_a_run_are_those_of_an_integration_beside_
     """A marker moved by k' = omega x k, in SI; the run is in natural units and goes through the
     equator.
     """
-    problem, top = ACROSS_THE_EQUATOR, ACROSS_THE_EQUATOR.top
+    problem, top = ACROSS_THE_EQUATOR, top_of(ACROSS_THE_EQUATOR)
     times = np.linspace(0.0, 0.3, 61)
     run = tt.simulate(problem, 0.3, times=times)
     assert run.attrs["status"] == "completed"
@@ -114,7 +115,7 @@ def test_a_flying_body_turns_as_a_free_symmetric_top_does():
             "contact.liftoff": "fly",
         }
     )
-    top, start, times = problem.top, problem.start(), np.linspace(0.0, 0.4, 101)
+    top, start, times = top_of(problem), problem.start(), np.linspace(0.0, 0.4, 101)
     run = tt.simulate(problem, 0.4, times=times)
     assert (np.diff(np.sign(run.axis.values[:, 2])) != 0).sum() > 5
     along = np.dot(start.momentum, start.axis) * (

@@ -30,6 +30,7 @@ from tippetop.mechanics.contacts.pair_resolver import moments_hold, patches_begi
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.unsolved import Unsolved
+from tippetop.problem.problem import top_of
 
 RADIUS = 0.004
 """A patch nearly as large as the dumbbell's balls: drilling counts."""
@@ -226,8 +227,8 @@ def test_patches_slip_when_rolling_has_become_too_slow_for_what_holds_them() -> 
 
 def resting_pair(problem: tt.Problem) -> tuple[tuple[ContactPoint, ...], float]:
     """Both contacts at launch, in natural units, and which way the body rolls."""
-    top = natural(problem.top)
-    state = natural_state(problem.start(), natural_units(problem.top))
+    top = natural(top_of(problem))
+    state = natural_state(problem.start(), natural_units(top_of(problem)))
     return contact_points(state.axis, state.momentum, top.each), rolling_of(state, top)
 
 

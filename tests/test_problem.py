@@ -31,7 +31,7 @@ from tippetop.problem.frictions import (
     ViscousFriction,
 )
 from tippetop.problem.launch import Launch
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.problem.shapes import EccentricSphere, Oval, Ring, Sphere, Spheroid
 from tippetop.support.errors import FileTrouble, InvalidInput, TippetopError
 from tippetop.support.field_paths import dotted_names, part_at
@@ -833,11 +833,11 @@ class TestValues:
 
     def test_a_problem_is_the_numbers_of_its_parts(self):
         sphere = top_problem(launch__tilt=0.5)
-        assert sphere.top == Top(
+        assert top_of(sphere) == Top(
             0.02, sphere.body.I1, sphere.body.I3, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8
         )
         egg = top_problem(body=EGG, friction=COULOMB, gravity=1.62)
-        assert egg.top == Top(
+        assert top_of(egg) == Top(
             0.05, 1.3e-5, 8e-6, SpheroidSurface(0.02, 0.03), RegularizedCoulombLaw(0.3, 1e-3), 1.62
         )
 
@@ -853,7 +853,7 @@ class TestValues:
         if launch.velocity is not None:
             assert start.velocity == launch.velocity
             return
-        touch = sliding_contact(start.axis, start.momentum, start.velocity[:2], original.top)
+        touch = sliding_contact(start.axis, start.momentum, start.velocity[:2], top_of(original))
         leaning = complex(math.cos(launch.azimuth), math.sin(launch.azimuth))
         size = 10.0 * body.shape.surface.size
         error = abs(complex(*touch.slip) - complex(*launch.slip) * leaning)
@@ -862,7 +862,7 @@ class TestValues:
     @given(problems())
     def test_the_start_is_as_far_above_the_table_as_the_launch_says(self, original):
         """Without a velocity of its own the lowest point moves sideways only."""
-        launch, start, top = original.launch, original.start(), original.top
+        launch, start, top = original.launch, original.start(), top_of(original)
         arm = contact_vector(start.axis, top.surface)
         size = 10.0 * top.surface.size
         assert start.height + arm[2] == pytest.approx(launch.gap, abs=1e-14 * (size + launch.gap))

@@ -55,6 +55,8 @@ def _parameters(value: Any) -> str:
         return ""
     texts, has_star = [], False
     for one in parameters:
+        if one.name.startswith("_"):
+            continue
         if one.kind is one.KEYWORD_ONLY and not has_star:
             texts.append("*")
         has_star |= one.kind in (one.KEYWORD_ONLY, one.VAR_POSITIONAL)

@@ -23,6 +23,7 @@ from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
+from tippetop.problem.problem import top_of
 
 M, ARM, G = 0.015, 2e-4, 9.8
 LAWS = {
@@ -114,7 +115,7 @@ def test_what_rolls_straight_on_two_surfaces_slows_down_evenly_and_rests(shape: 
     assert losses(run) == pytest.approx([0.0, 0.0, kinetic], rel=1e-12, abs=1e-13 * kinetic)
     start = problem.start()
     found = forces_on_two(
-        contact_points(start.axis, start.momentum, problem.top.each), (None, None), 1.0
+        contact_points(start.axis, start.momentum, top_of(problem).each), (None, None), 1.0
     )
     couples = [wrench.torque[0] for wrench in found.wrenches]
     assert couples == pytest.approx([-ARM * MASS * G / 3, -ARM * MASS * G * 2 / 3], rel=1e-12)
@@ -226,7 +227,7 @@ def ends(
     """Axis, angular momentum and velocity at the end, in natural units, and in which modes it went
     there.
     """
-    units, top = natural_units(problem.top), problem.top
+    units, top = natural_units(top_of(problem)), top_of(problem)
     top = natural(top if law is None else top._replace(friction=law, rolling_resistance=None))
     automaton = Automaton(top, "fly", 0.0)
     start = automaton.launch(natural_state(problem.start(), units))
@@ -266,7 +267,8 @@ def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(
     # The torque is about the first contact point, from which the second is off by the drift of the
     # gap.
     first, second = (
-        np.array([top.surface.height(c) for c in axis[:, 2].tolist()]) for top in problem.top.each
+        np.array([top.surface.height(c) for c in axis[:, 2].tolist()])
+        for top in top_of(problem).each
     )
     lifted = np.abs(first - second) * np.hypot(*run["contact_force"].values[:, :2].T)
     assert np.all(np.abs(couple) <= limit * (1 + 1e-12) + 2 * lifted)
@@ -274,7 +276,7 @@ def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(
     assert held.any()
     np.testing.assert_allclose(np.abs(couple[~held]), limit[~held], rtol=1e-9)
     for n, spin in zip(axis[held], momentum[held], strict=True):
-        pair = contact_points(tuple(n), tuple(spin), problem.top.each)
+        pair = contact_points(tuple(n), tuple(spin), top_of(problem).each)
         assert abs(turning_along(pair)) < 1e-11 * (G / R) ** 0.5
 
 
@@ -303,7 +305,7 @@ def test_time_stepping_converges_to_our_runs_at_first_order(seed: int, duration:
     assert bool(events(run, "rolling starts")) is (seed == 64)
     body, start = problem.body, problem.start()
     rotation = Rotation.from_euler("y", problem.launch.tilt).as_matrix()
-    turning = angular_velocity(start.axis, start.momentum, problem.top)
+    turning = angular_velocity(start.axis, start.momentum, top_of(problem))
     spheres = [(shape.surface.radius, shape.surface.center) for shape in body.shapes]
     numbers = (body.mass, body.I1, body.I3, problem.gravity), spheres, problem.friction.mu  # type: ignore[attr-defined]
     errors = []

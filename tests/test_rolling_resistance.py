@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tippetop as tt
+from tippetop.problem.problem import top_of
 
 G = 9.8
 R, M, ARM = 0.02, 0.015, 1e-4
@@ -200,8 +201,8 @@ def test_sweeps_find_what_runs_find():
 
 def test_jelletts_integral_and_the_theory_know_of_it():
     problem = REPORT.model_copy(update={"rolling_resistance": 1e-5})
-    assert REPORT.top.conserves_jellett
-    assert not problem.top.conserves_jellett
+    assert top_of(REPORT).conserves_jellett
+    assert not top_of(problem).conserves_jellett
     run = tt.simulate(problem, 0.5, samples=11)
     assert float(run["jellett_drift"]) > 1e-6
     for ask in (tt.predict, tt.critical_spins):

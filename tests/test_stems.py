@@ -22,6 +22,7 @@ from tippetop.mechanics.motion import on_table
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_units
+from tippetop.problem.problem import top_of
 from tippetop.results.catalogue import SWEPT, Fault
 from tippetop.results.flags import decoded
 
@@ -147,7 +148,7 @@ def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
     )
     axis, momentum, velocity = vectors
     state = SlidingState(axis, momentum, velocity[:2])
-    tops = LEINE_GLOCKER.top.each
+    tops = top_of(LEINE_GLOCKER).each
     pair = contact_points(axis, momentum, tops)
     slips = [slip_of(*state, top) for top in tops]
     units = [normal_wrench(point, slip) for point, slip in zip(pair, slips, strict=True)]
@@ -171,7 +172,7 @@ def test_two_patches_which_each_drill_or_slide_move_a_body_as_newton_and_euler_s
     they turn.
     """
     problem = LEINE_GLOCKER.replace({"friction.pressure": "hertz", "friction.patch_radius": 5e-3})
-    top, unit = natural(problem.top), natural_units(problem.top).length
+    top, unit = natural(top_of(problem)), natural_units(top_of(problem)).length
     tops, (low, high), law = tuple(top.each), problem.body.shapes, problem.friction.law
     c = (high.radius - low.radius) / (high.center - low.center)
     axis, turning = np.array([np.sqrt(1.0 - c * c), 0.0, c]), np.array([-0.5, 0.0, 2.0])
@@ -324,7 +325,7 @@ def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[Auto
     body = tt.Body(mass=0.01, shape=shapes, I1=2e-6, I3=1.25e-7)
     launch = tt.Launch(tilt=1.3, spin=5.0, gap=0.01)
     problem = tt.Problem(body=body, friction={"kind": law, "mu": 0.3}, launch=launch)
-    top = natural(problem.top)
+    top = natural(top_of(problem))
     top = top._replace(surface=top.surface.each[1])
     state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (velocity, 0.0)), top)
     return Automaton(top, "fly", 0.0), state

@@ -27,6 +27,7 @@ from tippetop.mechanics.laws.friction import NO_TORQUE
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.problem.problem import top_of
 
 MASS, BALL, HALF, MU, G = 0.01, 0.005, 0.02, 0.3, 9.8
 ACROSS = 2e-6
@@ -110,8 +111,8 @@ DURATION = {ONE_THEN_BOTH: 0.12, SLIPS_AGAIN: 0.3, BEYOND_THE_LIMIT: 0.0826}
 def followed(seed: int):
     """The segments of such a body."""
     problem = lying(seed)
-    units = natural_units(problem.top)
-    automaton = automaton_of(problem.contact, natural(problem.top), units)
+    units = natural_units(top_of(problem))
+    automaton = automaton_of(problem.contact, natural(top_of(problem)), units)
     start = automaton.launch(natural_state(problem.start(), units))
     run = Trajectory(
         automaton, start, DURATION[seed] / units.time, make_integrator("dop853", 3e-14)

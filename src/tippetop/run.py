@@ -17,7 +17,7 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import State
 from tippetop.mechanics.units import Units
 from tippetop.problem.implausible import warn_if_implausible
-from tippetop.problem.problem import Problem, require_problem
+from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.results.catalogue import Outcome
 from tippetop.results.dataset import assemble
 from tippetop.results.derived import variables_of
@@ -162,7 +162,7 @@ def simulate(
     require_problem(problem)
     require_callback("callback", callback)
     require("dense", dense, bool, "True or False")
-    require_recordable(problem.top)
+    require_recordable(top_of(problem))
     start = NaturalLaunch.of(problem)
     units = start.units
     duration = number_in("duration", duration, "s")

@@ -91,7 +91,7 @@ def verdicts(seed, guesses):
             fitted = tt.fit(guess, data, names)
         numbers = np.array([fitted.values[name] for name in names])
         errors = np.array([fitted.errors[name] for name in names])
-        variance = 1.0 if fitted.search.is_noise_known else float(local.noise[0][0]) ** 2
+        variance = 1.0 if np.isfinite(fitted.chi2) else float(local.noise[0][0]) ** 2
         above = (fitted.cost - local.cost) / variance
         scores = (numbers - truth) / errors
         rows.append(Verdict(KINDS[seed % 4], scores, bool(fitted.cautions), above, fitted.runs))

@@ -20,6 +20,7 @@ from launches import ROUNDINGS, launch_of, nudged
 from tippetop.contact.mode import IntegratedMode, ModeEnd, Segment
 from tippetop.fit.dual import Dual
 from tippetop.mechanics.top import natural_units
+from tippetop.problem.problem import top_of
 
 DURATION = 1.0
 SAME_TIME = 1e-10
@@ -48,7 +49,7 @@ def followed(problem: Any, integrator: Any) -> Any:
 def falls(problem: Any) -> Iterator[tuple[float, float, float]]:
     """Yield when guards fall in a run, how long their mode lasted, and the rounding of that, s."""
     _, solution = tt.simulate(problem, DURATION, times=[0.0], integrator="taylor", dense=True)
-    unit, begin = natural_units(problem.top).time, 0.0
+    unit, begin = natural_units(top_of(problem)).time, 0.0
     for segment in solution._block.segments:
         if segment.mode_end is not None:
             if isinstance(segment.mode, IntegratedMode):

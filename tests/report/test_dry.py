@@ -12,6 +12,7 @@ from judging import assert_drawn, assert_judged, assert_judged_otherwise
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.top import natural_units
 from tippetop.problem.frictions import ContensouFriction
+from tippetop.problem.problem import top_of
 from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.dry import COHEN, friction_needed, stepped
@@ -62,8 +63,8 @@ def test_cohens_centre_of_mass_rests_at_launch_and_its_slip_ends(
     computed: dict[str, xr.Dataset],
 ) -> None:
     start, data = COHEN.start(), computed["dry-cohen"]
-    assert np.abs(start.velocity).max() < 1e-15 * natural_units(COHEN.top).speed
-    turning = angular_velocity(start.axis, start.momentum, COHEN.top)
+    assert np.abs(start.velocity).max() < 1e-15 * natural_units(top_of(COHEN)).speed
+    turning = angular_velocity(start.axis, start.momentum, top_of(COHEN))
     assert np.linalg.norm(turning) == pytest.approx(100.0, rel=1e-14)
     assert float(data["sticks"]) == pytest.approx(0.0288, abs=5e-5)
     assert float(data["energy_kept"]) < 1e-9

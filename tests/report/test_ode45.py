@@ -7,6 +7,7 @@ import pytest
 
 from tippetop.mechanics.euler import published_normal_force
 from tippetop.problem.presets import report_problem
+from tippetop.problem.problem import top_of
 from tippetop.report.listing import launch_state, listing_rates, listing_run
 from tippetop.report.ode45 import REFINE, dormand_prince_step, ode45
 from tippetop.run import simulate
@@ -70,7 +71,7 @@ def test_lines_that_are_commented_out_keep_the_table_from_pulling() -> None:
     # A state in which the table would have to pull: a fast precession of a fast spin.
     state = (0.7, 0.0, 0.0, 40.0, 300.0, 0.1, 0.1)
     problem = report_problem()
-    assert published_normal_force(state, problem.top, math) < 0
+    assert published_normal_force(state, top_of(problem), math) < 0
     pulled, pushed = (
         listing_rates(problem, unilateral=unilateral).rates(state, ())
         for unilateral in (False, True)
@@ -78,7 +79,7 @@ def test_lines_that_are_commented_out_keep_the_table_from_pulling() -> None:
     assert pulled[4] != pytest.approx(0.0, abs=1e-6)
     assert pushed[4] == 0.0
     gentle = (0.7, 0.0, 0.0, 2.0, 3.0, 0.1, 0.1)
-    assert published_normal_force(gentle, problem.top, math) > 0
+    assert published_normal_force(gentle, top_of(problem), math) > 0
     pulled, pushed = (
         listing_rates(problem, unilateral=unilateral).rates(gentle, ())
         for unilateral in (False, True)

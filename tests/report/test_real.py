@@ -12,7 +12,7 @@ from judging import assert_drawn, assert_judged, assert_judged_otherwise
 from tippetop.problem.bodies import Body
 from tippetop.problem.launch import Launch
 from tippetop.problem.presets import EULER_DISK, HURRICANE_BALLS
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.problem.shapes import Spheroid
 from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
@@ -72,9 +72,9 @@ def test_an_egg_rises_if_it_is_spun_fast(computed: dict[str, xr.Dataset]) -> Non
 
 def test_rolling_around_the_centre_is_known_for_disks_and_balls() -> None:
     disk = Problem(body=EULER_DISK, friction=ROUGH, launch=Launch(tilt=0.3, spin=0.0), gravity=9.81)
-    found = resting_center(0.3, disk.top)
+    found = resting_center(0.3, top_of(disk))
     assert found == pytest.approx((59.96600573975, 2.95352773481), rel=1e-11)
-    balls = disk.replace({"body": HURRICANE_BALLS}).top
+    balls = top_of(disk.replace({"body": HURRICANE_BALLS}))
     for tilt in (1.2, 1.5, 1.57):
         rate = math.sqrt(9.81 / (0.01 * (2 / 5 - math.cos(tilt))))
         assert resting_center(tilt, balls) == pytest.approx(

@@ -9,6 +9,7 @@ import pytest
 import tippetop as tt
 from tippetop.contact.automaton import Automaton
 from tippetop.mechanics.top import natural_state, natural_units
+from tippetop.problem.problem import top_of
 from tippetop.sweeps import Store
 
 SPINS = [10.0, 20.0, 30.0, 40.0]
@@ -38,7 +39,7 @@ def test_a_launch_that_raises_fails_alone(
 ) -> None:
     """One by one, in lanes, and in a store."""
     problem, launch = problem_of(several), Automaton.launch
-    bad = natural_state(problem.start(), natural_units(problem.top)).momentum[2]
+    bad = natural_state(problem.start(), natural_units(top_of(problem))).momentum[2]
 
     def raising(self: Automaton, state: Any) -> Any:
         if np.isclose(state.momentum[2], bad):

@@ -11,6 +11,7 @@ from tippetop.mechanics.contacts.forces import velocity_without_slip
 from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.motion import along_table, angular_velocity
 from tippetop.mechanics.top import natural, natural_state, natural_units
+from tippetop.problem.problem import top_of
 from tippetop.sweeps.launch_arrays import Launches
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
 
@@ -51,7 +52,7 @@ def test_a_launch_that_leaves_the_arrays_takes_the_branch_of_its_present_state(s
     problem = tt.presets.report_problem(spin=155.0).replace(
         {"friction.kind": "contensou", "friction.patch_radius": 5e-4, "friction.pressure": "hertz"}
     )
-    units, top = natural_units(problem.top), natural(problem.top)
+    units, top = natural_units(top_of(problem)), natural(top_of(problem))
     state = natural_state(problem.start(), units)
     still = velocity_without_slip(state.axis, state.momentum, top)
     here, other = (

@@ -11,6 +11,7 @@ from campaigns import examples
 from strategies import problems
 from tippetop.mechanics.top import natural_state, natural_units
 from tippetop.problem.presets import REPORT_THIN_STEM, WOODEN, report_problem
+from tippetop.problem.problem import top_of
 from tippetop.results.catalogue import Fault, Outcome
 from tippetop.support.errors import InvalidInput
 from tippetop.sweeps import Product, Sweep, compute
@@ -57,8 +58,8 @@ def test_cells_start_as_their_problems_do(problem, field):
         if one is None:
             continue
         launches = cells.launches(np.array([index]), 3.0)
-        units = natural_units(one.top)
-        numbers = np.array(one.top.numbers)
+        units = natural_units(top_of(one))
+        numbers = np.array(top_of(one).numbers)
         assert launches.numbers[:, 0] == pytest.approx(numbers, rel=1e-14)
         start = np.array(launches.state.pack())[:, 0]
         wanted = np.array(natural_state(one.start(), units).pack())

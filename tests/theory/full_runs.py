@@ -13,14 +13,14 @@ from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top, natural_units
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 
 RADIUS, MASS, GRAVITY, AXIAL_INERTIA = 0.02, 0.02, 9.8, 3.2e-6
 
 
 def full_run(problem, times, smooth=False):
     """Axis, angular momentum and horizontal velocity of a sliding top, SI, in rows."""
-    top = problem.top
+    top = top_of(problem)
     if smooth:
         top = top._replace(friction=ViscousLaw(0.0))
     units = natural_units(top)

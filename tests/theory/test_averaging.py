@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 from tippetop import presets
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import natural_units
+from tippetop.problem.problem import top_of
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import (
     arrival_time_limit,
@@ -145,7 +146,7 @@ def test_the_flow_ends_in_the_predicted_state(problem):
 @pytest.mark.parametrize("problem", [*LAUNCHES[1:3], *SUBTLE])
 def test_the_flow_is_that_of_the_constants_of_the_smooth_table(problem):
     """L3 and the energy at constant lambda, without amplitudes, poles or a third root."""
-    numbers, unit = numbers_of(problem.top), float(natural_units(problem.top).jellett)
+    numbers, unit = numbers_of(top_of(problem)), float(natural_units(top_of(problem)).jellett)
     alpha, kept = numbers.alpha, jellett_of_launch(problem) / unit
     seen = nutation_of_launch(problem)
     begin = turned_orbit(seen.orbit, numbers.turned) if seen.turned else seen.orbit
@@ -288,7 +289,7 @@ def test_a_nutation_of_no_width_drifts_along_the_precessions_of_a_smooth_table(t
     """The amplitudes' rates against d L3 / d(mu t) of a precession that slips, fast or slow, at
     this tilt.
     """
-    top = REPORT.top
+    top = top_of(REPORT)
     numbers = numbers_of(top)
     across, along, alpha = numbers
     units = natural_units(top)
@@ -371,5 +372,5 @@ def test_the_flow_needs_no_units():
             "gravity": 1.5 * REPORT.gravity,
         }
     )
-    assert isinstance(larger.top.surface, SphereSurface)
+    assert isinstance(top_of(larger).surface, SphereSurface)
     assert arrival_time_limit(larger) == pytest.approx(arrival_time_limit(REPORT) / 1.5, rel=1e-9)

@@ -21,6 +21,7 @@ from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance
 from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table, angular_velocity, sliding_contact
 from tippetop.mechanics.state import State
+from tippetop.problem.problem import top_of
 from tippetop.theory.apparent import critical_spin_from_spectrum
 from tippetop.theory.drilling import spin_rate, standing_time, time_to_stand
 from tippetop.theory.overview import outlook
@@ -60,7 +61,7 @@ def poles_of(run):
 @pytest.mark.parametrize("pressure", PRESSURES)
 @pytest.mark.parametrize("kind", VERTICAL_SPINS)
 def test_about_a_vertical_spin_drilling_makes_dry_friction_viscous(pressure, kind):
-    top = patch(pressure).top
+    top = top_of(patch(pressure))
     for spin in (30.0, 150.0, -80.0):
         mu = 0.3 * CREEP[pressure] / (5e-4 * abs(spin))
         dry, viscous = (
@@ -74,7 +75,7 @@ def test_about_a_vertical_spin_drilling_makes_dry_friction_viscous(pressure, kin
 @pytest.mark.parametrize("pressure", PRESSURES)
 @pytest.mark.parametrize("kind", VERTICAL_SPINS)
 def test_the_spectrum_changes_sign_where_jelletts_integral_says(pressure, kind):
-    top = patch(pressure).top
+    top = top_of(patch(pressure))
     assert critical_spin_from_spectrum(kind, top) == pytest.approx(
         critical_spin(kind, top), rel=1e-9
     )
@@ -90,7 +91,7 @@ def test_a_small_tilt_grows_as_the_spectrum_says(pressure):
     meanwhile.
     """
     problem = patch(pressure, mu=1e-5, radius=1e-6, tilt=1e-9)
-    top, times = problem.top, np.linspace(0.0, 10.0, 2001)
+    top, times = top_of(problem), np.linspace(0.0, 10.0, 2001)
     steady = vertical_spin(SteadyKind.UPRIGHT, top, 100.0)
     run = tt.simulate(problem, 10.0, times=times)
     lost = 100.0 - float(run["spin"][-1])
@@ -107,7 +108,7 @@ def test_jelletts_integral_changes_by_the_torque_times_the_height_whatever_the_m
     problem = patch(pressure, tilt=0.1).replace({"launch.slip": (0.2, 0.1)})
     run = tt.simulate(problem, 2.0, samples=40_001)
     rows = [*run["axis"].values.T, *run["angular_momentum"].values.T]
-    integral = jellett(State.unpack([*rows, 0.0, 0.0, 0.0, 0.0]), problem.top)
+    integral = jellett(State.unpack([*rows, 0.0, 0.0, 0.0, 0.0]), top_of(problem))
     rate = run["contact_torque"].values[:, 2] * run["height"].values
     taken = cumulative_simpson(rate, x=run["time"].values, initial=0.0)
     assert integral[-1] < 0.9 * integral[0]
@@ -117,7 +118,7 @@ def test_jelletts_integral_changes_by_the_torque_times_the_height_whatever_the_m
 @pytest.mark.parametrize("pressure", PRESSURES)
 def test_a_steady_state_loses_jelletts_integral_at_one_rate_per_height(pressure):
     """(3 pi / 16) mu m g R, whatever turns."""
-    top = patch(pressure).top
+    top = top_of(patch(pressure))
     for integral in (4e-6, -1.9e-6):
         for steady in steady_states(top, integral):
             height = top.surface.height(math.cos(steady.tilt))
@@ -134,7 +135,7 @@ def test_a_steady_state_loses_jelletts_integral_at_one_rate_per_height(pressure)
 def test_a_vertical_spin_loses_spin_at_a_constant_rate_until_it_stops(pressure, tilt):
     problem = patch(pressure, radius=2e-3, tilt=tilt, spin=20.0)
     kind = SteadyKind.INVERTED if tilt else SteadyKind.UPRIGHT
-    rate = spin_rate(vertical_spin(kind, problem.top, 20.0), problem.top)
+    rate = spin_rate(vertical_spin(kind, top_of(problem), 20.0), top_of(problem))
     run = tt.simulate(problem, 2.0, samples=501)
     assert run["spin"].values == pytest.approx(20.0 + rate * run["time"].values, abs=1e-9)
     stop = run["event_time"].values[run["event_kind"].values == "stick"]
@@ -152,7 +153,7 @@ def test_a_top_stands_until_it_has_too_little_spin(pressure):
     The patch is so small that the spin changes by little while that motion decays or grows.
     """
     problem = patch(pressure, mu=6e-3, radius=6e-5, tilt=math.pi - 1e-8, spin=42.3)
-    top, standing = problem.top, standing_time(problem.replace({"launch.tilt": math.pi}))
+    top, standing = top_of(problem), standing_time(problem.replace({"launch.tilt": math.pi}))
     limit = critical_spin(SteadyKind.INVERTED, top)
     rate = spin_rate(vertical_spin(SteadyKind.INVERTED, top, 42.3), top)
     assert standing == pytest.approx((42.3 - limit) / abs(rate), rel=1e-12)
@@ -178,12 +179,12 @@ def test_a_launch_that_leans_is_told_the_time_of_the_inverted_spin_with_its_inte
     inverted = -spin * (math.cos(tilt) - 0.3) / 1.3
     here, there = standing_time(problem), standing_time(patch(spin=inverted))
     assert here == pytest.approx(there, rel=1e-9)
-    assert (here == 0.0) == (abs(inverted) < critical_spin(SteadyKind.INVERTED, problem.top))
+    assert (here == 0.0) == (abs(inverted) < critical_spin(SteadyKind.INVERTED, top_of(problem)))
 
 
 def test_a_slow_upright_spin_stands_until_it_stops_and_a_fast_one_not_at_all():
     slow, fast = (patch(tilt=0.0, spin=spin) for spin in (20.0, 40.0))
-    rate = spin_rate(vertical_spin(SteadyKind.UPRIGHT, slow.top, 20.0), slow.top)
+    rate = spin_rate(vertical_spin(SteadyKind.UPRIGHT, top_of(slow), 20.0), top_of(slow))
     assert standing_time(slow) == pytest.approx(20.0 / abs(rate), rel=1e-12)
     assert standing_time(fast) == 0.0
 
@@ -194,7 +195,7 @@ def test_what_does_not_drill_stands_for_ever_or_not_at_all():
 
 
 def test_what_the_theory_cannot_tell_is_refused_in_a_sentence():
-    problem, top = patch(), patch().top
+    problem, top = patch(), top_of(patch())
     still = vertical_spin(SteadyKind.INVERTED, top, 0.0)
     leaning = steady_states(top, 4e-6)[0]
     branch = precession_branch(top, np.array([1.5]))
@@ -241,7 +242,7 @@ def test_one_ball_on_top_of_the_other_stands_no_time(pressure):
 
 
 def _on(law, resistance=None):
-    return patch().top._replace(friction=law, rolling_resistance=resistance)
+    return top_of(patch())._replace(friction=law, rolling_resistance=resistance)
 
 
 def test_the_outlook_of_a_top_that_drills_ends_nowhere_and_stands_a_while():
@@ -283,8 +284,10 @@ def test_while_drilling_takes_the_spin_a_small_tilt_grows_as_one_over_it(pressur
     )
     run = tt.simulate(problem, 2.0, samples=3)
     spins = run["spin"].values
-    upright = vertical_spin(SteadyKind.UPRIGHT, problem.top, spins)
-    decay = math.exp((eigenvalues(upright, problem.top)[:, 0].real * [1.0, 4.0, 1.0]).sum() / 3.0)
+    upright = vertical_spin(SteadyKind.UPRIGHT, top_of(problem), spins)
+    decay = math.exp(
+        (eigenvalues(upright, top_of(problem))[:, 0].real * [1.0, 4.0, 1.0]).sum() / 3.0
+    )
     assert decay < 1.0
     growth = run["tilt"].values[-1] / run["tilt"].values[0]
     assert growth == pytest.approx(decay * spins[0] / spins[-1], rel=5e-3)

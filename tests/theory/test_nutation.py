@@ -17,6 +17,7 @@ from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import SpheroidSurface
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.vectors import dot
+from tippetop.problem.problem import top_of
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.derivatives import jacobian
 from tippetop.theory.diagnostics import smooth_constants
@@ -44,7 +45,7 @@ LAUNCHES = [
 
 
 def natural(problem):
-    top, start = problem.top, problem.start()
+    top, start = top_of(problem), problem.start()
     return natural_constants(constants(start.axis, start.momentum, top), top), numbers_of(top)
 
 
@@ -62,7 +63,7 @@ def test_turning_tilts_are_the_extremes_of_a_run_on_a_smooth_table(problem):
     assert tilts.max() == pytest.approx(high, abs=1e-4)
     assert tilts.min() > low - 1e-9
     assert tilts.max() < high + 1e-9
-    kept = smooth_constants(axis, momentum, problem.top)
+    kept = smooth_constants(axis, momentum, top_of(problem))
     for values in kept:
         assert np.ptp(values) < 1e-11 * np.abs(values).max()
 
@@ -70,9 +71,9 @@ def test_turning_tilts_are_the_extremes_of_a_run_on_a_smooth_table(problem):
 @pytest.mark.parametrize("problem", LAUNCHES)
 def test_at_the_turning_tilts_the_effective_potential_is_the_energy(problem):
     start = problem.start()
-    values = constants(start.axis, start.momentum, problem.top)
+    values = constants(start.axis, start.momentum, top_of(problem))
     for tilt in turning_tilts(amplitudes(path_of(problem)[0])):
-        assert effective_potential(tilt, values, problem.top, math) == pytest.approx(
+        assert effective_potential(tilt, values, top_of(problem), math) == pytest.approx(
             values.energy, rel=1e-9
         )
 
@@ -82,7 +83,7 @@ def test_friction_takes_from_a_nutation_what_the_mechanics_says_on_average(probl
     """Averaged over a run on a smooth table: the derivative of the mechanics' rates by mu, at mu =
     0.
     """
-    top = problem.top
+    top = top_of(problem)
     # A window that is smooth at its ends averages a periodic function fast, whatever its period.
     times = np.linspace(0.0, 12.0, 60001)
     phase = np.clip(times / times[-1], 1e-12, 1.0 - 1e-12)

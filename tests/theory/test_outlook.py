@@ -19,7 +19,7 @@ from campaigns import among, examples
 from tippetop import presets
 from tippetop.cli.commands import app
 from tippetop.problem.frictions import ViscousFriction
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import arrival_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group
@@ -100,7 +100,7 @@ def said(problem):
     """What the theory says, without any warning; None where it says that nothing turns so fast."""
     launch = problem.launch
     fastest = max(abs(launch.spin), abs(launch.tilt_rate), abs(launch.precession))
-    fastest *= math.sqrt(problem.top.surface.size / problem.gravity)
+    fastest *= math.sqrt(top_of(problem).surface.size / problem.gravity)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         if fastest <= FASTEST * (1.0 + 1e-12):
@@ -180,7 +180,7 @@ def test_there_is_a_body_of_every_group(group, body):
 def test_the_time_to_leave_a_pole_grows_as_the_logarithm_of_the_distance(body, pole, kind):
     """By a growth rate that is the one of the spectrum, and proportional to little friction."""
     spin, mu = 60.0, 1e-6
-    top = launch_of(body, {"kind": "viscous", "mu": mu}, pole, spin, (0.0, 0.0)).top
+    top = top_of(launch_of(body, {"kind": "viscous", "mu": mu}, pole, spin, (0.0, 0.0)))
     rate = spectrum(vertical_spin(kind, top, spin), top).growth_rate / mu
     if rate < 0.0:
         pytest.skip("there it does not leave")
@@ -228,7 +228,7 @@ def test_a_launch_exactly_on_a_vertical_spin_stays_there(mu, body, tilt, kind):
 
 @pytest.mark.parametrize("tilt", [1.9, 2.5])
 def test_a_launch_exactly_on_a_precession_stays_there(tilt):
-    top = presets.report_problem().top
+    top = top_of(presets.report_problem())
     branch = precession_branch(top, np.array([tilt]))
     on = {"launch.precession": float(branch.precession[0]), "launch.spin": float(branch.spin[0])}
     problem = presets.report_problem(tilt=tilt).replace(on)

@@ -11,6 +11,7 @@ from tippetop import presets
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.surfaces.surface import RingSurface, SphereSurface, SpheroidSurface
+from tippetop.problem.problem import top_of
 from tippetop.run import simulate
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import predict, touching_tilts
@@ -35,7 +36,7 @@ def test_runs_end_in_the_predicted_state(gamma, alpha, tilt, spin, duration):
     axis, momentum, velocity = full_run(problem, [0.0, duration])
     assert prediction.is_certain
     assert tilts_of(axis)[-1] == pytest.approx(prediction.final.tilt, abs=1e-6)
-    spin_at_end = momentum[-1] @ axis[-1] / problem.top.axial_inertia
+    spin_at_end = momentum[-1] @ axis[-1] / top_of(problem).axial_inertia
     assert spin_at_end == pytest.approx(prediction.final.spin, rel=1e-5)
     assert np.abs(velocity[-1]).max() < 1e-6
 
@@ -69,7 +70,7 @@ def test_where_energy_does_not_decide_both_are_left_and_the_run_ends_in_one():
 
 
 def test_a_launch_on_a_precession_stays_there():
-    top = presets.report_problem().top
+    top = top_of(presets.report_problem())
     branch = precession_branch(top, np.array([2.0]))
     problem = presets.report_problem(tilt=2.0).replace(
         {"launch.precession": float(branch.precession[0]), "launch.spin": float(branch.spin[0])}
@@ -107,7 +108,7 @@ def test_a_stem_out_of_reach_changes_nothing(spin):
 def test_what_may_touch_with_its_stem_is_refused_where_the_stem_touches():
     """Both spheres, 0.02 and 0.004 across their radii, are as low where 0.016 = 0.02 |cos|."""
     tilt = math.acos(-0.016 / 0.02)
-    assert list(touching_tilts(STEMMED.top.surface, 0.1)) == pytest.approx([tilt], abs=1e-12)
+    assert list(touching_tilts(top_of(STEMMED).surface, 0.1)) == pytest.approx([tilt], abs=1e-12)
     with pytest.raises(
         InvalidInput, match=rf"surface 1 can touch, at a tilt of {tilt:.4g} rad.*simulate it"
     ):
@@ -130,7 +131,9 @@ def test_a_rim_that_hardly_reaches_out_of_the_ball_is_not_overlooked():
     problem = presets.report_problem().replace({"body.shape": shapes})
     for tilt, sign in ((0.1, -1.0), (3.0, 1.0)):
         around = psi + sign * math.acos(1.0 / reach)
-        assert list(touching_tilts(problem.top.surface, tilt)) == pytest.approx([around], abs=1e-9)
+        assert list(touching_tilts(top_of(problem).surface, tilt)) == pytest.approx(
+            [around], abs=1e-9
+        )
     with pytest.raises(InvalidInput, match=r"surface 1 can touch, at a tilt of 1\.499 rad"):
         predict(problem)
 

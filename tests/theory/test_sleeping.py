@@ -12,6 +12,7 @@ from tippetop.contact.contact_mode import ContactMode
 from tippetop.mechanics.laws.coulomb import CoulombLaw
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
+from tippetop.problem.problem import top_of
 from tippetop.theory.derivatives import jacobian
 from tippetop.theory.sleeping import sleeping
 from tippetop.theory.stability import vertical_growth_rates
@@ -29,7 +30,7 @@ SURFACES = st.one_of(
 INERTIAS = st.tuples(st.floats(0.2, 0.8), st.floats(0.1, 0.4))
 
 
-def top_of(surface, inertias):
+def top_on(surface, inertias):
     return Top(1.0, *inertias, surface, CoulombLaw(0.3), 1.0)
 
 
@@ -46,7 +47,7 @@ def rolling_growth(kind, top, spin):
 @pytest.mark.parametrize("kind", KINDS)
 @given(SURFACES, INERTIAS, st.floats(0.0, 5.0))
 def test_a_rolling_contact_grows_a_tilt_as_the_mode_that_sticks_does(kind, surface, inertias, spin):
-    top = top_of(surface, inertias)
+    top = top_on(surface, inertias)
     assume(float(surface.height(1.0)) > 0.05)
     assume(float(surface.height(-1.0)) > 0.05)
     threshold = sleeping(kind, top, spin, rolls=True)
@@ -62,7 +63,7 @@ def test_a_rolling_contact_grows_a_tilt_as_the_mode_that_sticks_does(kind, surfa
 def test_a_smooth_table_grows_a_tilt_as_the_spectrum_without_friction_does(
     kind, surface, inertias, spin
 ):
-    top = top_of(surface, inertias)
+    top = top_on(surface, inertias)
     assume(float(surface.height(1.0)) > 0.05)
     assume(float(surface.height(-1.0)) > 0.05)
     threshold = sleeping(kind, top, spin, rolls=False)
@@ -90,9 +91,9 @@ def tilts_of_run(share):
     problem = tt.Problem(
         body=body, friction=tt.CoulombFriction(mu=0.9), launch=tt.Launch(tilt=1e-6, spin=1.0)
     )
-    spin = share * sleeping(SteadyKind.UPRIGHT, problem.top, 1.0, rolls=True).spin
+    spin = share * sleeping(SteadyKind.UPRIGHT, top_of(problem), 1.0, rolls=True).spin
     run = tt.simulate(problem.replace({"launch.spin": spin}), 1.5, samples=4)
-    growth = sleeping(SteadyKind.UPRIGHT, problem.top, spin, rolls=True).growth_rate
+    growth = sleeping(SteadyKind.UPRIGHT, top_of(problem), spin, rolls=True).growth_rate
     return run["tilt"].values, growth
 
 

@@ -12,6 +12,7 @@ from tippetop import presets
 from tippetop.mechanics.euler import published_rates
 from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import along_table
+from tippetop.problem.problem import top_of
 from tippetop.theory.derivatives import jacobian
 from tippetop.theory.prediction import stable_by_energy
 from tippetop.theory.stability import (
@@ -41,7 +42,7 @@ def assert_same_numbers(one, other, tolerance):
 
 def test_the_upright_spin_at_100_rad_per_s():
     """Known to six digits, in a frame at rest."""
-    top = presets.report_problem(mu=0.3).top
+    top = top_of(presets.report_problem(mu=0.3))
     found = spectrum(vertical_spin(SteadyKind.UPRIGHT, top, 100.0), top)
     assert found.frame_rate == 0.0
     assert found.unstable
@@ -87,7 +88,7 @@ def test_stable_is_what_has_least_energy(top, size):
 
 
 def test_without_friction_nothing_decays():
-    top = presets.report_problem().top._replace(friction=ViscousLaw(0.0))
+    top = top_of(presets.report_problem())._replace(friction=ViscousLaw(0.0))
     for steady in steady_states(top, 1.8 * jellett_unit(top)):
         assert not spectrum(steady, top).stable
 
@@ -109,7 +110,7 @@ def test_a_turning_frame_shifts_the_frequencies_of_a_vertical_spin(top, spin, fr
 
 
 def test_mirrored_precessions_have_the_same_spectrum():
-    top = presets.report_problem().top
+    top = top_of(presets.report_problem())
     kept = 1.8 * jellett_unit(top)
     _, one, _ = steady_states(top, kept)
     _, other, _ = steady_states(top, -kept)
@@ -139,7 +140,7 @@ def test_many_spins_give_the_spectra_of_each(kind):
 def test_the_spin_of_a_real_run_grows_as_the_linear_motion_says():
     """A launch at 1e-6 rad from the upright spin, followed for 6 s."""
     problem = presets.report_problem(spin=100.0, tilt=1e-6)
-    top = problem.top
+    top = top_of(problem)
     times = np.array([0.0, 0.5, 2.0, 4.0, 6.0])
     axis, _, _ = full_run(problem, times)
     linear = linear_tilts(

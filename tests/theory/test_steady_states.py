@@ -14,6 +14,7 @@ from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import on_table, sliding_contact, sliding_rates
 from tippetop.mechanics.vectors import cross, length
 from tippetop.mechanics.view import Angles, state_from_angles
+from tippetop.problem.problem import top_of
 from tippetop.theory.derivatives import derivative
 from tippetop.theory.steady import (
     SteadyKind,
@@ -98,7 +99,7 @@ def test_every_precession_of_the_branch_is_found_from_its_integral(top, tilt):
 def test_the_half_inverted_end_state_of_the_report():
     """Converged values of the final state of 50 rad/s, which the report quotes to four digits."""
     problem = presets.report_problem(spin=50.0)
-    upright, half, inverted = steady_states(problem.top, jellett_of_launch(problem))
+    upright, half, inverted = steady_states(top_of(problem), jellett_of_launch(problem))
     assert (upright.kind, half.kind, inverted.kind) == (
         SteadyKind.UPRIGHT,
         SteadyKind.PRECESSION,
@@ -118,7 +119,7 @@ def test_a_launch_at_rest_in_tilt_has_the_integral_of_its_spin():
 
 
 def test_without_jellett_integral_only_the_vertical_states_at_rest_are_left():
-    top = presets.report_problem().top
+    top = top_of(presets.report_problem())
     assert [(steady.kind, steady.spin) for steady in steady_states(top, 0.0)] == [
         (SteadyKind.UPRIGHT, 0.0),
         (SteadyKind.INVERTED, 0.0),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import tippetop as tt
+from tippetop.problem.problem import top_of
 from tippetop.theory.overview import outlook
 from tippetop.theory.stem import jellett_about
 
@@ -31,7 +32,7 @@ def run_of(radius: float, center: float) -> tuple[float, float, float]:
     touched = run["event_time"].values[run["event_kind"].values == "touchdown"][0]
     here = run.sel(time=touched, method="bfill")
     axis, momentum = (tuple(here[name].values.tolist()) for name in ("axis", "angular_momentum"))
-    about = jellett_about(1, axis, momentum, problem.top)
+    about = jellett_about(1, axis, momentum, top_of(problem))
     return about, tt.least_jellett_to_stand(problem.body), float(run["final_tilt"])
 
 

@@ -11,6 +11,7 @@ import tippetop as tt
 from strategies import numbers, spheroids, tops
 from tippetop import presets
 from tippetop.mechanics.laws.friction import ViscousLaw
+from tippetop.problem.problem import top_of
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.apparent import (
     apparent_critical_spins,
@@ -75,7 +76,7 @@ def test_a_launch_with_a_precession_has_its_own_critical_spins():
     spins = critical_spins(problem)
     for spin, kind in ((spins.upright, SteadyKind.UPRIGHT), (spins.inverted, SteadyKind.INVERTED)):
         launched = jellett_of_launch(problem.replace({"launch.spin": spin}))
-        assert launched == pytest.approx(critical_jellett(kind, problem.top), rel=1e-12)
+        assert launched == pytest.approx(critical_jellett(kind, top_of(problem)), rel=1e-12)
 
 
 def test_a_launch_whose_spin_has_no_part_in_lambda_has_no_critical_spin():
@@ -95,9 +96,9 @@ def test_growth_rates_of_launches_vanish_at_their_critical_spins():
         assert abs(at) < 1e-10
         assert below * above < 0.0
         assert (below < 0.0) == (kind is SteadyKind.UPRIGHT)
-    unit = vertical_spin(SteadyKind.UPRIGHT, problem.top, 1.0)
+    unit = vertical_spin(SteadyKind.UPRIGHT, top_of(problem), 1.0)
     vertical = jellett_line(problem).at(spins.upright) / unit.jellett
-    assert vertical == pytest.approx(critical_spin(SteadyKind.UPRIGHT, problem.top), rel=1e-13)
+    assert vertical == pytest.approx(critical_spin(SteadyKind.UPRIGHT, top_of(problem)), rel=1e-13)
 
 
 def test_a_finite_window_shows_the_upright_threshold_too_low_and_by_how_much():

@@ -21,6 +21,7 @@ from tippetop.cli.options import (
     write_figure,
 )
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
+from tippetop.problem.problem import top_of
 from tippetop.results.description import digits_left
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, refuse_ending_of_others, require_ending
@@ -170,7 +171,7 @@ def simulate(
         show(
             summary["description"],
             *(() if summary["status"] == "completed" else (f"[bold]{advice}[/]",)),
-            facts(_rows(summary, chosen.top.conserves_jellett)),
+            facts(_rows(summary, top_of(chosen).conserves_jellett)),
             f"[dim]{summary['steps']} steps of {summary['integrator']} in {elapsed:.3g} s[/]",
             files=requested.values(),
         )

@@ -16,7 +16,7 @@ from tippetop.mechanics.top import Top, natural, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.contact_rules import Contact
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 
 
 # translate: skip
@@ -38,8 +38,8 @@ class NaturalLaunch(NamedTuple):
     @classmethod
     def of(cls, problem: Problem) -> Self:
         """Return the launch of a problem."""
-        units = natural_units(problem.top)
-        top, state = natural(problem.top), natural_state(problem.start(), units)
+        units = natural_units(top_of(problem))
+        top, state = natural(top_of(problem)), natural_state(problem.start(), units)
         automaton = automaton_of(problem.contact, top, units)
         azimuth = float(problem.launch.azimuth)
         return cls(units, top, state, azimuth, automaton, automaton.launch(state))

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from tippetop.contact.lowest_surface import lowest_contact_vector
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 
 Array = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def poses_at(run: xr.Dataset, times: ArrayLike) -> Poses:
 def contact_path(run: xr.Dataset) -> Array:
     """Return the lowest point of the body at every sample, m, shape (k, 2)."""
     arm = lowest_contact_vector(
-        tuple(run["axis"].values.T), Problem.from_json(run.attrs["problem"]).top.surface
+        tuple(run["axis"].values.T), top_of(Problem.from_json(run.attrs["problem"])).surface
     )
     return np.stack([run["x"].values + arm[0], run["y"].values + arm[1]], axis=1)
 

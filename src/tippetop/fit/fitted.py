@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -135,74 +135,7 @@ class FitResult:
     alternatives: tuple[Mapping[str, float], ...]
     runs: int
     measurements: tuple[Measurement, ...] = field(repr=False)
-    search: "Search" = field(repr=False)
-
-    @classmethod
-    def of(cls, search: "Search", best: Minimum, rivals: Sequence[Minimum]) -> Self:
-        """Return the result of a search that ended in a minimum."""
-        model, numbers = search.model, best.numbers
-        residuals = search.residuals(numbers)
-        jacobian = search.jacobian(numbers)
-        count, fitted = jacobian.shape
-        degrees = count - fitted
-        variance = 1.0 if search.is_noise_known else best.cost / max(degrees, 1)
-        for place in np.flatnonzero(~np.isfinite(jacobian).all(axis=0)):
-            jacobian[:, place] = search.slopes_over_interval(numbers, int(place), variance)
-        scaled = _with_steps(jacobian, search, variance)
-        covariance, undetermined = _covariance(
-            scaled, model.scales(numbers), model.names, len(model.fields), variance
-        )
-        if not search.is_noise_known:
-            covariance *= max(
-                (correlation_time(one) for _, one in search.columns(residuals)), default=1.0
-            )
-        if degrees < 1 and not search.is_noise_known:
-            covariance[:] = np.nan
-        errors = np.sqrt(np.diag(covariance))
-        standardised = np.full(len(model.data), np.nan)
-        standardised[search.measured] = residuals / np.sqrt(variance) if variance else residuals
-        ends = np.cumsum([one.values.size for one in model.measurements])[:-1]
-        parts = np.split(standardised, ends)
-        deviations = np.split(search.deviations * np.sqrt(variance), ends)
-        shaped = tuple(
-            part.reshape(one.values.shape)
-            for part, one in zip(parts, model.measurements, strict=True)
-        )
-        log_likelihood, parameters = _log_likelihood(search, best.cost, count)
-        parameters += fitted
-        names = list(model.names)
-        near = [
-            rival
-            for rival in rivals
-            if rival.cost - best.cost < RIVAL * variance
-            and not np.all(np.abs(rival.numbers - numbers) < 3.0 * errors)
-        ]
-        return cls(
-            model.problem_of(numbers),
-            tuple(model.problems_of(numbers)),
-            dict(zip(names, numbers.tolist(), strict=True)),
-            dict(zip(names, errors.tolist(), strict=True)),
-            xr.DataArray(
-                covariance,
-                {"parameter": names, "other_parameter": names},
-                ("parameter", "other_parameter"),
-            ),
-            shaped,
-            tuple(
-                level.reshape(one.values.shape)[0]
-                for level, one in zip(deviations, model.measurements, strict=True)
-            ),
-            best.cost if search.is_noise_known else np.nan,
-            degrees,
-            2.0 * parameters - 2.0 * log_likelihood,
-            float(np.log(count)) * parameters - 2.0 * log_likelihood,
-            undetermined,
-            _cautions(search, best, residuals, degrees, near),
-            tuple(dict(zip(names, rival.numbers.tolist(), strict=True)) for rival in near),
-            search.runs,
-            model.measurements,
-            search,
-        )
+    _search: "Search" = field(repr=False)
 
     @property
     def correlation(self) -> xr.DataArray:
@@ -229,10 +162,10 @@ class FitResult:
         """
         place = list(self.values).index(self._checked(name))
         best = np.array(list(self.values.values()))
-        variance = 1.0 if self.search.is_noise_known else self.cost / self.degrees_of_freedom
+        variance = 1.0 if self._search.is_noise_known else self.cost / self.degrees_of_freedom
         reach = self._reach(level)
         error = self.errors[name]
-        scale = float(self.search.model.scales(best)[place])
+        scale = float(self._search.model.scales(best)[place])
         step = reach * error if np.isfinite(error) else 0.1 * scale
         ends = []
         for side in (-1.0, 1.0):
@@ -241,9 +174,9 @@ class FitResult:
             def excess(distance: float, side: float = side, nearest: Any = nearest) -> float:
                 start = nearest[0].copy()
                 start[place] = best[place] + side * distance
-                if not np.isfinite(self.search.residuals(start)).all():
+                if not np.isfinite(self._search.residuals(start)).all():
                     return np.inf
-                minimum = self.search.refine(start, held=place)
+                minimum = self._search.refine(start, held=place)
                 if not minimum.converged:
                     raise NotConverged(
                         f"the profile of {name} did not converge at {start[place]:.4g}"
@@ -271,7 +204,7 @@ class FitResult:
             "values": dict(self.values),
             "errors": dict(self.errors),
             "covariance": self.covariance.values.tolist(),
-            "chi2": self.chi2 if self.search.is_noise_known else None,
+            "chi2": self.chi2 if self._search.is_noise_known else None,
             "degrees_of_freedom": self.degrees_of_freedom,
             "noise": [one.tolist() for one in self.noise],
             "aic": self.aic,
@@ -294,7 +227,7 @@ class FitResult:
     @property
     def goodness(self) -> str:
         """How well the run fits the data, in words."""
-        if self.search.is_noise_known:
+        if self._search.is_noise_known:
             return f"chi² = {self.chi2:.4g} for {self.degrees_of_freedom} degrees of freedom"
         unit = self.measurements[0].observation.units[0]
         size = f"{float(self.noise[0][0]):.3g} {unit}".strip()
@@ -304,7 +237,7 @@ class FitResult:
     def cost(self) -> float:
         """Sum of the squared residuals, over the stated variances where there are any."""
         residuals = np.concatenate([one.ravel() for one in self.residuals])
-        scale = 1.0 if self.search.is_noise_known else float(self.noise[0][0]) ** 2
+        scale = 1.0 if self._search.is_noise_known else float(self.noise[0][0]) ** 2
         return float(np.nansum(residuals**2)) * scale
 
     def _reach(self, level: float) -> float:
@@ -312,7 +245,7 @@ class FitResult:
         if not (is_number(level) and 0.0 < level < 1.0):
             raise InvalidInput("level", level, "a number between 0 and 1, such as 0.95")
         upper = 0.5 + 0.5 * level
-        if self.search.is_noise_known:
+        if self._search.is_noise_known:
             return float(norm.ppf(upper))
         return float(t.ppf(upper, max(self.degrees_of_freedom, 1)))
 
@@ -320,6 +253,77 @@ class FitResult:
         if name not in self.values:
             raise not_one_of("name", name, list(self.values))
         return name
+
+
+def result_of(search: "Search", best: Minimum, rivals: Sequence[Minimum]) -> FitResult:
+    """Return the result of a search that ended in a minimum."""
+    model, numbers = search.model, best.numbers
+    residuals = search.residuals(numbers)
+    jacobian = search.jacobian(numbers)
+    count, fitted = jacobian.shape
+    degrees = count - fitted
+    variance = 1.0 if search.is_noise_known else best.cost / max(degrees, 1)
+    for place in np.flatnonzero(~np.isfinite(jacobian).all(axis=0)):
+        jacobian[:, place] = search.slopes_over_interval(numbers, int(place), variance)
+    scaled = _with_steps(jacobian, search, variance)
+    covariance, undetermined = _covariance(
+        scaled, model.scales(numbers), model.names, len(model.fields), variance
+    )
+    if not search.is_noise_known:
+        covariance *= max(
+            (correlation_time(one) for _, one in search.columns(residuals)), default=1.0
+        )
+    if degrees < 1 and not search.is_noise_known:
+        covariance[:] = np.nan
+    errors = np.sqrt(np.diag(covariance))
+    standardised = np.full(len(model.data), np.nan)
+    standardised[search.measured] = residuals / np.sqrt(variance) if variance else residuals
+    ends = np.cumsum([one.values.size for one in model.measurements])[:-1]
+    parts = np.split(standardised, ends)
+    deviations = np.split(search.deviations * np.sqrt(variance), ends)
+    shaped = tuple(
+        part.reshape(one.values.shape) for part, one in zip(parts, model.measurements, strict=True)
+    )
+    log_likelihood, parameters = _log_likelihood(search, best.cost, count)
+    parameters += fitted
+    names = list(model.names)
+    near = [
+        rival
+        for rival in rivals
+        if rival.cost - best.cost < RIVAL * variance
+        and not np.all(np.abs(rival.numbers - numbers) < 3.0 * errors)
+    ]
+    return FitResult(
+        model.problem_of(numbers),
+        tuple(model.problems_of(numbers)),
+        dict(zip(names, numbers.tolist(), strict=True)),
+        dict(zip(names, errors.tolist(), strict=True)),
+        xr.DataArray(
+            covariance,
+            {"parameter": names, "other_parameter": names},
+            ("parameter", "other_parameter"),
+        ),
+        shaped,
+        tuple(
+            level.reshape(one.values.shape)[0]
+            for level, one in zip(deviations, model.measurements, strict=True)
+        ),
+        best.cost if search.is_noise_known else np.nan,
+        degrees,
+        2.0 * parameters - 2.0 * log_likelihood,
+        float(np.log(count)) * parameters - 2.0 * log_likelihood,
+        undetermined,
+        _cautions(search, best, residuals, degrees, near),
+        tuple(dict(zip(names, rival.numbers.tolist(), strict=True)) for rival in near),
+        search.runs,
+        model.measurements,
+        search,
+    )
+
+
+def search_of(fit: FitResult) -> "Search":
+    """Return the search that a fit came from."""
+    return fit._search
 
 
 FARTHEST = 6

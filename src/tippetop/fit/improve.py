@@ -15,7 +15,7 @@ from tippetop.lathe.workpiece import Workpiece
 from tippetop.problem.bodies import Body
 from tippetop.problem.frictions import ContensouFriction, Friction
 from tippetop.problem.launch import Launch
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.run import simulate
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.suggestions import not_one_of
@@ -146,7 +146,7 @@ def improve(
     _require_top(start, gravity, tilt)
     size = start.shapes[0].surface.size if radius is None else number_in("radius", radius, "m")
     problem = Problem(body=start, friction=law, launch=Launch(tilt=tilt, spin=1.0), gravity=gravity)
-    if sticks(problem.top):
+    if sticks(top_of(problem)):
         raise InvalidInput(
             "friction",
             Described("dry friction of a point"),

@@ -15,7 +15,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
-from tippetop.fit.fitted import FitResult, Minimum, are_correlated, columns_of, exceeds_noise
+from tippetop.fit.fitted import (
+    FitResult,
+    Minimum,
+    are_correlated,
+    columns_of,
+    exceeds_noise,
+    result_of,
+)
 from tippetop.fit.joint_model import JointModel
 from tippetop.fit.measurement import Measurement, read_measurement
 from tippetop.fit.model import Model
@@ -218,7 +225,7 @@ def fit(
             f"the fit did not reach a minimum in {search.runs} runs ({best.message}; nearest so"
             f" far: {nearest}); start nearer to the data, fit fewer numbers, or give ranges"
         )
-    return FitResult.of(search, best, [one for one in minima[1:] if one.converged])
+    return result_of(search, best, [one for one in minima[1:] if one.converged])
 
 
 def by_cost(one: Minimum) -> float:

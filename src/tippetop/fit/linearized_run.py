@@ -44,7 +44,7 @@ from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import SAMPLED
 from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import RunMetrics
@@ -234,7 +234,7 @@ class LinearizedRun:
         self.directions = tuple([one.rates for one in directions])
         self.numbers = StartNumbers.of(problem)
         self.integrator = make_integrator(None, tolerance)
-        self.kind = problem.top.kind
+        self.kind = top_of(problem).kind
         self.failures = dict[int, tuple[float, str]]()
         self.legs = list[IntegratedLeg | Junction]()
         self._problems = dict[tuple[int, float], Problem | None]()

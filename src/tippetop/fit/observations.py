@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from tippetop.integrators.base import Array
 from tippetop.mechanics.surfaces.hull import outer_height
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import SAMPLED
 from tippetop.results.event_functions import KINDS
 
@@ -156,7 +156,7 @@ class Camera:
             return center
         if isinstance(self.point, str):
             problem = Problem.from_json(run.attrs["problem"])
-            tip = float(outer_height(problem.top.surface, -1.0))
+            tip = float(outer_height(top_of(problem).surface, -1.0))
             end: Array = center + tip * run["axis"].values
             return end
         radius, along = self.point

@@ -10,7 +10,7 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind, Top, natural_units
 from tippetop.mechanics.units import Units
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.support.errors import InvalidInput, is_number
 from tippetop.support.units import exponents_of
 
@@ -104,7 +104,7 @@ def require_fields(problem: Problem, fields: Sequence[str], argument: str) -> No
 
 def scale_of(problem: Problem, field: str, number: float | None = None) -> float:
     """Return the size of a field, SI, above which a change of it is large."""
-    units, natural = natural_units(problem.top), 1.0
+    units, natural = natural_units(top_of(problem)), 1.0
     si = problem.quantity(field).units
     if si not in ("", "1"):
         length, mass, time, _ = exponents_of(si)

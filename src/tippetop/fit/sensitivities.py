@@ -12,7 +12,7 @@ from tippetop.fit.linearized_run import EVENT_STATES, Differs, LinearizedRun, Ru
 from tippetop.fit.problem_numbers import Direction, require_fields
 from tippetop.integrators.base import Array
 from tippetop.mechanics.top import natural_units
-from tippetop.problem.problem import Problem, require_problem
+from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.results.catalogue import DERIVED, LISTED, METRICS, SAMPLED, Variable
 from tippetop.results.sample_times import sample_times
 from tippetop.support.units import number_in
@@ -83,7 +83,7 @@ def sensitivities(
     """
     require_problem(problem)
     duration = float(number_in("duration", duration, "s"))
-    require_limits(duration, natural_units(problem.top).time)
+    require_limits(duration, natural_units(top_of(problem)).time)
     fields = require_names("vary", vary)
     require_fields(problem, fields, "vary")
     grid = sample_times(duration, samples, times)

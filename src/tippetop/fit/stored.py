@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tippetop.fit.fitted import FitResult
+from tippetop.fit.fitted import FitResult, search_of
 from tippetop.fit.least_squares import Search
 from tippetop.fit.measurement import Measurement
 from tippetop.fit.model import Model
@@ -97,10 +97,10 @@ def read_fit(path: Path | str) -> FitResult:
 
 def _content(fit: FitResult) -> dict[str, Any]:
     """Return a fit as plain data."""
-    search = fit.search
+    search = search_of(fit)
     if len(fit.problems) > 1:
         raise InvalidInput("fit", Described("a fit of several launches"), "a fit of one launch")
-    content = {one.name: getattr(fit, one.name) for one in fields(fit)}
+    content = {one.name: getattr(fit, one.name) for one in fields(fit) if one.name != "_search"}
     return content | {
         "format": FORMAT,
         "problem": json.loads(fit.problem.to_json()),
@@ -160,7 +160,7 @@ def _fit(content: dict[str, Any]) -> FitResult:
         "noise": tuple(map(_array, content["noise"])),
         "alternatives": tuple(map(_numbers, content["alternatives"])),
         "measurements": measurements,
-        "search": search,
+        "_search": search,
     }
     plain = {one.name: content[one.name] for one in fields(FitResult) if one.name not in restored}
     texts: dict[str, Any] = {

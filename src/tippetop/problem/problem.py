@@ -106,7 +106,7 @@ class Problem(Part):
             raise _overflow_refusal(self)
         if self.contact.liftoff == "fly":
             return self
-        if isinstance(self.top.surface, Hull):
+        if isinstance(top_of(self).surface, Hull):
             raise InvalidInput(
                 "contact.liftoff", self.contact.liftoff, "'fly'", "is for bodies of one surface"
             )
@@ -131,18 +131,9 @@ class Problem(Part):
             )
         return self
 
-    @property
-    def top(self) -> Top:
-        """Numbers of the problem in the form that the mechanics uses, SI."""
-        body, arm = self.body, self.rolling_resistance
-        resistance = None if isinstance(arm, (int, float)) and not arm else RollingResistance(arm)
-        return Top(
-            body.mass, body.I1, body.I3, body.surface, self.friction.law, self.gravity, resistance
-        )
-
     def standing(self, functions: Functions = math) -> Top:
         """Return the top with the surface active that is lowest at launch."""
-        return self.top.lowest_at(PoleExact(functions).cos(self.launch.tilt))
+        return top_of(self).lowest_at(PoleExact(functions).cos(self.launch.tilt))
 
     def start(self, functions: Functions = math) -> State:
         """Return the state at launch, SI.
@@ -321,6 +312,15 @@ class Problem(Part):
         return place
 
 
+def top_of(problem: Problem) -> Top:
+    """Return the numbers of a problem in the form that the mechanics uses, SI."""
+    body, arm = problem.body, problem.rolling_resistance
+    resistance = None if isinstance(arm, (int, float)) and not arm else RollingResistance(arm)
+    return Top(
+        body.mass, body.I1, body.I3, body.surface, problem.friction.law, problem.gravity, resistance
+    )
+
+
 # translate: skip
 FULL_NAMES = declare_places(Problem)
 """Full names of all fields by their last names, to suggest the right place of a field."""
@@ -367,7 +367,7 @@ def _resistance(problem: Problem) -> float:
 def _largest_square(problem: Problem) -> float:
     """Return the largest square of the launch's numbers, natural and SI; nan if it overflows."""
     try:
-        units = natural_units(problem.top)
+        units = natural_units(top_of(problem))
         start = natural_state(problem.start(), units)
         largest = float(max(map(abs, (*start.momentum, *start.velocity, start.height))))
         return largest**2 * max(

@@ -9,7 +9,7 @@ import xarray as xr
 
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.euler import published_energy, published_normal_force, published_rates
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.report.ode45 import ode45
 
 VARIABLES = ("tilt", "tilt_rate", "azimuth", "precession", "spin", "slip_x", "slip_y")
@@ -31,7 +31,7 @@ def listing_run(problem: Problem, duration: float, *, unilateral: bool = False) 
     """
     motion, start = listing_rates(problem, unilateral=unilateral), launch_state(problem)
     solution = ode45(lambda y: np.array(motion.rates(y.tolist(), ())), duration, start)
-    top = problem.top
+    top = top_of(problem)
     y = solution.states.T
     wrapped = (np.mod(y[0], math.pi), *y[1:])
     values = dict(zip(VARIABLES, wrapped, strict=True))
@@ -50,7 +50,7 @@ def listing_rates(
     problem: Problem, wrap: float | None = math.pi, *, unilateral: bool = False
 ) -> Motion:
     """Return the right-hand side of the report's listing as a motion without parameters."""
-    top = problem.top
+    top = top_of(problem)
     return Motion(
         lambda y, _: published_rates(y, top, math, wrap, unilateral=unilateral),
         size=7,

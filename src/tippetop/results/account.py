@@ -14,7 +14,7 @@ from tippetop.contact.mode import Event, EventKind, Status
 from tippetop.mechanics.motion import angular_velocity, point_velocity
 from tippetop.mechanics.surfaces.hull import Hull, acting, is_edge, lowest_surface
 from tippetop.mechanics.surfaces.surface import contact_vector
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import Prediction, predicted
@@ -75,7 +75,7 @@ def predicted_spins(problem: Problem) -> CriticalSpins | None:
     """Return the critical spins of a launch; None if Jellett's integral is not conserved, or there
     are none.
     """
-    if not problem.top.conserves_jellett or problem.friction.vanishes:
+    if not top_of(problem).conserves_jellett or problem.friction.vanishes:
         return None
     try:
         return stability_limits(problem)
@@ -192,7 +192,7 @@ def _flights(facts: Facts) -> list[Clause]:
 
 def _sticks_since(facts: Facts) -> float:
     """Return the time since which the top rolls without slip or loss to the end, s, or nan."""
-    if not facts.problem.top.torque_free or facts.status is not Status.COMPLETED:
+    if not top_of(facts.problem).torque_free or facts.status is not Status.COMPLETED:
         return math.nan
     changes = [
         event
@@ -303,7 +303,7 @@ def _settled(facts: Facts) -> Clause:
 
 def _standing(facts: Facts) -> list[Clause]:
     """Return the clause of the surface that a body of several surfaces stands on at the end."""
-    surface = facts.problem.top.surface
+    surface = top_of(facts.problem).surface
     if (
         not isinstance(surface, Hull)
         or _is_aloft(facts)
@@ -372,7 +372,7 @@ def _theory(facts: Facts) -> list[Clause]:
             return []
         name = "sticking_explained" if _sticks_since(facts) > 0.0 else "slip_missing"
         return [Clause(name, {}, "theory")]
-    if not problem.top.torque_free:
+    if not top_of(problem).torque_free:
         numbers = {"spin": facts.metrics["final_spin"]}
         return [Clause("torque_takes_spin", numbers, "theory")]
     clauses, spins, spin = list[Clause](), predicted_spins(problem), abs(launch.spin)

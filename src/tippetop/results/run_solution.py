@@ -15,7 +15,7 @@ from tippetop.integrators.dense import parts_of
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.surfaces.hull import outer_height
 from tippetop.problem.launch import Launch
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import LISTED, METRICS, MONITORS
 from tippetop.results.dataset import assemble
 from tippetop.results.derived import variables_of
@@ -106,7 +106,7 @@ class RunSolution:
         if np.ndim(state.time) > 0:
             raise InvalidInput("time", time, "one time")
         problem = Problem.from_json(self.run.attrs["problem"])
-        axis, top = tuple(state.axis.tolist()), problem.top
+        axis, top = tuple(state.axis.tolist()), top_of(problem)
         flies = state.normal_force == 0.0
         x, y, z = state.velocity.tolist()
         gap = state.height - float(outer_height(top.surface, axis[2]))

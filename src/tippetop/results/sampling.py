@@ -3,7 +3,7 @@
 import math
 
 from tippetop.mechanics.vectors import length
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 
 TURN_PER_SAMPLE = 0.6
 """Largest turn of the body between samples, rad: above half a turn the sense of rotation is lost,
@@ -20,7 +20,7 @@ def sample_count(problem: Problem, duration: float) -> int:
 
     The body turns no faster than its angular momentum at launch over its least moment of inertia.
     """
-    top, start = problem.top, problem.start()
+    top, start = top_of(problem), problem.start()
     least = min(float(top.transverse_inertia), float(top.axial_inertia))
     fastest = float(length(start.momentum)) / least
     rate = max(LEAST_RATE, fastest / TURN_PER_SAMPLE)

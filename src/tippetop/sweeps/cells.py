@@ -24,7 +24,7 @@ from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem.contact_rules import Contact
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import Fault
 from tippetop.support.errors import Described, InvalidInput, within_part
 from tippetop.support.suggestions import unknown_field
@@ -104,7 +104,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     fault = np.full(count, Fault.NONE, dtype=np.int8)
     with np.errstate(all="ignore"):
         start = launch_state(filled, fault)
-        top = branched(filled.top, start)
+        top = branched(top_of(filled), start)
         if filled.contact.liftoff != "fly":
             sliding = along_table(start)
             touch = sliding_contact(*sliding, top)
@@ -228,7 +228,7 @@ def launch_state(problem: Problem, fault: NDArray[np.int8]) -> State:
     by one, and the ones that are refused get a fault.
     """
     count = len(fault)
-    if not isinstance(problem.top.surface, Hull):
+    if not isinstance(top_of(problem).surface, Hull):
         return State.unpack([spread(number, count).copy() for number in problem.start(np).pack()])
     rows = np.zeros((10, count))
     for cell in range(count):

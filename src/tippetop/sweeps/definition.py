@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from tippetop.graph.own_parts import require_recordable
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.support.errors import MISSING, Described, InvalidInput
 from tippetop.support.files import made_of, read_text
 from tippetop.support.parsing import parse_toml
@@ -101,9 +101,9 @@ class Sweep(Part):
                 value = getattr(self, name)
                 if value is not None:
                     raise InvalidInput(name, value, "", "is only for draw", "omit it")
-        require_recordable(self.problem.top)
+        require_recordable(top_of(self.problem))
         if self.settled is not None:
-            require_jellett(self.problem.top)
+            require_jellett(top_of(self.problem))
         with _only_refusals():
             cells_of(self.problem, self.grid.values(np.arange(1)))
         return self

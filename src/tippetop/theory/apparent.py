@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.top import Top, natural_units
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.stability import linear_tilts, vertical_growth_rates
 from tippetop.theory.steady import SteadyKind, vertical_spin
@@ -48,9 +48,9 @@ def growth_rates_of_launches(kind: SteadyKind, problem: Problem, spins: Array) -
 
     The launches are those of the problem with these spins, rad/s, shape (n,).
     """
-    per_spin = vertical_spin(kind, problem.top, 1.0).jellett
+    per_spin = vertical_spin(kind, top_of(problem), 1.0).jellett
     return vertical_growth_rates(
-        kind, problem.top, jellett_line(problem).at(np.asarray(spins)) / per_spin
+        kind, top_of(problem), jellett_line(problem).at(np.asarray(spins)) / per_spin
     )
 
 
@@ -77,7 +77,7 @@ def apparent_critical_spins(problem: Problem, window: float, visible: float) -> 
     if not window > 0.0:
         raise InvalidInput("window", window, "a positive time")
     real = stability_limits(problem)
-    top, line = problem.top, jellett_line(problem)
+    top, line = top_of(problem), jellett_line(problem)
     per_spin = vertical_spin(SteadyKind.UPRIGHT, top, 1.0).jellett
 
     def log_final_tilt(spin: float) -> float:

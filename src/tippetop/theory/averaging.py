@@ -21,7 +21,7 @@ from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.roots import crossing, dip
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.support.errors import Described, InvalidInput, is_number, is_whole
 from tippetop.theory.nutation import numbers_of
 from tippetop.theory.nutation_decay import (
@@ -95,7 +95,7 @@ def averaged_flow(
         begin = float(parts[-1][0, -1])
     # The first instant of each stage is the last one of the stage before.
     time, low, high = np.hstack([parts[0][:, :1], *(part[:, 1:] for part in parts)])
-    return SlowFlow(time / float(problem.top.gravity), low, high, stages[-1].final_tilt)
+    return SlowFlow(time / float(top_of(problem).gravity), low, high, stages[-1].final_tilt)
 
 
 def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
@@ -103,7 +103,7 @@ def _stages(problem: Problem, distance: float, tolerance: float) -> list[Stage]:
     for field, value in {"distance": distance, "tolerance": tolerance}.items():
         if not (is_number(value) and value > 0.0):
             raise InvalidInput(field, value, "a finite number greater than 0")
-    top = problem.top
+    top = top_of(problem)
     numbers = numbers_of(top)
     if numbers.alpha == 0.0:
         raise InvalidInput(
@@ -137,9 +137,9 @@ def nutation_of_launch(problem: Problem) -> Nutation:
 
     Raises `InvalidInput` if the body is of another shape.
     """
-    launch, time = problem.launch, float(natural_units(problem.top).time)
+    launch, time = problem.launch, float(natural_units(top_of(problem)).time)
     rates = (launch.tilt_rate * time, 0.0, launch.precession * time, launch.spin * time)
-    return nutation_of_angles(Angles(launch.tilt, *rates, (0.0, 0.0)), numbers_of(problem.top))
+    return nutation_of_angles(Angles(launch.tilt, *rates, (0.0, 0.0)), numbers_of(top_of(problem)))
 
 
 def arrival_time_limit(problem: Problem, distance: float = 0.01) -> float:
@@ -156,9 +156,9 @@ def arrival_time_limit(problem: Problem, distance: float = 0.01) -> float:
     for stage in stages:
         time = _first_near(stage, final, distance)
         if time is not None:
-            return (begin + time) / float(problem.top.gravity)
+            return (begin + time) / float(top_of(problem).gravity)
         begin += float(stage.knots[-1])
-    return begin / float(problem.top.gravity)
+    return begin / float(top_of(problem).gravity)
 
 
 def _no_end(problem: Problem, stages: list[Stage]) -> InvalidInput:

@@ -18,7 +18,7 @@ import numpy as np
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.motion import angular_velocity, sliding_contact
 from tippetop.mechanics.top import Top
-from tippetop.problem.problem import Problem, require_problem
+from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.theory.requirements import require_creep, require_sphere
 from tippetop.theory.stability import drilling, spectrum
@@ -71,7 +71,7 @@ def standing_time(problem: Problem) -> float:
     inf
     """
     require_problem(problem)
-    top, tilt = problem.top, problem.launch.tilt
+    top, tilt = top_of(problem), problem.launch.tilt
     require_creep(top)
     if tilt not in (0.0, math.pi):
         require_sphere(top)

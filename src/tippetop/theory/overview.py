@@ -7,7 +7,7 @@ from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.problem.frictions import ViscousFriction
-from tippetop.problem.problem import Problem, require_problem
+from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import arrival_time_limit, nutation_of_launch
 from tippetop.theory.drilling import standing_time
@@ -163,7 +163,7 @@ def outlook(problem: Problem) -> Outlook:
     Raises `InvalidInput` if the launch turns too fast for the theory, or hardly turns on dry
     friction of a patch.
     """
-    top = problem.top
+    top = top_of(problem)
     if isinstance(top.surface, Hull):
         return _outlook_of_several_surfaces(problem)
     jellett = jellett_of_launch(problem)
@@ -279,12 +279,12 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
     inverted 3.142 -26.7
     """
     require_problem(problem)
-    if isinstance(problem.top.surface, Hull):
+    if isinstance(top_of(problem).surface, Hull):
         hull = hull_of(problem)
         low, high = single_contact_tilts(hull, problem.launch.tilt)
         states = steady_states(on_surface(problem, hull.active))
         return [state for state in states if low <= state.tilt <= high]
-    top, launch = problem.top, problem.launch
+    top, launch = top_of(problem), problem.launch
     if top.conserves_jellett:
         return all_steady_states(top, jellett_of_launch(problem))
     if is_edge(top.surface):

@@ -22,7 +22,7 @@ from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem.implausible import warn_if_implausible
-from tippetop.problem.problem import Problem, require_problem
+from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.theory.requirements import require_creep, require_jellett
 from tippetop.theory.series_roots import roots_between
@@ -99,7 +99,7 @@ def predict(problem: Problem) -> Prediction:
 
 def predicted(problem: Problem) -> Prediction:
     """Return the result of `predict` without its warning, also for a part of a body."""
-    top = problem.top
+    top = top_of(problem)
     if isinstance(top.surface, Hull):
         return _prediction_of_several_surfaces(problem, hull_of(problem))
     require_jellett(top)
@@ -125,10 +125,10 @@ def _prediction_of_several_surfaces(problem: Problem, hull: Hull) -> Prediction:
     """
     single = on_surface(problem, hull.active)
     prediction = predicted(single)
-    available = float(energy(single.start(), single.top))
+    available = float(energy(single.start(), top_of(single)))
     ends = touching_tilts(hull, problem.launch.tilt)
     for tilt, number in ends.items():
-        needed = float(least_energy(tilt, prediction.jellett, single.top, math))
+        needed = float(least_energy(tilt, prediction.jellett, top_of(single), math))
         if needed <= available:
             shown = Described(f"one whose surface {number} can touch, at a tilt of {tilt:.4g} rad")
             accepted = (
@@ -195,7 +195,7 @@ def steady_state_of_launch(problem: Problem) -> SteadyState[float] | None:
     Only the azimuth of such a launch changes. Raises `InvalidInput` if it turns too fast for the
     theory.
     """
-    top, launch, start = problem.top, problem.launch, problem.start()
+    top, launch, start = top_of(problem), problem.launch, problem.start()
     jellett, units = jellett_of_launch(problem), natural_units(top)
     if launch.tilt in (0.0, math.pi):
         steady = vertical_spin(

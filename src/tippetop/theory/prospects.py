@@ -11,7 +11,7 @@ from tippetop.mechanics.vectors import Vector, add, dot, scale
 from tippetop.problem.bodies import Body
 from tippetop.problem.frictions import ViscousFriction
 from tippetop.problem.launch import Launch
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.problem.shapes import EccentricSphere, Shape, Sphere
 from tippetop.theory.groups import Group, classify
 from tippetop.theory.prediction import touching_tilts
@@ -100,7 +100,7 @@ def prospects(
         gravity=gravity,
     )
     group = classify(body.I1 / body.I3, sphere.eccentricity)
-    surfaces = (problem.top.surface, *(shape.surface for shape in shapes[1:]))
+    surfaces = (top_of(problem).surface, *(shape.surface for shape in shapes[1:]))
     touch = _touch(problem, surfaces, group)
     stem = (
         _stem(problem, surfaces, touch)
@@ -117,7 +117,8 @@ def _touch(problem: Problem, surfaces: tuple[Surface, ...], group: Group) -> Tou
         return None
     # From upright the top rises along the steady precessions until one is stable.
     needed = max(
-        critical_jellett(SteadyKind.UPRIGHT, problem.top), branch_jellett(beyond[0], problem.top)
+        critical_jellett(SteadyKind.UPRIGHT, top_of(problem)),
+        branch_jellett(beyond[0], top_of(problem)),
     )
     spin = jellett_line(problem).spin_at(needed if group.leaves_upright else math.inf)
     return Touch(beyond[0], ends[beyond[0]], spin)
@@ -128,7 +129,7 @@ def _stem(problem: Problem, surfaces: tuple[Surface, ...], touch: Touch | None) 
     top = Top(body.mass, body.I1, body.I3, surfaces[-1], ViscousLaw(1.0), problem.gravity)
     least, launch = critical_jellett(inverted, top), math.nan
     if touch is not None and touch.surface == len(surfaces) - 1:
-        ratio = _jellett_ratio(touch.tilt, problem.top, surfaces[-1])
+        ratio = _jellett_ratio(touch.tilt, top_of(problem), surfaces[-1])
         launch = max(
             touch.spin, jellett_line(problem).spin_at(least / ratio) if ratio > 0.0 else math.inf
         )

@@ -13,7 +13,7 @@ from tippetop.mechanics.runge_kutta import POWER, Point, RungeKuttaStep, step_fr
 from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.top import natural_units
 from tippetop.mechanics.view import Angles
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.theory.dissipation import least_reaction
 from tippetop.theory.nutation import Numbers, numbers_of, orbit_of_amplitudes
 from tippetop.theory.nutation_decay import (
@@ -71,7 +71,7 @@ def time_to_end(problem: Problem, goal: float, distance: float) -> float:
     not viscous, launches exactly upright or inverted, launches above the table, and flows for which
     the table would have to pull.
     """
-    launch, top = problem.launch, problem.top
+    launch, top = problem.launch, top_of(problem)
     law, surface = top.friction, top.surface
     if not isinstance(law, ViscousLaw) or isinstance(surface, Hull) or not surface.spherical:
         return math.nan

@@ -25,7 +25,7 @@ from tippetop.mechanics.surfaces.surface import Surface, contact_vector
 from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.vectors import VERTICAL, Functions, Scalar, Vector, add, dot, scale
 from tippetop.mechanics.view import Angles, state_from_angles
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.series_roots import roots_between
 
@@ -219,14 +219,14 @@ def jellett_of_launch(problem: Problem) -> float:
 
     Raises `InvalidInput` if it turns so fast that the weight is lost in rounding.
     """
-    fastest = FASTEST / float(natural_units(problem.top).time)
+    fastest = FASTEST / float(natural_units(top_of(problem)).time)
     for name in ("spin", "tilt_rate", "precession"):
         rate = getattr(problem.launch, name)
         if abs(rate) > fastest:
             raise InvalidInput(
                 f"launch.{name}", rate, f"at most {fastest:.3g} rad/s", "is too fast for the theory"
             )
-    return float(jellett(problem.start(), problem.top))
+    return float(jellett(problem.start(), top_of(problem)))
 
 
 def least_energy(tilt: Scalar, jellett: Scalar, top: Top, functions: Functions) -> Scalar:

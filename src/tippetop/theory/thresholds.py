@@ -18,7 +18,7 @@ from typing import NamedTuple
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.implausible import warn_if_implausible
-from tippetop.problem.problem import Problem, require_problem
+from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.theory.requirements import require_creep
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
@@ -109,12 +109,12 @@ def critical_spins(problem: Problem) -> CriticalSpins:
 
 def stability_limits(problem: Problem) -> CriticalSpins:
     """Return the result of `critical_spins` without its warning, also for a part of a body."""
-    require_creep(problem.top)
-    if not problem.top.conserves_jellett:
-        return CriticalSpins(*(critical_spin(kind, problem.top) for kind in VERTICAL_SPINS))
+    require_creep(top_of(problem))
+    if not top_of(problem).conserves_jellett:
+        return CriticalSpins(*(critical_spin(kind, top_of(problem)) for kind in VERTICAL_SPINS))
     line = jellett_line(problem)
     return CriticalSpins(
-        *(line.spin_at(critical_jellett(kind, problem.top)) for kind in VERTICAL_SPINS)
+        *(line.spin_at(critical_jellett(kind, top_of(problem))) for kind in VERTICAL_SPINS)
     )
 
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from tippetop.mechanics.euler import published_parameters
 from tippetop.problem.presets import REPORT
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.report.claim import Finding, examines
 from tippetop.report.quoted import ENERGY, ENERGY_TIME, STOP
 from tippetop.report.readings import turning_points
@@ -211,7 +211,9 @@ def _numerator(run: xr.Dataset, suffix: str) -> tuple[float, float, float]:
     theta, theta_dot, phi_dot, omega3 = (
         float(run[f"{name}{suffix}"][k]) for name in ("tilt", "tilt_rate", "precession", "spin")
     )
-    m, I1, I3, R, alpha, _, g = published_parameters(Problem.from_json(run.attrs["problem"]).top)
+    m, I1, I3, R, alpha, _, g = published_parameters(
+        top_of(Problem.from_json(run.attrs["problem"]))
+    )
     s, c = np.sin(theta), np.cos(theta)
     turning = I1 * c * (phi_dot**2 * s**2 + theta_dot**2)
     return m * g * I1, m * R * alpha * turning, -m * R * alpha * I3 * phi_dot * omega3 * s**2

@@ -20,7 +20,7 @@ from tippetop.problem.contact_rules import Contact
 from tippetop.problem.frictions import CoulombFriction, RegularizedCoulombFriction
 from tippetop.problem.launch import Launch
 from tippetop.problem.presets import report_problem
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import event_times, stopping
 from tippetop.report.quoted import SPIN, TILT
@@ -141,7 +141,7 @@ def _cohen(quick: bool) -> xr.Dataset:
     steps = np.array([10.0, 2.0, 0.5] if quick else [10.0, 5.0, 2.0, 1.0, 0.5, 0.2]) * 1e-3
     times = np.linspace(0.0, FOLLOWED, round(FOLLOWED / COHEN_STEP) + 1)
     tilts, slowest = [], []
-    top, units = natural(COHEN.top), natural_units(COHEN.top)
+    top, units = natural(top_of(COHEN)), natural_units(top_of(COHEN))
     for step in steps:
         state = stepped(COHEN, float(step), FOLLOWED)
         tilt = np.arctan2(np.hypot(state.axis[0], state.axis[1]), state.axis[2])

@@ -13,7 +13,7 @@ from tippetop.mechanics.motion import angular_velocity, sliding_contact
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import VERTICAL, Scalar, Vector, cross, dot, scale
 from tippetop.problem.presets import REPORT, report_problem
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.problem.shapes import EccentricSphere
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
@@ -35,7 +35,7 @@ def _printed(quick: bool) -> xr.Dataset:
     instants.
     """
     problem = on_table(report_problem())
-    top = problem.top
+    top = top_of(problem)
     times = (_INSTANTS[:, None] + _STEP * np.arange(-2, 3)).ravel()
     run = simulate(problem, float(_INSTANTS[-1]) + 1.0, times=times)
     now = run.isel(time=slice(2, None, 5))
@@ -68,7 +68,7 @@ def _at_one_instant(
     k, body = int(np.argmax(_INSTANTS == _INSTANT)), problem.body
     y, listed = states[:, k], published[:, k]
     c, s = math.cos(y[0]), math.sin(y[0])
-    torque = _torques(run.isel(time=5 * k + 2), problem.top)
+    torque = _torques(run.isel(time=5 * k + 2), top_of(problem))
     turning = np.array(torque["second_axis"])
     momentum = run["angular_momentum"].values[5 * k : 5 * k + 5]
     bracket = body.I1 * listed[3] * s
@@ -170,14 +170,16 @@ def _steady(quick: bool) -> xr.Dataset:
         problem = on_table(report_problem(spin).replace({"body": body.model_dump()}))
         end = simulate(problem, duration, samples=2).isel(time=-1)
         y = [float(end[name]) for name in VARIABLES]
-        rates = published_rates(y, problem.top, math)
+        rates = published_rates(y, top_of(problem), math)
         speed = float(body.surface.size) * abs(y[4])
         slip = [
             math.hypot(*pair) / size
             for pair, size in ((y[5:], speed), (rates[5:], speed * abs(y[3])))
         ]
         turning = abs(rates[3]) / y[3] ** 2, abs(y[1] / y[3])
-        rows.append((y[0], y[3], y[4], *_residuals(y, problem.top), abs(rates[4]), *turning, *slip))
+        rows.append(
+            (y[0], y[3], y[4], *_residuals(y, top_of(problem)), abs(rates[4]), *turning, *slip)
+        )
     table = np.array(rows).T
     names = {
         "tilt": ("rad", "tilt"),

@@ -9,6 +9,7 @@ from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.problem.frictions import ContensouFriction, ViscousFriction
 from tippetop.problem.hertz_patch import MATERIALS, hertz_patch_radius
 from tippetop.problem.presets import LEINE_GLOCKER, report_problem
+from tippetop.problem.problem import top_of
 from tippetop.report import quoted
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.dry import turning_time, with_friction
@@ -59,7 +60,7 @@ def _map(quick: bool) -> xr.Dataset:
     times = [[float(run["turnover_time"]) for run in row] for row in runs]
     least = min(float(run["min_normal_force"]) for row in runs for run in row)
     theirs = float(simulate(ALONE, 3.0, samples=2)["turnover_time"])
-    limit = critical_spin(SteadyKind.UPRIGHT, report_problem().top)
+    limit = critical_spin(SteadyKind.UPRIGHT, top_of(report_problem()))
     return dataset(
         {"radius": (radii, "m", "radius of the contact patch"), "spin": spins},
         {"mu": MU, "window_s": MAP_WINDOW, "tilt_rad": quoted.TILT},
@@ -84,7 +85,7 @@ def _viscous(quick: bool) -> xr.Dataset:
         for mu in PATCH_FRICTIONS
     ]
     smooth = [turning(ViscousFriction(mu=float(c))) for c in coefficients]
-    load, radius = base.body.mass * base.gravity, float(base.top.surface.size)
+    load, radius = base.body.mass * base.gravity, float(top_of(base).surface.size)
     radii = [
         hertz_patch_radius(load, radius, material, material) for material in MATERIALS.values()
     ]
@@ -117,7 +118,7 @@ def _growth_ratios() -> list[list[float]]:
             ContensouFriction(mu=MU, patch_radius=5e-4, pressure=pressure),
             ViscousFriction(mu=creep * MU / (5e-4 * SPIN)),
         )
-        tops = [with_friction(report_problem(), law).top for law in frictions]
+        tops = [top_of(with_friction(report_problem(), law)) for law in frictions]
         dry, viscous = (
             [
                 float(vertical_growth_rates(kind, top, np.array([SPIN]))[0])

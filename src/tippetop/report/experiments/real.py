@@ -16,7 +16,7 @@ from tippetop.problem.presets import (
     REPORT_STEM,
     report_problem,
 )
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.problem.shapes import Shape, Sphere
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import event_times
@@ -135,7 +135,7 @@ def _stems(quick: bool) -> xr.Dataset:
         axis, momentum = (
             tuple(before[name].values.tolist()) for name in ("axis", "angular_momentum")
         )
-        brought.append(abs(jellett_about(1, axis, momentum, problem.top)))
+        brought.append(abs(jellett_about(1, axis, momentum, top_of(problem))))
         needed.append(least_jellett_to_stand(problem.body))
         struck.append(touch)
         final.append(float(run["tilt"][-1]))
@@ -174,7 +174,7 @@ def rolling(body: Body, tilt: float) -> tuple[RestingCenter, xr.Dataset] | None:
     """Return the rolling of a body with its centre at rest, and a run of it; None if it cannot."""
     launch = Launch(tilt=tilt, spin=0.0)
     problem = Problem(body=body, friction=ROUGH, launch=launch, gravity=GRAVITY)
-    motion = resting_center(tilt, problem.top)
+    motion = resting_center(tilt, top_of(problem))
     if motion is None:
         return None
     rolls = problem.replace({"launch.spin": motion.spin, "launch.precession": motion.precession})

@@ -8,7 +8,7 @@ import xarray as xr
 
 from tippetop.mechanics.euler import published_energy
 from tippetop.problem.presets import REPORT_TABLE_1, report_problem
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.listing import VARIABLES, listing_run
 from tippetop.report.quoted import END_OF_FIG_5, ROUGH_FRICTION, SPIN, TILT
@@ -118,7 +118,7 @@ def comparison(problem: Problem, quick: bool) -> xr.Dataset:
     true = simulate(problem, WINDOW, samples=20_001 if quick else 40_001)
     listing = listing_run(problem, WINDOW)
     with np.errstate(all="ignore"):
-        published = published_energy([true[name].values for name in VARIABLES], problem.top, np)
+        published = published_energy([true[name].values for name in VARIABLES], top_of(problem), np)
     true = true.assign(energy_published=("time", np.asarray(published)))
     data = _series(true, listing).assign(_readings(true, "")).assign(_readings(listing, "_listing"))
     stopped = float(simulate(stopping(problem), WINDOW, samples=2)["liftoff_time"])

@@ -9,7 +9,7 @@ import xarray as xr
 from tippetop.integrators.base import Array
 from tippetop.problem.bodies import Body
 from tippetop.problem.presets import LEINE_GLOCKER, REPORT, REPORT_TABLE_1, report_problem
-from tippetop.problem.problem import Problem
+from tippetop.problem.problem import Problem, top_of
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.equations import residual_of_217
 from tippetop.report.experiments.runs import WINDOW
@@ -40,7 +40,7 @@ LONG_RUN = 400.0
 def _critical(quick: bool) -> xr.Dataset:
     """Return the critical spins by formula and by the spectrum, and those that short runs show."""
     problem = report_problem()
-    top = problem.top
+    top = top_of(problem)
     spins = np.linspace(10.0, 105.0, 39 if quick else 191)
     visible = np.array([0.001, 0.002, 0.005, SETTLED])
     launches = critical_spins(problem)
@@ -120,8 +120,8 @@ def _diagram(
     theta = 0 with this spin.
     """
     base = report_problem().replace({"body": body.model_dump()})
-    branch = precession_branch(base.top, tilts)
-    rates = np.max(eigenvalues(branch, base.top).real, axis=1)
+    branch = precession_branch(top_of(base), tilts)
+    rates = np.max(eigenvalues(branch, top_of(base)).real, axis=1)
     spins = branch.jellett / jellett_line(base).per_spin
     problems = [_launched(base, spin, tilt) for spin, tilt in launches]
     runs = [simulate(problem, LONG_RUN, samples=2).isel(time=-1) for problem in problems]
@@ -157,7 +157,7 @@ def _diagram(
 def _relative_residual_217(end: xr.Dataset, problem: Problem) -> float:
     """Return the residual of (2.17) at the end of a run over phi'."""
     residual = residual_of_217(
-        end["tilt"], end["precession"], end["spin"], groups.eccentricity(problem.top)
+        end["tilt"], end["precession"], end["spin"], groups.eccentricity(top_of(problem))
     )
     return float(abs(residual / end["precession"]))
 
@@ -178,7 +178,9 @@ def _groups(quick: bool) -> xr.Dataset:
     alpha = np.linspace(1e-3, 0.6, 121 if quick else 601)
     bodies = {"report, listing": REPORT, "report, Table 1": REPORT_TABLE_1}
     bodies["Leine and Glocker 2003"] = LEINE_GLOCKER
-    tops = [report_problem().replace({"body": body.model_dump()}).top for body in bodies.values()]
+    tops = [
+        top_of(report_problem().replace({"body": body.model_dump()})) for body in bodies.values()
+    ]
     lines = {
         "upright_boundary": [groups.upright_boundary(a) for a in alpha],
         "inverted_boundary": [groups.inverted_boundary(a) for a in alpha],

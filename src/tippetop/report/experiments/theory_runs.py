@@ -7,6 +7,7 @@ import xarray as xr
 
 from tippetop.integrators.base import Array
 from tippetop.problem.presets import report_problem
+from tippetop.problem.problem import top_of
 from tippetop.report import quoted
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table
@@ -141,7 +142,7 @@ def _diagnostics(quick: bool) -> xr.Dataset:
     report's main run.
     """
     problem = on_table(report_problem(quoted.SPIN))
-    top = problem.top
+    top = top_of(problem)
     run = simulate(problem, 10.0, samples=2001 if quick else 5001)
     axis, momentum = run["axis"].values, run["angular_momentum"].values
     xi = gyroscopic_balance(axis, momentum, top)
