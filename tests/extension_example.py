@@ -151,13 +151,11 @@ class SmoothAtFirst(Automaton):
         """Begin on the smooth table."""
         return Transition((), SmoothTable(self.top, self.until), state)
 
-    def follow(
-        self, mode: Mode, end: ModeEnd, time: float, integrator: Integrator | None = None
-    ) -> Transition:
+    def follow(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
         """Go on with friction when the table has dried."""
         if end.cause == "drying":
             return super().launch(end.state)
-        return super().follow(mode, end, time, integrator)
+        return super().follow(mode, end, time)
 
 
 class DryingTable(Contact):

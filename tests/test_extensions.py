@@ -34,7 +34,7 @@ from tippetop.extend import (
 )
 from tippetop.graph.hoisting import evaluated
 from tippetop.graph.recording import record
-from tippetop.integrators.base import Guard, Integrator, Motion
+from tippetop.integrators.base import Guard, Motion
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import sum_at, velocity_without_slip
 from tippetop.mechanics.contacts.system import Component, Constraint, free_rates, solve_constraints
@@ -229,12 +229,10 @@ class PinAutomaton(Automaton):
     def launch(self, state: State) -> Transition:
         return Transition((), Pinned(self.top, self.left), state)
 
-    def follow(
-        self, mode: Mode, end: ModeEnd, time: float, integrator: Integrator | None = None
-    ) -> Transition:
+    def follow(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
         if end.cause == "released":
             return super().launch(end.state)
-        return super().follow(mode, end, time, integrator)
+        return super().follow(mode, end, time)
 
 
 class PinnedAtFirst(tt.Contact):
@@ -306,10 +304,8 @@ def test_the_law_is_the_one_defined() -> None:
 class ForgottenAutomaton(PinAutomaton):
     """Of which nobody said what follows the release."""
 
-    def follow(
-        self, mode: Mode, end: ModeEnd, time: float, integrator: Integrator | None = None
-    ) -> Transition:
-        return Automaton.follow(self, mode, end, time, integrator)
+    def follow(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
+        return Automaton.follow(self, mode, end, time)
 
 
 class ForgottenPin(tt.Contact):

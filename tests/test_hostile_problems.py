@@ -131,7 +131,7 @@ def test_hostile_problems_end_with_an_outcome_or_a_sentence(seeds: range) -> Non
 @pytest.mark.parametrize(
     ("seed", "outcomes"),
     [
-        pytest.param(66, {"completed"}, id="a small patch that is struck"),
+        pytest.param(66, {"too_many_steps"}, id="a small patch that is struck"),
         pytest.param(1284, {"too_many_steps"}, id="slip that is about to end next to a branch"),
         pytest.param(
             1275, {"failed"}, id="a touchdown without impulse or slip", marks=pytest.mark.slow
@@ -321,13 +321,13 @@ def test_steps_within_impacts_on_two_surfaces_count(monkeypatch: pytest.MonkeyPa
         friction=tt.RegularizedCoulombFriction(mu=0.3, eps=1e-4),
         launch=tt.Launch(tilt=1.3, spin=5.0, gap=0.01),
     )
-    bounded = tt.simulate(rod, 0.1, samples=3, step_limit=400)
+    bounded = tt.simulate(rod, 0.1, samples=3, step_limit=100)
     assert bounded.attrs["status"] == "too_many_steps"
     with monkeypatch.context() as uncounted:
         uncounted.setattr(
             collision, "impact", lambda *given: contact_impact.impact(*given)._replace(steps=0)
         )
-        free = tt.simulate(rod, 0.1, samples=3, step_limit=400)
+        free = tt.simulate(rod, 0.1, samples=3, step_limit=100)
     assert free.attrs["status"] == "completed"
     monkeypatch.setattr(contact_impact, "MOST_IMPACT_STEPS", 5)
     given_up = tt.simulate(rod, 0.1, samples=3)

@@ -169,5 +169,5 @@ def test_a_touchdown_is_the_impact():
     state, top = struck_top(HertzLaw(0.3, 0.1), np.random.default_rng(9))
     for restitution in (0.0, 0.5):
         automaton = Automaton(top, "fly", restitution)
-        following = automaton.touchdown(top, 1.0, state, TAYLOR)
+        following = automaton.touchdown(top, 1.0, state)
         assert following.events[1].impulse == impact(state, restitution, top).impulse

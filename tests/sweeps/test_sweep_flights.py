@@ -103,7 +103,7 @@ def test_an_impact_is_the_single_one(slide, speed, elasticity):
     after, struck, rebounds = collide(
         many(state), kind.top(tuple(np.full(2, n) for n in numbers)), restitution
     )
-    one, bounces = collision(state, elasticity, top, None)
+    one, bounces = collision(state, elasticity, top)
     assume(struck.all())
     assert rebounds.tolist() == [bounces, bounces]
     for ours, theirs in zip(after.pack()[:9], one.state.pack()[:9], strict=True):

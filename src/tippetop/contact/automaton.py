@@ -61,7 +61,6 @@ from tippetop.contact.touching import (
 )
 from tippetop.contact.transient import AT_REST, SLIP_AND_ROLLING, Resting, TransientMode
 from tippetop.contact.two_closed import Before, TwoClosed, rolling_of
-from tippetop.integrators.base import Integrator
 from tippetop.mechanics.contacts.branches import (
     off_branch,
     on_branch,
@@ -138,10 +137,8 @@ class Automaton:
             return self.touchdown(lowest, 0.0, state)
         return self.resting(lowest, 0.0, state)
 
-    def follow(
-        self, mode: Mode, end: ModeEnd, time: float, integrator: Integrator | None = None
-    ) -> Transition:
-        """Return what follows the end of a mode; the integrator may follow an impact, too."""
+    def follow(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows the end of a mode."""
         if end.cause == COMPLETED:
             return Transition((), Status.COMPLETED, end.state)
         if end.cause == FAILURE:
@@ -152,7 +149,7 @@ class Automaton:
             return Transition((), Status.AT_REST, end.state)
         contact = off_branch(mode.top)
         if isinstance(mode, Flight):
-            return self._after_flight(contact, end, time, integrator)
+            return self._after_flight(contact, end, time)
         if end.cause == TOUCH:
             return self.touch(contact, end.contact, time, end.state)
         moving = mode.contact_mode if isinstance(mode, TransientMode) else mode
@@ -199,13 +196,11 @@ class Automaton:
             return self.jammed(off_branch(mode.top), time, end.state) or failure
         return failure
 
-    def _after_flight(
-        self, contact: Top, end: ModeEnd, time: float, integrator: Integrator | None
-    ) -> Transition:
+    def _after_flight(self, contact: Top, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a surface lands."""
         if end.contact == contact.active:
-            return self.touchdown(contact, time, end.state, integrator)
-        return self.touch(contact, end.contact, time, end.state, integrator)
+            return self.touchdown(contact, time, end.state)
+        return self.touch(contact, end.contact, time, end.state)
 
     def _go_on(self, mode: ContactMode, end: ModeEnd) -> Transition:
         """Return the contact mode as it goes on, near an end of its velocities or not."""
@@ -573,14 +568,12 @@ class Automaton:
         event = Event(EventKind.LIFT_OFF, time, surface=contact.active)
         return Transition((*events, event), following, state)
 
-    def touchdown(
-        self, contact: Top, time: float, state: State, integrator: Integrator | None = None
-    ) -> Transition:
+    def touchdown(self, contact: Top, time: float, state: State) -> Transition:
         """Collide, unless with a face, and go on as the impact leaves the top."""
         reported = (Event(EventKind.TOUCHDOWN, time, surface=contact.active),)
         if lands_flat(contact, state.axis):
             return Transition(reported, Status.LYING_FLAT, state)
-        return self._collide(contact, time, state, reported, self.restitution, integrator)
+        return self._collide(contact, time, state, reported, self.restitution)
 
     def touch(
         self,
@@ -588,7 +581,6 @@ class Automaton:
         surface: int,
         time: float,
         state: State,
-        integrator: Integrator | None = None,
     ) -> Transition:
         """Collide with another surface, and go on as the impact leaves the top.
 
@@ -601,7 +593,7 @@ class Automaton:
             for neighbour in other_touching(contact, state)[:1]
             if gap_rate(state, neighbour) < gap_rate(state, striking)
         ]
-        return self.touchdown(faster[0] if faster else striking, time, state, integrator)
+        return self.touchdown(faster[0] if faster else striking, time, state)
 
     def inconsistent(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
@@ -625,12 +617,11 @@ class Automaton:
         state: State,
         events: tuple[Event, ...],
         restitution: float,
-        integrator: Integrator | None = None,
         *,
         approaches: bool = True,
     ) -> Transition:
         try:
-            struck, rebounds = collision(state, restitution, contact, integrator)
+            struck, rebounds = collision(state, restitution, contact)
         except ArithmeticError as error:
             return failed("The impulse of the impact", error, state, events)
         impulse, lost = float(struck.impulse), float(struck.energy_lost)

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 from tippetop.contact.impact import Impact, impact
 from tippetop.contact.touching import farthest_touching
-from tippetop.integrators.base import Integrator
 from tippetop.mechanics.flight.free_motion import gap_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
@@ -25,10 +24,11 @@ class Collision(NamedTuple):
     rebounds: bool
 
 
-def collision(
-    state: State, restitution: float, top: Top, integrator: Integrator | None
-) -> Collision:
+def collision(state: State, restitution: float, top: Top) -> Collision:
     """Return what an impact does; one that would hardly rebound has no restitution.
+
+    It is followed to rounding whatever method the run has: what it leaves of slip that has ended
+    must be rounding.
 
     Raises
     ------
@@ -36,10 +36,10 @@ def collision(
         If the impulse cannot be computed.
     """
     beside = farthest_touching(top, state)  # it strikes too, is closed, or may close meanwhile
-    struck = impact(state, restitution, top, beside, integrator)
+    struck = impact(state, restitution, top, beside)
     rebounds = bool(gap_rate(struck.state, top) > SLOWEST_REBOUND)
     if restitution and not rebounds:
         steps = struck.steps
-        struck = impact(state, 0.0, top, beside, integrator)
+        struck = impact(state, 0.0, top, beside)
         struck = struck._replace(steps=steps + struck.steps)
     return Collision(struck, rebounds)

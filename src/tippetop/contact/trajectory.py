@@ -78,7 +78,7 @@ class Trajectory:
                 steps += max(segment.steps, len(segment.solution.knots) - 1)
                 if segment.mode_end is not None:
                     transition = self._enter(
-                        self.automaton.follow(mode, segment.mode_end, self.time, self.integrator)
+                        self.automaton.follow(mode, segment.mode_end, self.time)
                     )
                     steps += sum(event.steps for event in transition.events)
                     segment = replace(segment, transition=transition)  # noqa: PLW2901

@@ -525,7 +525,7 @@ class LinearizedRun:
                     raise Differs(OTHER_EVENTS)
                 require_restitution(numbers, following)
                 mode: Any = done[-1].next
-                transition = automaton.follow(mode, how, time, self.integrator)
+                transition = automaton.follow(mode, how, time)
                 done.append(same(transition, following))
                 some[-1] = replace(some[-1], transition=transition)
         except (Differs, ArithmeticError, ValueError) as error:
@@ -579,7 +579,7 @@ class LinearizedRun:
             return []
         if last.mode_end.cause != ONSET_OVER:
             raise Differs(OTHER_EVENTS)
-        onwards = automaton.follow(mode, last.mode_end, last.end_time, self.integrator)
+        onwards = automaton.follow(mode, last.mode_end, last.end_time)
         mode_after: Any = onwards.next
         if not is_integrated(mode_after):
             raise Differs(OTHER_EVENTS)
@@ -603,7 +603,7 @@ class LinearizedRun:
             guard, towards = leg.guard
             y = y - float(guard.value(y.tolist(), tuple(mode.parameters))) * towards
         how = replace(leg.visit.end, state=mode.state(y.tolist()))
-        return time, automaton.follow(mode, how, time, self.integrator)
+        return time, automaton.follow(mode, how, time)
 
     @np.errstate(all="ignore")
     def read_beside(self, direction: int, change: float) -> "RunReading":

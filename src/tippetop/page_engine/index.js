@@ -15,7 +15,8 @@ export function predict(problem) {
  * "drills", "sticks" where slip ends, or there is "none".
  */
 export function tableKind(problem) {
-  const { top, friction } = new m.Problem(problem);
+  const stated = new m.Problem(problem);
+  const [top, friction] = [m.top_of(stated), stated.friction];
   if (friction.vanishes) return "none";
   if (!m.creeps(top)) return "sticks";
   return top.conserves_jellett ? "creeps" : "drills";

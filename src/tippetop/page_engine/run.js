@@ -52,7 +52,8 @@ export function simulate(
 
 class Run {
   constructor(problem, duration, tolerance, limits) {
-    const { top, contact } = problem;
+    const { contact } = problem;
+    const top = m.top_of(problem);
     this.problem = problem;
     this.duration = duration;
     this.tolerance = tolerance;
