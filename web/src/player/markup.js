@@ -33,7 +33,7 @@ export function markup(words) {
     (name) => `<option value="${name}">${words[name]}</option>`,
   );
   return `
-  <div class="tt-words" aria-live="polite"></div>
+  <div class="tt-words" aria-live="polite" tabindex="0"></div>
   <div class="tt-stage">
     <canvas class="tt-canvas" tabindex="0" role="img" aria-label="${words.canvas}"></canvas>
     <div class="tt-facts"></div>
