@@ -179,7 +179,7 @@ def test_the_glossary_lists_the_names_that_are_used() -> None:
         *(name.lower() for names in (public_names, result_names, file_names) for name in names()),
         *("from", "to", "spacing", "distribution", "parameter", "draw", "space", "path"),
         *(one.name.lower() for kind in (tt.Outcome, tt.Status) for one in kind),
-        *("sliding", "sticking", "flight"),
+        *("sliding", "sticking", "flight", "sliding_on_1"),
     }
     assert len(listed) > 40
     assert {outcome.name.lower() for outcome in tt.Outcome} <= listed
