@@ -214,6 +214,7 @@ def others() -> list[tuple[str, dict[str, object]]]:
         "hurricane": (tt.presets.HURRICANE_BALLS, tt.Launch(tilt=0.5, spin=30.0), {}),
         "hurricane faster": (tt.presets.HURRICANE_BALLS, tt.Launch(tilt=0.3, spin=60.0), {}),
         "hurricane dry": (tt.presets.HURRICANE_BALLS, tt.Launch(tilt=0.5, spin=30.0), dry),
+        "hurricane dry faster": (tt.presets.HURRICANE_BALLS, tt.Launch(tilt=0.3, spin=60.0), dry),
         "coin": (tt.presets.COIN, tt.Launch(tilt=0.5, spin=0.0), {}),
         "egg": (tt.presets.EGG, tt.Launch(tilt=0.1, spin=155.0), {}),
         "drop": (tt.presets.REPORT, tt.Launch(tilt=0.3, spin=60.0, gap=0.002), bouncing),
@@ -232,7 +233,7 @@ COMPARED = ("turnover_time", "arrival_time", "final_tilt", "final_spin", "energy
 
 def test_page_and_python_say_the_same_of_every_launch() -> None:
     found = found_in_the_page(FOLLOWED % json.dumps(others()))
-    assert len(found) == 18
+    assert len(found) == 19
     for name, problem, duration, account, metrics, jumps in found:
         run = tt.simulate(tt.Problem(**problem), duration, samples=2)
         ours = tt.describe(run)

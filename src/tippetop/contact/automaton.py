@@ -295,7 +295,9 @@ class Automaton:
         rolls = mode.rolls
         if end.cause == ROLLING:
             rolls = rolling_direction(mode.contacts(mode.numbers(end.state)).forces)
-        return self.resolve_two(time, end.state, mode.tops, Before.of(mode), rolls)
+        # What a guard has ended is over, however much of it the error of a step leaves.
+        ended = (True, True) if end.cause == ENDING else None
+        return self.resolve_two(time, end.state, mode.tops, Before.of(mode), rolls, ended=ended)
 
     # One contact.
 
@@ -706,14 +708,17 @@ class Automaton:
         events: tuple[Event, ...] = (),
         *,
         arrived: bool = False,
+        ended: tuple[bool, bool] | None = None,
     ) -> Transition:
         """Return what two contacts do, where the body rolls as signed, or not (0).
+
+        `ended` says on which of them slip has ended; None where its size is to tell.
 
         Friction may jam one contact, and the other, which it presses, lift it again. No impact
         begins then: the force on both is finite and stable, and they stay closed where that is
         consistent. Where no impact begins the run ends if each contact can carry the body alone.
         """
-        contacts = TwoClosed.of(state, tops, rolls)
+        contacts = TwoClosed.of(state, tops, rolls, ended)
         try:
             consistent = contacts.answers()
             jammed = contacts.jammed if len(consistent) != 1 else None
