@@ -105,7 +105,7 @@ def test_what_is_no_number_is_seen(checked):
     asking = f"""
       import * as m from {json.dumps((checked / "mechanics.js").as_uri())};
       for (const one of [[1], new m.SlipComponent(true), "1"]) {{
-        try {{ m.inner([one], [0.5]); }}
+        try {{ m.halves([one, 0.5]); }}
         catch (error) {{ console.log(error.message); }}
       }}
     """

@@ -108,8 +108,9 @@ def test_nothing_damaged_is_read_and_lost_results_are_computed_again(tmp_path, m
                     read_sweep(path)
             file.write_bytes(data)
         xr.testing.assert_identical(read_sweep(path, decode=False)[names], truth[names])
-    assert refused > DAMAGES // 4
-    assert repaired > DAMAGES // 4
+    # Damage of both kinds was among them.
+    assert refused >= DAMAGES // 4
+    assert repaired >= DAMAGES // 4
 
 
 @pytest.mark.parametrize(

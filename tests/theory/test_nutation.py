@@ -196,4 +196,4 @@ def test_the_amplitudes_change_as_the_constants_do(problem, turned):
 
 def test_other_shapes_are_refused():
     with pytest.raises(InvalidInput, match="eccentric sphere"):
-        numbers_of(LAUNCHES[0].top._replace(surface=SpheroidSurface(0.02, 0.03)))
+        numbers_of(top_of(LAUNCHES[0])._replace(surface=SpheroidSurface(0.02, 0.03)))

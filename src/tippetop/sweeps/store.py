@@ -52,7 +52,10 @@ class Store:
         with in_words(path, "opened"):
             # Chunks of fill values are written too: a missing chunk was deleted.
             with zarr.config.set({"array.write_empty_chunks": True}):
-                self._arrays = dict(zarr.open_group(path, mode="r+").arrays())
+                try:
+                    self._arrays = dict(zarr.open_group(path, mode="r+").arrays())
+                except (ValueError, KeyError, TypeError):
+                    raise altered(path) from None
             self._identity = identity(path)
         self._is_new = False
 
