@@ -5,9 +5,9 @@ horizontal part e of its axis, omega_e, and across it, omega_t, a face closes on
 of two ways.
 
 It **slaps** onto the table where the tilt falls at a finite rate: s' = omega_t, and the time left
-is s / |omega_t|. A little of omega_e turns the body round instead: e turns at the rate Omega =
-omega_z - c omega_e / s, with c the cosine of the tilt, and s has a least value near s omega_e /
-omega_t.
+is s / |omega_t| but for the tilt's acceleration. A little of omega_e turns the body round instead:
+e turns at the rate Omega = omega_z - c omega_e / s, with c the cosine of the tilt, and s has a
+least value near s omega_e / omega_t.
 
 It **wobbles** down (Euler's disk) where omega_t is small beside omega_e, or where the body rocks
 from side to side and turns round near s = 0 every time. Near s = 0 the motion keeps its form if s,
@@ -60,8 +60,8 @@ larger one ends a wobble that friction still lifts.
 
 SLAP = 1e-6
 """Time left, in natural units, at which a face that slaps onto the table is followed no further:
-the tilt's rate changes by as little until then, and the time by its square, 1e-12. The polynomials
-of a step do not show much shorter times beside a double zero.
+the tilt's acceleration changes by as little until then. The polynomials of a step do not show much
+shorter times beside a double zero.
 """
 
 TURNING = 1e6
