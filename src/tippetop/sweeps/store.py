@@ -30,6 +30,7 @@ from tippetop.sweeps.store_layout import (
     altered,
     lay_out,
     may_be_replaced,
+    metadata_in_words,
     refuse_altered,
     refuse_another,
     refuse_existing,
@@ -51,11 +52,8 @@ class Store:
         self.path, self.sweep = path, sweep
         with in_words(path, "opened"):
             # Chunks of fill values are written too: a missing chunk was deleted.
-            with zarr.config.set({"array.write_empty_chunks": True}):
-                try:
-                    self._arrays = dict(zarr.open_group(path, mode="r+").arrays())
-                except (ValueError, KeyError, TypeError):
-                    raise altered(path) from None
+            with zarr.config.set({"array.write_empty_chunks": True}), metadata_in_words(path):
+                self._arrays = dict(zarr.open_group(path, mode="r+").arrays())
             self._identity = identity(path)
         self._is_new = False
 

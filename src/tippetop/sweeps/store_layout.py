@@ -7,6 +7,8 @@ Zarr's.
 
 import json
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -157,16 +159,23 @@ def altered(path: Path) -> FileTrouble:
     )
 
 
+@contextmanager
+def metadata_in_words(path: Path) -> Iterator[None]:
+    """Raise `FileTrouble` for the errors that altered metadata raise."""
+    try:
+        yield
+    except (ValueError, KeyError, TypeError):
+        raise altered(path) from None
+
+
 def stored_sweep(path: Path) -> Sweep:
     """Return the sweep that the metadata of a store describe.
 
     Raises `FileTrouble` as `read_attributes` does, and if they describe none.
     """
     attributes = read_attributes(path)
-    try:
+    with metadata_in_words(path):
         return Sweep(**json.loads(attributes["sweep"]))
-    except (ValueError, KeyError, TypeError):
-        raise altered(path) from None
 
 
 def refuse_altered(path: Path, sweep: Sweep) -> None:
@@ -178,13 +187,11 @@ def refuse_altered(path: Path, sweep: Sweep) -> None:
 
     if read_attributes(path).get("tippetop_version") != __version__:
         return
-    try:
+    with metadata_in_words(path):
         group = zarr.open_consolidated(path, mode="r")
         expected = lay_out(zarr.storage.MemoryStore(), sweep).metadata.to_dict()
         expected["attributes"]["processor"] = group.attrs["processor"]
         follows = group.metadata.to_dict() == expected
-    except (ValueError, KeyError, TypeError):
-        follows = False
     if not follows:
         raise altered(path)
 
