@@ -26,6 +26,14 @@ ARGUMENTS = [
     "--disable-sync",
 ]
 
+DROP = """([name, text]) => {
+  const transfer = new DataTransfer();
+  transfer.items.add(new File([text], name));
+  const options = { dataTransfer: transfer, bubbles: true, cancelable: true };
+  document.querySelector(".own").dispatchEvent(new DragEvent("drop", options));
+}"""
+"""Script that drops a file of a name and a text onto the form for a body of one's own."""
+
 
 @pytest.fixture(scope="session")
 def browser() -> Iterator[object]:

@@ -7,19 +7,12 @@ from pathlib import Path
 import pytest
 
 import tippetop as tt
-from browsing import Visit
+from browsing import DROP, Visit
 from drawings import SVG
 from tippetop.lathe.files import read_with_remarks
 from tippetop.lathe.workpiece import Workpiece
 
 Lab = Callable[..., Visit]
-
-DROP = """([name, text]) => {
-  const transfer = new DataTransfer();
-  transfer.items.add(new File([text], name));
-  const options = { dataTransfer: transfer, bubbles: true, cancelable: true };
-  document.querySelector(".own").dispatchEvent(new DragEvent("drop", options));
-}"""
 
 WHAT_IS = """(text) => tippetopLab.whatIs({ svg: text }, { density: 700 }).catch(
   ({ message }) => ({ refusal: { message } }))"""

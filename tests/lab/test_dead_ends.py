@@ -8,16 +8,9 @@ from typing import Any
 import pytest
 
 import tippetop as tt
-from browsing import Visit
+from browsing import DROP, Visit
 
 Lab = Callable[..., Visit]
-
-DROP = """([name, text]) => {
-  const transfer = new DataTransfer();
-  transfer.items.add(new File([text], name));
-  const options = { dataTransfer: transfer, bubbles: true, cancelable: true };
-  document.querySelector(".own").dispatchEvent(new DragEvent("drop", options));
-}"""
 
 CASES = 100
 """Random links, and damaged files, that are tried."""

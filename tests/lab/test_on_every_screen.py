@@ -8,16 +8,9 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from browsing import Visit
+from browsing import DROP, Visit
 
 Lab = Callable[..., Visit]
-
-DROP = """([name, text]) => {
-  const transfer = new DataTransfer();
-  transfer.items.add(new File([text], name));
-  const options = { dataTransfer: transfer, bubbles: true, cancelable: true };
-  document.querySelector(".own").dispatchEvent(new DragEvent("drop", options));
-}"""
 
 
 def test_the_example_of_points_is_a_ball_and_numbers_are_millimetres(lab: Lab) -> None:
