@@ -72,10 +72,10 @@ def first_fall(terms: Sequence[float], from_above: bool = False, after_rise: boo
             if begins_low and horner(terms, 0.5 * place) <= RISEN and part[0] <= RISEN:
                 continue
             return place
-        left, right = halves(part)
+        earlier, later = halves(part)
         half = 0.5 * width
-        waiting.append((low + half, half, right))
-        waiting.append((low, half, left))
+        waiting.append((low + half, half, later))
+        waiting.append((low, half, earlier))
     return math.nan
 
 
@@ -94,8 +94,8 @@ def single_fall(
         unit.append(term * power)
         # A long step of what hardly moves has powers beyond all floats; 0 times inf is none.
         power = plain.least(power * length, LARGEST_POWER)
-    left, right = halves(bernstein(unit))
-    bounds = [*left, *right[1:]]
+    earlier, later = halves(bernstein(unit))
+    bounds = [*earlier, *later[1:]]
     positive = [plain.below(0.0, bound) for bound in bounds]
     changes, guess, last = 0.0 * positive[0], 1.0, len(bounds) - 1
     for place in range(last - 1, -1, -1):
@@ -144,12 +144,12 @@ def sign_changes(coefficients: Sequence[float]) -> int:
 
 def halves(coefficients: Sequence[float]) -> tuple[list[float], list[float]]:
     """Return Bernstein's coefficients on both halves of an interval, by de Casteljau's means."""
-    row, left, right = list(coefficients), list[float](), list[float]()
+    row, earlier, later = list(coefficients), list[float](), list[float]()
     while len(row) > 0:
-        left.append(row[0])
-        right.append(row[len(row) - 1])
+        earlier.append(row[0])
+        later.append(row[len(row) - 1])
         row = [0.5 * (row[i] + row[i + 1]) for i in range(len(row) - 1)]
-    return left, right[::-1]
+    return earlier, later[::-1]
 
 
 def _root(terms: Sequence[float], low: float, high: float) -> float:

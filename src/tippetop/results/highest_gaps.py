@@ -49,8 +49,8 @@ def highest_gaps_of(mode: Mode, terms: Array, spans: Array) -> Array:
 
     low, high = np.maximum(best - probes[1], 0.0), np.minimum(best + probes[1], 1.0)
     for _ in range(DIVISIONS):
-        left, right = low + GOLDEN * (high - low), high - GOLDEN * (high - low)
-        falls = gap_of(left) > gap_of(right)
-        low, high = np.where(falls, low, left), np.where(falls, right, high)
+        lower, upper = low + GOLDEN * (high - low), high - GOLDEN * (high - low)
+        falls = gap_of(lower) > gap_of(upper)
+        low, high = np.where(falls, low, lower), np.where(falls, upper, high)
     ends = [gap_of(parts) for parts in (best, 0.5 * (low + high))]
     return np.asarray(np.maximum(*ends))
