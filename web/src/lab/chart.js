@@ -119,11 +119,12 @@ export class Chart {
     event.preventDefault();
   }
 
-  // Mark the launch beside the marked one, or the first of all.
+  // Mark the launch beside the marked one, or the first of all; the mark stays where no answer is known yet.
   moveMark(up, along) {
     const { row, column, reach } = this.chosen ?? { row: 0, column: 0, reach: 0 };
     const next = (place, by, count) => Math.min(Math.max(place + by * reach, 0), count - 1);
-    this.mark(this.shown(next(row, up, this.rows), next(column, along, this.columns)));
+    const beside = this.shown(next(row, up, this.rows), next(column, along, this.columns));
+    if (beside) this.mark(beside);
   }
 
   mark(cell) {
