@@ -8,7 +8,11 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 import psutil
+import pytest
 
+posix_only = pytest.mark.skipif(
+    os.name == "nt", reason="Windows has no such signals, links, owners and scripts"
+)
 OF_SHELLS = [getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name)]
 """Signals that a shell in the background, or nohup, has its processes ignore."""
 RUN = "TIPPETOP_TEST_RUN"
@@ -52,8 +56,17 @@ def started(command: Sequence[Any], **options: Any) -> Iterator[subprocess.Popen
         try:
             yield process
         finally:
-            with suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
+            _kill_session(process.pid)
+
+
+def _kill_session(leader: int) -> None:
+    """Kill a process and what it has started: on Windows, which has no sessions, its children."""
+    with suppress(ProcessLookupError, psutil.Error):
+        if hasattr(os, "killpg"):
+            os.killpg(leader, signal.SIGKILL)
+            return
+        for process in (*psutil.Process(leader).children(recursive=True), psutil.Process(leader)):
+            process.kill()
 
 
 def ended(process: subprocess.Popen[Any]) -> tuple[Any, Any, int]:

@@ -11,12 +11,13 @@ import time
 import pytest
 
 from campaigns import seeds
-from children import ended, started
+from children import ended, posix_only, started
 
 SAID = "tippetop: interrupted\n"
 MAIN = "from tippetop.cli.main import main; print('begun', flush=True); main()"
 
 
+@posix_only
 @pytest.mark.parametrize("moment", seeds(check=1, sample=4, claim=50))
 @pytest.mark.parametrize(
     ("arguments", "longest"),
@@ -56,6 +57,7 @@ sys.meta_path.insert(0, Finder())
 """An import that makes another error of Ctrl-C, or none, as those of some extensions do."""
 
 
+@posix_only
 @pytest.mark.parametrize("lost", [False, True])
 def test_ctrl_c_of_which_an_import_makes_something_else_is_still_ctrl_c(tmp_path, lost):
     program = MASKED.format(lost=lost) + MAIN
@@ -80,6 +82,7 @@ def compiler(*_, **__):
 """A compiler that hears nothing, and has not done before there is a file."""
 
 
+@posix_only
 def test_a_compiler_does_not_keep_ctrl_c_waiting(tmp_path):
     program = DEAF.format(module="llvmlite.binding", name="parse_assembly") + MAIN
     command = [sys.executable, "-c", program, "simulate"]

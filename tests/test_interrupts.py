@@ -7,6 +7,7 @@ import threading
 
 import pytest
 
+from children import posix_only
 from tippetop.support.interrupts import deferred, run_interruptibly
 
 pytestmark = pytest.mark.usefixtures("heard_signals")
@@ -51,6 +52,7 @@ def deaf() -> bytes:
     return hashlib.pbkdf2_hmac("sha256", b"", b"", 1_000_000)
 
 
+@posix_only
 def test_ctrl_c_is_heard_while_deaf_work_is_done():
     begun, ended = threading.Event(), threading.Event()
 

@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 from campaigns import among
-from children import ended, started
+from children import ended, posix_only, started
 from tippetop.support.errors import InvalidInput, Unavailable
 from tippetop.support.processes import RESTARTS, Job, Worker, processors, shared
 
@@ -75,6 +75,7 @@ def test_a_job_may_wait_for_the_result_of_another() -> None:
     assert found == [("first", 1), ("second", 2)]
 
 
+@posix_only
 def test_a_job_whose_process_is_killed_is_done_again(tmp_path: Path) -> None:
     found = dict(shared(jobs((abs, -1), (die_once, str(tmp_path / "tried")), (abs, -2)), 2))
     assert found == {0: 1, 1: "done", 2: 2}
@@ -108,6 +109,7 @@ def test_an_error_that_is_none_of_ours_says_where_it_was_raised() -> None:
     assert any("in _work" in note for note in raised.value.__notes__)
 
 
+@posix_only
 def test_a_process_goes_on_after_an_error_and_does_not_hear_ctrl_c() -> None:
     worker = Worker()
     try:
@@ -152,6 +154,7 @@ except KeyboardInterrupt:
 """
 
 
+@posix_only
 @pytest.mark.parametrize("wait", among([0.01, 0.1, 0.2, 1.0], check=2))
 def test_ctrl_c_ends_all_of_it_without_a_traceback(wait: float) -> None:
     """Whenever it is pressed: processes that start just then hear it no more than others."""

@@ -12,6 +12,7 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 import tippetop as tt
+from children import posix_only
 from tippetop.export import movie
 from tippetop.export.glb import key_times, write_glb
 from tippetop.export.html import write_html
@@ -169,6 +170,7 @@ def test_mp4_without_ffmpeg_is_refused_with_a_way_out(
         write_movie(short, tmp_path / "run.mp4")
 
 
+@posix_only
 def test_what_ffmpeg_says_is_passed_on(
     short: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from campaigns import among, examples, seeds
+from children import posix_only
 from tippetop.integrators import sealed_folders
 from tippetop.integrators.sealed_folders import CONTENT, SEAL, VARIABLE, kept_content
 
@@ -178,6 +179,7 @@ def test_what_others_keep_in_the_same_folder_stays(tmp_path, monkeypatch):
     } == NOT_OURS
 
 
+@posix_only
 def test_a_link_to_nothing_in_a_folder_does_not_keep_code_from_being_kept(tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, str(tmp_path))
     (tmp_path / f"code-{32 * '0'}").mkdir()

@@ -6,7 +6,6 @@ import contextlib
 import csv
 import multiprocessing
 import os
-import resource
 import signal
 import stat
 import subprocess
@@ -20,7 +19,7 @@ import pytest
 
 import tippetop as tt
 from campaigns import seeds
-from children import ended, started
+from children import ended, posix_only, started
 from misused import misused
 from tippetop.export.glb import write_glb
 from tippetop.export.movie import write_movie
@@ -61,6 +60,10 @@ WRITERS = [
 ]
 
 
+def is_root():
+    return hasattr(os, "geteuid") and os.geteuid() == 0
+
+
 def permissions(path):
     return stat.S_IMODE(path.stat().st_mode)
 
@@ -73,6 +76,7 @@ def permissions(path):
     ("writer", "name"), WRITERS, ids=lambda value: getattr(value, "__name__", "")
 )
 class TestEveryWriter:
+    @posix_only
     def test_follows_links(self, run, tmp_path, writer, name):
         folder = tmp_path / "folder"
         folder.mkdir()
@@ -86,6 +90,7 @@ class TestEveryWriter:
         assert (folder / name).stat().st_size > 100
         assert [path.name for path in folder.iterdir()] == [name]
 
+    @posix_only
     def test_leaves_a_link_to_nothing_alone_unless_asked(self, run, tmp_path, writer, name):
         (tmp_path / name).symlink_to(tmp_path / f"far-{name}")
         with pytest.raises(tt.FileTrouble, match="exists"):
@@ -95,6 +100,7 @@ class TestEveryWriter:
         assert (tmp_path / name).is_symlink()
         assert (tmp_path / f"far-{name}").stat().st_size > 100
 
+    @posix_only
     def test_keeps_permissions(self, run, tmp_path, writer, name):
         for mode in (0o640, 0o444):
             (tmp_path / name).write_text("old")
@@ -103,6 +109,7 @@ class TestEveryWriter:
             assert permissions(tmp_path / name) == mode
             (tmp_path / name).unlink()
 
+    @posix_only
     @pytest.mark.parametrize("overwrite", [False, True])
     def test_leaves_alone_what_is_no_regular_file(self, run, tmp_path, writer, name, overwrite):
         os.mkfifo(tmp_path / name)
@@ -130,6 +137,7 @@ class TestEveryWriter:
         assert list(tmp_path.iterdir()) == []
 
 
+@posix_only
 def test_a_link_that_leads_in_a_circle_is_refused(tmp_path):
     (tmp_path / "a").symlink_to(tmp_path / "b")
     (tmp_path / "b").symlink_to(tmp_path / "a")
@@ -146,7 +154,8 @@ def test_what_is_not_yet_whole_is_nobody_elses(tmp_path):
         assert permissions(beside) == 0o600
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root gives files away")
+@posix_only
+@pytest.mark.skipif(not is_root(), reason="only root gives files away")
 def test_a_file_keeps_its_owner(tmp_path):
     (tmp_path / "theirs").write_text("old")
     os.chown(tmp_path / "theirs", 12345, 12345)
@@ -231,15 +240,17 @@ try:
             with beside.open("w") as file:
                 for k in range(20):
                     file.write(str(k) * 10_000)
-            print("round", flush=True)
+        print("round", flush=True)
 except KeyboardInterrupt:
     sys.exit(130)
 """
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+@posix_only
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGKILL"])
 @pytest.mark.parametrize("attempt", seeds(check=2, sample=7, claim=70))
-def test_at_whatever_moment_a_writer_is_ended_the_file_is_whole(tmp_path, number, attempt):
+def test_at_whatever_moment_a_writer_is_ended_the_file_is_whole(tmp_path, name, attempt):
+    number = getattr(signal, name)
     whole = "".join(str(k) * 10_000 for k in range(20))
     path = tmp_path / "a.txt"
     with started([sys.executable, "-c", SLOW, str(path)]) as process:
@@ -257,6 +268,7 @@ def test_at_whatever_moment_a_writer_is_ended_the_file_is_whole(tmp_path, number
     )
 
 
+@posix_only
 def test_what_a_killed_writer_left_is_cleared_away_and_nothing_else(tmp_path):
     (tmp_path / f"{MARK}0123456789ab.nc").write_text("half a fi")
     (tmp_path / ".tippetop").write_text("mine")
@@ -298,6 +310,8 @@ def test_a_finished_file_moves_to_a_new_place_once(tmp_path):
 @contextlib.contextmanager
 def limited(size):
     """No file grows past this many bytes, as on a disk that is full."""
+    import resource  # noqa: PLC0415 - Windows has none
+
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
@@ -332,6 +346,7 @@ for size in map(int, sys.argv[2:]):
 """
 
 
+@posix_only
 def test_a_full_disk_ends_in_a_sentence_and_leaves_nothing(tmp_path):
     sizes = [0, 512]
     done = subprocess.run(
@@ -348,7 +363,7 @@ def test_a_full_disk_ends_in_a_sentence_and_leaves_nothing(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts disks")
+@pytest.mark.skipif(not is_root(), reason="only root mounts disks")
 @pytest.mark.parametrize("size", ["16k", "64k", "128k"])
 def test_a_run_on_a_disk_too_small_is_refused(long_run, tmp_path, size):
     mount = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(tmp_path)]
@@ -363,6 +378,7 @@ def test_a_run_on_a_disk_too_small_is_refused(long_run, tmp_path, size):
     assert left == []
 
 
+@posix_only
 def test_a_file_larger_than_the_disk_leaves_the_old_one(run, tmp_path):
     path = write_csv(run, tmp_path / "run.csv")
     before = path.read_bytes()

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from exact_motions import DEFAULTS, FREQUENCY, KEPLER, OSCILLATOR, follow, whole
 
+from children import posix_only
 from tippetop.integrators import Guard, Motion, make_integrator, taylor
 from tippetop.integrators.base import NOT_FINITE
 from tippetop.integrators.sealed_folders import SEAL, VARIABLE
@@ -253,6 +254,7 @@ def a_folder_that_cannot_be_written(_: Path) -> Path:
     return Path("/proc/self")
 
 
+@posix_only
 @pytest.mark.parametrize(
     "place",
     [

@@ -15,7 +15,7 @@ from sweep_cases import wait_for_a_task
 from typer.testing import CliRunner
 
 import tippetop as tt
-from children import ended, started
+from children import ended, posix_only, started
 from tippetop.cli import commands
 from tippetop.cli.sweep import sweep as command
 from tippetop.problem.presets import report_problem
@@ -335,6 +335,7 @@ if __name__ == "__main__":
 """
 
 
+@posix_only
 @pytest.mark.parametrize("workers", [1, 2])
 def test_ctrl_c_leaves_a_line_and_a_store_that_resumes(tmp_path, workers):
     script, out = tmp_path / "run.py", tmp_path / "a.zarr"

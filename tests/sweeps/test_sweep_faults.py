@@ -18,7 +18,7 @@ import xarray as xr
 from sweep_cases import lively, stored, wait_for_a_task
 
 from campaigns import examples, seeds
-from children import started
+from children import posix_only, started
 from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble
 from tippetop.sweeps import (
@@ -327,6 +327,7 @@ Store.create({path!r}, lively("fly", 7, 3, 0.05, 1e-9))
 """
 
 
+@posix_only
 def test_what_a_killed_program_left_is_cleared_away_by_the_next(tmp_path):
     path = tmp_path / "a.zarr"
     script = KILLED.format(folder=str(Path(__file__).parent), path=str(path))

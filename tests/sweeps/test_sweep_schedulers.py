@@ -17,7 +17,7 @@ import pytest
 from sweep_cases import lively, same, stored
 
 from campaigns import among
-from children import LONGEST, ended, started
+from children import LONGEST, ended, posix_only, started
 from tippetop.support.errors import InvalidInput, Unavailable
 from tippetop.sweeps import SWEPT, Store, compute, fill, read_sweep, schedulers
 
@@ -44,6 +44,7 @@ def test_workers_of_another_version_are_refused():
         schedulers.compute_region("{}", "99.0", (), (slice(0, 1),))
 
 
+@posix_only
 @pytest.mark.filterwarnings("ignore")
 def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks, monkeypatch):
     distributed = pytest.importorskip("distributed")
@@ -196,6 +197,7 @@ def cluster(tmp_path):
             yield scheduler, worker, json.loads(file.read_text())["address"]
 
 
+@posix_only
 @pytest.mark.parametrize(
     ("lost", "pause", "sentence"),
     [

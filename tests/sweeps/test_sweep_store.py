@@ -14,7 +14,7 @@ import xarray as xr
 from sweep_cases import lively, same, stored
 
 from campaigns import seeds
-from children import started
+from children import posix_only, started
 from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble, InvalidInput
 from tippetop.sweeps import (
@@ -172,6 +172,7 @@ def test_a_folder_that_is_not_a_store_is_refused(tmp_path):
         Store.resume(tmp_path / "b.zarr")
 
 
+@posix_only
 @pytest.mark.parametrize("kind", ["folder", "file", "link", "other store"])
 def test_files_that_are_not_sweeps_are_never_overwritten(tmp_path, kind):
     there = tmp_path / "a.zarr"
