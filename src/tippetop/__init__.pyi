@@ -4,6 +4,7 @@ from . import extend as extend
 from .contact.mode import Status as Status
 from .engines.bodies import write_mjcf as write_mjcf
 from .engines.bodies import write_urdf as write_urdf
+from .engines.mjcf.reading import read_mjcf as read_mjcf
 from .export.glb import write_glb as write_glb
 from .export.html import write_html as write_html
 from .export.movie import write_movie as write_movie

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.engines.bodies import friction_numbers, launch_state, mjcf, urdf
+from tippetop.engines.bodies import friction_numbers, launch_state, mjcf, save_mjcf, save_urdf, urdf
 from tippetop.engines.cases import CASES
 from tippetop.engines.outline import revolved
 
@@ -78,6 +78,8 @@ def test_what_a_format_cannot_say_is_said():
     numbers = friction_numbers(patch)
     assert numbers.torsional == pytest.approx(0.3 * 3 * math.pi / 16 * 5e-4)
     assert "Hertz" in numbers.remarks[0]
+    stopping = problem_of(tt.presets.REPORT).replace({"contact.liftoff": "stop"})
+    assert any("contact.liftoff = 'stop'" in remark for remark in mjcf(stopping)[1].remarks)
     assert any("mesh" in remark for remark in mjcf(problem_of(ROUND))[1].remarks)
     assert mjcf(problem_of(tt.presets.EGG))[1].remarks == (), "MuJoCo has ellipsoids"
 
@@ -110,7 +112,7 @@ def test_nothing_is_written_over_and_nothing_by_halves(tmp_path):
 def test_mujoco_loads_a_body_as_it_is(name, tmp_path):
     mujoco = pytest.importorskip("mujoco", reason=ABSENT.format("MuJoCo"))
     problem = problem_of(BODIES[name])
-    tt.write_mjcf(problem, tmp_path / "top.xml")
+    save_mjcf(problem, tmp_path / "top.xml", overwrite=False)
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "top.xml"))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
@@ -133,7 +135,7 @@ def test_mujoco_loads_a_body_as_it_is(name, tmp_path):
 def test_bullet_loads_a_body_as_it_is(name, tmp_path, capfd):
     pybullet = pytest.importorskip("pybullet", reason=ABSENT.format("PyBullet"))
     problem = problem_of(BODIES[name])
-    tt.write_urdf(problem, tmp_path / "top.urdf")
+    save_urdf(problem, tmp_path / "top.urdf", overwrite=False)
     client = pybullet.connect(pybullet.DIRECT)
     top = pybullet.loadURDF(str(tmp_path / "top.urdf"), flags=pybullet.URDF_USE_INERTIA_FROM_FILE)
     mass, _, inertia, *_ = pybullet.getDynamicsInfo(top, -1)
@@ -152,7 +154,7 @@ def test_drake_loads_a_body_as_it_is(name, tmp_path, caplog):
     from pydrake.systems.framework import DiagramBuilder  # noqa: PLC0415
 
     problem = problem_of(BODIES[name])
-    tt.write_urdf(problem, tmp_path / "top.urdf")
+    save_urdf(problem, tmp_path / "top.urdf", overwrite=False)
     with caplog.at_level(logging.WARNING):
         plant, _ = AddMultibodyPlantSceneGraph(DiagramBuilder(), 1e-3)
         Parser(plant).AddModels(str(tmp_path / "top.urdf"))

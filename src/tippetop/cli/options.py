@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
 ProblemFile = Annotated[
     Path | None,
-    typer.Argument(help="Problem to start from, .toml or .json; by default the report's top."),
+    typer.Argument(
+        help=("Problem to start from, .toml, .json or MuJoCo's .xml; by default the report's top.")
+    ),
 ]
 NUMBER = "NUMBER"
 """Placeholder in the help for a number that may have a unit."""
@@ -93,9 +95,7 @@ class Choice(NamedTuple):
 
         Raises `InvalidInput` if there is no such problem.
         """
-        return self.changed(
-            tt.presets.report_problem() if self.file is None else tt.Problem.read(self.file)
-        )
+        return self.changed(_problem_in(self.file))
 
     def changed(self, problem: "tt.Problem") -> "tt.Problem":
         """Return a problem with the changes."""
@@ -112,6 +112,13 @@ class Choice(NamedTuple):
                 )
             changes[field] = value
         return problem.replace(changes)
+
+
+def _problem_in(file: Path | None) -> "tt.Problem":
+    """Return the problem of a file in TOML, JSON or MJCF; the report's without one."""
+    if file is None:
+        return tt.presets.report_problem()
+    return tt.read_mjcf(file) if file.suffix.lower() == ".xml" else tt.Problem.read(file)
 
 
 def of_a_problem(

@@ -11,8 +11,6 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
-import numpy as np
-
 import tippetop as tt
 from tippetop.engines.outline import FACETS, ConvexMesh, revolved
 from tippetop.problem.problem import require_problem
@@ -97,7 +95,7 @@ def friction_numbers(problem: tt.Problem) -> FrictionNumbers:
         case tt.RegularizedCoulombFriction(mu=mu, eps=eps):
             sliding = mu
             lost.append(f"The slip speed eps = {eps:g} m/s is not mapped: others have their own.")
-        case _:
+        case _ if not friction.vanishes:
             lost.append(
                 f"Friction of the kind {friction.kind} is not mapped: the table is smooth there."
             )
@@ -106,6 +104,9 @@ def friction_numbers(problem: tt.Problem) -> FrictionNumbers:
             f"The restitution {problem.contact.restitution:g} is not mapped: others make rebounds"
             " by stiffness and damping."
         )
+    for field, value in problem.contact:
+        if field != "restitution" and value != getattr(tt.Contact(), field, value):
+            lost.append(f"contact.{field} = {value!r} is not mapped: it is a rule of this program.")
     return FrictionNumbers(sliding, torsional, rolling, tuple(lost))
 
 
@@ -128,17 +129,18 @@ def launch_state(problem: tt.Problem) -> LaunchState:
     half, turn = 0.5 * launch.tilt, launch.azimuth
     # The body's axis is tilted towards its azimuth about a horizontal axis.
     x, y = -math.sin(half) * math.sin(turn), math.sin(half) * math.cos(turn)
-    omega = np.array(launch.angular_velocity())
-    w, v = math.cos(half), np.array([x, y, 0.0])
-    # Into the body's frame by the inverse rotation.
-    inside = omega + 2.0 * np.cross(-v, np.cross(-v, omega) + w * omega)
+    omega = launch.angular_velocity()
+    # That rotation turns the axes 1 and 2 of the launch by the azimuth, about axis 3.
+    first, second, spin = launch.angular_velocity("body")
+    c, s = math.cos(turn), math.sin(turn)
+    inside = (c * first - s * second, s * first + c * second, spin)
     velocity = tuple(float(number) for number in start.velocity)
     return LaunchState(
         (0.0, 0.0, float(start.height)),
-        (w, x, y, 0.0),
+        (math.cos(half), x, y, 0.0),
         (velocity[0], velocity[1], velocity[2]),
-        (float(omega[0]), float(omega[1]), float(omega[2])),
-        (float(inside[0]), float(inside[1]), float(inside[2])),
+        omega,
+        inside,
     )
 
 

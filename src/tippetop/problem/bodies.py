@@ -82,7 +82,7 @@ class Body(Part):
                 "is more than any body with this I1 has",
             )
         for number, shape in enumerate(self.shapes):
-            if len(self.shapes) > 1 and not _reaches_out(number, self.shapes):
+            if len(self.shapes) > 1 and not reaches_out(number, self.shapes):
                 numbers = ", ".join(f"{name} = {value}" for name, value in shape)
                 raise InvalidInput(
                     f"shape.{number}",
@@ -183,7 +183,7 @@ REACH = 1e-9
 """Length by which a surface must reach beyond the others, in its sizes: above rounding."""
 
 
-def _reaches_out(number: int, shapes: tuple[Shape, ...]) -> bool:
+def reaches_out(number: int, shapes: tuple[Shape, ...]) -> bool:
     """Return whether a surface touches the table at some tilt; True if arithmetic overflows."""
     surface = shapes[number].surface
     others = [shape.surface for place, shape in enumerate(shapes) if place != number]
