@@ -38,7 +38,7 @@ DURATION = 0.3
 def test_all_that_is_generated_asks_for_is_there() -> None:
     script = f"""
       import {{ readFileSync }} from "node:fs";
-      import * as py from {json.dumps((HERE / "runtime.js").as_uri())};
+      import * as py from {json.dumps((HERE / "python.js").as_uri())};
       const text = readFileSync({json.dumps(str(HERE / "mechanics.js"))}, "utf8");
       const uses = text.matchAll(/\\bpy\\.(?:(math|np)\\.)?(\\w+)/g);
       const asked = new Set(Array.from(uses, ([name]) => name));
@@ -288,7 +288,7 @@ def test_the_last_of_so_many_samples_is_at_the_end() -> None:
 def test_no_more_is_kept_than_so_much() -> None:
     """A page may follow launches of ever other tops, each with tables of its own."""
     script = f"""
-      import {{ cached }} from {json.dumps((HERE / "runtime.js").as_uri())};
+      import {{ cached }} from {json.dumps((HERE / "python.js").as_uri())};
       let made = 0;
       const square = cached((number) => (made += 1, number ** 2));
       for (let number = 0; number < 5000; number += 1) square(number);

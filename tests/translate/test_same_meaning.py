@@ -296,7 +296,7 @@ def results():
     source = "\n".join([HEAD, DEFINITIONS, *snippets])
     space = {"__name__": "snippets"}
     exec(compile(source, "snippets", "exec", dont_inherit=True), space)
-    lines = [f'import * as py from "{(HERE / "runtime.js").as_uri()}";']
+    lines = [f'import * as py from "{(HERE / "python.js").as_uri()}";']
     lines += Definitions(Program({"snippets": source}), "snippets").module_lines()
     lines += [
         f"""

@@ -200,7 +200,7 @@ def plain(value):
 def run(lines, folder):
     """What JavaScript with these lines prints, and what goes wrong in it."""
     script = folder / "sample.mjs"
-    runtime = f'import * as py from "{(HERE / "runtime.js").as_uri()}";'
+    runtime = f'import * as py from "{(HERE / "python.js").as_uri()}";'
     script.write_text("\n".join([runtime, *lines]), encoding="utf-8")
     ran = subprocess.run([NODE, str(script)], capture_output=True, text=True, check=False)
     return ran.stdout, ran.stderr

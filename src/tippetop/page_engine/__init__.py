@@ -2,7 +2,7 @@
 
 ``python -m tippetop.page_engine`` generates `mechanics.js` and `tables.js`, which are not in the
 repository, from the modules of this package that state the physics. The other files are written by
-hand: Python's semantics in JavaScript (`runtime.js`), the integrator, and the readings of a run.
+hand: Python's semantics in JavaScript (`python.js`), the integrator, and the readings of a run.
 """
 
 from pathlib import Path

@@ -1,9 +1,6 @@
 // What Python means where JavaScript means something else: for the translated modules.
 import { repr } from "./words.js";
 
-export * from "./arrays.js";
-export * from "./words.js";
-
 export class ArithmeticError extends Error {}
 export class ZeroDivisionError extends ArithmeticError {}
 export class ValueError extends Error {}
