@@ -16,6 +16,7 @@ function followed({ problem, times, ...options }) {
       flights: run.flights,
       metrics: run.metrics,
       account: run.account,
+      fellBack: run.fellBack,
       track: Object.fromEntries(
         Object.entries(track).map(([name, values]) => [name, Array.from(values)]),
       ),

@@ -135,6 +135,9 @@ def compared(found: dict[str, Any], run: Any, beside: Any = None) -> list[str]:
     wrong = []
     if found["status"]["name"] != run.attrs["status"]:
         wrong.append(f"status {found['status']} instead of {run.attrs['message']}")
+    outcome = run["outcome"].item()
+    if found["fellBack"] != (outcome == "fell_back"):
+        wrong.append(f"fell back: {found['fellBack']} where the outcome is {outcome}")
     kinds = [str(kind) for kind in run["event_kind"].values]
     others = [event["kind"] for event in found["events"]]
     if others != kinds:

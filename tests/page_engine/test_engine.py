@@ -104,6 +104,18 @@ def test_a_disk_that_wobbles_down_is_the_same() -> None:
     assert not compared(found, run)
 
 
+def test_a_top_that_falls_back_is_told_from_one_that_does_not() -> None:
+    law = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)
+    duration, falls = 30.0, []
+    for spin in (10.0, 80.0):
+        problem = tt.presets.report_problem(spin=spin).replace({"friction": law})
+        fields = problem.model_dump(mode="json")
+        (found,) = in_javascript([asked(0, duration) | {"problem": fields}])
+        assert not compared(found, in_python(fields, duration))
+        falls.append(found["fellBack"])
+    assert falls == [False, True]
+
+
 @pytest.mark.parametrize(
     "seeds", [CLOSE_CALLS, *seed_ranges(check=0, sample=40, claim=500, size=46)]
 )

@@ -263,6 +263,11 @@ class Run {
     return { count: jumps.length, max_gap };
   }
 
+  /** Whether the top rose and fell back. */
+  get fellBack() {
+    return m.fell_back(this.facts);
+  }
+
   /** What became of the launch, as clauses of a name and numbers. */
   get account() {
     return m.account_of(this.facts).map(({ name, numbers, part }) => ({

@@ -16,6 +16,7 @@ from tippetop.mechanics.surfaces.hull import Hull, acting, is_edge, lowest_surfa
 from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE
+from tippetop.results.metrics import came_down
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import Prediction, predicted
 from tippetop.theory.slow_time import time_to_end
@@ -149,7 +150,7 @@ def _motion(facts: Facts) -> list[Clause]:
         name = "never_slips" if sticks == 0.0 else "sticks"
         clauses.append(Clause(name, {"time": sticks}, "motion"))
     highest, when = facts.peak
-    if _fell_back(facts):
+    if fell_back(facts):
         numbers = {"highest": highest, "time": when, "tilt": final}
         clauses.append(Clause("falls_back", numbers, "motion"))
     elif (
@@ -204,16 +205,14 @@ def _sticks_since(facts: Facts) -> float:
     return changes[-1].time
 
 
-def _fell_back(facts: Facts) -> bool:
+def fell_back(facts: Facts) -> bool:
     """Return whether the top rose and fell back, by the definition of `Outcome.FELL_BACK`."""
-    final, (highest, _) = facts.metrics["final_tilt"], facts.peak
-    launched = facts.problem.launch.tilt
     if facts.status in (Status.LIFTED_OFF, Status.FAILED, Status.INACCURATE):
         return False
-    if highest - max(final, launched) <= RISE:
-        return False
-    turned = math.isfinite(facts.metrics["turnover_time"]) and launched < LEANS_AT_LAUNCH
-    return (turned and final < 0.5 * math.pi) or facts.metrics["is_settled"] > 0
+    has_turned = math.isfinite(facts.metrics["turnover_time"])
+    is_settled = facts.metrics["is_settled"] > 0
+    final, launched = facts.metrics["final_tilt"], facts.problem.launch.tilt
+    return bool(came_down(final, facts.peak[0], launched, has_turned, is_settled))
 
 
 def _end(facts: Facts) -> list[Clause]:

@@ -228,6 +228,23 @@ def highest_seen(ends: Ends) -> Array:
     return tilts
 
 
+def came_down(
+    final: Scalar, highest: Scalar, launched: Scalar, has_turned: Scalar, is_settled: Scalar
+) -> Scalar:
+    """Return whether launches rose and fell back, see `Outcome.FELL_BACK`; of numbers or arrays.
+
+    Parameters
+    ----------
+    final, highest, launched
+        Tilts at the end, at most and at launch, rad.
+    has_turned, is_settled
+        Whether the top turned over, and whether its tilt is settled at the end.
+    """
+    risen = (highest - final > RISE) & (highest - launched > RISE)
+    below = has_turned & (launched < LEANS_AT_LAUNCH) & (final < 0.5 * np.pi)
+    return risen & (below | is_settled)
+
+
 # translate: skip
 def outcomes_of(ends: Ends, start: State) -> NDArray[np.int8]:
     """Return what became of launches, as numbers of `tippetop.results.catalogue.Outcome`.
@@ -246,8 +263,8 @@ def outcomes_of(ends: Ends, start: State) -> NDArray[np.int8]:
     for number, status in enumerate(STATUSES):
         if status not in (Status.COMPLETED, Status.STOPPED):
             outcomes[ends.status == number] = getattr(Outcome, status.name, Outcome.FAILED)
-    came_down = risen - np.maximum(final, tilt(start)) > RISE
-    below = np.isfinite(ends.turned) & (tilt(start) < LEANS_AT_LAUNCH) & (final < 0.5 * np.pi)
+    has_turned = np.isfinite(_turned_over(ends))
+    fell = came_down(final, risen, tilt(start), has_turned, settled)
     is_followed = ~np.isin(outcomes, [Outcome.FAILED, Outcome.INACCURATE, Outcome.LIFTED_OFF])
-    outcomes[is_followed & came_down & (below | settled)] = Outcome.FELL_BACK
+    outcomes[is_followed & fell] = Outcome.FELL_BACK
     return outcomes.astype(np.int8)

@@ -14,7 +14,6 @@ import {
   turned,
   weighed,
 } from "engine";
-import { RISE } from "engine-tables";
 
 import { numbers } from "../run/numbers.js";
 import { buffersOf, pack } from "../run/pack.js";
@@ -54,10 +53,9 @@ function answerRun({ id, problem, duration, quick }) {
 }
 
 function answerCell({ problem, duration }) {
-  const { metrics, status, jumps } = simulate(problem, { duration, tolerance: COARSE });
-  const { final_tilt: tilt, max_tilt_ever: highest, turnover_time: turnsOver } = metrics;
-  const isBack = Number.isFinite(turnsOver) && tilt < Math.PI / 2;
-  const fellBack = isBack || highest - Math.max(tilt, problem.launch.tilt ?? 0) > RISE;
+  const run = simulate(problem, { duration, tolerance: COARSE });
+  const { final_tilt: tilt, max_tilt_ever: highest, turnover_time: turnsOver } = run.metrics;
+  const { fellBack, jumps, status } = run;
   return { tilt, highest, fellBack, flights: jumps.count, turnsOver, status };
 }
 
