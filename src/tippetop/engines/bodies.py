@@ -13,12 +13,10 @@ from xml.etree import ElementTree as Xml
 
 import tippetop as tt
 from tippetop.engines.outline import FACETS, ConvexMesh, revolved
+from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.problem.problem import require_problem
 from tippetop.support.errors import require
 from tippetop.support.files import path_of, place_for, require_ending, written_beside
-
-LIMIT_SURFACE = 3.0 * math.pi / 16.0
-"""Semi-axis of the limit surface of Hertz's patch over its radius."""
 
 MESH_ENDING = ".obj"
 
@@ -86,7 +84,7 @@ def friction_numbers(problem: tt.Problem) -> FrictionNumbers:
         case tt.CoulombFriction(mu=mu):
             sliding = mu
         case tt.ContensouFriction(mu=mu, patch_radius=radius, pressure=pressure):
-            sliding, torsional = mu, mu * LIMIT_SURFACE * radius
+            sliding, torsional = mu, mu * ELLIPSOIDAL_RADIUS * radius
             if pressure == "hertz":
                 lost.append(
                     "The pressure of Hertz is not mapped: drilling has its ellipsoidal limit"

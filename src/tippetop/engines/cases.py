@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import tippetop as tt
+from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS
 
 SAMPLES = 20
 """Number of instants at which a case has its state."""
@@ -40,8 +41,6 @@ class Case(NamedTuple):
 
 
 _REPORT = tt.presets.REPORT
-_RHO = 3.0 * math.pi / 16.0
-"""Semi-axis of the ellipsoidal limit surface over the radius of the patch."""
 
 _AT_REST = (0.0, 0.0, 0.0)
 
@@ -102,7 +101,10 @@ CASES = (
         "A top on a contact patch turns over (ellipsoidal limit surface)",
         "slipping and drilling at once",
         _on_friction(
-            tt.ContensouFriction(mu=0.3, patch_radius=1e-3 / _RHO, pressure="ellipsoidal"), 100.0
+            tt.ContensouFriction(
+                mu=0.3, patch_radius=1e-3 / ELLIPSOIDAL_RADIUS, pressure="ellipsoidal"
+            ),
+            100.0,
         ),
         4.0,
     ),
@@ -148,7 +150,9 @@ CASES = (
         "a contact whose curvature changes",
         tt.Problem(
             body=tt.presets.EGG,
-            friction=tt.ContensouFriction(mu=0.2, patch_radius=1e-3 / _RHO, pressure="ellipsoidal"),
+            friction=tt.ContensouFriction(
+                mu=0.2, patch_radius=1e-3 / ELLIPSOIDAL_RADIUS, pressure="ellipsoidal"
+            ),
             launch=tt.Launch(tilt=1.5, spin=0.0, precession=100.0),
             gravity=9.81,
         ),

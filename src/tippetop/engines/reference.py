@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import tippetop as tt
 from tippetop.engines.cases import CASES, Case
+from tippetop.results.dataset import CONVENTIONS
 from tippetop.support.files import make_folder, place_for, written_beside
 from tippetop.support.suggestions import not_one_of
 
@@ -347,7 +348,7 @@ def _dataset(one: Reference) -> xr.Dataset:
         **attributes,
         problem=case_json(one.case),
         second_method=one.method,
-        Conventions="CF-1.11",
+        Conventions=CONVENTIONS,
     )
 
 

@@ -7,6 +7,8 @@ from typing import Any, TypeAlias
 
 import xarray as xr
 
+from tippetop.results.dataset import CONVENTIONS
+
 Compute: TypeAlias = Callable[[bool], xr.Dataset]
 
 
@@ -31,7 +33,7 @@ class Experiment:
             "experiment": self.id,
             "quick": int(quick),
             "tippetop_version": version("tippetop"),
-            "Conventions": "CF-1.11",
+            "Conventions": CONVENTIONS,
             **data.attrs,
         }
         return data

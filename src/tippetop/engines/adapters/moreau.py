@@ -11,8 +11,9 @@ import numpy as np
 
 import tippetop as tt
 from tippetop.engines.adapters.base import Array, EngineState, Setting, no_rolling
-from tippetop.engines.bodies import LIMIT_SURFACE, primitives
+from tippetop.engines.bodies import primitives
 from tippetop.engines.cases import Case
+from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS
 
 CLOSE = 1e-10
 """Change of the impulses between two rounds at which they are taken, relative to the normal one."""
@@ -61,7 +62,7 @@ class MoreauStepper:
         shapes = primitives(body, ellipsoids=False) or ()
         self.balls = [(shape.sizes[0], shape.center) for shape in shapes]
         self.mu = float(getattr(friction, "mu", 0.0))
-        self.patch = LIMIT_SURFACE * float(getattr(friction, "patch_radius", 0.0))
+        self.patch = ELLIPSOIDAL_RADIUS * float(getattr(friction, "patch_radius", 0.0))
         self.n = np.array([float(x) for x in start.axis])
         self.L = np.array([float(x) for x in start.momentum])
         self.u = np.array([float(x) for x in start.velocity])

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import tippetop as tt
-from tippetop.engines.bodies import LIMIT_SURFACE
 from tippetop.engines.mjcf.geoms import Geom, Mass
 from tippetop.engines.mjcf.model import Pair
 from tippetop.engines.mjcf.poses import Quaternion, inverse, matrix, onto
+from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.problem.bodies import reaches_out
 from tippetop.support.errors import Described, InvalidInput
 
@@ -181,7 +181,7 @@ def friction_of(pair: Pair) -> tuple[tt.Friction, float]:
     else:
         law = tt.ContensouFriction(
             mu=sliding,
-            patch_radius=torsional / (sliding * LIMIT_SURFACE),
+            patch_radius=torsional / (sliding * ELLIPSOIDAL_RADIUS),
             pressure="ellipsoidal",
         )
     return law, rolling if pair.condim == 6 else 0.0
