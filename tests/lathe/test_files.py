@@ -109,7 +109,7 @@ def test_spreadsheets_that_write_decimal_commas_are_read(tmp_path):
             "density = 700\nprofile = [[0, 0], [1, 1], [0, 1]]\ncolour = 'red'",
             "colour in a.toml: 'red' is given",
         ),
-        ("a.txt", "0,0", "is not one whose name ends in .toml, .csv, .svg, .dxf or .stl"),
+        ("a.txt", "0,0", ".toml, .csv, .svg, .dxf, .stl, .obj, .ply or .off"),
     ],
 )
 def test_what_cannot_be_read_is_refused(tmp_path, name, text, sentence):

@@ -20,7 +20,7 @@ from tippetop.cli.options import (
 )
 from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
-from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.errors import Described, InvalidInput, within_part
 from tippetop.support.files import place_for, require_ending
 
 FILE_ENDINGS = {
@@ -38,18 +38,22 @@ def body(
         Path,
         typer.Argument(
             help="Workpiece (.toml), or its profile: points (.csv), a drawing (.svg or .dxf) or a"
-            " surface (.stl)."
+            " surface (.stl, .obj, .ply or .off)."
         ),
     ],
     density: Annotated[
         str | None,
-        typer.Option(metavar=NUMBER, help="Density, kg/m^3, or as in '0.7 g/cm^3'."),
+        typer.Option(
+            metavar=NUMBER,
+            help="Density, kg/m^3, or as in '0.7 g/cm^3'; or a material, as in 'beech' or, printed"
+            " with an infill, 'PLA 20 %'.",
+        ),
     ] = None,
     unit: Annotated[
         str | None,
         typer.Option(
             help="Unit of the profile's numbers: m, cm, mm or in. By default m in .toml and .csv,"
-            " mm in .stl, and the physical size of a drawing."
+            " mm in meshes, and the physical size of a drawing; a heading of points may have it."
         ),
     ] = None,
     axis: Annotated[
@@ -59,6 +63,16 @@ def body(
             " surface x, y or z. Sought by default."
         ),
     ] = None,
+    frame: Annotated[
+        bool | None,
+        typer.Option(
+            "--frame/--no-frame",
+            help="Whether a rectangle around all else in a drawing is a frame, or the body.",
+        ),
+    ] = None,
+    upside_down: Annotated[
+        bool, typer.Option("--upside-down", help="Turn the body over: what is below comes up.")
+    ] = False,
     tolerance: Annotated[
         float | None,
         number_option(
@@ -102,12 +116,14 @@ def body(
         require_ending(f"--{kind}", path, FILE_ENDINGS[kind])
         place_for(path, force)
     options = {
-        "density": number_of("--density", density, "kg m-3"),
+        "density": number_of("--density", _density(density), "kg m-3"),
         "unit": unit,
         "tolerance": tolerance,
     }
     stated = {name: value for name, value in options.items() if value is not None}
-    workpiece, remarks = read_with_remarks(file, axis=axis, **stated)
+    workpiece, remarks = read_with_remarks(file, axis=axis, frame=frame, **stated)
+    if upside_down:
+        workpiece = workpiece.turned_over()
     if as_toml and as_json:
         raise InvalidInput(
             "--toml", Described("beside --json"), "one of the two", "asks for two formats"
@@ -131,6 +147,17 @@ def body(
         raise typer.Exit(2)
 
 
+def _density(text: str | None) -> str | None:
+    """Return the density of a material by name as a number; other texts unchanged."""
+    from tippetop.lathe.materials import density_of  # noqa: PLC0415 - slow to import
+
+    try:
+        density = density_of(text)
+    except InvalidInput as error:
+        raise within_part(error, "--density") from None
+    return density if density is None else str(density)
+
+
 def _fit(workpiece: "tt.Workpiece") -> list[str]:
     """Return a remark on the fit of the profile to points, if there was one."""
     fit = workpiece.fit
@@ -149,13 +176,17 @@ def _summary(workpiece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
     """
     from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415 - slow to import
 
+    mass, center, I1, I3 = workpiece.mass_properties
     trouble = None
     try:
         turned = tt.Body.turned(workpiece, whole=whole)
-        warn_if_implausible(tt.presets.report_problem().model_copy(update={"body": turned}))
     except InvalidInput as error:
         trouble = str(error)
-    mass, center, I1, I3 = workpiece.mass_properties
+        # Mass and size are in doubt whatever the surfaces: those of a ball around the body.
+        size = 0.5 * workpiece.outline.size
+        ball = tt.Sphere(radius=size, center=0.0)
+        turned = tt.Body(mass=mass, shape=ball, I1=0.4 * mass * size**2, I3=0.4 * mass * size**2)
+    warn_if_implausible(tt.presets.report_problem().model_copy(update={"body": turned}))
     hull = workpiece.hull
     return {
         "mass": mass,
@@ -167,6 +198,7 @@ def _summary(workpiece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
         "lies_on_lines_at_tilts": hull.flats,
         "trouble": trouble,
         **_prospects(workpiece),
+        "upside_down": _prospects(workpiece.turned_over()),
     }
 
 
@@ -261,6 +293,24 @@ def _write(
 def _sentences(summary: dict[str, Any]) -> Iterator[Any]:
     from rich.markup import escape  # noqa: PLC0415 - slow to import
 
+    over = summary["upside_down"]
+    if over["group"]:
+        stands = summary["surfaces"][0]["kind"]
+        stem_down = (
+            "It is drawn with its ball above: as drawn it stands on"
+            f" {'an' if stands[0] in 'aeo' else 'a'} {stands}."
+            if not summary["group"] or _radius_above(summary)
+            else "It stands on a ball at either end."
+        )
+        yield (
+            f"[bold]Upside down: group {over['group']}[/]: {over['group_description']}."
+            f" {stem_down} --upside-down turns it over."
+        )
+    if not summary["group"] and not over["group"]:
+        yield (
+            "No critical spins: at neither end does it stand on a ball with the centre of mass"
+            " below the ball's centre."
+        )
     if summary["group"]:
         upto = summary["surfaces"][0]["to_tilt"]
         within = (
@@ -277,6 +327,12 @@ def _sentences(summary: dict[str, Any]) -> Iterator[Any]:
     yield "[dim]mm, from the centre of mass; rad.[/]"
     if summary["trouble"]:
         yield escape(f"Cannot be simulated: {summary['trouble']}")
+
+
+def _radius_above(summary: dict[str, Any]) -> bool:
+    """Return whether the ball at the upper end is the larger one."""
+    lower, upper = summary["surfaces"][0], summary["surfaces"][-1]
+    return bool(upper.get("radius", 0.0) > lower.get("radius", 0.0))
 
 
 def _surface_row(one: dict[str, Any]) -> tuple[str, ...]:

@@ -150,7 +150,7 @@ def arcs_around(
     """Return the arcs around a centre between two points that turn by about the angle `about`."""
     first, second = (cmath.phase(point - center) for point in (start, end))
     turn = about + (second - first - about + math.pi) % math.tau - math.pi
-    parts = math.ceil(abs(turn) / LARGEST_TURN)
+    parts = max(1, math.ceil(abs(turn) / LARGEST_TURN))
     inner = [center + cmath.rect(radius, first + turn * k / parts) for k in range(1, parts)]
     points = [start, *inner, end]
     return [Edge(*ends, turn / parts) for ends in pairwise(points)]

@@ -25,22 +25,33 @@ def read_dxf(path: FilePath, unit: str | None, name: str) -> Sheet:
     """
     try:
         import ezdxf  # noqa: PLC0415 - optional
-        import ezdxf.filemanagement  # noqa: PLC0415
+        import ezdxf.recover  # noqa: PLC0415
     except ImportError:
         raise Unavailable(
             f"DXF files are read with ezdxf, which is not installed: {install_command('lathe')}"
         ) from None
     try:
-        document = ezdxf.filemanagement.readfile(path)
+        # `recover` accepts what some exporters write: coordinates in the order x, x, y, y.
+        document, _ = ezdxf.recover.readfile(path)
     except Exception:  # noqa: BLE001 - ezdxf raises what its parsers do
         raise InvalidInput("DXF", name, "a drawing in the format DXF") from None
     scale = 1.0 if unit else MM.get(document.units, 1.0)
     paths = [
         (f"{entity.dxftype().lower()} {entity.dxf.handle or ''}".strip(), path)
-        for entity in _simple(document.modelspace())
+        for entity in _simple(_visible(document))
         for path in _paths(entity, scale, ezdxf)
     ]
     return Sheet(paths, unit or "mm")
+
+
+def _visible(document: Any) -> Any:
+    """Yield the entities of the model space whose layer is shown."""
+    hidden = {
+        layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()
+    }
+    for entity in document.modelspace():
+        if entity.dxf.get("layer", "0").lower() not in hidden:
+            yield entity
 
 
 def _simple(entities: Any) -> Any:

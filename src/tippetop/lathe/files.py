@@ -1,9 +1,10 @@
 """Reading of workpieces from TOML, or of their profiles from points, drawings and meshes."""
 
+import re
 from contextlib import ExitStack
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from tippetop.lathe.fitting import TOLERANCE
 from tippetop.lathe.sheet import Reading, Sheet, read_sheet
@@ -13,27 +14,37 @@ from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.files import in_words, made_of, named, path_of, read_text
 from tippetop.support.parsing import parse_toml
 
-ACCEPTED = "a workpiece in TOML, or a profile in CSV, SVG, DXF or STL"
+MESHES = (".stl", ".obj", ".ply", ".off")
+"""Suffixes of meshes."""
 
-DRAWINGS = (".svg", ".dxf", ".stl")
+DRAWINGS = (".svg", ".dxf", *MESHES)
 """Suffixes of drawings and meshes, which have a unit of their own."""
+
+ACCEPTED = "a workpiece in TOML, or a profile in CSV, SVG, DXF, STL, OBJ, PLY or OFF"
+
+HEADING_UNIT = re.compile(r"[(\[{/_,\s](mm|cm|m|in|inch|inches)\b[)\]}]?\s*$", re.IGNORECASE)
+"""Unit at the end of a heading, such as "r (mm)", "r [mm]", "r/mm" or "r_mm"."""
 
 STARTS = "0123456789+-."
 """First characters of numbers, also of mistyped ones; cells of a heading do not begin so."""
 
 
-def read_workpiece(path: Path | str, *, axis: str | None = None, **fields: Any) -> Workpiece:
-    """Return the workpiece of a .toml file, or with the profile of a .csv, .svg, .dxf or .stl file.
+def read_workpiece(
+    path: Path | str, *, axis: str | None = None, frame: bool | None = None, **fields: Any
+) -> Workpiece:
+    """Return the workpiece of a .toml file, or with the profile of another file.
 
-    In TOML a profile may be the name of such a file in the same folder. A CSV file has two or three
-    columns, with or without a heading: distance from the axis, height and radius of the arc that
-    ends there. A drawing shows half an outline from the axis to the axis, or a full one on both
-    sides, and bores inside; its lengths are physical (a pixel is a 96th of an inch) unless `unit`
-    states the unit of its numbers. A mesh is the surface of a body of revolution, in mm unless
-    `unit` says otherwise.
+    Profiles are in files of points (.csv), drawings (.svg, .dxf) and meshes (.stl, .obj, .ply,
+    .off). In TOML a profile may be the name of such a file in the same folder. A CSV file has two
+    or three columns, with or without a heading: distance from the axis, height and radius of the
+    arc that ends there; a heading may have the unit, as in "r (mm)". A drawing shows half an
+    outline from the axis to the axis, or a full one on both sides, and bores inside; its lengths
+    are physical (a pixel is a 96th of an inch) unless `unit` states the unit of its numbers. A mesh
+    is the surface of a body of revolution, in mm unless `unit` says otherwise.
 
     The axis of a drawing is x = 10 or y = 10, a place in its numbers, or x or y for its direction;
-    that of a mesh x, y or z. By default it is sought.
+    that of a mesh x, y or z. By default it is sought. A rectangle around all else is left out as
+    the page or a frame; if it may be a body with bores too, `frame` is to say what it is.
 
     Further fields replace those of the file. Raises `FileTrouble` if a file cannot be read,
     `InvalidInput` if its content is not accepted, `Unavailable` if a library that reads it is not
@@ -49,11 +60,11 @@ def read_workpiece(path: Path | str, *, axis: str | None = None, **fields: Any) 
     >>> round(1e3 * tt.read_workpiece("ball.svg", density=700).mass_properties.mass, 3)  # g
     9.896
     """
-    return read_with_remarks(path, axis=axis, **fields)[0]
+    return read_with_remarks(path, axis=axis, frame=frame, **fields)[0]
 
 
 def read_with_remarks(
-    path: Path | str, *, axis: str | None = None, **fields: Any
+    path: Path | str, *, axis: str | None = None, frame: bool | None = None, **fields: Any
 ) -> tuple[Workpiece, list[str]]:
     """Return the workpiece of `read_workpiece`, and sentences on how its drawings were read."""
     path = path_of(path)
@@ -80,7 +91,7 @@ def read_with_remarks(
             if isinstance(part, dict) and isinstance(part.get("profile"), str):
                 beside = path.parent / part["profile"]
                 field = f"{prefix}profile"
-                reading = _read(beside, axis, content, field, is_toml)
+                reading = _read(beside, Hints(axis, frame), content, field, is_toml)
                 part["profile"] = reading.profile
                 remarks += reading.remarks
                 if reading.cavities:
@@ -101,55 +112,86 @@ def _add_cavities(content: dict[str, Any], reading: Reading, field: str) -> None
     content["inserts"] = [*(content.get("inserts") or ()), *cavities]
 
 
+class Hints(NamedTuple):
+    """What users state of a drawing or a mesh."""
+
+    axis: str | None
+    frame: bool | None
+
+
 def _read(
-    path: Path, axis: str | None, content: dict[str, Any], field: str, is_in_toml: bool
+    path: Path, hints: Hints, content: dict[str, Any], field: str, is_in_toml: bool
 ) -> Reading:
     """Return the profile in a file, and set the unit in the fields of the workpiece.
 
     Numbers of a drawing are physical lengths and those of a mesh mm, unless a unit is stated.
     """
+    axis, frame = hints
     suffix = path.suffix.lower()
     if suffix not in (".csv", *DRAWINGS):
+        endings = ", ".join((".toml", ".csv", *DRAWINGS[:-1]))
         raise InvalidInput(
-            "file", named(path), "one whose name ends in .toml, .csv, .svg, .dxf or .stl"
+            "file", named(path), f"one whose name ends in {endings} or {DRAWINGS[-1]}"
         )
     unit = content.get("unit")
     tolerance = content.get("tolerance", TOLERANCE)
     if not isinstance(tolerance, float | int) or not 0.0 <= tolerance <= 1.0:
         tolerance = TOLERANCE  # the workpiece will refuse the stated one
     if suffix == ".csv":
-        points = _from_csv(read_text(path, ACCEPTED), path)
-        if axis is None and not _are_on_both_sides(points):
-            return Reading(points, [], [])
-        # This closes a half outline along the axis.
-        corners = [complex(*point[:2]) for point in [*points, *points[:1]]]
-        outline = [line(*ends) for ends in pairwise(corners) if ends[0] != ends[1]]
-        sheet = Sheet([("the line of points", outline)], unit or "m")
-        return read_sheet(sheet, axis, tolerance, field)
+        points, written_unit = _from_csv(read_text(path, ACCEPTED), path)
+        if written_unit is not None and unit not in (None, written_unit):
+            raise InvalidInput(
+                "unit", unit, written_unit, "is not the unit in the heading", file=named(path)
+            )
+        reading = _of_points(points, axis, written_unit or unit or "m", tolerance, field)
+        return _in_unit(reading, written_unit or "m", content, is_in_toml)
     with in_words(path, "read"):
-        if suffix == ".stl":
-            from tippetop.lathe.scan import read_stl  # noqa: PLC0415 - slow to import
+        if suffix in MESHES:
+            from tippetop.lathe.scan import read_mesh  # noqa: PLC0415 - slow to import
 
-            reading = read_stl(path, axis, tolerance, named(path))
+            reading = read_mesh(path, axis, tolerance, named(path))
         elif suffix == ".dxf":
             from tippetop.lathe.dxf import read_dxf  # noqa: PLC0415 - slow to import
 
-            reading = read_sheet(read_dxf(path, unit, named(path)), axis, tolerance, field)
+            reading = read_sheet(read_dxf(path, unit, named(path)), axis, tolerance, field, frame)
         else:
             from tippetop.lathe.svg import read_svg  # noqa: PLC0415 - slow to import
 
             sheet = read_svg(read_text(path, ACCEPTED), unit, named(path))
-            reading = read_sheet(sheet, axis, tolerance, field)
-    if unit is not None:
+            reading = read_sheet(sheet, axis, tolerance, field, frame)
+    return _in_unit(reading, "mm", content, is_in_toml)
+
+
+def _in_unit(reading: Reading, unit: str, content: dict[str, Any], is_in_toml: bool) -> Reading:
+    """Return a reading whose numbers are in a unit, in the unit of the workpiece.
+
+    A file that is read alone states the unit of the workpiece; profiles in TOML are in m unless
+    `unit` says otherwise.
+    """
+    if content.get("unit") is not None:
         return reading
     if not is_in_toml:
-        content["unit"] = "mm"
+        content["unit"] = unit
         return reading
-    scale = UNITS["mm"] / UNITS["m"]
+    scale = UNITS[unit] / UNITS["m"]
+    if scale == 1.0:
+        return reading
     return reading._replace(
         profile=_scaled(reading.profile, scale),
         cavities=[_scaled(points, scale) for points in reading.cavities],
     )
+
+
+def _of_points(
+    points: list[tuple[float, ...]], axis: str | None, unit: str, tolerance: float, field: str
+) -> Reading:
+    """Return the profile of points: as they are, or of a full outline around an axis."""
+    if axis is None and not _are_on_both_sides(points):
+        return Reading(points, [], [])
+    # This closes a half outline along the axis.
+    corners = [complex(*point[:2]) for point in [*points, *points[:1]]]
+    outline = [line(*ends) for ends in pairwise(corners) if ends[0] != ends[1]]
+    return read_sheet(Sheet([("the line of points", outline)], unit), axis, tolerance, field)
 
 
 def _scaled(points: list[tuple[float, ...]], scale: float) -> list[tuple[float, ...]]:
@@ -162,7 +204,14 @@ def _are_on_both_sides(points: list[tuple[float, ...]]) -> bool:
     return all(len(point) == 2 for point in points) and min(across, default=0.0) < 0.0 < max(across)
 
 
-def _from_csv(text: str, path: Path) -> list[tuple[float, ...]]:
+class _Table(NamedTuple):
+    """Points in a file, and the unit in its heading."""
+
+    points: list[tuple[float, ...]]
+    unit: str | None
+
+
+def _from_csv(text: str, path: Path) -> _Table:
     """Return the points in rows of numbers separated by commas, semicolons, tabs or spaces.
 
     Between semicolons or tabs a comma is a decimal sign, as some spreadsheets write it.
@@ -173,9 +222,26 @@ def _from_csv(text: str, path: Path) -> list[tuple[float, ...]]:
     if between in (";", "\t"):  # then a comma is a decimal sign
         cells = [[cell.replace(",", ".") for cell in row] for row in cells]
     rows = [(number, row) for number, row in enumerate(cells, 1) if any(row)]
+    unit = None
     if rows and not any(cell[:1] in STARTS for cell in rows[0][1] if cell):
+        unit = _unit_of(rows[0][1], path)
         rows = rows[1:]
-    return [_numbers(number, row, path) for number, row in rows]
+    return _Table([_numbers(number, row, path) for number, row in rows], unit)
+
+
+def _unit_of(heading: list[str], path: Path) -> str | None:
+    """Return the unit of lengths in a heading, None if it has none; refuse several units."""
+    matches = [HEADING_UNIT.search(f" {cell}") for cell in heading]
+    units = {match[1].lower() for match in matches if match}
+    units = {"in" if unit.startswith("in") else unit for unit in units}
+    if len(units) > 1:
+        raise InvalidInput(
+            "heading",
+            ",".join(heading),
+            "one unit for all columns: m, cm, mm or in",
+            file=named(path),
+        )
+    return units.pop() if units else None
 
 
 def _numbers(number: int, row: list[str], path: Path) -> tuple[float, ...]:

@@ -111,6 +111,9 @@ def fit(points: Sequence[Sequence[float]], tolerance: float = TOLERANCE) -> Fit:
     if not (0.0 < size <= LARGEST and tolerance > 0.0):
         return Fit(stated, count, count, 0.0)
     written = unrounded(stated)
+    is_closed = written[0][:2] == written[-1][:2]
+    if is_closed and not any(any(point[2:]) for point in written):
+        written = _from_a_corner(written)
     fitted, deviation, k = [written[0]], 0.0, 1
     while k < len(written):
         end = k
@@ -127,7 +130,23 @@ def fit(points: Sequence[Sequence[float]], tolerance: float = TOLERANCE) -> Fit:
         fitted[-1] = (start.real, start.imag, *fitted[-1][2:])
         fitted += [_point(edge, FLAT * size) for edge in edges]
         deviation, k = max(deviation, apart), end
+    if is_closed:
+        fitted[-1] = (*fitted[0][:2], *fitted[-1][2:])
     return Fit(tuple(fitted), count, len(fitted) - 1, deviation)
+
+
+def _from_a_corner(loop: Points) -> Points:
+    """Return the points of a closed line from its sharpest corner on, if it begins on a smooth
+    part.
+    """
+    places = np.array([complex(*point[:2]) for point in loop])
+    chords = np.diff(places)
+    following = np.concatenate([chords[1:], chords[:1]])
+    turns = np.abs(np.angle(following * chords.conjugate())).tolist()
+    if turns[-1] > SHARP_TURN:
+        return loop
+    corner = (turns.index(max(turns)) + 1) % len(chords)
+    return (*loop[corner : len(chords)], *loop[: corner + 1])
 
 
 def _size(points: Points) -> float:
@@ -172,7 +191,7 @@ class Polyline:
 
     def __init__(self, points: Array, within: float, rounding: float) -> None:
         self.points = _with_poles(points)
-        self.within = within
+        self.within, self.rounding = within, rounding
         self.close = max(CLOSE * within, min(1.2 * rounding, 4.0 * CLOSE * within))
         self.count = len(points) - 1
         chords = np.diff(self.points)
@@ -355,11 +374,13 @@ class Polyline:
 
     def edges(self, sections: list[Section]) -> list[list[Edge]]:
         """Return the edges of each section."""
+        sections = list(sections)
         joints = [complex(self.points[section.begin]) for section in sections]
         joints.append(complex(self.points[-1]))
+        on_faces = self._make_faces_tangent(sections, joints)
         for k, joint in enumerate(joints):
             circles = [p.circle for p in sections[max(0, k - 1) : k + 1] if p.kind == "arc"]
-            if circles:
+            if circles and k not in on_faces:
                 joints[k] = _joint(joint, circles, 10.0 * self.within)
         lines = []
         for section, (start, end) in zip(sections, pairwise(joints), strict=True):
@@ -389,6 +410,36 @@ class Polyline:
             else:
                 parts.append(self._tangent_arcs(points, along))
         return parts
+
+    def _make_faces_tangent(self, sections: list[Section], joints: list[complex]) -> set[int]:
+        """Make faces level and arcs that round their rims tangent to them; return the joints
+        there.
+
+        A face is a line whose ends are equally high to the digits of the points. If the arc beside
+        it were fitted alone, the body would stand on the middle of its face by a fraction of the
+        last digit.
+        """
+        on_faces = set[int]()
+        for k, section in enumerate(sections):
+            level = joints[k].imag
+            if section.kind != "line" or abs(joints[k + 1].imag - level) > self.rounding:
+                continue
+            joints[k + 1] = complex(joints[k + 1].real, level)
+            for beside, place in ((k - 1, k), (k + 1, k + 1)):
+                if not (0 <= beside < len(sections) and sections[beside].kind == "arc"):
+                    continue
+                center, radius = sections[beside].circle
+                tangent = complex(center.real, level + math.copysign(radius, center.imag - level))
+                touch = complex(center.real, level)
+                if (
+                    center.real > 0.0
+                    and abs(tangent - center) <= 2.0 * self.within
+                    and abs(touch - joints[place]) ** 2 <= 8.0 * self.within * radius
+                ):
+                    sections[beside] = sections[beside]._replace(circle=(tangent, radius))
+                    joints[place] = touch
+                    on_faces.add(place)
+        return on_faces
 
     def _tangent_arcs(self, points: Array, tangents: Array) -> list[Edge]:
         """Return the fewest arcs along a curve within the tolerance, each tangent to the next."""

@@ -96,11 +96,13 @@ class Profile:
         """Return the distance of a point from its edges, m."""
         return min(edge.distance(point) for edge in self.edges)
 
-    def sides(self, outer: "Profile") -> set[str]:
+    def sides(self, outer: "Profile", flush: float = 0.0) -> set[str]:
         """Return where the edges lie relative to another profile: "in" it, "on" its edges or
         "out".
+
+        Edges lie on others within the distance `flush`, m, and always within rounding.
         """
-        within = ROUNDING * outer.size
+        within = max(ROUNDING * outer.size, 0.5 * flush)
         sides = set()
         for edge in self.edges:
             met = (point for border in outer.edges for point in meetings(edge, border, within))

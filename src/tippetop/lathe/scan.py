@@ -38,10 +38,16 @@ HALF_PLANES = 5
 WIDEST = math.radians(30.0)
 """Largest angle around the axis of an edge that approximates an arc around it, rad."""
 
-BETWEEN = (math.radians(15.0), math.radians(30.0))
-"""Angles from a vertex to half-planes that are compared with the one through it, rad: facets of a
-prism with 4, 6, 8 or 12 sides are furthest inside near one of them.
+FACETED = 0.02
+"""Largest distance of facets from the round surface through their vertices, in sizes of the body: a
+ball of 12 sides is read as a ball, a prism of 8 sides is refused.
 """
+
+WORTH_SAYING = 1e-4
+"""Depth of facets, in sizes of the body, from which it is said: the tolerance of a profile."""
+
+MOST_FACETS = 20_000
+"""Largest number of edges of facets that are compared with the round surface."""
 
 DENSE = 3.0
 """Ratio of distinct vertices to points of the meridian above which the vertices are scattered."""
@@ -51,14 +57,15 @@ Line = NDArray[np.complex128]
 """Distance from the axis and, times i, height along it."""
 
 
-def read_stl(path: Path, axis: str | None, tolerance: float, name: str) -> Reading:
+def read_mesh(path: Path, axis: str | None, tolerance: float, name: str) -> Reading:
     """Return the profile of a body of revolution from its surface, in the numbers of the file.
 
     The axis is as stated, x, y or z through the middle of the body, or by default the one about
     which the surface is roundest.
 
-    Raises `InvalidInput` if the surface is not closed, or differs from one of revolution by more
-    than `NOT_ROUND`; `Unavailable` if trimesh is not installed.
+    Closed surfaces that overlap are united. Raises `InvalidInput` if the surface is not closed, or
+    if its vertices differ from one of revolution by more than `NOT_ROUND`, its facets by more than
+    `FACETED`, or both by more than the tolerance; `Unavailable` if trimesh is not installed.
     """
     mesh = _mesh(path, name)
     size = float(np.ptp(mesh.vertices, axis=0).max())
@@ -69,48 +76,93 @@ def read_stl(path: Path, axis: str | None, tolerance: float, name: str) -> Readi
         for direction in _directions(mesh, axis)
         for origin in _origins(mesh, direction, size)
     ]
-    surface = min(surfaces, key=lambda one: one.out_of_round)
-    share = surface.out_of_round / size
-    if not share <= NOT_ROUND:
-        raise InvalidInput(
-            "STL",
-            Described(f"a surface out of round by {100.0 * share:.3g} % of its size"),
-            f"one of revolution, to {100.0 * NOT_ROUND:g} %: without parts that are not round;"
-            " --axis x, y or z says which axis is meant",
-            file=name,
-        )
+    # Of axes that differ by rounding the first is a coordinate axis.
+    surface = min(
+        surfaces,
+        key=lambda one: (
+            round(max(one.out_of_round, one.facet_depth) / (SAME * size))
+            if one.meridian
+            else math.inf
+        ),
+    )
+    share, depth = surface.out_of_round / size, surface.facet_depth / size
+    for differing, most in ((share, NOT_ROUND), (depth, FACETED)):
+        if not differing <= max(most, tolerance):
+            raise InvalidInput(
+                _format(path),
+                Described(f"a surface out of round by {100.0 * differing:.3g} % of its size"),
+                f"one of revolution, to {100.0 * most:g} %: without parts that are not round;"
+                " --axis x, y or z says which axis is meant, and --tolerance 0.05 accepts 5 %",
+                file=name,
+            )
     lines = sorted((surface.through_vertices(line) for line in surface.meridian), key=_area)
-    along = ", ".join(f"{number + 0.0:.4g}" for number in surface.direction)
+    along = ", ".join(f"{round(number, 9) + 0.0:.4g}" for number in surface.direction)
+    round_volume = sum(map(_volume, lines))
+    lost = (1.0 - abs(float(mesh.volume)) / round_volume) if round_volume else 0.0
     remark = (
-        f"The axis is along ({along}); the surface differs from a round one by"
+        f"The axis is along ({along}); the vertices differ from a round surface by"
         f" {100.0 * share:.2g} % of its size at most."
     )
+    if depth > WORTH_SAYING and len(lines) == 1:
+        remark += (
+            f" The body is round: facets of the mesh lie up to {100.0 * depth:.2g} % of the size"
+            f" inside it, and the mesh has {100.0 * lost:.2g} % less volume."
+        )
     shells = [(f"shell {number}", line) for number, line in enumerate(reversed(lines), 1)]
-    return Reading(*nested(shells, tolerance, "STL"), [remark])
+    return Reading(*nested(shells, tolerance, _format(path)), [remark])
+
+
+def _format(path: Path) -> str:
+    """Return the name of a mesh's format."""
+    return path.suffix[1:].upper()
 
 
 def _mesh(path: Path, name: str) -> Any:
+    kind = _format(path)
     if not all(find_spec(one) for one in ("trimesh", "networkx")):
         raise Unavailable(
-            f"STL files are read with trimesh, which is not installed: {install_command('lathe')}"
+            f"{kind} files are read with trimesh, which is not installed:"
+            f" {install_command('lathe')}"
         )
     import trimesh  # noqa: PLC0415 - optional
 
     if path.stat().st_size > LARGEST_FILE:
-        raise InvalidInput("STL", name, f"a file of at most {LARGEST_FILE:,} bytes")
+        raise InvalidInput(kind, name, f"a file of at most {LARGEST_FILE:,} bytes")
     try:
-        mesh = trimesh.load_mesh(path, file_type="stl")
+        mesh = trimesh.load_mesh(path, file_type=path.suffix[1:].lower())
     except Exception:  # noqa: BLE001 - trimesh raises what its parsers do
-        raise InvalidInput("STL", name, "a mesh in the format STL") from None
+        raise InvalidInput(kind, name, f"a mesh in the format {kind}") from None
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) < 8:
-        raise InvalidInput("STL", name, "a mesh in the format STL, of a closed surface")
+        raise InvalidInput(kind, name, f"a mesh in the format {kind}, of a closed surface")
     size = float(np.ptp(mesh.vertices, axis=0).max())
     if not (math.isfinite(size) and size > 0.0):
-        raise InvalidInput("STL", name, "a mesh of finite size")
-    mesh.merge_vertices()
-    if not mesh.is_watertight:
-        raise InvalidInput("STL", Described("a surface with holes"), "a closed surface", file=name)
+        raise InvalidInput(kind, name, "a mesh of finite size")
+    mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    mesh.update_faces(mesh.nondegenerate_faces())
+    mesh.update_faces(_unpaired(np.asarray(mesh.faces)))
+    mesh.remove_unreferenced_vertices()
+    if not (mesh.is_watertight or _is_balanced(np.asarray(mesh.faces))):
+        raise InvalidInput(kind, Described("a surface with holes"), "a closed surface", file=name)
     return mesh
+
+
+def _unpaired(faces: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which faces remain without pairs that face each other, where two parts touch flush."""
+    corners = np.sort(faces, axis=1)
+    _, numbers, counts = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
+    return np.asarray(counts[numbers.ravel()] % 2 == 1)
+
+
+def _is_balanced(faces: NDArray[np.int64]) -> bool:
+    """Return whether every edge of faces has as many on one side as on the other: then they are
+    closed surfaces, which may touch along edges.
+    """
+    starts = faces.ravel()
+    ends = np.roll(faces, -1, axis=1).ravel()
+    sense = np.where(starts < ends, 1, -1)
+    edges = np.stack([np.minimum(starts, ends), np.maximum(starts, ends)], axis=1)
+    _, numbers = np.unique(edges, axis=0, return_inverse=True)
+    return not np.bincount(numbers.ravel(), sense).any()
 
 
 def _directions(mesh: Any, axis: str | None) -> list[Vectors]:
@@ -145,9 +197,11 @@ class _Surface:
         self.r, self.angle = np.hypot(self.x, self.y), np.arctan2(self.y, self.x)
         self.is_on_axis = self.r <= SAME * size
         self.faces = np.asarray(mesh.faces)
+        self.parts = _parts(mesh)
         self.vertices = self.r + 1j * self.z
         self.vertices[self.is_on_axis] = 1j * self.z[self.is_on_axis]
         self.out_of_round, self.meridian = self._best_section()
+        self.facet_depth = self._facet_depth(np.asarray(mesh.edges_unique))
 
     def _best_section(self) -> tuple[float, list[Line]]:
         """Return the least deviation of the vertices from a section, and the lines of that
@@ -156,11 +210,8 @@ class _Surface:
         angles = np.sort(self.angle[~self.is_on_axis])
         chosen = angles[np.linspace(0, len(angles) - 1, HALF_PLANES).astype(int)] + SLIVER
         sections = [lines for lines in map(self._section, chosen.tolist()) if lines]
-        # One vertex of a ring is enough. All vertices of a prism are in rings, but it is not round
-        # between them: sections there are compared too.
-        _, numbers = np.unique(np.round(self.vertices / (SAME * self.size)), return_index=True)
-        between = [line for turn in BETWEEN for line in self._section(float(chosen[0]) + turn)]
-        places = np.concatenate([self.vertices[numbers], *between])
+        # One vertex of a ring is enough.
+        places = self._distinct(self.vertices)
 
         def apart(lines: list[Line]) -> float:
             return float(np.min([_distances(places, line)[0] for line in lines], axis=0).max())
@@ -168,6 +219,20 @@ class _Surface:
         deviations = [(apart(lines), k) for k, lines in enumerate(sections)]
         least, best = min(deviations, default=(math.inf, 0))
         return (least, sections[best]) if deviations else (math.inf, [])
+
+    def _distinct(self, places: Line) -> Line:
+        """Return places without those that are close to others."""
+        _, numbers = np.unique(np.round(places / (SAME * self.size)), return_index=True)
+        return places[numbers]
+
+    def _facet_depth(self, edges: NDArray[np.int64]) -> float:
+        """Return the largest distance of the middles of edges from the meridian."""
+        if not self.meridian:
+            return math.inf
+        some = edges[:: max(1, len(edges) // MOST_FACETS)]
+        x, y, z = (0.5 * (of[some[:, 0]] + of[some[:, 1]]) for of in (self.x, self.y, self.z))
+        middles = self._distinct(np.hypot(x, y) + 1j * z)
+        return float(np.min([_distances(middles, line)[0] for line in self.meridian], axis=0).max())
 
     def _section(self, angle: float) -> list[Line]:
         """Return the lines in which the half-plane at an angle cuts the surface."""
@@ -178,17 +243,18 @@ class _Surface:
         is_crossed |= self.is_on_axis[self.faces].any(axis=1)
         graph: dict[Any, list[Any]] = {}
         places: dict[Any, complex] = {}
-        for face in self.faces[is_crossed].tolist():
+        crossed = zip(self.faces[is_crossed].tolist(), self.parts[is_crossed].tolist(), strict=True)
+        for face, part in crossed:
             nodes: list[Any] = []
             for first, second in combinations(sorted(face), 2):
                 place = self._crossing(first, second, aside)
                 if place is not None:
-                    nodes.append((first, second))
-                    places[first, second] = place
+                    nodes.append((part, first, second))
+                    places[part, first, second] = place
             tips = [vertex for vertex in face if self.is_on_axis[vertex]]
             if len(nodes) == 1 and len(tips) <= 1:
-                end = tips[0] if tips else tuple(face)
-                places[end] = complex(self.vertices[end]) if tips else self._on_axis(face)
+                end = (part, *tips) if tips else (part, *face)
+                places[end] = complex(self.vertices[tips[0]]) if tips else self._on_axis(face)
                 nodes.append(end)
             if len(nodes) == 2:
                 graph.setdefault(nodes[0], []).append(nodes[1])
@@ -252,6 +318,16 @@ class _Surface:
         return [(float(point.real), float(point.imag)) for point in means]
 
 
+def _parts(mesh: Any) -> NDArray[np.int64]:
+    """Return for every face which closed surface it belongs to."""
+    import trimesh  # noqa: PLC0415 - optional
+
+    adjacent = mesh.face_adjacency
+    label: Any = trimesh.graph.connected_component_labels
+    labels = label(adjacent, node_count=len(mesh.faces))
+    return np.asarray(labels)
+
+
 def _distances(points: Line, line: Line) -> tuple[Vectors, Vectors]:
     """Return the distances of points from a line, and their places along it."""
     chords = np.diff(line)
@@ -301,6 +377,12 @@ def _without_repeats(line: Line, within: float) -> Line:
         if abs(point - remaining[-1]) > within and abs(point - line[-1]) > within:
             remaining.append(point)
     return np.array([*remaining, line[-1]])
+
+
+def _volume(points: list[tuple[float, ...]]) -> float:
+    """Return the volume that a line of straight edges encloses with the axis, or around it."""
+    r, z = np.array(points).T
+    return abs(float(np.diff(z) @ (r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2))) * math.pi / 3.0
 
 
 def _area(points: list[tuple[float, ...]]) -> float:

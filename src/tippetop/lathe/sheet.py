@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.lathe.fitting import fit
+from tippetop.lathe.frames import Box, Framed, framed, is_page
 from tippetop.lathe.profile import ROUNDING, Profile, area_of, profile_of
 from tippetop.lathe.rounding import unrounded
 from tippetop.lathe.strokes import Path, is_closed, joined, points_of, right_parts
+from tippetop.lathe.union import overlap, united
 from tippetop.support.errors import Described, InvalidInput
 
 GAP = 1e-3
@@ -26,6 +28,9 @@ ALONG = 1e-4
 
 ASYMMETRY = 0.01
 """Largest difference of the two sides of a drawing, in sizes of the drawing."""
+
+LONG_SIDE = 0.5
+"""Share of the extent of a drawing from which a straight side may be its axis."""
 
 AXES = "x=NUMBER or y=NUMBER, a place on the sheet, or x or y alone"
 """Accepted axes, in messages."""
@@ -43,6 +48,8 @@ class Sheet(NamedTuple):
     """Unit of the numbers."""
     is_y_down: bool = False
     """Whether y counts downwards in the drawing's own numbers."""
+    page: Box | None = None
+    """The page, if the drawing has one."""
 
 
 class Reading(NamedTuple):
@@ -80,22 +87,30 @@ class _Axis(NamedTuple):
 
 
 # translate: skip
-def read_sheet(sheet: Sheet, axis: str | None, tolerance: float, field: str) -> Reading:
+def read_sheet(
+    sheet: Sheet, axis: str | None, tolerance: float, field: str, frame: bool | None = None
+) -> Reading:
     """Return the profile of a drawing, in its unit.
 
     The axis is upright or level: as stated, x = 10 or y = 10; or a centre line that touches no
     other line; or the straight edge of a half outline; or the middle of a full one. Outlines inside
-    the outermost are cavities.
+    the outermost are cavities. Outlines that overlap are united. A rectangle around all else is a
+    page or a frame, and left out; where it may be a body with cavities too, `frame` decides.
 
     Raises `InvalidInput` if there is no axis, if the two sides differ, or if the outlines are not
     those of one body with cavities in it.
     """
     directions, place = _stated(axis)
-    return read_along(sheet, directions, place, tolerance, field)
+    return read_along(sheet, directions, place, tolerance, field, frame)
 
 
 def read_along(
-    sheet: Sheet, directions: str, place: float | None, tolerance: float, field: str
+    sheet: Sheet,
+    directions: str,
+    place: float | None,
+    tolerance: float,
+    field: str,
+    frame: bool | None = None,
 ) -> Reading:
     """Return the profile of a drawing around an axis in one of some directions; see
     `read_sheet`.
@@ -104,8 +119,64 @@ def read_along(
         raise InvalidInput(
             field, Described("a drawing without lines"), "one with an outline of the body"
         )
+    around = None if frame is False else _framed(sheet)
+    if around is None:
+        return _read_outlines(sheet, directions, place, tolerance, field)
+    is_background = sheet.page is not None and is_page(around.box, sheet.page)
+    inner = sheet._replace(paths=around.inner)
+    if not (frame or is_background) and not _is_readable(inner, directions, place, tolerance):
+        return _read_outlines(sheet, directions, place, tolerance, field)
+    reading = read_along(inner, directions, place, tolerance, field, frame)
+    if frame is None and not is_background and _may_be_bored(sheet, around):
+        raise InvalidInput(
+            field,
+            Described(f"{around.name}, a rectangle around all else"),
+            "",
+            "may be a frame of the drawing or a body with bores",
+            "state frame=True or frame=False, at the command line --frame or --no-frame",
+        )
+    kind = "page" if is_background else "frame"
+    remark = f"The rectangle around the drawing, {around.name}, is its {kind}, and left out."
+    return reading._replace(remarks=[remark, *reading.remarks])
+
+
+def _is_readable(sheet: Sheet, directions: str, place: float | None, tolerance: float) -> bool:
+    """Return whether a drawing has a profile."""
+    try:
+        read_along(sheet, directions, place, tolerance, "profile")
+    except InvalidInput:
+        return False
+    return True
+
+
+def _framed(sheet: Sheet) -> Framed | None:
+    points, _ = _chords([path for _, path in sheet.paths])
+    size = float(max(np.ptp(points.real), np.ptp(points.imag)))
+    return framed(sheet.paths, GAP * size) if size > 0.0 else None
+
+
+def _may_be_bored(sheet: Sheet, around: Framed) -> bool:
+    """Return whether a rectangle and what it encloses may be the section of a bored cylinder.
+
+    The section is a full one, symmetric about the middle of the rectangle; or half of one, beside
+    an axis at 0.
+    """
+    box, within = around.box, GAP * around.box.size
+    if min(abs(box.leftmost), abs(box.rightmost), abs(box.low), abs(box.high)) <= within:
+        return True
+    for turn, middle in ((1.0, box.leftmost + box.rightmost), (1j, -box.low - box.high)):
+        paths = [_times(path, turn) for _, path in around.inner]
+        if _difference(paths, 0.5 * middle) <= ASYMMETRY * box.size:
+            return True
+    return False
+
+
+def _read_outlines(
+    sheet: Sheet, directions: str, place: float | None, tolerance: float, field: str
+) -> Reading:
+    """Return the profile of a drawing without a frame."""
     reasons = []
-    for name in directions:
+    for name in _likely_directions(sheet, directions, place, field):
         # A level axis is turned upright: right on the sheet becomes up.
         turn = 1.0 if name == "x" else 1j
         sign = 1.0 if name == "x" else (1.0 if sheet.is_y_down else -1.0)
@@ -121,6 +192,60 @@ def read_along(
         "half an outline that begins and ends on an upright axis, a full one that agrees on both"
         f" sides to {100.0 * ASYMMETRY:g} %, or the place of the axis: --axis x=NUMBER",
     )
+
+
+def _likely_directions(sheet: Sheet, directions: str, place: float | None, field: str) -> str:
+    """Return the directions that the axis of a drawing may have.
+
+    A closed outline that is symmetric about a level line, and has a straight upright side, may be a
+    full one that lies, or half of one beside that side. It lies if that side is short, as the end
+    of a stem is. If it is long the outline may still be either, unless its other strokes are curves
+    as of half a ball: then `InvalidInput` is raised.
+    """
+    if len(directions) == 1 or place is not None:
+        return directions
+    paths = [path for _, path in sheet.paths]
+    points, _ = _chords(paths)
+    size = float(max(np.ptp(points.real), np.ptp(points.imag)))
+    outlines, center_lines = _outlines(sheet.paths, GAP * size)
+    closed = [path for _, path in outlines if is_closed(path, GAP * size)]
+    middle = 0.5 * (float(points.real.min()) + float(points.real.max()))
+    turned = [_times(path, 1j) for path in closed]
+    level = -0.5 * (float(points.imag.min()) + float(points.imag.max()))
+    if (
+        center_lines
+        or not closed
+        or len(closed) < len(outlines)
+        or _difference(closed, middle) <= ASYMMETRY * size
+        or _difference(turned, level) > ASYMMETRY * size
+    ):
+        return directions
+    straight = [
+        (stroke.first, stroke.last)
+        for path in closed
+        for stroke in path
+        if stroke.radius == math.inf
+    ]
+    sides = [float(points.real.min()), float(points.real.max())]
+    if min([abs(side) for side in sides]) <= GAP * size:
+        return directions
+    along = [
+        [pair for pair in straight if all(abs(end.real - side) <= GAP * size for end in pair)]
+        for side in sides
+    ]
+    longest = max([sum([abs(end - begin) for begin, end in pairs]) for pairs in along])
+    if longest < LONG_SIDE * float(np.ptp(points.imag)):
+        return "y"
+    if len(straight) > max([len(pairs) for pairs in along]):
+        raise InvalidInput(
+            field,
+            Described("an outline with a straight side that is symmetric about a level line"),
+            "",
+            "may be half of one beside that side, or a full one that lies",
+            "state the direction of its axis, axis='x' for upright or 'y' for level, at the"
+            " command line --axis",
+        )
+    return directions
 
 
 # translate: skip
@@ -182,7 +307,13 @@ def _read(
             )
         stated.append((name, unrounded(_ended(points_of(part), GAP * size), ALONG * size)))
     outer, cavities = nested(stated, tolerance, field)
-    return Reading(outer, cavities, [axis.remark])
+    remarks = [axis.remark]
+    if frame.name == "y":
+        remarks.append("The body lies on the sheet: what is right on it is taken as up.")
+    if cavities:
+        count = "One outline" if len(cavities) == 1 else f"{len(cavities)} outlines"
+        remarks.append(f"{count} inside the outermost: a cavity each.")
+    return Reading(outer, cavities, remarks)
 
 
 def _beside(path: Path, place: float, side: float) -> Path:
@@ -343,15 +474,58 @@ def _chords(paths: Sequence[Path]) -> Chords:
     )
 
 
+class Outline(NamedTuple):
+    """Closed line of a drawing or a mesh."""
+
+    name: str
+    """Name in messages."""
+    points: Sequence[Point]
+    profile: Profile
+
+
+def _united(outlines: list[Outline], tolerance: float, field: str) -> list[Outline]:
+    """Return the outlines, with those that overlap or share a border replaced by their union."""
+    result = list(outlines)
+    pair = _overlapping(result)
+    while pair is not None:
+        first, second = (result[number] for number in pair)
+        name = f"{first.name} with {second.name}"
+        others = [one for number, one in enumerate(result) if number not in pair]
+        lines = united(first.profile, second.profile)
+        try:
+            made = [
+                Outline(name, points, profile_of(fit(points, tolerance).points, field=field))
+                for points in lines
+            ]
+        except InvalidInput:
+            # The parts are too close to each other to tell where they cross.
+            return result
+        result = [*others, *made]
+        pair = _overlapping(result)
+    return result
+
+
+def _overlapping(outlines: Sequence[Outline]) -> tuple[int, int] | None:
+    """Return the numbers of two outlines that overlap, or None."""
+    for high, second in enumerate(outlines):
+        for low, first in enumerate(outlines[:high]):
+            if overlap(first.profile, second.profile):
+                return low, high
+    return None
+
+
 def nested(
     outlines: Sequence[tuple[str, Sequence[Point]]], tolerance: float, field: str
 ) -> tuple[list[Point], list[list[Point]]]:
     """Return the outer outline and the cavities in it; raise `InvalidInput` for others."""
-    profiles: list[tuple[str, Sequence[Point], Profile]] = [
-        (name, points, profile_of(fit(points, tolerance).points, field=field))
+    profiles: list[Outline] = [
+        Outline(name, points, profile_of(fit(points, tolerance).points, field=field))
         for name, points in outlines
     ]
-    (outer_name, outer, body), *inner = sorted(profiles, key=lambda one: -area_of(one[2].edges))
+    profiles = _united(profiles, tolerance, field)
+    (outer_name, outer, body), *inner = sorted(
+        profiles, key=lambda one: -area_of(one.profile.edges)
+    )
     for name, _, profile in inner:
         sides = profile.sides(body)
         if "out" in sides:
@@ -359,7 +533,7 @@ def nested(
             raise InvalidInput(
                 field,
                 Described(f"{name}, which {how} {outer_name}"),
-                "one outline around the body, and bores inside it: unite the parts of the body",
+                "one outline around the body, and bores inside it: join the parts of the body",
             )
     for number, (name, _, cavity) in enumerate(inner):
         for earlier_name, _, earlier in inner[:number]:

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ElementTree
 from io import StringIO
 from typing import Any
 
+from tippetop.lathe.frames import Box, box_of
 from tippetop.lathe.sheet import Sheet
 from tippetop.lathe.strokes import Path, Stroke, bezier, ellipse, line
 from tippetop.support.errors import InvalidInput
@@ -41,6 +42,7 @@ def read_svg(text: str, unit: str | None, name: str) -> Sheet:
     if root.tag.rpartition("}")[2] != "svg":
         raise InvalidInput("SVG", name, "a file whose outermost element is <svg>")
     scale, shift = _in_pixels(root)
+    page = _page(root, 1.0 if unit else scale, shift)
     try:
         content = StringIO(ElementTree.tostring(root, encoding="unicode"))
         drawing = svgelements.SVG.parse(content, reify=True, ppi=96.0)
@@ -54,7 +56,17 @@ def read_svg(text: str, unit: str | None, name: str) -> Sheet:
         ]
     except (ValueError, IndexError, TypeError, AttributeError, ArithmeticError, KeyError):
         raise InvalidInput("SVG", name, "elements as SVG defines them") from None
-    return Sheet(paths, unit or "mm", is_y_down=True)
+    return Sheet(paths, unit or "mm", is_y_down=True, page=page)
+
+
+def _page(root: ElementTree.Element, scale: float, shift: complex) -> Box | None:
+    """Return the page of a drawing in pixels, y up; None if it states no size."""
+    width, height = (_length(root.get(name, "")) for name in ("width", "height"))
+    if width is None or height is None:
+        return None
+    size = complex(width, height) / MM_PER_PIXEL
+    corners = [scale * corner.conjugate() for corner in (shift, shift + size)]
+    return box_of([line(*corners)])
 
 
 def _in_pixels(root: ElementTree.Element) -> tuple[float, complex]:

@@ -11,7 +11,9 @@ from pydantic import Field, model_validator
 from tippetop.lathe.fitting import TOLERANCE, Fit, fit
 from tippetop.lathe.hull import ConvexHull, hull_of
 from tippetop.lathe.mass import MassProperties, mass_properties
+from tippetop.lathe.materials import MATERIAL
 from tippetop.lathe.profile import Profile, area_of, profile_of, require_points
+from tippetop.lathe.rounding import COARSEST, usual_rounding
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.validation import NO_WORD, NotNegative, Part, Points, Quantity
 
@@ -33,7 +35,7 @@ class Insert(Part):
     profile
         Points of its profile, as those of the body.
     density
-        Density, kg/m^3: 0 for a cavity.
+        Density, kg/m^3, or the name of a material: 0 for a cavity.
 
     Examples
     --------
@@ -46,7 +48,9 @@ class Insert(Part):
     """
 
     profile: Points
-    density: Annotated[NotNegative, Field(le=DENSEST), Quantity("kg m-3", "density of the insert")]
+    density: Annotated[
+        NotNegative, Field(le=DENSEST), Quantity("kg m-3", "density of the insert"), MATERIAL
+    ]
 
 
 class Workpiece(Part):
@@ -60,7 +64,8 @@ class Workpiece(Part):
         radius: positive if it turns to the left, as the outside of a ball does upwards. No arc is
         more than half a circle.
     density
-        Density, kg/m^3.
+        Density, kg/m^3, or the name of a material, such as "beech"; of a printed part with its
+        infill, "PLA 20 %".
     inserts
         Cavities and weights in it; one may be inside another.
     unit
@@ -80,7 +85,11 @@ class Workpiece(Part):
 
     profile: Points
     density: Annotated[
-        float, Field(ge=LIGHTEST, le=DENSEST), NO_WORD, Quantity("kg m-3", "density of the body")
+        float,
+        Field(ge=LIGHTEST, le=DENSEST),
+        NO_WORD,
+        Quantity("kg m-3", "density of the body"),
+        MATERIAL,
     ]
     inserts: tuple[Insert, ...] = ()
     unit: Literal["m", "cm", "mm", "in"] = "m"
@@ -92,10 +101,14 @@ class Workpiece(Part):
     def _is_a_body(self) -> Self:
         outline = self.outline
         for number, inner in enumerate(self.insides):
-            field, sides = f"inserts.{number}.profile", inner.sides(outline)
+            field = f"inserts.{number}.profile"
+            sides = inner.sides(outline, self._flush_within(number))
             if "out" in sides:
                 raise InvalidInput(
-                    field, Described("a line that leaves the body"), "one inside the body's profile"
+                    field,
+                    Described("a line that leaves the body"),
+                    "one inside the body's profile; tolerance = 0 takes every edge of both as"
+                    " stated, without a fit of arcs",
                 )
             if "on" in sides and not self.inserts[number].density:
                 raise InvalidInput(
@@ -126,6 +139,46 @@ class Workpiece(Part):
         """Largest distance of a point of the profile from the body, m."""
         return UNITS[self.unit] * self.fit.deviation
 
+    def _flush_within(self, number: int) -> float:
+        """Return the distance within which an insert's edges lie on those of the body, m.
+
+        Two files of one surface differ by the digits of their numbers and by the fits to them.
+        """
+        stated = self.inserts[number].profile
+        fits = self.fit.deviation + self.insert_fits[number].deviation
+        digits = usual_rounding(self.profile) + usual_rounding(stated)
+        unit = UNITS[self.unit]
+        return unit * fits + min(unit * digits, COARSEST * self.outline.size)
+
+    @cached_property
+    def insert_fits(self) -> tuple[Fit, ...]:
+        """Profiles of the inserts fitted to the stated points, in their unit."""
+        return tuple(
+            [
+                _fit(insert.profile, self.tolerance, f"inserts.{number}.profile")
+                for number, insert in enumerate(self.inserts)
+            ]
+        )
+
+    # translate: skip
+    def turned_over(self) -> "Workpiece":
+        """Return the workpiece upside down.
+
+        Examples
+        --------
+        >>> import tippetop as tt
+        >>> cone = tt.Workpiece(profile=[(0, 0), (20, 30), (0, 30)], density=700, unit="mm")
+        >>> round(1e3 * cone.mass_properties.center, 2)
+        22.5
+        >>> round(1e3 * cone.turned_over().mass_properties.center, 2)
+        -22.5
+        """
+        inserts = tuple(
+            insert.model_copy(update={"profile": _mirrored(insert.profile)})
+            for insert in self.inserts
+        )
+        return self.model_copy(update={"profile": _mirrored(self.profile), "inserts": inserts})
+
     @cached_property
     def outline(self) -> Profile:
         """Profile of the body, m."""
@@ -135,12 +188,8 @@ class Workpiece(Part):
     def insides(self) -> tuple[Profile, ...]:
         """Profiles of the inserts, m."""
         return tuple(
-            profile_of(
-                _fit(insert.profile, self.tolerance, f"inserts.{number}.profile").points,
-                UNITS[self.unit],
-                f"inserts.{number}.profile",
-            )
-            for number, insert in enumerate(self.inserts)
+            profile_of(fitted.points, UNITS[self.unit], f"inserts.{number}.profile")
+            for number, fitted in enumerate(self.insert_fits)
         )
 
     @cached_property
@@ -174,6 +223,12 @@ class Workpiece(Part):
 def _fit(points: Sequence[Sequence[float]], tolerance: float, field: str) -> Fit:
     require_points(points, field)
     return fit(points, tolerance)
+
+
+# translate: skip
+def _mirrored(points: Sequence[tuple[float, ...]]) -> tuple[tuple[float, ...], ...]:
+    """Return the points of a profile upside down: arcs turn the other way."""
+    return tuple((point[0], *(-number for number in point[1:])) for point in points)
 
 
 def _within(inner: Profile, outer: Profile) -> bool:

@@ -110,12 +110,14 @@ class Body(Part):
     def turned(
         cls,
         profile: "Sequence[Sequence[float]] | Path | str | Workpiece",
-        density: float | None = None,
+        density: float | str | None = None,
         *,
         inserts: "Sequence[Insert | Mapping[str, Any]] | None" = None,
         unit: Literal["m", "cm", "mm", "in"] | None = None,
         tolerance: float | None = None,
         axis: str | None = None,
+        frame: bool | None = None,
+        upside_down: bool = False,
         whole: bool = False,
     ) -> Self:
         """Return the body that a lathe turns: mass, moments of inertia and touching surfaces.
@@ -129,9 +131,10 @@ class Body(Part):
         profile
             Points (distance from the axis, height) or, at the end of an arc, (distance, height,
             radius), as in `tippetop.lathe.workpiece.Workpiece`; or such a workpiece; or a .toml,
-            .csv, .svg, .dxf or .stl file, as in `tippetop.lathe.files.read_workpiece`.
+            .csv, .svg, .dxf, .stl, .obj, .ply or .off file, as in
+            `tippetop.lathe.files.read_workpiece`.
         density
-            Density, kg/m^3.
+            Density, kg/m^3, or the name of a material, as in `tippetop.lathe.workpiece.Workpiece`.
         inserts
             Cavities and weights: `tippetop.lathe.workpiece.Insert` or their fields, profile and
             density.
@@ -144,6 +147,11 @@ class Body(Part):
         axis
             Place of the axis in a drawing, as "x=10", or its direction in a mesh, as "z"; sought by
             default.
+        frame
+            Whether a rectangle around all else in a drawing is a frame, which is left out, or the
+            body; by default it is a frame, and an error if it may be either.
+        upside_down
+            Turn the body over: what is below in its profile comes up.
         whole
             Accept surfaces of which the body has only a part, such as a cut sphere, as if they were
             complete. Otherwise the body is refused if such a surface reaches out of it.
@@ -162,15 +170,18 @@ class Body(Part):
 
         settings = {"density": density, "inserts": inserts, "unit": unit, "tolerance": tolerance}
         fields = {name: value for name, value in settings.items() if value is not None}
-        if axis is not None and not isinstance(profile, str | Path):
-            raise InvalidInput("axis", axis, "none: the profile is stated from the axis")
+        for name, value in (("axis", axis), ("frame", frame)):
+            if value is not None and not isinstance(profile, str | Path):
+                raise InvalidInput(name, value, "none: the profile is stated from the axis")
         match profile:
             case Workpiece():
                 workpiece = profile.model_copy(update=fields)
             case str() | Path():
-                workpiece = read_workpiece(profile, axis=axis, **fields)
+                workpiece = read_workpiece(profile, axis=axis, frame=frame, **fields)
             case _:
                 workpiece = Workpiece(**{"profile": profile, **fields})
+        if upside_down:
+            workpiece = workpiece.turned_over()
         mass, shapes, I1, I3, shown = turned_fields(workpiece, whole)
         shape = shapes[0] if len(shapes) == 1 else shapes
         return cls(mass=mass, shape=shape, I1=I1, I3=I3, profile=shown)
