@@ -5,7 +5,8 @@ from bundled import found_in_the_page
 REOPENED = """
 import { readLink, writeLink } from "./link.js";
 import { PRESETS } from "./presets.js";
-import { changed } from "./setup.js";
+import { sortedPushes } from "./pushes.js";
+import { changed, withPushes } from "./setup.js";
 import { bodyOf, FIRST } from "./turning.js";
 import { SPEEDS } from "../player/speeds.js";
 
@@ -31,8 +32,15 @@ const CHANGES = [
   () => ({ duration: number(1, 60) }),
   () => ({ body: bodyOf({ ...FIRST, hollow: number(0.2, 0.8), stem: number(0.025, 0.05) }) }),
 ];
-const launch = () =>
-  some(CHANGES).reduce((setup, change) => changed(setup, change()), one(PRESETS).setup);
+const push = () => ({
+  time: number(0.1, 9),
+  impulse: number(0, 0.01),
+  direction: number(-3, 3),
+  mu: one([null, number(0, 1)]),
+});
+const launch = () => withPushes(
+  some(CHANGES).reduce((setup, change) => changed(setup, change()), one(PRESETS).setup),
+  random() < 0.7 ? [] : sortedPushes([push(), push()].slice(0, one([1, 2]))));
 
 const state = () => ({
   setup: random() < 0.3 ? PRESETS[0].setup : launch(),
@@ -43,7 +51,8 @@ const state = () => ({
     camera: random() < 0.7 ? null : [number(0.3, 1), number(0.3, 1), number(2, 5)].map(
       (v) => Number(v.toFixed(3))),
     speed: random() < 0.5 ? null : one(SPEEDS),
-    shown: random() < 0.5 ? null : some(["axis", "momentum", "friction", "trace", "glass"]),
+    shown: random() < 0.5 ? null : some(
+      ["axis", "momentum", "slip", "friction", "torque", "trace", "glass"]),
   },
   tab: one(["story", "story", "launch", "own", "compare", "map", "keep"]),
   step: one([0, 0, 1, 4, 9]),

@@ -30,6 +30,7 @@ ROOTS = (
     "tippetop.theory.prediction",
     "tippetop.theory.prospects",
     "tippetop.theory.advice",
+    "tippetop.mechanics.impacts.push",
     "tippetop.mechanics.view",
     "tippetop.mechanics.quadratures",
     "tippetop.mechanics.surfaces.outline",

@@ -3,7 +3,7 @@ import { integrator, reader } from "./compile.js";
 import { DenseSolution, earliest } from "./dense.js";
 import * as m from "./mechanics.js";
 import { inUnits } from "./part.js";
-import { neg, plain } from "./runtime.js";
+import { neg, plain, replace } from "./runtime.js";
 import { CATALOGUE, FORCE_DEGREE, GAUSS } from "./tables.js";
 
 // A search for a root or a least value in a step first looks at the ends of this many intervals.
@@ -14,6 +14,11 @@ const PROBES = Array.from({ length: PROBES_PER_STEP + 1 }, (_, probe) => probe /
 const BETWEEN_PROBES = 0.1;
 // The same of the normal force between and beyond the nodes of Gauss's rule, which are fewer.
 const BETWEEN_NODES = 0.5;
+
+// The status of a mode whose contact sticks.
+const STICKING = "sticking";
+// Relative difference of two times below which nothing happens between them.
+const AT_ONCE = 1e-6;
 
 // Numbers of a solution: n_z, and in flight the height of the centre of mass.
 const AXIS_Z = 2;
@@ -34,73 +39,177 @@ const [TURN, WORK, STRUCK] = ["turn", "work", "struck"].map((name) =>
   m.RunSums.fields.indexOf(name),
 );
 
-/** Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step. */
+/**
+ * Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step.
+ *
+ * `pushes` are what is done to the body and the table on the way, in order of time: each has a `time`, s, a horizontal
+ * `impulse`, N s, at a point of the axis at one size from the centre of mass, its `direction`, rad, from that into
+ * which the axis leans, and the friction coefficient `mu` from then on, null for that which was. The run goes on from
+ * the state that it has then; what comes after its end is left out.
+ */
 export function simulate(
   problem,
-  { duration, tolerance = 1e-10, step_limit, mode_limit, onProgress } = {},
+  { duration, pushes = [], tolerance = 1e-10, step_limit, mode_limit, onProgress } = {},
 ) {
   m.require_tolerance(tolerance, "dop853");
   const seconds = inUnits("duration", duration, "s");
   const run = new Run(new m.Problem(problem), seconds, tolerance, [mode_limit, step_limit]);
-  for (const segment of run.trajectory.segments()) {
-    run.include(segment);
-    onProgress?.(run.trajectory.time / run.trajectory.end);
+  const follow = (end) => run.follow(end, (time) => onProgress?.(time / seconds));
+  for (const push of pushesOf(pushes, problem)) {
+    if (push.time >= seconds) break;
+    if (!follow(push.time) && !run.restsUntil(push.time)) break;
+    run.push(push);
   }
+  follow(seconds);
   run.finish();
   return run;
 }
 
+/** Pushes with the problem from each on, refused where they are none. */
+function pushesOf(pushes, problem) {
+  let before = 0;
+  let present = problem;
+  return pushes.map(({ time, impulse, direction, mu = null }) => {
+    requireNumber("push.time", time, time > before, `of seconds greater than ${before}`);
+    requireNumber("push.impulse", impulse, impulse >= 0, "at least 0 N s");
+    requireNumber("push.direction", direction, true, "in rad");
+    const isHeld = (problem.contact?.liftoff ?? "fly") !== "fly";
+    if (impulse > 0 && isHeld)
+      throw new m.InvalidInput("push.impulse", impulse, "0 where contact.liftoff is not fly");
+    before = time;
+    if (mu !== null) present = { ...present, friction: { ...present.friction, mu } };
+    return { time, impulse, direction, problem: new m.Problem(present) };
+  });
+}
+
+function requireNumber(field, value, isRight, bounds) {
+  if (typeof value === "number" && Number.isFinite(value) && isRight) return;
+  throw new m.InvalidInput(field, value, `a number ${bounds}`);
+}
+
 class Run {
   constructor(problem, duration, tolerance, limits) {
-    const { contact } = problem;
     const top = m.top_of(problem);
     this.problem = problem;
     this.duration = duration;
     this.tolerance = tolerance;
+    this.limits = limits;
     this.units = m.natural_units(top);
-    this.top = m.natural(top);
     this.start = m.natural_state(problem.start(), this.units);
     m.require_limits(duration, this.units.time, ...limits);
 
-    const automaton = new m.Automaton(
-      this.top,
-      contact.liftoff,
-      contact.restitution,
-      contact.indeterminate,
-    );
-    const launch = automaton.launch(this.start);
-    const end = duration / this.units.time;
-    this.trajectory = new m.Trajectory(automaton, launch, end, integrator(tolerance), ...limits);
-
     this.pole = this.start.axis[2] >= 0 ? 1 : -1;
     const turn = this.pole * problem.launch.azimuth;
-    this.sums = Float64Array.from(m.RunSums.at_launch(turn, launch.energy_lost));
-
+    this.sums = Float64Array.from(m.RunSums.at_launch(turn, 0));
+    this.happened = [];
+    // The pushes so far, and the energy that they have given to the body.
+    this.pushes = [];
+    this.pushEnergy = 0;
     this.segments = [];
     this.steps = 0;
     this.rolls = false;
     this.firstHorizontal = NaN;
     // Whether n_z was positive at the start of a step.
     this.wasAbove = false;
-    this.monitor = new m.Monitor(this.top, this.start, automaton.pulls);
     this.flightRecord = new m.Flights();
     this.leastForce = new LeastValue();
     this.leastAxisZ = new LeastValue();
     // The greatest of these are the least of their negatives.
     this.mostAxisZ = new LeastValue();
     this.mostHeight = new LeastValue();
+    this.begin(problem, this.start, 0);
+  }
+
+  /** Begin a motion on the table of a problem, from a state at a time, in natural units. */
+  begin(problem, state, time) {
+    const { contact } = problem;
+    this.top = m.natural(m.top_of(problem));
+    this.automaton = new m.Automaton(
+      this.top,
+      contact.liftoff,
+      contact.restitution,
+      contact.indeterminate,
+    );
+    this.launch = after(this.automaton.launch(state), time);
+    this.from = state;
+    this.monitor = new m.Monitor(this.top, state, this.automaton.pulls);
+    this.workBefore = this.sums[WORK];
+    this.lose(this.launch.energy_lost);
+    this.trajectory = null;
+  }
+
+  /** Energy that went with an impact. */
+  lose(energy) {
+    this.sums[STRUCK] += energy;
+    this.sums[WORK] -= energy;
+  }
+
+  /** All work of the table since the motion began. */
+  get work() {
+    return this.sums[WORK] - this.workBefore;
+  }
+
+  /** Follow the motion to a time, s, and tell of the times that it reaches; whether it goes on from there. */
+  follow(end, tell) {
+    if (this.trajectory) return false;
+    const { automaton, launch, tolerance, limits, units } = this;
+    const start = this.pushes.length ? this.pushes.at(-1).time : 0;
+    const trajectory = new m.Trajectory(
+      automaton,
+      launch,
+      end / units.time,
+      integrator(tolerance),
+      ...limits,
+      start / units.time,
+    );
+    this.trajectory = trajectory;
+    for (const segment of trajectory.segments()) {
+      this.include(segment);
+      tell(trajectory.time * units.time);
+    }
+    this.happened.push(...trajectory.events);
+    return trajectory.status === m.Status.COMPLETED;
+  }
+
+  /** Whether the body came to rest just before a time, s. */
+  restsUntil(time) {
+    const { status, time: end } = this.trajectory;
+    return status === m.Status.AT_REST && time - end * this.units.time < AT_ONCE * time;
+  }
+
+  /** Push the body, and go on with the table of the problem from then on. */
+  push(push) {
+    const { units, trajectory } = this;
+    const { time, impulse, direction, problem } = push;
+    const { state } = trajectory;
+    this.breach ||= this.breachUntil(m.Status.COMPLETED);
+    const azimuth = Math.atan2(state.axis[1], state.axis[0]) + direction;
+    const size = impulse / (units.mass * units.speed);
+    const along = [size * Math.cos(azimuth), size * Math.sin(azimuth), 0];
+    const pushed = m.pushed_state(state, along, 1, this.top);
+    this.pushes.push(push);
+    this.pushEnergy += m.energy(pushed, this.top) - m.energy(state, this.top);
+    this.begin(problem, pushed, time / units.time);
+    const { next } = this.launch;
+    if (this.segments.at(-1)?.mode.status === STICKING && next.status !== STICKING)
+      this.happened.push(new m.Event(m.EventKind.SLIP, time / units.time));
+  }
+
+  /** Why a motion that ends with a status cannot be trusted; empty if it can. */
+  breachUntil(status) {
+    const { monitor, trajectory, work, tolerance } = this;
+    const trusted = monitor.final_status(status, trajectory.state, work, tolerance);
+    return trusted === m.Status.INACCURATE ? monitor.breach(tolerance) : "";
   }
 
   /** Take in a segment: what is integrated along it, and the extremes of its motion. */
   include(segment) {
     const { solution, mode, transition } = segment;
     this.steps += segment.steps;
-    this.rolls = mode.status === "sticking" && mode.top.torque_free;
+    this.rolls = mode.status === STICKING && mode.top.torque_free;
     if (!mode.touching) this.flightRecord.take(segment, highestGap(mode, solution));
     if (solution.count) this.includeSteps(mode, solution);
-    const lost = transition?.energy_lost ?? 0;
-    this.sums[STRUCK] += lost;
-    this.sums[WORK] -= lost;
+    this.lose(transition?.energy_lost ?? 0);
   }
 
   includeSteps(mode, solution) {
@@ -110,7 +219,7 @@ class Run {
     const watchesForce = mode.touching && !this.flightRecord.rows.length;
     for (let step = 0; step < solution.count; step += 1) {
       const values = readConserved(segment.numbersAt(step, 0));
-      this.monitor.check(values[0], values[1], values[2], this.sums[WORK]);
+      this.monitor.check(values[0], values[1], values[2], this.work);
       this.integrate(segment, step);
       if (watchesForce) this.includeForce(segment, step);
       this.includeAxis(solution, step);
@@ -198,18 +307,18 @@ class Run {
   finish() {
     const { trajectory, units } = this;
     const { status, detail, state } = trajectory;
-    const trusted = this.monitor.final_status(status, state, this.sums[WORK], this.tolerance);
-    const breach = trusted === m.Status.INACCURATE ? this.monitor.breach(this.tolerance) : "";
+    this.breach ||= this.breachUntil(status);
+    const trusted = this.breach ? m.Status.INACCURATE : status;
     this.status = {
       name: trusted.name.toLowerCase(),
-      message: [trusted.value, detail, breach, m.ambiguity_of(trajectory.events)]
+      message: [trusted.value, detail, this.breach, m.ambiguity_of(this.happened)]
         .filter(Boolean)
         .join(" "),
     };
     this.early = trusted !== m.Status.COMPLETED && state.pack().every(Number.isFinite);
     const completed = status === m.Status.COMPLETED;
     this.endTime = completed ? this.duration : trajectory.time * units.time;
-    const events = trajectory.events.map((event) => m.event_in_si(event, units));
+    const events = this.happened.map((event) => m.event_in_si(event, units));
     this.events = plain(events);
     this.flights = this.flightRecord.rows.map(([start, end, gap]) => ({
       start: start * units.time,
@@ -218,6 +327,8 @@ class Run {
     }));
     const ends = this.ends(trusted);
     const metrics = m.metrics(ends, this.start, this.top, units);
+    for (const name of ["energy_lost", "energy_lost_sliding"])
+      metrics.set(name, metrics.get(name) + this.pushEnergy * units.energy);
     this.metrics = Object.fromEntries(metrics.entries());
     metrics.set("end_time", this.endTime);
     const peak = [m.highest_seen(ends), this.peakTime() * units.time];
@@ -229,18 +340,18 @@ class Run {
 
   /** What is found of the run in natural units, for `m.metrics`. */
   ends(status) {
-    const { state, time, events } = this.trajectory;
+    const { state, time } = this.trajectory;
     // Of every step the value at its start is taken in: the end of the last one is missing.
     const lastAxisZ = this.segments.length ? state.axis[2] : NaN;
     this.leastAxisZ.includeValue(lastAxisZ, null);
     this.mostAxisZ.includeValue(-lastAxisZ, null);
     const extremes = [this.leastForce, this.leastAxisZ, this.mostAxisZ, this.mostHeight];
-    const settled = m.settled_tilt_of_one(status, state, this.start, this.top);
+    const settled = m.settled_tilt_of_one(status, state, this.from, this.top);
     return m.Ends.of_one(
       state,
       time,
       null,
-      events,
+      this.happened,
       this.flightRecord,
       this.steps,
       new m.RunSums(...this.sums),
@@ -268,13 +379,24 @@ class Run {
     return m.fell_back(this.facts);
   }
 
-  /** What became of the launch, as clauses of a name and numbers. */
+  /** What became of the launch, as clauses of a name and numbers; what theory says of it ends with a push. */
   get account() {
-    return m.account_of(this.facts).map(({ name, numbers, part }) => ({
+    const clauses = m.account_of(this.facts).map(({ name, numbers, part }) => ({
       name,
       numbers: Object.fromEntries(numbers.entries()),
       part,
     }));
+    if (!this.pushes.length || this.status.name === "inaccurate") return clauses;
+    const pushes = this.pushes.map(({ time, impulse }) => ({
+      name: impulse > 0 ? "is_pushed" : "meets_friction",
+      numbers: { time },
+      part: "motion",
+    }));
+    const of = (part) => clauses.filter((clause) => clause.part === part);
+    const motion = [...of("motion"), ...pushes].sort(
+      (one, other) => (one.numbers.time ?? Infinity) - (other.numbers.time ?? Infinity),
+    );
+    return [...of("launch"), ...motion, ...of("end")];
   }
 
   /** First time at which n_z is in a band; NaN if it never is. */
@@ -359,6 +481,12 @@ class Run {
     }
     track.mode.push(segment.label);
   }
+}
+
+/** A transition whose events are later by a time. */
+function after(transition, time) {
+  const events = transition.events.map((event) => replace(event, { time: event.time + time }));
+  return replace(transition, { events });
 }
 
 /** A solution in a contact mode, and what is read off its numbers. */

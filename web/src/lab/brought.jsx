@@ -6,7 +6,7 @@ import { edge } from "../run/arc.js";
 import { contentOf, Unreadable } from "./bring.js";
 import { t, translated } from "./i18n.js";
 import { refusedOther } from "./refusal.js";
-import { changed, inSi } from "./setup.js";
+import { changed, inSi, withPushes } from "./setup.js";
 import { MATERIALS } from "./turning.js";
 import { digits } from "./units.js";
 import { doubtInWords } from "./words.js";
@@ -125,7 +125,7 @@ export function Brought({ lab, children }) {
   const set = (changes) => lab.set({ brought: { ...brought, ...changes } });
   const spin = () => {
     const launch = { body: answer.body, rolling_resistance: 0, "contact.liftoff": "fly" };
-    lab.go(changed(lab.state.setup, { ...launch, duration: 10 }));
+    lab.go(changed(withPushes(lab.state.setup, []), { ...launch, duration: 10 }));
   };
   return (
     <>

@@ -2,6 +2,7 @@
 
 import { ALL, kindOf, scaleOf } from "./dials.js";
 import { part, t } from "./i18n.js";
+import { pushText } from "./push.jsx";
 import { differences } from "./setup.js";
 import { cleared, digits, shown, unitOf } from "./units.js";
 
@@ -65,12 +66,14 @@ function Pinned({ lab, pin }) {
 
 function nameOf(field) {
   if (field === "friction.kind") return t("controls.law");
+  if (field === "pushes") return t("push.list");
   return part(`quantities.${field}`)?.name ?? field;
 }
 
 function valueText(field, value, setup, units) {
   if (field === "friction.kind") return t(`laws.${value}`);
   if (value === undefined) return "–";
+  if (field === "pushes") return value.map((push) => pushText(push, setup.problem)).join(" · ");
   if (typeof value === "string") return value;
   const dial = ALL.find((one) => one.field === field);
   if (typeof value !== "number" || !dial) return JSON.stringify(value);

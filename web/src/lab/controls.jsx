@@ -4,6 +4,7 @@ import { Dial } from "./dial.jsx";
 import { LAW, MAIN, START, TABLE, TOP } from "./dials.js";
 import { part, t } from "./i18n.js";
 import { PRESETS, TABLES } from "./presets.js";
+import { Push } from "./push.jsx";
 import { same } from "./setup.js";
 import { CHOICES, shown } from "./units.js";
 import { heading } from "./words.js";
@@ -40,6 +41,7 @@ export function Launch({ lab }) {
         </button>
         <span class="hint">{t("controls.flick")}</span>
       </div>
+      <Push lab={lab} />
       <Friction lab={lab} />
       <Units lab={lab} />
       <Section lab={lab} name="more" dials={TABLE}>

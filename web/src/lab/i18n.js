@@ -30,10 +30,14 @@ export function part(name, found = words) {
   return first && part(name.slice(first.length + 1), found[first]);
 }
 
-// A text with its gaps filled.
+// A text of the catalogue with its gaps filled.
 export function t(name, gaps = {}) {
   const text = part(name);
-  if (typeof text !== "string") return name;
+  return typeof text === "string" ? filled(text, gaps) : name;
+}
+
+/** A text with its gaps filled. */
+export function filled(text, gaps) {
   return text.replace(/\{(\w+)\}/g, (whole, gap) => gaps[gap] ?? whole);
 }
 

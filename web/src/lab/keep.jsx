@@ -5,6 +5,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { Copy } from "./copy.jsx";
 import { commandLine, Film, glb, picture, save } from "./files.js";
 import { decimal, part, t } from "./i18n.js";
+import { setupOf } from "./setup.js";
 import { stl } from "./solid.js";
 import { toml } from "./toml.js";
 import { digits } from "./units.js";
@@ -29,13 +30,7 @@ export function Keep({ lab }) {
   };
   const files = {
     csv: async () =>
-      save(
-        "tippetop.csv",
-        await lab.engine.csv(
-          { problem: track.header.problem, duration: track.header.asked },
-          part("player.point"),
-        ),
-      ),
+      save("tippetop.csv", await lab.engine.csv(setupOf(track), part("player.point"))),
     toml: () => save("tippetop.toml", toml(track.header.problem)),
     glb: async () => save("tippetop.glb", await glb(track)),
     picture: async () => save("tippetop.png", await picture(player)),
@@ -72,6 +67,7 @@ export function Keep({ lab }) {
         {solidWords(density, track)}
       </p>
       <h3>{t("keep.command")}</h3>
+      {track?.header.pushes && <p class="hint">{t("keep.pushed")}</p>}
       <pre tabIndex={0} role="region" aria-label={t("keep.command")}>
         {command}
       </pre>

@@ -1,13 +1,14 @@
 // The page's state and what changes it. One launch is shown; what is asked for later overtakes what was asked before.
 
 import { stillness } from "../player/player.js";
+import { SHOWN } from "../player/scene.js";
 import { jobFor } from "./bring.js";
 import { Engine } from "./engine.js";
 import { preferred, speak, t } from "./i18n.js";
 import { MOST_PINS, readLink, writeLink } from "./link.js";
 import { Mapping } from "./mapping.js";
 import { refusal } from "./refusal.js";
-import { changed, FIRST, flawOf, inSi, LONGEST, same } from "./setup.js";
+import { changed, FIRST, flawOf, inSi, LONGEST, same, setupOf, withPushes } from "./setup.js";
 import { stepOf } from "./steps.js";
 import { digits, shown } from "./units.js";
 import { happened, tell } from "./words.js";
@@ -24,7 +25,7 @@ function sameMembers(one, other) {
 }
 
 // Bring the stage into view where it is not.
-function showStage() {
+export function showStage() {
   const stage = document.querySelector(".stage");
   const { top, bottom } = stage.getBoundingClientRect();
   if (top < 0 || bottom > innerHeight) stage.scrollIntoView({ block: "start" });
@@ -105,7 +106,14 @@ export class Lab extends EventTarget {
       "launch.spin": Number(spin.toPrecision(3)),
       "launch.tilt": Number(tilt.toFixed(2)),
     };
-    this.go(changed(this.state.setup, launch));
+    this.go(changed(withPushes(this.state.setup, []), launch));
+  }
+
+  /** Go on from the moment that is shown with other pushes. */
+  push(pushes) {
+    const isPlayed = this.player.playing || !stillness();
+    this.go(withPushes(this.state.setup, pushes), { play: false });
+    this.player.toggle(isPlayed);
   }
 
   // Launch something else and play it; returns whether it was launched.
@@ -202,8 +210,7 @@ export class Lab extends EventTarget {
   say() {
     if (!this.track) return;
     const { tab, step, units } = this.state;
-    const { problem, asked: duration } = this.track.header;
-    const isOfStory = tab === "story" && same({ problem, duration }, stepOf(step).setup);
+    const isOfStory = tab === "story" && same(setupOf(this.track), stepOf(step).setup);
     this.player.say(isOfStory ? happened(step) : tell(this.track, units));
   }
 
@@ -256,10 +263,7 @@ export class Lab extends EventTarget {
     for (const pin of companions) {
       const key = JSON.stringify(pin);
       if (this.ghosts.has(key)) continue;
-      const known =
-        this.track &&
-        same(pin.problem, this.track.header.problem) &&
-        pin.duration === this.track.header.asked;
+      const known = this.track && same(pin, setupOf(this.track));
       this.ghosts.set(key, known ? this.track : await this.engine.aside(pin).catch(() => null));
     }
     if (!sameMembers(companions, this.companions)) return;
@@ -338,8 +342,7 @@ export class Lab extends EventTarget {
   look({ view, timed }) {
     const { player } = this;
     if (view.shown) {
-      for (const name of ["axis", "momentum", "friction", "trace", "glass"])
-        player.show({ [name]: view.shown.includes(name) });
+      for (const name of SHOWN) player.show({ [name]: view.shown.includes(name) });
     }
     if (view.camera && player.scene) {
       player.scene.eye.place = view.camera;

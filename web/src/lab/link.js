@@ -2,7 +2,8 @@
 
 import { SPEEDS } from "../player/speeds.js";
 import { LANGUAGES } from "./i18n.js";
-import { changed, differences, FIRST, fields, flawOf, inSi, NoField } from "./setup.js";
+import { isPush, MOST_PUSHES, sortedPushes } from "./pushes.js";
+import { changed, differences, FIRST, fields, flawOf, inSi, NoField, withPushes } from "./setup.js";
 import { MATERIALS, SIZES } from "./turning.js";
 import { AXES, CHOICES, FIRST as FIRST_UNITS, QUANTITIES } from "./units.js";
 
@@ -13,10 +14,12 @@ export const MOST_PINS = 3;
 // What a link may say beside a launch.
 const KNOWN = [
   ...["t", "pin", "camera", "show", "units", "tab", "step", "plots", "free", "lang", "theme"],
-  ...["result", "picture", "speed", "own", "class", "results"],
+  ...["result", "picture", "speed", "own", "class", "results", "push"],
 ];
 const FORBIDDEN = ["__proto__", "prototype", "constructor"];
 const TABLES = /^(body|friction|launch|contact)\./;
+// What a push says of friction that stays as it is.
+const SAME_FRICTION = "-";
 const PLAIN = ["gravity", "rolling_resistance", "duration"];
 // What the player shows where all that can be shown is off.
 const NO_ARROWS = "none";
@@ -27,6 +30,7 @@ const isOfLaunch = (field) => TABLES.test(field) || PLAIN.includes(field);
 // A launch as a query: what is not as in the first launch. Laws and shapes are named with all they have.
 export function launchQuery(setup) {
   const query = new URLSearchParams();
+  for (const push of setup.pushes ?? []) query.append("push", writePush(push));
   const { friction, body } = setup.problem;
   const other = new Set(differences(FIRST, setup).map(([field]) => field));
   if (friction.kind !== FIRST.problem.friction.kind) other.add("friction.kind").add("friction.mu");
@@ -51,7 +55,9 @@ export function readLaunch(query) {
     if (isForbidden || text.length > LONGEST_VALUE) unread.push(field);
     else changes[field] = parsed(text);
   }
-  let setup = FIRST;
+  const pushes = query.getAll("push").slice(0, MOST_PUSHES).map(readPush);
+  if (pushes.includes(null) || query.getAll("push").length > MOST_PUSHES) unread.push("push");
+  let setup = withPushes(FIRST, sortedPushes(pushes.filter(Boolean)));
   const change = (field) => {
     try {
       setup = changed(setup, { [field]: changes[field] });
@@ -68,6 +74,19 @@ export function readLaunch(query) {
   setup = inSi(setup);
   const flaw = flawOf(setup);
   return flaw ? { setup: null, unread, flaw } : { setup, unread, flaw: null };
+}
+
+// A push as four words: its time, s, its impulse, N s, its direction, rad, and the friction from then on, if another.
+const writePush = ({ time, impulse, direction, mu }) =>
+  [time, impulse, direction, mu ?? SAME_FRICTION].join(" ");
+
+function readPush(text) {
+  const words = text.split(" ");
+  const [time, impulse, direction] = words.map(Number);
+  const mu = words[3] === SAME_FRICTION ? null : Number(words[3]);
+  const push = { time, impulse, direction, mu };
+  const isRight = words.length === 4 && words.every(Boolean) && isPush(push);
+  return isRight ? push : null;
 }
 
 function parsed(text) {
@@ -205,4 +224,4 @@ const tabOf = (query) => (isOfStory(query) ? "story" : "launch");
 // Whether a link without a tab is one to the story: it names a step, or says nothing of a launch.
 const isOfStory = (query) => query.has("step") || ![...query.keys()].some(isShown);
 const isShown = (name) =>
-  isOfLaunch(name) || ["t", "pin", "camera", "show", "plots", "free"].includes(name);
+  isOfLaunch(name) || ["t", "pin", "push", "camera", "show", "plots", "free"].includes(name);

@@ -4,7 +4,7 @@ import { useEffect, useState } from "preact/hooks";
 
 import { Bring, Brought, dropping } from "./brought.jsx";
 import { t } from "./i18n.js";
-import { changed } from "./setup.js";
+import { changed, withPushes } from "./setup.js";
 import { bodyOf, FIRST, MATERIALS, massesOf, possible, SIZES, sectionOf } from "./turning.js";
 import { digits, shown } from "./units.js";
 
@@ -57,7 +57,7 @@ function Shaped({ lab }) {
   const spin = () => {
     const launch = { body, rolling_resistance: 0, "contact.liftoff": "fly", duration: 15 };
     if (least <= REACH) launch["launch.spin"] = Math.round(BEYOND * least);
-    lab.go(changed(lab.state.setup, launch));
+    lab.go(changed(withPushes(lab.state.setup, []), launch));
   };
   return (
     <>

@@ -1,4 +1,4 @@
-// A launch as the page knows it: a problem, as plain data, and how long to follow it, s.
+// A launch as the page knows it: a problem, as plain data, how long to follow it, s, and pushes on the way, if any.
 
 import { PRESETS, SCHEMA } from "engine-tables";
 import { NoNumber, inSi as numberInSi } from "engine-units";
@@ -103,8 +103,8 @@ function flawOfField(inner, field, where) {
 const isNumberLike = (value) => typeof value === "number" || typeof value === "string";
 
 // A copy with texts such as "2200 rpm" as numbers in SI. Texts that are no numbers stay: the engine refuses them.
-export function inSi({ problem, duration }) {
-  return { problem: partInSi(problem, "Problem"), duration: numberOf(duration, "s") };
+export function inSi({ problem, duration, ...pushes }) {
+  return { problem: partInSi(problem, "Problem"), duration: numberOf(duration, "s"), ...pushes };
 }
 
 function partInSi(value, ...titles) {
@@ -134,6 +134,16 @@ function numberOf(value, units) {
   }
 }
 
+/** The launch that a run is of. */
+export function setupOf({ header: { problem, asked: duration, pushes } }) {
+  return pushes ? { problem, duration, pushes } : { problem, duration };
+}
+
+/** A launch with other pushes; of none there is no list. */
+export function withPushes({ problem, duration }, pushes) {
+  return pushes.length ? { problem, duration, pushes } : { problem, duration };
+}
+
 export function same(one, other) {
   return JSON.stringify(sorted(one)) === JSON.stringify(sorted(other));
 }
@@ -159,7 +169,10 @@ export function* fields(value, prefix = "") {
 
 // In what two launches differ: field, value in one, value in the other.
 export function differences(one, other) {
-  const flat = (setup) => new Map([...fields(setup.problem), ["duration", setup.duration]]);
+  const flat = ({ problem, duration, pushes }) => {
+    const others = pushes ? [["pushes", pushes]] : [];
+    return new Map([...fields(problem), ["duration", duration], ...others]);
+  };
   const a = flat(one);
   const b = flat(other);
   return [...new Set([...a.keys(), ...b.keys()])]

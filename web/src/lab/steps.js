@@ -5,11 +5,13 @@ import { changed } from "./setup.js";
 
 // Of each step: its launch, what is to be seen in it (or how long it is watched, s), the arrows and curves it shows, the
 // launches whose pale tops stand beside it, how far away the camera is, the preset whose figure in the report shows it
-// too, whether the picture of the torque explains it, and what the visitor may go on to.
+// too, the arrows that its answer speaks of, whether the picture of the torque explains it, and what the visitor may go on
+// to.
 export const STEPS = [
   {
     from: "turns",
     picture: true,
+    arrows: ["slip", "friction", "torque"],
     watch: "flip",
     setup: preset("turns"),
     show: ["trace", "glass", "axis"],
@@ -30,6 +32,7 @@ export const STEPS = [
   {
     from: "turns",
     watch: "flip",
+    arrows: ["momentum", "torque"],
     setup: preset("turns"),
     show: ["trace", "glass", "momentum"],
     plots: ["tilt", "spin", "energy", "jellett_change"],

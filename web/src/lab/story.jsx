@@ -4,7 +4,9 @@ import { useEffect, useRef } from "preact/hooks";
 
 import { SPAN } from "../player/climax.js";
 import { stillness } from "../player/player.js";
+import { ARROWS, SHOWN } from "../player/scene.js";
 import { part, t } from "./i18n.js";
+import { showStage } from "./lab.js";
 import { PRESETS, preset } from "./presets.js";
 import { STEPS } from "./steps.js";
 import { TorquePicture } from "./torque.jsx";
@@ -161,7 +163,7 @@ function Question({ words, guess, onGuess }) {
 }
 
 function Why({ lab, number, words, guess }) {
-  const { extra, from, picture } = STEPS[number];
+  const { extra, from, picture, arrows } = STEPS[number];
   const { figure } = PRESETS.find(({ key }) => key === from) ?? {};
   const element = useFocus();
   return (
@@ -173,6 +175,7 @@ function Why({ lab, number, words, guess }) {
         </p>
       )}
       <p>{words.why}</p>
+      {arrows && <Arrows lab={lab} names={arrows} />}
       {picture && <TorquePicture />}
       <details>
         <summary>{t("story.deeper")}</summary>
@@ -194,6 +197,27 @@ function Why({ lab, number, words, guess }) {
   );
 }
 
+// What an answer speaks of, as arrows on the turning top, in their colours.
+function Arrows({ lab, names }) {
+  const watch = () => {
+    for (const name of names) lab.player.show({ [name]: true });
+    lab.player.flip();
+    showStage();
+  };
+  return (
+    <p class="row">
+      <button type="button" onClick={watch}>
+        {t("story.arrows")}
+      </button>
+      {names.map((name) => (
+        <span class="arrow">
+          <i style={`background:${ARROWS[name]}`} /> {part(`player.${name}`)}
+        </span>
+      ))}
+    </p>
+  );
+}
+
 function showExtra(lab, extra) {
   if (extra === "own") lab.set({ tab: "own" });
   else lab.go(preset(extra));
@@ -203,8 +227,7 @@ function showExtra(lab, extra) {
 function setStep(lab, number, others, play = false) {
   const { setup, show, plots, distance } = STEPS[number];
   const { player } = lab;
-  for (const name of ["axis", "momentum", "friction", "trace", "glass"])
-    player.show({ [name]: show.includes(name) });
+  for (const name of SHOWN) player.show({ [name]: show.includes(name) });
   player.look("orbit");
   if (distance) player.scene?.eye.zoom(distance);
   player.slow(!stillness());

@@ -1,6 +1,6 @@
 // The account of a run in the page's language: a headline, and sentences beside it.
 
-import { decimal, part, t } from "./i18n.js";
+import { decimal, filled, part, t } from "./i18n.js";
 import { cleared, digits, shown } from "./units.js";
 
 // Times below the first, s, are written in milliseconds, from the second on in four digits.
@@ -30,7 +30,8 @@ export function tell(track, units) {
 // A clause, without its subject.
 export function phrase({ name, numbers }, units) {
   const gaps = Object.entries(numbers).map(([gap, value]) => [gap, written(gap, value, units)]);
-  return t(`account.clauses.${name}`, Object.fromEntries(gaps));
+  const text = part(`account.clauses.${name}`) ?? part(`push.clauses.${name}`);
+  return filled(text, Object.fromEntries(gaps));
 }
 
 // A number with the unit that the gap of a text asks for.

@@ -36,7 +36,7 @@ const JOBS = {
 // How far the mass properties of a solid may be from those of the top that is simulated, relative.
 const SAME_SOLID = 1e-3;
 
-function answerRun({ id, problem, duration, quick }) {
+function answerRun({ id, problem, duration, pushes, quick }) {
   let told = 0;
   const onProgress = (share) => {
     if (performance.now() - told < 60) return;
@@ -46,14 +46,21 @@ function answerRun({ id, problem, duration, quick }) {
   const samples = quick ? QUICK.samples : sampleCount(problem, duration);
   const run = simulate(problem, {
     duration,
+    pushes,
     onProgress,
     ...(quick && { tolerance: QUICK.tolerance }),
   });
-  return { track: pack(problem, run, samples) };
+  const track = pack(problem, run, samples);
+  if (pushes?.length) {
+    // What theory says of a launch ends with the first push.
+    const prospect = track.header.prospect && { ...track.header.prospect, ends: [] };
+    Object.assign(track.header, { pushes, reached: run.pushes.length, prospect });
+  }
+  return { track };
 }
 
-function answerCell({ problem, duration }) {
-  const run = simulate(problem, { duration, tolerance: COARSE });
+function answerCell({ problem, duration, pushes }) {
+  const run = simulate(problem, { duration, pushes, tolerance: COARSE });
   const { final_tilt: tilt, max_tilt_ever: highest, turnover_time: turnsOver } = run.metrics;
   const { fellBack, jumps, status } = run;
   return { tilt, highest, fellBack, flights: jumps.count, turnsOver, status };

@@ -3,7 +3,7 @@
 import { player as english } from "../../texts/en.json";
 import { LEAD, nearness, pace } from "./climax.js";
 import { icon, markup } from "./markup.js";
-import { Scene } from "./scene.js";
+import { COLUMNS, Scene } from "./scene.js";
 import { Sharpness } from "./sharpness.js";
 import { SPEEDS } from "./speeds.js";
 import { drawStrip } from "./strip.js";
@@ -174,6 +174,8 @@ export class Player extends EventTarget {
     this.scene?.load(this.track);
     this.find(".tt-scale").textContent = this.scene?.scaleText(this.labels.squares) ?? "";
     this.find("[data-do=flip]").disabled = this.isLocked || !Number.isFinite(this.turnsOver);
+    for (const [name, column] of Object.entries(COLUMNS))
+      this.find(`[data-show=${name}]`).parentElement.hidden = !this.track.columns[column];
     if (this.track.header.story) this.say(this.track.header.story);
     this.stale = true;
     this.dirty = true;

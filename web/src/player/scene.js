@@ -24,7 +24,19 @@ import {
 } from "./toy.js";
 import { blur, welded } from "./weld.js";
 
-export const ARROWS = { axis: "#109b60", momentum: "#7b4fd0", friction: "#e03c31" };
+export const ARROWS = {
+  axis: "#109b60",
+  momentum: "#7b4fd0",
+  slip: "#1c7ed6",
+  friction: "#e03c31",
+  torque: "#b7791f",
+};
+
+/** All that can be shown beside the top. */
+export const SHOWN = [...Object.keys(ARROWS), "trace", "glass"];
+
+// Columns of a track that arrows need which not every track has.
+export const COLUMNS = { slip: "slipping", torque: "torque" };
 
 // How the contact is shown by its mode: it slides, rolls (holds), or is of two surfaces.
 export const MODES = {
@@ -36,7 +48,11 @@ export const MODES = {
 };
 
 // How long the longest arrow of a run is, in sizes of the top.
-const LONGEST = { momentum: 2.6, friction: 1.6 };
+const LONGEST = { momentum: 2.6, slip: 1.6, friction: 1.6, torque: 2.6 };
+// Arrows that begin within the body and are seen through it.
+const SEEN_THROUGH = ["torque"];
+// Slips below it, m/s, are rounding: what only rolls has no arrow.
+const ROUNDING = 1e-9;
 
 // How much of a ghost is seen, and where ghosts stand beside the top, in sizes of it.
 const GHOST = 0.45;
@@ -68,7 +84,8 @@ export class Scene {
     this.light();
     this.ink = traceMaterial();
     this.addArrows();
-    this.shown = { axis: false, momentum: false, friction: false, trace: true, glass: true };
+    const arrows = Object.keys(ARROWS).map((name) => [name, false]);
+    this.shown = { ...Object.fromEntries(arrows), trace: true, glass: true };
     this.following = true;
     this.ghosts = [];
     this.patch = makePatch();
@@ -80,7 +97,7 @@ export class Scene {
   addArrows() {
     this.arrows = {};
     for (const [name, colour] of Object.entries(ARROWS)) {
-      const arrow = makeArrow(colour);
+      const arrow = makeArrow(colour, SEEN_THROUGH.includes(name));
       arrow.visible = false;
       this.arrows[name] = arrow;
       this.world.add(arrow);
@@ -142,10 +159,13 @@ export class Scene {
     this.clearTrace();
     this.trace = makeTrace(track, body.size, this.ink);
     this.world.add(this.trace);
-    const { momentum, friction } = track.columns;
+    const { momentum, slipping = [], friction, torque = [] } = track.columns;
+    const slip = longestOf(slipping, 2);
     this.scales = {
       momentum: LONGEST.momentum / (longestOf(momentum, 3) || 1),
+      slip: slip > ROUNDING ? LONGEST.slip / slip : 0,
       friction: LONGEST.friction / (longestOf(friction, 2) || 1),
+      torque: LONGEST.torque / (longestOf(torque, 3) || 1),
     };
     this.show(this.shown);
   }
@@ -274,9 +294,15 @@ export class Scene {
     const { track, scales } = this;
     this.placeArrow("axis", centre, pose.axis, 2.2);
     this.placeArrow("momentum", centre, pose.momentum, scales.momentum);
-    const force = [0, 1].map((k) => track.value("friction", time, k, 2));
-    const foot = [0, 1].map((k) => track.value("point", time, k, 2) / unit);
-    this.placeArrow("friction", [...foot, 0.05], [...force, 0], scales.friction);
+    const along = (name) => [0, 1].map((k) => track.value(name, time, k, 2));
+    const foot = along("point").map((value) => value / unit);
+    this.placeArrow("friction", [...foot, 0.05], [...along("friction"), 0], scales.friction);
+    if (track.columns.slipping)
+      this.placeArrow("slip", [...foot, 0.05], [...along("slipping"), 0], scales.slip);
+    if (track.columns.torque) {
+      const torque = [0, 1, 2].map((k) => track.value("torque", time, k, 3));
+      this.placeArrow("torque", centre, torque, scales.torque);
+    }
     const mode = track.mode(time);
     this.patch.visible = Boolean(mode) && mode !== "flight";
     this.patch.position.set(foot[0], foot[1], 0.006);

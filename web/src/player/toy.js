@@ -59,8 +59,13 @@ export function makePatch() {
 }
 
 // An arrow from the origin along z, to be turned and stretched by `pointArrow`.
-export function makeArrow(colour) {
+// Later than anything that is drawn without it.
+const ABOVE_ALL = 10;
+
+export function makeArrow(colour, isSeenThrough = false) {
   const material = new THREE.MeshStandardMaterial({
+    depthTest: !isSeenThrough,
+    transparent: isSeenThrough,
     color: colour,
     emissive: colour,
     emissiveIntensity: 0.35,
@@ -70,6 +75,7 @@ export function makeArrow(colour) {
   const head = new THREE.Mesh(new THREE.ConeGeometry(0.1, 0.28, 16), material);
   for (const piece of [shaft, head]) {
     piece.rotation.x = Math.PI / 2;
+    piece.renderOrder = isSeenThrough ? ABOVE_ALL : 0;
     arrow.add(piece);
   }
   arrow.userData = { shaft, head };

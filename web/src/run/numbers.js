@@ -10,8 +10,8 @@ const TOLERANCE = 1e-12;
 const PARTS = { 1: [""], 3: ["_x", "_y", "_z"], 4: ["_w", "_x", "_y", "_z"] };
 
 // `point` is the decimal sign: with a comma, cells stand between semicolons, as spreadsheets take it.
-export function numbers({ problem, duration, point = "." }) {
-  const track = simulate(problem, { duration, tolerance: TOLERANCE }).track();
+export function numbers({ problem, duration, pushes, point = "." }) {
+  const track = simulate(problem, { duration, pushes, tolerance: TOLERANCE }).track();
   const between = point === "," ? ";" : ",";
   const columns = [["time (s)", (i) => track.time[i]]];
   for (const [name, { units, width }] of Object.entries(CATALOGUE.sampled)) {

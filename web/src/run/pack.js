@@ -27,6 +27,8 @@ export function pack(problem, run, samples) {
   columns.friction = new Float32Array(2 * count);
   columns.slip = new Float32Array(count);
   columns.point = contactPath(sampled, problem.body, count);
+  columns.slipping = slipOf(sampled, count);
+  columns.torque = torqueOf(sampled, columns, count);
   columns.touching = new Float32Array(count);
   columns.mode = new Float32Array(count);
   columns.jellett_change = new Float32Array(count);
@@ -86,6 +88,31 @@ function contactPath({ x, y, axis }, body, count) {
     path[2 * i + 1] = y[i] - slope * axis[3 * i + 1];
   }
   return path;
+}
+
+// The velocity of the contact point along the table, m/s.
+function slipOf({ tilt, azimuth, slip_x, slip_y }, count) {
+  const slip = new Float32Array(2 * count);
+  for (let i = 0; i < count; i++) {
+    // A vertical axis leans in no direction: its slip is along the axes of the table.
+    const turn = Math.sin(tilt[i]) === 0 ? 0 : azimuth[i];
+    const [sine, cosine] = [Math.sin(turn), Math.cos(turn)];
+    slip[2 * i] = cosine * slip_x[i] - sine * slip_y[i];
+    slip[2 * i + 1] = sine * slip_x[i] + cosine * slip_y[i];
+  }
+  return slip;
+}
+
+// The torque of friction about the centre of mass, N m.
+function torqueOf({ x, y, height, gap, contact_torque }, { point, contact_force }, count) {
+  const torque = new Float32Array(3 * count);
+  for (let i = 0; i < count; i++) {
+    const arm = [point[2 * i] - x[i], point[2 * i + 1] - y[i], gap[i] - height[i]];
+    const [across, along] = contact_force.subarray(3 * i, 3 * i + 2);
+    const about = [-arm[2] * along, arm[2] * across, arm[0] * along - arm[1] * across];
+    for (let k = 0; k < 3; k++) torque[3 * i + k] = about[k] + contact_torque[3 * i + k];
+  }
+  return torque;
 }
 
 export function buffersOf(track) {

@@ -1,0 +1,56 @@
+"""A push while the top spins: the run goes on from there, can be taken back and sent."""
+
+from collections.abc import Callable
+
+from browsing import Visit
+
+Lab = Callable[..., Visit]
+
+PUSHED = "() => tippetopLab.track.header.pushes?.length"
+TILTS = "() => [1, 1.9, 2.5, 4].map((time) => tippetopLab.track.value('tilt', time))"
+
+
+def test_a_push_goes_on_from_the_moment_that_is_shown(lab: Lab) -> None:
+    visitor = lab("tab=launch&duration=6")
+    page = visitor.page
+    visitor.pause(2.0)
+    before = visitor.ask(TILTS)
+    page.get_by_text("Push it while it spins").click()
+    page.get_by_label("Strength of the push").fill("50")
+    page.get_by_role("button", name="Push now, at 2 s").click()
+    visitor.wait(PUSHED)
+    assert visitor.ask("() => tippetopLab.player.time") >= 2.0
+    assert visitor.ask("() => tippetopLab.player.playing"), "it goes on playing"
+    pushed = visitor.ask(TILTS)
+    assert [round(one, 6) for one in pushed[:2]] == [round(one, 6) for one in before[:2]]
+    assert abs(pushed[2] - before[2]) > 1e-3
+    visitor.wait("() => /is pushed at 2 s/i.test(document.querySelector('.tt-words').textContent)")
+
+    link = visitor.ask("() => tippetopLab.link()")
+    other = lab(link.partition("#")[2])
+    assert other.ask(TILTS) == pushed
+
+    page.get_by_role("button", name="Undo").click()
+    visitor.wait("() => !tippetopLab.track.header.pushes")
+    assert visitor.ask(TILTS) == before
+
+
+def test_friction_changes_from_a_moment_on_and_pushes_are_removed(lab: Lab) -> None:
+    visitor = lab("tab=launch&duration=6&push=2+0+0+10&push=9+0.001+0+-")
+    page = visitor.page
+    items = page.get_by_role("list", name="Pushes").get_by_role("listitem")
+    assert items.count() == 2
+    assert "μ = 10 s/m" in items.nth(0).inner_text()
+    assert "not reached" in items.nth(1).inner_text()
+    without = lab("tab=launch&duration=6").ask(TILTS)
+    assert abs(visitor.ask(TILTS)[3] - without[3]) > 0.1
+    for _ in range(2):
+        items.nth(0).get_by_role("button", name="Remove").click()
+    visitor.wait("() => !tippetopLab.track.header.pushes")
+    assert visitor.ask(TILTS) == without
+
+
+def test_links_with_pushes_that_are_none_say_so(lab: Lab) -> None:
+    visitor = lab("tab=launch&push=2+0+0&push=-1+0+0+-&push=2+NaN+0+-")
+    visitor.wait("() => document.querySelector('.refused')?.textContent.includes('push')")
+    assert not visitor.ask("() => tippetopLab.track.header.pushes")
