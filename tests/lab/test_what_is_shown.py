@@ -64,9 +64,9 @@ def test_a_map_marks_no_launch_that_is_not_on_it(lab: Lab) -> None:
       for (let i = 0; i < data.length; i += 4)
         if (data[i] === 0xd6 && data[i + 1] === 0x33 && data[i + 2] === 0x6c) count += 1;
       return count; }"""
-    assert visitor.ask(pink) > 10
+    visitor.wait(f"() => ({pink})() > 10")
     visitor.ask("() => tippetopLab.change({ 'friction.kind': 'coulomb' })")
-    assert visitor.ask(pink) == 0
+    visitor.wait(f"() => ({pink})() === 0")
 
 
 PICTURES = """([from, count]) => { const { player } = tippetopLab;
