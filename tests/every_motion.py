@@ -70,7 +70,7 @@ def sliding_motions(top):
     for end in ends:
         yield end.form, end.motion, (*numbers, 1e9, 1e-3)
     if isinstance(surface, Hull):
-        other = top._replace(surface=surface._replace(active=1))
+        other = top._replace(number=1)
         statuses = {"": (False, False)}
         if isinstance(law, CoulombLaw):
             statuses |= {
@@ -104,7 +104,7 @@ CASES = [
     for shape, surface in SURFACES.items()
     for law_name, law in laws.items()
     for name, resistance in ((law_name, None), (f"{law_name} and rolling", RollingResistance(1e-3)))
-    for mode, motion, parameters in motions(Top(1.0, 0.45, 0.38, surface, law, 1.0, resistance))
+    for mode, motion, parameters in motions(Top.of(1.0, 0.45, 0.38, surface, law, 1.0, resistance))
 ]
 
 

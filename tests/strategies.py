@@ -49,7 +49,7 @@ def tops(draw, shapes=None, friction_laws=(ViscousLaw, RegularizedCoulombLaw)):
     law = draw(st.sampled_from(friction_laws))
     mu = draw(numbers(0.0, 1.0))
     friction = law(mu / speed) if law is ViscousLaw else law(mu, draw(numbers(1e-3, 1.0)) * speed)
-    return Top(mass, transverse, axial, shape, friction, gravity)
+    return Top.of(mass, transverse, axial, shape, friction, gravity)
 
 
 @st.composite

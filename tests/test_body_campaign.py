@@ -132,7 +132,7 @@ def test_what_touches_within_rounding_does_not_sink_in(back: float) -> None:
     problem = tt.Problem(body=body, friction=tt.ViscousFriction(mu=0.1), launch=launch)
     units, top = natural_units(top_of(problem)), natural(top_of(problem))
     level = natural_state(problem.start(), units)
-    first, second = top.each if back > 0.0 else top.each[::-1]
+    first, second = top.body.contacts if back > 0.0 else top.body.contacts[::-1]
     lever = first.surface.slope(level.axis[2]) - second.surface.slope(level.axis[2])
     # A turn about e x z by a small angle moves the tip, and as a rate the gaps: of the second
     # -5e-13, +3e-7.
@@ -150,4 +150,4 @@ def test_what_touches_within_rounding_does_not_sink_in(back: float) -> None:
     start = automaton.resting(automaton.top, 0.0, state)
     run = Trajectory(automaton, start, 0.1, make_integrator("dop853", 3e-14))
     for segment in run.segments():
-        assert min(gap(segment.end_state, one) for one in top.each) > -1e-12
+        assert min(gap(segment.end_state, one) for one in top.body.contacts) > -1e-12

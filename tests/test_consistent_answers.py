@@ -61,9 +61,9 @@ def reported(case: Case) -> list[Answer]:
     law, numbers = case.law, (case.law.mu, case.law.radius)
     friction = LAWS[law.kind](*numbers[: 2 if law.drills else 1])
     resistance = None if case.eps is None else RollingResistance(case.eps)
-    top = Top(1.0, case.across, case.along, hull, friction, 1.0, resistance)
+    top = Top.of(1.0, case.across, case.along, hull, friction, 1.0, resistance)
     momentum = case.inertia @ case.omega
-    points = contact_points(tuple(case.n.tolist()), tuple(momentum.tolist()), top.each)
+    points = contact_points(tuple(case.n.tolist()), tuple(momentum.tolist()), top.body.contacts)
     drilling = (friction.slip_length * case.omega[2],) if law.drills else ()
     slips = [
         None if ended else (*case.slip(i).tolist(), *drilling) for i, ended in enumerate(case.ended)

@@ -245,7 +245,7 @@ def test_what_could_be_held_by_a_pull_only_slips():
         surface = SphereSurface(1.0, rng.uniform(-0.9, 0.9))
         across = rng.uniform(0.05, 0.6)
         along, law = rng.uniform(0.05, 2.0 * across), CoulombLaw(rng.uniform(0.5, 4.0))
-        top = Top(1.0, across, along, surface, law, 1.0)
+        top = Top.of(1.0, across, along, surface, law, 1.0)
         way, momentum = rng.normal(size=3), tuple(rng.normal(size=3))
         axis = tuple(way / np.linalg.norm(way))
         held = forces_and_accelerations(ContactPoint.of(axis, momentum, top), None)[0]

@@ -111,7 +111,7 @@ def test_steps_too_long_for_an_edge_are_told_whatever_they_lead_to(
             assert float(run["end_time"]) == pytest.approx(float(exact["end_time"]), rel=1e-10)
 
 
-EGG = Top(1.0, 0.2, 0.4, SpheroidSurface(1.0, 1.5), ViscousLaw(0.1), 1.0)
+EGG = Top.of(1.0, 0.2, 0.4, SpheroidSurface(1.0, 1.5), ViscousLaw(0.1), 1.0)
 
 
 def test_what_drives_slip_round_leads_nowhere() -> None:
@@ -180,8 +180,10 @@ def drawn_contacts(seed: int, law: Any = None, resistance: float | None = None) 
     assert case is not None
     (first, _), state = case
     rolling = None if resistance is None else RollingResistance(resistance)
-    top = first._replace(rolling_resistance=rolling, friction=law or first.friction)
-    return TwoClosed.of(state, (top.each[0], top.each[1]), 0.0, (True, law is not None))
+    top = first.altered(rolling_resistance=rolling, friction=law or first.friction)
+    return TwoClosed.of(
+        state, (top.body.contacts[0], top.body.contacts[1]), 0.0, (True, law is not None)
+    )
 
 
 def test_each_of_two_contacts_may_carry_the_body_alone_without_a_jam() -> None:

@@ -83,12 +83,12 @@ def drawn(seed):
     numbers = (law.mu,) if not law.scale else (law.mu, law.scale)
     hull = Hull.of((SphereSurface(*sphere), SpheroidSurface(*spheroid)))
     resistance = RollingResistance(rolling) if rolling else None
-    top = Top(1.0, *inertias, hull, LAWS[name](*numbers), 1.0, resistance)
+    top = Top.of(1.0, *inertias, hull, LAWS[name](*numbers), 1.0, resistance)
     omega = velocities[3:]
     momentum = inertias[0] * omega + (inertias[1] - inertias[0]) * (omega @ axis) * axis
     state = State(tuple(axis), tuple(momentum), tuple(velocities[:3]), height)
     restitution = 0.5 if random.random() < 0.25 else 0.0
-    return body, velocities, state, [top.each[k] for k in order], restitution
+    return body, velocities, state, [top.body.contacts[k] for k in order], restitution
 
 
 @pytest.mark.parametrize("seed", seeds(check=8, sample=40, claim=500))

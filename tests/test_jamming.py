@@ -322,10 +322,10 @@ def test_a_force_falls_by_zero_or_by_infinity_however_weak_what_presses(near: fl
         surface, way = SphereSurface(1.0, random.uniform(-0.9, 0.9)), random.normal(size=3)
         axis, momentum = tuple(way / np.linalg.norm(way)), tuple(random.normal(size=3))
         velocity = tuple(random.normal(size=2))
-        free = Top(1.0, 0.05, 0.04, surface, CoulombLaw(0.0), 0.0)
+        free = Top.of(1.0, 0.05, 0.04, surface, CoulombLaw(0.0), 0.0)
         lifting = sliding_contact(axis, momentum, velocity, free).free_acceleration
         ready, rough = (
-            sliding_contact(axis, momentum, velocity, free._replace(friction=CoulombLaw(mu)))
+            sliding_contact(axis, momentum, velocity, free.altered(friction=CoulombLaw(mu)))
             for mu in (0.0, 1.0)
         )
         jams_at = ready.delassus / (ready.delassus - rough.delassus)
@@ -333,7 +333,7 @@ def test_a_force_falls_by_zero_or_by_infinity_however_weak_what_presses(near: fl
             continue
         count += 1
         jammed, opened = (
-            free._replace(friction=CoulombLaw(mu), gravity=gravity)
+            free.altered(friction=CoulombLaw(mu), gravity=gravity)
             for mu, gravity in (
                 (jams_at * (1.0 + near), lifting * (1.0 + 1e-4)),
                 (0.5 * jams_at, lifting * (1.0 + near)),

@@ -42,12 +42,12 @@ def drawn(random: np.random.Generator) -> tuple[Tops, State] | None:
     across = 10.0 ** random.uniform(-3.0, -0.3)
     along, mu = across * 10.0 ** random.uniform(-2.0, 0.25), 10.0 ** random.uniform(-1.0, 0.7)
     hull = Hull.of((SphereSurface(r1, z1), SphereSurface(r2, z2)))
-    top = Top(1.0, across, along, hull, CoulombLaw(mu), 1.0)
+    top = Top.of(1.0, across, along, hull, CoulombLaw(mu), 1.0)
     axis, (a, b) = np.array([(1.0 - c * c) ** 0.5, 0.0, c]), random.normal(size=2)
     turning = across * 10.0 ** random.uniform(-1.0, 1.5) * (a * axis + np.array([0.0, 0.0, b]))
     velocity = random.normal(size=2) * 10.0 ** random.uniform(-1.0, 1.0)
     start = SlidingState(tuple(axis.tolist()), tuple(turning.tolist()), tuple(velocity.tolist()))
-    first, second = top.each
+    first, second = top.body.contacts
     return (first, second), on_table(start, first)
 
 
@@ -68,7 +68,10 @@ def acceleration(state: State, top: Top, force: np.ndarray, at: np.ndarray) -> n
     pull = force[2] / top.mass - top.gravity
     turned = np.cross(np.cross(at, force), n) + np.cross(L, np.cross(L, n)) / top.transverse_inertia
     return np.array(
-        [pull + one.surface.slope(0.0) * -turned[2] / top.transverse_inertia for one in top.each]
+        [
+            pull + one.surface.slope(0.0) * -turned[2] / top.transverse_inertia
+            for one in top.body.contacts
+        ]
     )
 
 
@@ -234,7 +237,7 @@ def test_a_normal_force_of_two_falls_by_zero_or_by_infinity() -> None:
     def mode(gravity: float, mu: float, tops: Tops, state: State) -> ContactMode:
         law = CoulombLaw(mu)
         return sliding_on_two(
-            state, tuple(one._replace(gravity=gravity, friction=law) for one in tops), 0.0
+            state, tuple(one.altered(gravity=gravity, friction=law) for one in tops), 0.0
         )
 
     while min(counts[True], counts[False]) < 3:
@@ -248,7 +251,7 @@ def test_a_normal_force_of_two_falls_by_zero_or_by_infinity() -> None:
             return float(one.contacts(one.numbers(case[1])).normal(0))
 
         def determinant(mu: float, case: tuple[Tops, State] = case) -> float:
-            tops = tuple(one._replace(friction=CoulombLaw(mu)) for one in case[0])
+            tops = tuple(one.altered(friction=CoulombLaw(mu)) for one in case[0])
             return float(np.linalg.det(delassus(tops, case[1])))
 
         ends = []
@@ -266,7 +269,7 @@ def test_two_contacts_that_let_go_lift_off_though_friction_would_jam_one_alone()
     """Without forces both gaps open, and the first contact alone would close the second."""
     seen = 0
     for smoother, state in draws(9, 2000):
-        tops = tuple(one._replace(friction=CoulombLaw(8.0)) for one in smoother)
+        tops = tuple(one.altered(friction=CoulombLaw(8.0)) for one in smoother)
         touch = sliding_contact(*along_table(state), tops[0])
         alone = consistent_sets(tops, state).keys() == {""}
         if not (alone and touch.delassus < 0.0 < touch.free_acceleration):
@@ -283,7 +286,7 @@ def test_a_contact_that_friction_alone_holds_closed_opens_at_the_limit_of_fricti
     """It would open without a force; slip would begin against itself, as A < 0 along it."""
     seen = 0
     for others, start in draws(1, 400):
-        tops = tuple(one._replace(friction=CoulombLaw(4.0)) for one in others)
+        tops = tuple(one.altered(friction=CoulombLaw(4.0)) for one in others)
         if consistent_sets(tops, start):
             continue
         top, state = natural(tops[0]), natural_state(start, natural_units(tops[0]))

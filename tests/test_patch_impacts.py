@@ -31,7 +31,7 @@ TAYLOR = make_integrator("taylor")
 
 def struck_top(law, random):
     """A top that comes down on the table, in natural units."""
-    top = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0)
+    top = Top.of(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0)
     axis = random.normal(size=3)
     axis /= np.linalg.norm(axis)
     sliding = SlidingState(tuple(axis), tuple(random.normal(size=3)), tuple(random.normal(size=2)))
@@ -137,7 +137,7 @@ def test_impacts_are_right_to_rounding_under_every_law(name, resistance):
     random, compared = np.random.default_rng(3), 0
     while compared < 2:
         state, top = struck_top(LAWS[name], random)
-        top = top._replace(rolling_resistance=resistance)
+        top = top.altered(rolling_resistance=resistance)
         mine = impact(state, 0.0, top)
         slip = math.hypot(*slip_of(*along_table(mine.state), top))
         if slip < 0.1 or math.hypot(*mine.state.momentum[:2]) < 0.2:

@@ -229,7 +229,7 @@ def resting_pair(problem: tt.Problem) -> tuple[tuple[ContactPoint, ...], float]:
     """Both contacts at launch, in natural units, and which way the body rolls."""
     top = natural(top_of(problem))
     state = natural_state(problem.start(), natural_units(top_of(problem)))
-    return contact_points(state.axis, state.momentum, top.each), rolling_of(state, top)
+    return contact_points(state.axis, state.momentum, top.body.contacts), rolling_of(state, top)
 
 
 @pytest.mark.parametrize(

@@ -833,11 +833,11 @@ class TestValues:
 
     def test_a_problem_is_the_numbers_of_its_parts(self):
         sphere = top_problem(launch__tilt=0.5)
-        assert top_of(sphere) == Top(
+        assert top_of(sphere) == Top.of(
             0.02, sphere.body.I1, sphere.body.I3, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8
         )
         egg = top_problem(body=EGG, friction=COULOMB, gravity=1.62)
-        assert top_of(egg) == Top(
+        assert top_of(egg) == Top.of(
             0.05, 1.3e-5, 8e-6, SpheroidSurface(0.02, 0.03), RegularizedCoulombLaw(0.3, 1e-3), 1.62
         )
 

@@ -115,7 +115,7 @@ def test_what_rolls_straight_on_two_surfaces_slows_down_evenly_and_rests(shape: 
     assert losses(run) == pytest.approx([0.0, 0.0, kinetic], rel=1e-12, abs=1e-13 * kinetic)
     start = problem.start()
     found = forces_on_two(
-        contact_points(start.axis, start.momentum, top_of(problem).each), (None, None), 1.0
+        contact_points(start.axis, start.momentum, top_of(problem).body.contacts), (None, None), 1.0
     )
     couples = [wrench.torque[0] for wrench in found.wrenches]
     assert couples == pytest.approx([-ARM * MASS * G / 3, -ARM * MASS * G * 2 / 3], rel=1e-12)
@@ -228,7 +228,7 @@ def ends(
     there.
     """
     units, top = natural_units(top_of(problem)), top_of(problem)
-    top = natural(top if law is None else top._replace(friction=law, rolling_resistance=None))
+    top = natural(top if law is None else top.altered(friction=law, rolling_resistance=None))
     automaton = Automaton(top, "fly", 0.0)
     start = automaton.launch(natural_state(problem.start(), units))
     method = make_integrator("dop853", 3e-14) if law is None else make_integrator("collocation")
@@ -268,7 +268,7 @@ def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(
     # gap.
     first, second = (
         np.array([top.surface.height(c) for c in axis[:, 2].tolist()])
-        for top in top_of(problem).each
+        for top in top_of(problem).body.contacts
     )
     lifted = np.abs(first - second) * np.hypot(*run["contact_force"].values[:, :2].T)
     assert np.all(np.abs(couple) <= limit * (1 + 1e-12) + 2 * lifted)
@@ -276,7 +276,7 @@ def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(
     assert held.any()
     np.testing.assert_allclose(np.abs(couple[~held]), limit[~held], rtol=1e-9)
     for n, spin in zip(axis[held], momentum[held], strict=True):
-        pair = contact_points(tuple(n), tuple(spin), top_of(problem).each)
+        pair = contact_points(tuple(n), tuple(spin), top_of(problem).body.contacts)
         assert abs(turning_along(pair)) < 1e-11 * (G / R) ** 0.5
 
 

@@ -148,7 +148,7 @@ def test_rocking_shrinks_by_what_the_inverse_masses_say() -> None:
     )
     axis, momentum, velocity = vectors
     state = SlidingState(axis, momentum, velocity[:2])
-    tops = top_of(LEINE_GLOCKER).each
+    tops = top_of(LEINE_GLOCKER).body.contacts
     pair = contact_points(axis, momentum, tops)
     slips = [slip_of(*state, top) for top in tops]
     units = [normal_wrench(point, slip) for point, slip in zip(pair, slips, strict=True)]
@@ -173,7 +173,7 @@ def test_two_patches_which_each_drill_or_slide_move_a_body_as_newton_and_euler_s
     """
     problem = LEINE_GLOCKER.replace({"friction.pressure": "hertz", "friction.patch_radius": 5e-3})
     top, unit = natural(top_of(problem)), natural_units(top_of(problem)).length
-    tops, (low, high), law = tuple(top.each), problem.body.shapes, problem.friction.law
+    tops, (low, high), law = tuple(top.body.contacts), problem.body.shapes, problem.friction.law
     c = (high.radius - low.radius) / (high.center - low.center)
     axis, turning = np.array([np.sqrt(1.0 - c * c), 0.0, c]), np.array([-0.5, 0.0, 2.0])
     inertia, apart = (
@@ -326,7 +326,7 @@ def lying(law: str, centers: tuple[float, float], velocity: float) -> tuple[Auto
     launch = tt.Launch(tilt=1.3, spin=5.0, gap=0.01)
     problem = tt.Problem(body=body, friction={"kind": law, "mu": 0.3}, launch=launch)
     top = natural(top_of(problem))
-    top = top._replace(surface=top.surface.each[1])
+    top = top.body.contacts[1]
     state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (velocity, 0.0)), top)
     return Automaton(top, "fly", 0.0), state
 

@@ -57,7 +57,7 @@ def test_a_symmetric_dumbbell_that_is_dropped_level_stays_level(friction, restit
 
 def rod(law, centers=(2.0, -3.0), resistance=None):
     hull = Hull.of(tuple(SphereSurface(1.0, center) for center in centers))
-    return Top(1.0, 1.5, 0.5, hull, law, 1.0, resistance)
+    return Top.of(1.0, 1.5, 0.5, hull, law, 1.0, resistance)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
@@ -67,14 +67,14 @@ def test_without_friction_both_ends_rebound_by_their_own_compression(turning, re
     top = rod(ViscousLaw(0.0))
     velocity = (0.1, -0.2, -1.0)
     state = State((1.0, 0.0, 0.0), (0.2, -1.5 * turning, 0.3), velocity, 1.0)
-    before = np.array([gap_rate(state, one) for one in top.each])
+    before = np.array([gap_rate(state, one) for one in top.body.contacts])
     slopes = np.array([-2.0, 3.0])
     matrix = 1.0 + np.outer(slopes, slopes) / 1.5
     compression = np.linalg.solve(matrix, -before)
     assert np.all(compression > 0.0)
-    for order in (top.each, top.each[::-1]):
+    for order in (top.body.contacts, top.body.contacts[::-1]):
         found = impact(state, restitution, *order)
-        after = np.array([gap_rate(found.state, one) for one in top.each])
+        after = np.array([gap_rate(found.state, one) for one in top.body.contacts])
         assert after == pytest.approx(-restitution * before, abs=1e-13)
         full = (1.0 + restitution) * compression.sum()
         assert found.impulse == pytest.approx(full, rel=1e-13)
@@ -86,14 +86,14 @@ def test_an_end_that_the_other_opens_has_no_impulse():
     """A_12 > 0: the impulse of the end that sinks fast lifts the slow one more than it needs."""
     top = rod(ViscousLaw(0.0), (2.0, 0.5))
     state = State((1.0, 0.0, 0.0), (0.0, 0.9, 0.0), (0.0, 0.0, 0.2), 1.0)
-    before = np.array([gap_rate(state, one) for one in top.each])
+    before = np.array([gap_rate(state, one) for one in top.body.contacts])
     assert before == pytest.approx([-1.0, -0.1], abs=1e-14)
     slopes = np.array([-2.0, -0.5])
     matrix = 1.0 + np.outer(slopes, slopes) / 1.5
     single = before + matrix[:, 0] / matrix[0, 0]
     assert single[1] > 0.0
-    found = impact(state, 0.0, *top.each)
-    after = np.array([gap_rate(found.state, one) for one in top.each])
+    found = impact(state, 0.0, *top.body.contacts)
+    after = np.array([gap_rate(found.state, one) for one in top.body.contacts])
     assert after == pytest.approx(single, abs=1e-13)
 
 
@@ -114,7 +114,7 @@ def test_a_rod_that_falls_flat_without_slip_keeps_its_velocity_along_the_table(
     """Nothing slips, turns or tilts: friction holds that, and both ends rebound alike."""
     top = rod(law, (2.0, -2.0), resistance)
     falling = State((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), 1.0)
-    found = impact(falling, restitution, *top.each)
+    found = impact(falling, restitution, *top.body.contacts)
     assert found.state.velocity == pytest.approx((0.0, 0.0, restitution), abs=1e-13)
     assert found.state.momentum == pytest.approx((0.0, 0.0, 0.0), abs=1e-13)
     assert found.impulse == pytest.approx(1.0 + restitution, rel=1e-13)
@@ -131,7 +131,7 @@ def test_slip_that_ends_on_two_contacts_is_held(law, mu):
     random = np.random.default_rng(11)
     for _ in range(12):
         top = rod(law(mu))
-        first, second = top.each
+        first, second = top.body.contacts
         turning = random.uniform(0.5, 1.0)
         momentum = (0.1, -1.5 * turning, 0.05 * random.normal())
         slip = 0.1 * random.normal(size=2)
@@ -140,7 +140,7 @@ def test_slip_that_ends_on_two_contacts_is_held(law, mu):
         found = impact(state, 0.0, second, first)
         assert gap_rate(found.state, second) == pytest.approx(0.0, abs=1e-13)
         assert gap_rate(found.state, first) >= -1e-13
-        slips = [slip_of(*along_table(found.state), one) for one in top.each]
+        slips = [slip_of(*along_table(found.state), one) for one in top.body.contacts]
         if max(math.hypot(*slip) for slip in slips) < 1e-12:
             stuck += 1
             assert found.state.velocity[2] == pytest.approx(0.0, abs=1e-12)
@@ -187,14 +187,14 @@ def test_an_impact_that_presses_another_contact_meanwhile_counts_both():
     launch = NaturalLaunch.of(PRESSING)
     state, speed = launch.first.state, launch.units.speed
     assert [event.kind for event in launch.first.events][:1] == [EventKind.IMPACT]
-    slip = slip_of(*along_table(state), launch.top.each[1])
+    slip = slip_of(*along_table(state), launch.top.body.contacts[1])
     assert [speed * part for part in slip[:2]] == pytest.approx((0.6965, -0.3121), abs=1e-4)
-    assert gap_rate(state, launch.top.each[1]) > 0.0
+    assert gap_rate(state, launch.top.body.contacts[1]) > 0.0
 
 
 def test_what_touches_without_an_impulse_sticks_only_if_friction_can_hold_it():
     """A ball that rolls in narrow circles needs far more than mu N to do so."""
-    top = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), CoulombLaw(0.1), 1.0)
+    top = Top.of(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), CoulombLaw(0.1), 1.0)
     axis = (math.sin(1.0), 0.0, math.cos(1.0))
     sliding = SlidingState(axis, (300.0, 100.0, 200.0), (0.0, 0.0))
     slip = slip_of(*sliding, top)

@@ -49,7 +49,7 @@ class Tumbling(NamedTuple):
     @property
     def thrown(self):
         """The top, and the state in which it is thrown."""
-        top = Top(0.02, 3.0e-6, 3.3e-6, self.shape, ViscousLaw(0.3), 9.8)
+        top = Top.of(0.02, 3.0e-6, 3.3e-6, self.shape, ViscousLaw(0.3), 9.8)
         east, north = math.cos(self.azimuth), math.sin(self.azimuth)
         axis = (math.sin(self.tilt) * east, math.sin(self.tilt) * north, math.cos(self.tilt))
         swing = top.transverse_inertia * self.rate

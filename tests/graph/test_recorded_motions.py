@@ -233,7 +233,7 @@ def test_the_reports_sliding_equations_are_few_operations():
 
 def test_a_choice_that_depends_on_numbers_is_refused():
     law = HertzLaw(0.3, 0.02)
-    kind = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0).kind
+    kind = Top.of(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0).kind
     with pytest.raises(NotRecordable, match="select"):
         record(
             lambda y, p: kind.top(tuple(p)).friction.reserve(y[0], (y[1], y[2]), y[3]),

@@ -49,7 +49,7 @@ def in_its_clock(top, start, until):
 
 def slipping(law, speed=1e-3):
     """A top that slips and drills, and its numbers in the clock."""
-    top = Top(1.0, 131 / 350, 2 / 5, SphereSurface(1.0, 0.3), law, 1.0)
+    top = Top.of(1.0, 131 / 350, 2 / 5, SphereSurface(1.0, 0.3), law, 1.0)
     way = (0.6, 0.0, 0.8)
     axis, momentum = (math.sin(1.1), 0.0, math.cos(1.1)), (0.05, 0.02, 0.0)
     momentum = (*momentum[:2], spin_for(top, axis, momentum, speed * way[2] / law.slip_length))
@@ -95,7 +95,7 @@ def test_the_end_of_slip_by_collocation_agrees_with_an_implicit_method(law):
 def test_a_top_on_a_small_patch_sticks_when_an_implicit_method_says():
     law = HertzLaw(0.4, 0.02)
     top, start = slipping(law)
-    end = in_its_clock(top._replace(friction=HertzDrillingLaw(*law)), start, 25.0)
+    end = in_its_clock(top.altered(friction=HertzDrillingLaw(*law)), start, 25.0)
     axis, momentum, slip = (
         tuple(start[:3]),
         tuple(start[3:6]),
@@ -113,7 +113,7 @@ def test_a_top_on_a_small_patch_sticks_when_an_implicit_method_says():
 def test_friction_that_turns_slip_much_faster_than_it_ends_takes_few_steps(integrator, resists):
     """Its direction is at rest soon: explicit steps as short as it is turned then go no farther."""
     top, start = slipping(EllipsoidalLaw(0.4, 0.02), 5e-6)
-    top = top._replace(rolling_resistance=RollingResistance(1e-3) if resists else None)
+    top = top.altered(rolling_resistance=RollingResistance(1e-3) if resists else None)
     end = in_its_clock(top, start, 25.0)
     axis, momentum, slip = (
         tuple(start[:3]),

@@ -53,7 +53,7 @@ def state(seed, lowest=0.2):
 
 
 def top_of(surface, law, resists):
-    return Top(1.0, 0.45, 0.38, surface, law, 1.0, RollingResistance(1e-2) if resists else None)
+    return Top.of(1.0, 0.45, 0.38, surface, law, 1.0, RollingResistance(1e-2) if resists else None)
 
 
 def by_centre_of_mass(points, constraints):
@@ -156,7 +156,7 @@ def test_two_contacts(law, resists, seed):
     """Each slips or sticks, and rolling goes on one way, or the other, or is held."""
     axis, momentum = state(seed, lowest=0.4)
     hull = Hull.of((SphereSurface(1.0, 0.3), SphereSurface(0.2, 1.5)))
-    tops = top_of(hull, LAWS[law], resists).each
+    tops = top_of(hull, LAWS[law], resists).body.contacts
     pair = contact_points(axis, momentum, tops)
     one, other = (slip[:2] for slip in slips_of(pair, (0.3, -0.2, 0.4)))
     cases = [(one, other)]

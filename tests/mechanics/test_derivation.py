@@ -159,7 +159,7 @@ def random_motions(count: int):
         transverse = random.uniform(0.2, 1.0) * mass * radius**2
         axial = random.uniform(0.3, 2.0) * transverse
         shape = SphereSurface(radius, radius * random.uniform(0.05, 0.6))
-        top = Top(mass, transverse, axial, shape, ViscousLaw(random.uniform(0.0, 2.0)), gravity)
+        top = Top.of(mass, transverse, axial, shape, ViscousLaw(random.uniform(0.0, 2.0)), gravity)
         motion = tuple(
             float(number)
             for number in (

@@ -202,7 +202,7 @@ def test_rolling_resistance_opposes_rolling_beside_any_law():
 
 def on(law, resistance):
     """A top on a table."""
-    return Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), law, 9.8, resistance)
+    return Top.of(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), law, 9.8, resistance)
 
 
 @pytest.mark.parametrize("law", [CoulombLaw(0.3), *(law(0.3, 2e-3) for law in LAWS)])

@@ -66,7 +66,9 @@ def test_slip_that_cannot_end_turns_back():
 def test_rolling_is_resisted_in_viscous_impacts_too(restitution):
     """Without friction a ball gets (1 + e) m v_n, and l times as much of it against its rolling."""
     arm, falling, momentum = 0.01, -0.7, (0.3, -0.4, 0.2)
-    top = Top(1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), ViscousLaw(0.0), 1.0, RollingResistance(arm))
+    top = Top.of(
+        1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), ViscousLaw(0.0), 1.0, RollingResistance(arm)
+    )
     state = on_table(SlidingState((0.6, 0.0, 0.8), momentum, (0.1, 0.2)), top)
     result = impact(state._replace(velocity=(0.1, 0.2, falling)), restitution, top)
     impulse = -(1.0 + restitution) * falling
@@ -82,7 +84,7 @@ def test_viscous_impacts_with_rolling_resistance_are_those_of_slow_slip():
     mu, far = 0.3, 1e4
     found = []
     for law in (ViscousLaw(mu), RegularizedCoulombLaw(mu * far, far)):
-        top = Top(1.0, 0.4, 0.3, SphereSurface(1.0, 0.2), law, 1.0, RollingResistance(0.05))
+        top = Top.of(1.0, 0.4, 0.3, SphereSurface(1.0, 0.2), law, 1.0, RollingResistance(0.05))
         state = on_table(
             SlidingState((math.sin(1.0), 0.0, math.cos(1.0)), (0.3, 0.2, 0.1), (1.0, 0.3)), top
         )
@@ -109,7 +111,7 @@ def test_drilling_alone_takes_no_steps():
     """
     mu, rho, restitution = 0.4, 0.05, 0.5
     for spin, falling in ((3.0, 1.0), (1e-2, 1.0)):
-        top = Top(
+        top = Top.of(
             1.0,
             0.4,
             0.5,
@@ -130,7 +132,7 @@ def test_the_smaller_a_patch_is_the_more_it_is_a_point(law):
     """Where drilling lasts, sliding follows it ever faster: the equations are stiff."""
 
     def struck(patch):
-        top = Top(1.0, 0.4, 0.5, SpheroidSurface(1.0, 1.4), law(0.3, patch), 1.0)
+        top = Top.of(1.0, 0.4, 0.5, SpheroidSurface(1.0, 1.4), law(0.3, patch), 1.0)
         axis = (math.sin(1.2), 0.0, math.cos(1.2))
         state = on_table(SlidingState(axis, (0.1, 0.05, 0.4), (0.1, -0.2)), top)
         return impact(state._replace(velocity=(*state.velocity[:2], -1.0)), 0.7, top)
@@ -156,7 +158,7 @@ def test_dry_impacts_obey_the_laws_of_mechanics(name, slide, mu, fall, restituti
     """
     top, sliding = slide
     resistance = RollingResistance(0.01 * top.surface.size) if name == "rolling" else None
-    top = top._replace(friction=DRY[name](mu, top.surface.size), rolling_resistance=resistance)
+    top = top.altered(friction=DRY[name](mu, top.surface.size), rolling_resistance=resistance)
     state = on_table(sliding, top)
     falling = 10.0**fall * math.sqrt(top.gravity * top.surface.size)
     state = state._replace(velocity=(*state.velocity[:2], state.velocity[2] - falling))
@@ -182,7 +184,7 @@ def test_what_has_ended_in_an_impact_is_held_within_friction_or_goes_on_the_way_
         law = CoulombLaw(mu) if patch is None else EllipsoidalLaw(mu, patch)
         inertia = random.uniform(0.2, 0.6)
         shape = SpheroidSurface(1.0, random.uniform(0.4, 1.8))
-        top = Top(
+        top = Top.of(
             1.0,
             inertia,
             random.uniform(0.5, 1.6) * inertia,

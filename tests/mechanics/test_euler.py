@@ -25,7 +25,7 @@ VISCOUS_SPHERES = tops(shapes=spheres(), friction_laws=(ViscousLaw,))
 LAUNCHES = VISCOUS_SPHERES.flatmap(lambda top: st.tuples(st.just(top), angles(top)))
 
 MASS, RADIUS = 0.02, 0.02
-TIPPE_TOP = Top(
+TIPPE_TOP = Top.of(
     MASS,
     131 / 350 * MASS * RADIUS**2,
     2 / 5 * MASS * RADIUS**2,
@@ -193,7 +193,7 @@ def test_a_sphere_that_nods_without_spin_or_friction_presses_by_weight_and_swing
     swing = top.mass * radius * alpha * c * motion.tilt_rate**2
     compliance = top.mass * (radius * alpha * s) ** 2 / top.transverse_inertia
     expected = (top.mass * top.gravity + swing) / (1.0 + compliance)
-    smooth = top._replace(friction=ViscousLaw(0.0))
+    smooth = top.altered(friction=ViscousLaw(0.0))
     y = (motion.tilt, motion.tilt_rate, 0.0, 0.0, 0.0, 0.0, 0.0)
     assert published_normal_force(y, smooth, math) == pytest.approx(
         expected, rel=1e-12, abs=1e-12 * abs(swing)
@@ -222,8 +222,8 @@ def test_taking_the_tilt_modulo_pi_makes_the_equations_jump_at_the_inverted_pole
 @pytest.mark.parametrize(
     "top",
     [
-        TIPPE_TOP._replace(surface=SpheroidSurface(0.02, 0.03)),
-        TIPPE_TOP._replace(friction=RegularizedCoulombLaw(0.3, 0.01)),
+        TIPPE_TOP.altered(surface=SpheroidSurface(0.02, 0.03)),
+        TIPPE_TOP.altered(friction=RegularizedCoulombLaw(0.3, 0.01)),
     ],
     ids=["spheroid", "Coulomb friction"],
 )

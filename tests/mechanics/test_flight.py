@@ -94,7 +94,7 @@ def flights(draw, top_strategy=None):
 
 def tipping(shape, tilt_rate, tilt=0.8, precession=150.0, spin=300.0):
     """A body of this shape on the table, at a tilt that changes at this rate."""
-    top = Top(0.02, 3.0e-6, 3.3e-6, shape, ViscousLaw(0.3), 9.8)
+    top = Top.of(0.02, 3.0e-6, 3.3e-6, shape, ViscousLaw(0.3), 9.8)
     return top, on_table(
         state_from_angles(Angles(tilt, tilt_rate, 0.3, precession, spin, (0.1, 0.2)), top, math),
         top,
@@ -259,7 +259,7 @@ class TestUprightBodies:
     """A body with a vertical axis that spins about it, or not at all, flies like a point."""
 
     def upright(self, shape, spin, up=0.0, rising=0.0):
-        top = Top(0.02, 3.0e-6, 3.3e-6, shape, ViscousLaw(0.3), 9.8)
+        top = Top.of(0.02, 3.0e-6, 3.3e-6, shape, ViscousLaw(0.3), 9.8)
         momentum = (0.0, 0.0, top.axial_inertia * spin)
         return top, State((0.0, 0.0, 1.0), momentum, (0.0, 0.0, rising), shape.height(1.0) + up)
 
@@ -291,7 +291,7 @@ def lifting_off(shape, tilt_rate):
         exact = ExactGap(state, top, Start.LIFT_OFF)
         gravity = float(-2 * exact.support[2])
         jerk, snap = exact.derivative(3), exact.derivative(4)
-    return top._replace(gravity=gravity), state, float(jerk), float(snap)
+    return top.altered(gravity=gravity), state, float(jerk), float(snap)
 
 
 @pytest.mark.parametrize("tilt_rate", [1e-5, 1e-4, 1e-3, 1e-2, 1e-1])
@@ -338,7 +338,7 @@ def test_a_rebound_that_just_clears_the_table_is_told_from_one_that_does_not(sha
     sign = 1.0 if lifting_off(shape, 10.0)[2] > 0.0 else -1.0
     top, state, jerk, _ = lifting_off(shape, sign * 10.0)
     soon = 0.05 * top.transverse_inertia / length(state.momentum)
-    top = top._replace(gravity=top.gravity + jerk * soon / 1.5)
+    top = top.altered(gravity=top.gravity + jerk * soon / 1.5)
     with mp.workdps(DIGITS):
         still = ExactGap(state, top, Start.REBOUND)
         sinking = mp.diff(still.height, 0)
@@ -374,7 +374,7 @@ def lift_offs(draw):
     with mp.workdps(DIGITS):
         gravity = float(-2 * ExactGap(state, top, Start.LIFT_OFF).support[2])
     assume(gravity > 1e-3 * top.gravity)
-    return top._replace(gravity=gravity), state
+    return top.altered(gravity=gravity), state
 
 
 @settings(max_examples=examples(check=15, claim=400))

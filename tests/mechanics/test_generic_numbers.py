@@ -29,11 +29,13 @@ from tippetop.mechanics.vectors import cross, dot
 SHAPES = {"eccentric sphere": SphereSurface(0.02, 0.006), "spheroid": SpheroidSurface(0.02, 0.031)}
 FRICTION_LAWS = {"viscous": ViscousLaw(0.3), "Coulomb": RegularizedCoulombLaw(0.4, 0.01)}
 TOPS = [
-    pytest.param(Top(0.02, 3.0e-6, 3.2e-6, shape, law, 9.8), id=f"{shape_name}, {law_name}")
+    pytest.param(Top.of(0.02, 3.0e-6, 3.2e-6, shape, law, 9.8), id=f"{shape_name}, {law_name}")
     for shape_name, shape in SHAPES.items()
     for law_name, law in FRICTION_LAWS.items()
 ]
-PUBLISHED_TOP = Top(0.02, 3.0e-6, 3.2e-6, SHAPES["eccentric sphere"], FRICTION_LAWS["viscous"], 9.8)
+PUBLISHED_TOP = Top.of(
+    0.02, 3.0e-6, 3.2e-6, SHAPES["eccentric sphere"], FRICTION_LAWS["viscous"], 9.8
+)
 
 
 def mechanics_outputs(y, top):
@@ -262,7 +264,7 @@ TORQUE = sp.symbols("t_x t_y t_z", real=True)
 
 
 def symbolic_top(shape, friction):
-    return Top(MASS, I1, I3, shape, friction, GRAVITY)
+    return Top.of(MASS, I1, I3, shape, friction, GRAVITY)
 
 
 def along_motion(quantity, top):

@@ -34,7 +34,7 @@ SLIP = SlipComponent(slip=True)
 def about_to_stick(random):
     """A top whose slip, drilling included, is about to end, and that slip zeta."""
     law = HertzLaw(random.uniform(0.2, 0.8), random.uniform(0.1, 0.5))
-    top = Top(1.0, 131 / 350, 2 / 5, SphereSurface(1.0, 0.3), law, 1.0)
+    top = Top.of(1.0, 131 / 350, 2 / 5, SphereSurface(1.0, 0.3), law, 1.0)
     tilt = random.uniform(0.3, 2.8)
     axis = (math.sin(tilt), 0.0, math.cos(tilt))
     direction = random.normal(size=3)
@@ -68,7 +68,7 @@ def test_slip_ends_on_the_branch_its_direction_turns_to(seed):
 
 @pytest.mark.parametrize("slip", [1e-6, 1e-9, 1e-12])
 def test_slip_that_is_all_but_over_ends_when_it_does(slip):
-    ball = Top(1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), CoulombLaw(0.25), 1.0)
+    ball = Top.of(1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), CoulombLaw(0.25), 1.0)
     axis, momentum = (0.6, 0.0, 0.8), (0.1, 0.2, 0.3)
     run = DryRun(ball, axis, momentum, velocity_of(axis, momentum, (slip, 0.0), ball)).follow(0.1)
     (stuck,) = run.times("stick")
@@ -78,7 +78,7 @@ def test_slip_that_is_all_but_over_ends_when_it_does(slip):
 def stuck(random):
     """A top that sticks, or would, on a patch."""
     law = HertzLaw(random.uniform(0.2, 0.8), 10.0 ** random.uniform(-2.6, -1.2))
-    top = Top(1.0, 0.5, 0.3, SphereSurface(1.0, 0.3), law, 1.0)
+    top = Top.of(1.0, 0.5, 0.3, SphereSurface(1.0, 0.3), law, 1.0)
     tilt = random.uniform(0.3, 2.8)
     axis = (math.sin(tilt), 0.0, math.cos(tilt))
     return top, axis, without_drilling(axis, tuple(0.4 * random.normal(size=3)), top)

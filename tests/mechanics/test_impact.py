@@ -34,7 +34,7 @@ def collisions(draw, top_strategy=None, roughest=100.0):
     top, sliding = draw(slides(top_strategy))
     mu = 10.0 ** draw(numbers(-4.0, math.log10(roughest))) / speed_unit(top)
     if isinstance(top.friction, ViscousLaw) and top.friction.mu:
-        top = top._replace(friction=ViscousLaw(mu))
+        top = top.altered(friction=ViscousLaw(mu))
     state = on_table(sliding, top)
     falling = 10.0 ** draw(numbers(-4.0, 0.5)) * speed_unit(top)
     velocity = (*state.velocity[:2], state.velocity[2] - falling)
@@ -146,7 +146,7 @@ def check_laws_of_impact(state, restitution, top):
 SLOW = (
     State((0.6, 0.0, 0.8), (0.0, 0.0, 0.0), (0.0, 0.0, -1e-5), 0.0152),
     0.3,
-    Top(0.02, 3e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8),
+    Top.of(0.02, 3e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8),
 )
 """A fall whose kinetic energy is 10^-9 of its potential energy."""
 
@@ -175,7 +175,7 @@ def test_impacts_conserve_jelletts_integral(collision):
 
 @pytest.mark.parametrize("restitution", [-0.1, 1.1, math.nan])
 def test_restitution_outside_of_zero_and_one_is_refused(restitution):
-    top = Top(0.02, 3e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
+    top = Top.of(0.02, 3e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
     state = State((0.0, 0.0, 1.0), (0.0,) * 3, (0.0, 0.0, -1.0), 0.014)
     with pytest.raises(ValueError, match="restitution must lie between 0 and 1"):
         impact(state, restitution, top)
@@ -200,7 +200,7 @@ ON_THE_POLE = (
         (5.66553889764798e-16, 0.0, -1.0), (0.0, 0.0, 0.0), (0.0, 0.0, -0.3535533905932738), 0.09375
     ),
     0.0,
-    Top(1.0, 0.00390625, 0.00390625, SphereSurface(0.0625, 0.03125), ViscousLaw(0.0), 2.0),
+    Top.of(1.0, 0.00390625, 0.00390625, SphereSurface(0.0625, 0.03125), ViscousLaw(0.0), 2.0),
 )
 """A fall onto a point that is off the axis by rounding."""
 
@@ -212,7 +212,7 @@ def test_without_friction_the_normal_velocity_is_reversed_and_nothing_else_happe
     M_nn).
     """
     state, restitution, top = collision
-    top = top._replace(friction=law)
+    top = top.altered(friction=law)
     result, rigid = impact(state, restitution, top), Rigid(state, top)
     falling, m_nn = rigid.point[2], rigid.delassus[2, 2]
     assert result.state.velocity[:2] == state.velocity[:2]
@@ -232,7 +232,7 @@ def test_very_rough_bodies_stick(collision):
     point.
     """
     state, restitution, top = collision
-    top = top._replace(friction=ViscousLaw(1e12 / speed_unit(top)))
+    top = top.altered(friction=ViscousLaw(1e12 / speed_unit(top)))
     rigid = Rigid(state, top)
     grip, coupling = rigid.delassus[:2, :2], rigid.delassus[:2, 2]
     stopping = -np.linalg.solve(grip, rigid.point[:2])
@@ -254,7 +254,7 @@ def test_very_rough_bodies_stick(collision):
 def planar(slip, falling, law, tilt=0.9):
     """A body that moves in a vertical plane, x z, with this velocity of its contact point."""
     shape = SphereSurface(0.02, 0.006)
-    top = Top(0.02, 3.0e-6, 3.3e-6, shape, law, 9.8)
+    top = Top.of(0.02, 3.0e-6, 3.3e-6, shape, law, 9.8)
     axis = (math.sin(tilt), 0.0, math.cos(tilt))
     momentum = (0.0, 2e-4, 0.0)
     arm = np.array(contact_vector(axis, shape))
@@ -344,7 +344,7 @@ SHAPES = [SphereSurface(0.02, 0.006), SpheroidSurface(0.02, 0.034)]
     among(list(product(SHAPES, (0.2, 0.7), (0.0, 0.8, 1.0), (1e-3, 1e-5))), check=5),
 )
 def test_steep_coulomb_friction_against_integration(shape, mu, restitution, eps):
-    top = Top(0.02, 3.0e-6, 3.3e-6, shape, RegularizedCoulombLaw(mu, eps), 9.8)
+    top = Top.of(0.02, 3.0e-6, 3.3e-6, shape, RegularizedCoulombLaw(mu, eps), 9.8)
     axis = (0.6, 0.48, 0.64)
     for velocity in ((0.3, -0.2, -0.7), (0.0, 0.5, -0.3), (-0.4, 0.1, -1.5)):
         state = State(axis, (2e-4, -1e-4, 3e-4), velocity, 0.02)
@@ -370,7 +370,7 @@ class Unnamed(NamedTuple):
 def test_the_closed_form_and_the_general_way_agree(collision):
     state, restitution, top = collision
     exact = impact(state, restitution, top)
-    general = impact(state, restitution, top._replace(friction=Unnamed(top.friction.mu)))
+    general = impact(state, restitution, top.altered(friction=Unnamed(top.friction.mu)))
     speed = Rigid(state, top).speed
     assert general.impulse == pytest.approx(exact.impulse, rel=1e-6, abs=1e-7 * top.mass * speed)
     assert general.state.velocity == pytest.approx(exact.state.velocity, abs=1e-7 * speed)
@@ -400,7 +400,7 @@ class Drilling(NamedTuple):
 @pytest.mark.parametrize("restitution", [0.0, 0.7])
 @pytest.mark.parametrize("spin", [1e-4, 5e-4])
 def test_a_law_with_torque_against_integration(spin, restitution):
-    top = Top(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), Drilling(0.3, 0.002, 0.02), 9.8)
+    top = Top.of(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), Drilling(0.3, 0.002, 0.02), 9.8)
     state = State((0.6, 0.0, 0.8), (0.0, 1e-5, spin), (0.3, 0.1, -0.5), 0.02)
     result, end = check_against_integration(state, restitution, top, "DOP853", 1e-12, 1e-7)
     rigid = Rigid(state, top)
@@ -432,7 +432,7 @@ class SteadyDrilling(NamedTuple):
 def test_slip_that_is_held_against_a_torque_stays_held(restitution):
     """The body sticks early, with f = -M_tt^-1 (M_tn + what the torque does); drilling goes on."""
     law = SteadyDrilling(0.9, 1e-4, 1e-4)
-    top = Top(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), law, 9.8)
+    top = Top.of(0.02, 3.0e-6, 3.3e-6, SphereSurface(0.02, 0.006), law, 9.8)
     state = State((0.6, 0.0, 0.8), (0.0, 1e-5, 2e-4), (0.1, 0.1, -0.5), 0.02)
     result, end = check_against_integration(state, restitution, top, "Radau", 1e-9, 1e-6)
     rigid = Rigid(state, top)
@@ -462,7 +462,7 @@ def jammed(law):
     table.
     """
     shape = SpheroidSurface(0.01, 0.03)
-    top = Top(0.02, 3.0e-7, 3.0e-7, shape, law, 9.8)
+    top = Top.of(0.02, 3.0e-7, 3.0e-7, shape, law, 9.8)
     axis = (math.sin(0.5), 0.0, math.cos(0.5))
     arm = np.array(contact_vector(axis, shape))
     slip = math.copysign(1.0, arm[0] * arm[2])

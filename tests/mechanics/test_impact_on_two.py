@@ -26,7 +26,7 @@ from tippetop.mechanics.top import Top
 def rods(law):
     """Rods with balls at both ends, which lie on their side: the ends press on one another."""
     return st.builds(
-        lambda first, second, inertia, axial: Top(
+        lambda first, second, inertia, axial: Top.of(
             1.0,
             inertia,
             axial * inertia,
@@ -49,7 +49,7 @@ def collisions(draw, law):
     axis = (math.cos(azimuth), math.sin(azimuth), 0.0)
     momentum = tuple(draw(numbers(-1.0, 1.0)) for _ in range(3))
     velocity = tuple(draw(numbers(-1.0, 1.0)) for _ in range(2))
-    first, second = top.each
+    first, second = top.body.contacts
     state = on_table(SlidingState(axis, momentum, velocity), first)
     assume(gap_rate(state, second) < -0.1)
     return state, (second, first)
@@ -80,7 +80,7 @@ def test_slow_impact_of_a_fast_body_is_no_harder_than_a_quick_one():
     """
     slow, turned = 1e-7, 0.3
     hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -3.0)))
-    first, second = Top(1.0, 1.0, 0.5, hull, ViscousLaw(0.3), 1.0).each
+    first, second = Top.of(1.0, 1.0, 0.5, hull, ViscousLaw(0.3), 1.0).body.contacts
     axis, across = (
         (math.cos(turned), math.sin(turned), 0.0),
         (-math.sin(turned), math.cos(turned), 0.0),
@@ -106,7 +106,7 @@ def test_a_contact_that_friction_all_but_jams_takes_over_without_a_jump():
     for part in (1.0 - 1e-7, 1.0 + 1e-7):
         mu = part * (reach + inertia / reach) * math.hypot(slip, eps) / slip
         law = RegularizedCoulombLaw(mu, eps)
-        first, second = Top(1.0, inertia, 0.5, hull, law, 1.0).each
+        first, second = Top.of(1.0, inertia, 0.5, hull, law, 1.0).body.contacts
         momentum = (0.0, -inertia * turning, 0.0)
         state = on_table(SlidingState((1.0, 0.0, 0.0), momentum, (speed, 0.0)), first)
         assert gap_rate(state, second) == pytest.approx(-5.0 * turning)
@@ -128,7 +128,9 @@ def test_what_a_jammed_contact_stops_has_no_restitution():
     reach, inertia, speed, turning, eps = 2.0, 0.5, 5.0, 0.2, 1e-3
     hull = Hull.of((SphereSurface(1.0, reach), SphereSurface(1.0, -3.0)))
     mu = 1.1 * (reach + inertia / reach)
-    first, second = Top(1.0, inertia, 0.5, hull, RegularizedCoulombLaw(mu, eps), 1.0).each
+    first, second = Top.of(
+        1.0, inertia, 0.5, hull, RegularizedCoulombLaw(mu, eps), 1.0
+    ).body.contacts
     state = on_table(
         SlidingState((1.0, 0.0, 0.0), (0.0, -inertia * turning, 0.0), (speed, 0.0)), first
     )
@@ -151,7 +153,9 @@ def test_a_contact_that_friction_jams_comes_back_and_stays_closed():
     reach, inertia, speed, turning, eps = 2.0, 0.5, 1.0, 0.5, 1e-2
     hull = Hull.of((SphereSurface(1.0, reach), SphereSurface(1.0, -3.0)))
     mu = 1.1 * (reach + inertia / reach)
-    first, second = Top(1.0, inertia, 0.5, hull, RegularizedCoulombLaw(mu, eps), 1.0).each
+    first, second = Top.of(
+        1.0, inertia, 0.5, hull, RegularizedCoulombLaw(mu, eps), 1.0
+    ).body.contacts
     state = on_table(
         SlidingState((1.0, 0.0, 0.0), (0.0, -inertia * turning, 0.0), (speed, 0.0)), first
     )
@@ -220,7 +224,7 @@ def naive(state, tops, steps):
 def test_friction_makes_an_impact_without_approach_end(ends, slip):
     """Painleve's paradox at one contact while another touches: slip falls until it opens."""
     hull = Hull.of(tuple(SphereSurface(1.0, center) for center in ends))
-    tops = Top(1.0, 1.0, 0.5, hull, ViscousLaw(5.0), 1.0).each
+    tops = Top.of(1.0, 1.0, 0.5, hull, ViscousLaw(5.0), 1.0).body.contacts
     state = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, 0.0, 0.2), (slip, 0.1)), tops[0])
     assert gap_rate(state, tops[0]) == gap_rate(state, tops[1]) == 0.0
     found = impact(state, 0.0, *tops)
@@ -263,7 +267,7 @@ def test_an_end_that_opens_meanwhile_closes_again(law, slip):
     """
     hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -2.0)))
     inertia, tilting, turned = 2.0, -8.0, 0.3
-    first, second = Top(1.0, inertia, 0.5, hull, law, 1.0).each
+    first, second = Top.of(1.0, inertia, 0.5, hull, law, 1.0).body.contacts
     along, across = (
         (math.cos(turned), math.sin(turned), 0.0),
         (-math.sin(turned), math.cos(turned), 0.0),
@@ -317,7 +321,7 @@ def test_its_impulse_is_all_that_lifts_the_body(law, restitution):
 def test_an_end_that_opens_neither_slips_nor_sticks():
     """What leaves the table with no slip leaves the friction at the other end alone."""
     hull = Hull.of((SphereSurface(1.0, 2.0), SphereSurface(1.0, -2.0)))
-    first, second = Top(1.0, 1.5, 0.5, hull, CoulombLaw(0.3), 1.0).each
+    first, second = Top.of(1.0, 1.5, 0.5, hull, CoulombLaw(0.3), 1.0).body.contacts
     still = on_table(SlidingState((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0)), first)
     # It turns with (0.2, -0.5, 0.4), and one end moves upwards, the other across and downwards.
     state = still._replace(momentum=(0.1, -0.75, 0.6), velocity=(-0.5, -1.0, 0.0))
@@ -333,7 +337,7 @@ def test_an_end_that_opens_neither_slips_nor_sticks():
 def rod(ends, inertias, law, momentum, velocity):
     """A rod along x that falls on its second end, and its tops."""
     hull = Hull.of((SphereSurface(1.0, ends[0]), SphereSurface(1.0, -ends[1])))
-    first, second = Top(1.0, *inertias, hull, law, 1.0).each
+    first, second = Top.of(1.0, *inertias, hull, law, 1.0).body.contacts
     return on_table(SlidingState((1.0, 0.0, 0.0), momentum, velocity), first), (second, first)
 
 

@@ -61,7 +61,7 @@ def test_the_power_is_that_of_the_contact_force_and_the_change_of_energy(slide):
 
 def test_a_fast_tilted_spin_would_have_to_be_pulled_down():
     """Energy gain does occur: at 45 degrees and 300 rad/s, precessing at 100 rad/s and slipping."""
-    top = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
+    top = Top.of(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
     state = state_from_angles(Angles(math.pi / 4, 0.0, 0.0, 100.0, 300.0, (0.0, 0.1)), top, math)
     assert normal_force(state, top) < 0.0
     assert sliding_contact(state.axis, state.momentum, state.velocity, top).power > 0.0
@@ -120,7 +120,7 @@ def test_a_top_conserves_jelletts_integral_where_its_body_and_its_friction_say_s
     slide, torque, acts
 ):
     top, state = slide
-    top = top._replace(friction=SteadyTorque(torque)) if acts else top
+    top = top.altered(friction=SteadyTorque(torque)) if acts else top
     moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.surface.size
     turning = length(state.momentum) ** 2 / top.transverse_inertia
     unit = (moment + turning) * top.surface.size
@@ -131,7 +131,7 @@ def test_a_top_conserves_jelletts_integral_where_its_body_and_its_friction_say_s
 
 
 def test_drilling_takes_from_jelletts_integral_at_the_rate_of_its_moment_times_the_height():
-    top = Top(
+    top = Top.of(
         0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), SteadyTorque((0.0, 0.0, -1e-3)), 9.8
     )
     state = state_from_angles(Angles(0.7, 0.0, 0.0, 5.0, 100.0, (0.0, 0.1)), top, math)
@@ -144,7 +144,7 @@ def test_drilling_takes_from_jelletts_integral_at_the_rate_of_its_moment_times_t
 @given(slides())
 def test_without_friction_the_vertical_and_the_axial_angular_momentum_are_constant(slide):
     top, state = slide
-    rates = sliding_rates(state, top._replace(friction=ViscousLaw(0.0)))
+    rates = sliding_rates(state, top.altered(friction=ViscousLaw(0.0)))
     turning = dot(state.momentum, rates.axis)
     axial = dot(rates.momentum, state.axis) + turning
     moment = (abs(normal_force(state, top)) + top.mass * top.gravity) * top.surface.size

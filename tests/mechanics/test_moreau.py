@@ -34,7 +34,7 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_time_stepping_converges_to_our_runs_at_first_order(case):
     law, rho, spin, rests, end = CASES[case]
-    top = Top(1.0, 131 / 350, 0.4, SphereSurface(1.0, 0.3), law, 1.0)
+    top = Top.of(1.0, 131 / 350, 0.4, SphereSurface(1.0, 0.3), law, 1.0)
     run = DryRun(*launched(top, 0.1, spin / SECOND, rests=rests), SciPy("dop853", 1e-12)).follow(
         end * SECOND
     )

@@ -35,7 +35,7 @@ def force_unit(state, top):
 
 
 def frictionless(top):
-    return top._replace(friction=ViscousLaw(0.0))
+    return top.altered(friction=ViscousLaw(0.0))
 
 
 @st.composite

@@ -99,8 +99,8 @@ def test_the_orientation_changes_by_the_angular_velocity(slide, turn, pole):
     )
 
 
-SPHERE = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
-EGG = Top(0.02, 3.0e-6, 2.5e-6, SpheroidSurface(0.02, 0.028), ViscousLaw(0.3), 9.8)
+SPHERE = Top.of(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
+EGG = Top.of(0.02, 3.0e-6, 2.5e-6, SpheroidSurface(0.02, 0.028), ViscousLaw(0.3), 9.8)
 
 
 @pytest.mark.parametrize("top", [SPHERE, EGG], ids=["sphere", "egg"])

@@ -40,7 +40,7 @@ from tippetop.mechanics.top import Top
 from tippetop.theory.derivatives import derivative, jacobian
 
 M, R = 0.02, 0.02
-REPORT = Top(
+REPORT = Top.of(
     M, 131 / 350 * M * R**2, 2 / 5 * M * R**2, SphereSurface(R, 0.3 * R), CoulombLaw(0.3), 9.8
 )
 
@@ -82,7 +82,7 @@ def test_what_is_held_stays(slide, mode):
     held = {"slip": [2], "stick": [0, 1, 2], "grip": [0, 1, 2, 5]}
     held |= {"drill at rest": [0, 1, 2, 3, 4], "rest": [0, 1, 2, 3, 4, 5]}
     resistance = RollingResistance(0.01 * length) if "rest" in mode else None
-    top = top._replace(friction=laws[mode], rolling_resistance=resistance)
+    top = top.altered(friction=laws[mode], rolling_resistance=resistance)
     point = ContactPoint.of(state.axis, state.momentum, top)
     slip = (0.6, -0.8) if mode == "slip" else None
     wrench, told = forces_and_accelerations(point, slip, None)
@@ -113,7 +113,7 @@ def test_a_body_that_rolls_with_resistance_keeps_its_contact_point_at_rest(slide
     """The couple goes with the normal force; it is the law's."""
     top, state = slide
     resistance = RollingResistance(0.02 * top.surface.size)
-    top = top._replace(friction=CoulombLaw(0.3), rolling_resistance=resistance)
+    top = top.altered(friction=CoulombLaw(0.3), rolling_resistance=resistance)
     point = ContactPoint.of(state.axis, state.momentum, top)
     rolling = (math.cos(angle), math.sin(angle))
     wrench = forces_and_accelerations(point, None, rolling)[0]
@@ -170,7 +170,7 @@ def energies(top, states):
         yield energy(on_table(sliding, top), top)
 
 
-OTHER = REPORT._replace(transverse_inertia=0.45 * M * R**2)
+OTHER = REPORT.altered(transverse_inertia=0.45 * M * R**2)
 
 
 @pytest.mark.parametrize("top", [REPORT, OTHER], ids=["report", "other"])
@@ -204,7 +204,7 @@ def test_rolling_is_watched_by_how_fast_it_falls_along_the_motion(slide):
     """The guard is made of the horizontal angular velocity's square, and of its rate."""
     top, state = slide
     resistance = RollingResistance(0.01 * top.surface.size)
-    top = top._replace(friction=ViscousLaw(0.3), rolling_resistance=resistance)
+    top = top.altered(friction=ViscousLaw(0.3), rolling_resistance=resistance)
     rate = sliding_rates(state, top)
 
     def rolling(time):
@@ -238,7 +238,7 @@ def guard_of_end(velocity, falls):
 def test_slip_is_watched_by_how_fast_it_falls_along_the_motion(slide, law):
     """The guard is made of the square of slip (and drilling, if resisted), and of its rate."""
     top, state = slide
-    top = top._replace(friction=law)
+    top = top.altered(friction=law)
     assume(size(slip_of(*state, top)) > 1e-3)
     rate = sliding_rates(state, top)
 

@@ -35,7 +35,7 @@ LAUNCHES = {
 def followed(name, end):
     """One of them: its segments and events."""
     shape, mu, tilt, spin = LAUNCHES[name]
-    top = Top(1.0, 131 / 350, 2 / 5, shape, CoulombLaw(mu), 1.0)
+    top = Top.of(1.0, 131 / 350, 2 / 5, shape, CoulombLaw(mu), 1.0)
     top, axis, momentum, velocity = launched(top, tilt, spin)
     start = on_table(SlidingState(axis, momentum, velocity), top)
     automaton = Automaton(top, "fly", 0.0)

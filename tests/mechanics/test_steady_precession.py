@@ -104,7 +104,7 @@ def test_the_half_inverted_end_state_is_the_steady_precession_with_the_launchs_j
     """
     mass, radius = 0.02, 0.02
     shape = SphereSurface(radius, 0.3 * radius)
-    top = Top(
+    top = Top.of(
         mass, 131 / 350 * mass * radius**2, 2 / 5 * mass * radius**2, shape, ViscousLaw(0.3), 9.8
     )
     launch = Angles(0.1, 0.0, 0.0, 0.0, 50.0, (0.0, 0.0))

@@ -66,7 +66,7 @@ SPHERE = SphereSurface(1.0, 0.3)
 
 
 def report(law, shape=SPHERE, resistance=None):
-    return Top(1.0, 131 / 350, 2 / 5, shape, law, 1.0, resistance)
+    return Top.of(1.0, 131 / 350, 2 / 5, shape, law, 1.0, resistance)
 
 
 def tilt(run):
@@ -140,7 +140,7 @@ def test_a_uniform_ball_stops_slipping_after_two_sevenths_of_its_slip_over_mu_g(
 ):
     """Its slip keeps its direction, v' = -(7/2) mu g; it sticks for good."""
     mu = 0.25
-    ball = Top(1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), CoulombLaw(mu), 1.0)
+    ball = Top.of(1.0, 0.4, 0.4, SphereSurface(1.0, 0.0), CoulombLaw(mu), 1.0)
     axis, momentum = (0.6, 0.0, 0.8), tuple(0.4 * w for w in turning)
     velocity = velocity_of(axis, momentum, slip, ball)
     run = DryRun(ball, axis, momentum, velocity, integrator).follow(6.0)
@@ -173,7 +173,7 @@ def test_slip_passes_through_zero_in_a_plane_where_it_cannot_stick(integrator):
         y, time, way = np.array(state.pack()), 0.0, math.copysign(1.0, start)
         turns = 0
         while time < 0.6:
-            planar = top._replace(friction=OneWay(way * mu))
+            planar = top.altered(friction=OneWay(way * mu))
 
             def slip(_, y):
                 s = SlidingState.unpack(y.tolist())
@@ -343,7 +343,7 @@ def test_the_beginning_of_slip_solves_the_equations(family, power, shape):
 @pytest.mark.parametrize("family", ["resisted", "resisted ellipsoidal"])
 def test_slip_and_rolling_begin_together(family):
     """Each in its direction, by the equations; the rolling beside the momentum is its own."""
-    top = FAMILIES[family](0.02, SPHERE)._replace(rolling_resistance=RollingResistance(1e-3))
+    top = FAMILIES[family](0.02, SPHERE).altered(rolling_resistance=RollingResistance(1e-3))
     axis, momentum = (0.48, 0.64, 0.6), (0.0, 0.0, 0.0)
     point = ContactPoint.of(axis, momentum, top)
     begin = find_onset(point, None, None, (True, True))

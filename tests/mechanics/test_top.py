@@ -102,7 +102,7 @@ def test_a_larger_top_under_other_gravity_moves_alike_in_slower_time(launch, lar
     """
     top, motion = launch
     slower = math.sqrt(larger / stronger)
-    giant = top._replace(
+    giant = top.altered(
         transverse_inertia=top.transverse_inertia * larger**2,
         axial_inertia=top.axial_inertia * larger**2,
         surface=type(top.surface)(*(length * larger for length in top.surface)),

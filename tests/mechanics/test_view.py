@@ -43,7 +43,7 @@ def launches(draw, tilts):
     return top, draw(angles(top))._replace(tilt=draw(tilts))
 
 
-SMALL_TOP = Top(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
+SMALL_TOP = Top.of(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3), 9.8)
 POLES = (1e-9, 1e-5, 0.01, math.pi - 0.01, math.pi - 1e-5, math.pi - 1e-9)
 
 

@@ -114,9 +114,9 @@ def test_an_impact_is_the_single_one(slide, speed, elasticity):
 @pytest.mark.parametrize("surface", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 0.9, 0.2)])
 def test_steps_of_flights_are_what_a_closer_look_finds_and_rarely_need_it(surface):
     random, count = np.random.default_rng(4), 3000
-    kind = Top(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0).kind
+    kind = Top.of(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0).kind
     numbers = np.repeat(
-        np.array(Top(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0).numbers)[:, None], count, 1
+        np.array(Top.of(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0).numbers)[:, None], count, 1
     )
     axis = random.normal(size=(3, count))
     axis /= np.linalg.norm(axis, axis=0)
@@ -221,7 +221,7 @@ def test_impacts_of_patches_go_on_where_another_branch_takes_over() -> None:
     axis = random.normal(size=(3, count))
     axis /= np.linalg.norm(axis, axis=0)
     law = HertzLaw(np.full(count, 0.3), random.uniform(0.02, 0.6, count))
-    top = Top(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0)
+    top = Top.of(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), law, 1.0)
     velocity = random.normal(size=(3, count))
     state = State(
         tuple(axis), tuple(random.normal(size=(3, count))), tuple(velocity), 1.0 - 0.3 * axis[2]
@@ -230,7 +230,7 @@ def test_impacts_of_patches_go_on_where_another_branch_takes_over() -> None:
     changed = 0
     for i in np.flatnonzero(struck).tolist():
         mine = single(state, i)
-        alone = top._replace(friction=HertzLaw(0.3, float(law.patch_radius[i])))
+        alone = top.altered(friction=HertzLaw(0.3, float(law.patch_radius[i])))
         hit = impact(mine, 0.0, alone)
         before, then = (float(branched(alone, one).friction.drills) for one in (mine, hit.state))
         changed += before != then
@@ -260,7 +260,7 @@ def test_edges_that_tumble_through_flat_land_when_their_lowest_point_does(shape,
 @pytest.mark.parametrize("turns", [3.0, 30.0])
 @pytest.mark.parametrize("surface", [SphereSurface(1.0, 0.3), SpheroidSurface(1.0, 0.9, 0.2)])
 def test_flights_of_many_turns_are_those_of_single_launches(surface, turns):
-    top = Top(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0)
+    top = Top.of(1.0, 0.45, 0.38, surface, ViscousLaw(0.3), 1.0)
     swing = 2.0 * math.pi * turns * top.transverse_inertia
     for height, rise in ((3.0, 4.0), (40.0, 0.0), (3.0, 0.01)):
         state = State((0.6, 0.0, 0.8), (0.0, 0.9 * swing, 0.3 * swing), (0.1, 0.2, rise), height)

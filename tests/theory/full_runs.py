@@ -22,7 +22,7 @@ def full_run(problem, times, smooth=False):
     """Axis, angular momentum and horizontal velocity of a sliding top, SI, in rows."""
     top = top_of(problem)
     if smooth:
-        top = top._replace(friction=ViscousLaw(0.0))
+        top = top.altered(friction=ViscousLaw(0.0))
     units = natural_units(top)
     start = along_table(problem.start())
     momentum = [number / units.angular_momentum for number in start.momentum]
@@ -48,7 +48,7 @@ def tilts_of(axis):
 def sphere(gamma, alpha, mu=0.3):
     """An eccentric sphere with this inertia ratio and eccentricity."""
     shape = SphereSurface(RADIUS, alpha * RADIUS)
-    return Top(MASS, gamma * AXIAL_INERTIA, AXIAL_INERTIA, shape, ViscousLaw(mu), GRAVITY)
+    return Top.of(MASS, gamma * AXIAL_INERTIA, AXIAL_INERTIA, shape, ViscousLaw(mu), GRAVITY)
 
 
 def sphere_problem(gamma, alpha, tilt, spin, mu=0.3):

@@ -59,9 +59,7 @@ def test_the_envelope_encloses_every_run_and_is_constant_on_a_smooth_table():
     assert np.all(tilts < high + 1e-6)
 
     axis, momentum, _ = full_run(PROBLEM, times, smooth=True)
-    low, high = nutation_envelope(
-        axis, momentum, top_of(PROBLEM)._replace(friction=ViscousLaw(0.0))
-    )
+    low, high = nutation_envelope(axis, momentum, top_of(PROBLEM).altered(friction=ViscousLaw(0.0)))
     assert np.ptp(low) < 1e-9
     assert np.ptp(high) < 1e-9
 
@@ -83,6 +81,6 @@ def test_a_steady_precession_has_no_nutation_and_is_the_bottom_of_its_potential(
 
 
 def test_other_shapes_have_no_envelope():
-    top = top_of(PROBLEM)._replace(surface=SpheroidSurface(0.02, 0.03))
+    top = top_of(PROBLEM).altered(surface=SpheroidSurface(0.02, 0.03))
     with pytest.raises(InvalidInput):
         nutation_envelope(np.array([[0.1, 0.0, 0.99]]), np.array([[0.0, 0.0, 1e-4]]), top)

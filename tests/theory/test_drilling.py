@@ -66,7 +66,7 @@ def test_about_a_vertical_spin_drilling_makes_dry_friction_viscous(pressure, kin
         mu = 0.3 * CREEP[pressure] / (5e-4 * abs(spin))
         dry, viscous = (
             eigenvalues(vertical_spin(kind, some, spin), some)
-            for some in (top, top._replace(friction=ViscousLaw(mu)))
+            for some in (top, top.altered(friction=ViscousLaw(mu)))
         )
         assert dry == pytest.approx(viscous, abs=1e-13 * np.abs(viscous).max())
         assert_same_numbers(spectrum(vertical_spin(kind, top, spin), top).eigenvalues, dry[0], 1e-9)
@@ -242,7 +242,7 @@ def test_one_ball_on_top_of_the_other_stands_no_time(pressure):
 
 
 def _on(law, resistance=None):
-    return top_of(patch())._replace(friction=law, rolling_resistance=resistance)
+    return top_of(patch()).altered(friction=law, rolling_resistance=resistance)
 
 
 def test_the_outlook_of_a_top_that_drills_ends_nowhere_and_stands_a_while():

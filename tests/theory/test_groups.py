@@ -197,7 +197,7 @@ def test_tops_that_cannot_be_are_refused(gamma, alpha):
 
 def test_other_shapes_are_refused():
     with pytest.raises(InvalidInput, match="eccentric sphere"):
-        classify_top(sphere(1.0, 0.3)._replace(surface=SpheroidSurface(0.02, 0.03)))
+        classify_top(sphere(1.0, 0.3).altered(surface=SpheroidSurface(0.02, 0.03)))
 
 
 class Drilling(ViscousLaw):
@@ -207,7 +207,7 @@ class Drilling(ViscousLaw):
 
 
 def test_friction_with_a_torque_is_refused():
-    top = sphere(1.0, 0.3)._replace(friction=Drilling(0.3))
+    top = sphere(1.0, 0.3).altered(friction=Drilling(0.3))
     for asked in (classify_top, fold, coexistence):
         with pytest.raises(InvalidInput, match="torque"):
             asked(top)

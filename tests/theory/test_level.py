@@ -49,7 +49,7 @@ def test_hurricane_balls_lift_at_the_rate_in_closed_form():
         friction=tt.ViscousFriction(mu=0.3),
         launch=tt.Launch(tilt=1.5, spin=0.0, precession=60.0),
     )
-    top = top_of(problem)._replace(surface=hull_of(problem))
+    top = top_of(problem).altered(surface=hull_of(problem))
     found = lying(top, 1.5)
     assert found.tilt == pytest.approx(math.pi / 2, abs=1e-12)
     assert found.surfaces == (0, 1)
@@ -61,5 +61,5 @@ def test_tops_that_stand_by_themselves_lie_nowhere():
     for name in ("report", "report-stem", "leine-glocker"):
         problem = presets.report_problem().replace({"body": presets.body(name)})
         several = len(problem.body.shapes) > 1
-        top = top_of(problem)._replace(surface=hull_of(problem)) if several else top_of(problem)
+        top = top_of(problem).altered(surface=hull_of(problem)) if several else top_of(problem)
         assert lying(top, 0.1) is None

@@ -93,7 +93,7 @@ def test_friction_takes_from_a_nutation_what_the_mechanics_says_on_average(probl
     state = SlidingState(tuple(axis.T), tuple(momentum.T), (zero, zero))
 
     def taken_by(point):
-        rough = top._replace(friction=ViscousLaw(point[0]))
+        rough = top.altered(friction=ViscousLaw(point[0]))
         return dot(sliding_rates(state, rough).momentum, state.axis), sliding_contact(
             *state, rough
         ).power
@@ -196,4 +196,4 @@ def test_the_amplitudes_change_as_the_constants_do(problem, turned):
 
 def test_other_shapes_are_refused():
     with pytest.raises(InvalidInput, match="eccentric sphere"):
-        numbers_of(top_of(LAUNCHES[0])._replace(surface=SpheroidSurface(0.02, 0.03)))
+        numbers_of(top_of(LAUNCHES[0]).altered(surface=SpheroidSurface(0.02, 0.03)))

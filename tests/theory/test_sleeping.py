@@ -31,7 +31,7 @@ INERTIAS = st.tuples(st.floats(0.2, 0.8), st.floats(0.1, 0.4))
 
 
 def top_on(surface, inertias):
-    return Top(1.0, *inertias, surface, CoulombLaw(0.3), 1.0)
+    return Top.of(1.0, *inertias, surface, CoulombLaw(0.3), 1.0)
 
 
 def rolling_growth(kind, top, spin):
@@ -68,7 +68,7 @@ def test_a_smooth_table_grows_a_tilt_as_the_spectrum_without_friction_does(
     assume(float(surface.height(-1.0)) > 0.05)
     threshold = sleeping(kind, top, spin, rolls=False)
     assume(abs(spin - threshold.spin) > 1e-3)
-    smooth = top._replace(friction=tt.ViscousFriction(mu=0.0).law)
+    smooth = top.altered(friction=tt.ViscousFriction(mu=0.0).law)
     growth = float(vertical_growth_rates(kind, smooth, np.array([spin]))[0])
     assert growth == pytest.approx(threshold.growth_rate, abs=1e-6 * (1.0 + abs(growth)))
 
@@ -77,7 +77,7 @@ def test_a_top_on_a_point_sleeps_as_in_textbooks():
     """omega^2 I3^2 = 4 A m g l, A about the point."""
     mass, height, gravity, transverse, axial = 0.01, 0.03, 9.81, 5e-5, 1e-4
     surface = SphereSurface(0.0, -height)
-    top = Top(mass, transverse, axial, surface, CoulombLaw(0.2), gravity)
+    top = Top.of(mass, transverse, axial, surface, CoulombLaw(0.2), gravity)
     about_point = transverse + mass * height**2
     expected = 2.0 * math.sqrt(about_point * mass * gravity * height) / axial
     assert sleeping(SteadyKind.UPRIGHT, top, 50.0, rolls=True).spin == pytest.approx(expected)

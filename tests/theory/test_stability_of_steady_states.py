@@ -88,7 +88,7 @@ def test_stable_is_what_has_least_energy(top, size):
 
 
 def test_without_friction_nothing_decays():
-    top = top_of(presets.report_problem())._replace(friction=ViscousLaw(0.0))
+    top = top_of(presets.report_problem()).altered(friction=ViscousLaw(0.0))
     for steady in steady_states(top, 1.8 * jellett_unit(top)):
         assert not spectrum(steady, top).stable
 

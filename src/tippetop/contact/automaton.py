@@ -125,7 +125,7 @@ class Automaton:
 
     def launch(self, state: State) -> Transition:
         """Return the first mode: flight, what follows an impact, or contact."""
-        lowest = self.top.lowest_at(state.axis[2])
+        lowest = self.top.body.lowest_at(state.axis[2])
         if self.liftoff != "fly":
             return self.resting(lowest, 0.0, state)
         if gap(state, lowest) > TOUCHING:
@@ -198,7 +198,7 @@ class Automaton:
 
     def _after_flight(self, contact: Top, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a surface lands."""
-        if end.contact == contact.active:
+        if end.contact == contact.number:
             return self.touchdown(contact, time, end.state)
         return self.touch(contact, end.contact, time, end.state)
 
@@ -263,7 +263,7 @@ class Automaton:
         state, slips = end.state, not mode.sticks[1 - end.contact]
         if not opens_by_zero(ended, end, opening) or (slips and _jams_alone(stays, state)):
             return self.resolve_two(time, state, mode.tops, Before.of(mode), mode.rolls)
-        event = Event(EventKind.OPENING, time, surface=opening.active)
+        event = Event(EventKind.OPENING, time, surface=opening.number)
         state = state._replace(momentum=mode.stilled(state.axis, state.momentum))
         return Transition((event,), self.mode_for(off_branch(stays), state, slips=slips), state)
 
@@ -338,7 +338,7 @@ class Automaton:
         if begins.slip and rolls and self._opens_without_force(contact, state):
             return self._release(contact, time, state, ())
         kind = EventKind.SLIP if begins.slip else EventKind.ROLL
-        event = Event(kind, time, surface=contact.active)
+        event = Event(kind, time, surface=contact.number)
         point = ContactPoint.of(state.axis, state.momentum, contact)
         slip = None if begins.slip or held else slip_of(*along_table(state), contact)
         rolling = None if held or not begins.slip else point.turning[:2]
@@ -467,9 +467,9 @@ class Automaton:
             strict=True,
         ):
             if ended and not starts:
-                events.append(Event(stop, time, surface=contact.active))
+                events.append(Event(stop, time, surface=contact.number))
             elif starts and not ended:
-                events.append(Event(start, time, surface=contact.active))
+                events.append(Event(start, time, surface=contact.number))
         return tuple(events)
 
     def resting(
@@ -493,7 +493,7 @@ class Automaton:
             if stays_closed(contact, neighbour, state):
                 closed = True
             else:
-                reported = (*reported, Event(EventKind.OPENING, time, surface=neighbour.active))
+                reported = (*reported, Event(EventKind.OPENING, time, surface=neighbour.number))
         if not closed:
             return self.resting_alone(contact, time, state, reported)
         tops = outermost((contact, *beside), state.axis)
@@ -567,12 +567,12 @@ class Automaton:
     ) -> Transition:
         """End the run, or fly."""
         following = Flight(contact, start) if self.liftoff == "fly" else Status.LIFTED_OFF
-        event = Event(EventKind.LIFT_OFF, time, surface=contact.active)
+        event = Event(EventKind.LIFT_OFF, time, surface=contact.number)
         return Transition((*events, event), following, state)
 
     def touchdown(self, contact: Top, time: float, state: State) -> Transition:
         """Collide, unless with a face, and go on as the impact leaves the top."""
-        reported = (Event(EventKind.TOUCHDOWN, time, surface=contact.active),)
+        reported = (Event(EventKind.TOUCHDOWN, time, surface=contact.number),)
         if lands_flat(contact, state.axis):
             return Transition(reported, Status.LYING_FLAT, state)
         return self._collide(contact, time, state, reported, self.restitution)
@@ -589,7 +589,7 @@ class Automaton:
         Where more come to the table at once, the outermost strikes: what lies between sinks more
         slowly.
         """
-        striking = contact.each[surface]
+        striking = contact.body.contacts[surface]
         faster = [
             neighbour
             for neighbour in other_touching(contact, state)[:1]
@@ -627,7 +627,7 @@ class Automaton:
         except ArithmeticError as error:
             return failed("The impulse of the impact", error, state, events)
         impulse, lost = float(struck.impulse), float(struck.energy_lost)
-        hit = Event(EventKind.IMPACT, time, impulse, lost, contact.active, struck.steps)
+        hit = Event(EventKind.IMPACT, time, impulse, lost, contact.number, struck.steps)
         if not struck.impulse:
             # Nothing but rounding kept the contact from being a resting one.
             return self._untouched(contact, time, struck.state, events, approaches=approaches)
@@ -738,13 +738,13 @@ class Automaton:
         if chosen.resolution is not None:
             if arrived:
                 lost = float(energy(state, tops[0]) - energy(contacts.state, tops[0]))
-                event = Event(EventKind.DOUBLE_CONTACT, time, 0.0, lost, tops[0].active)
+                event = Event(EventKind.DOUBLE_CONTACT, time, 0.0, lost, tops[0].number)
                 events = (*events, event)
             events = (*events, *contacts.changes(time, chosen.resolution, before))
             return replace(self._mode_on_two(contacts, chosen.resolution), events=events)
         (number,) = chosen.closed
         stays, opens = contacts.tops[number], contacts.tops[1 - number]
-        events = (*events, Event(EventKind.OPENING, time, surface=opens.active))
+        events = (*events, Event(EventKind.OPENING, time, surface=opens.number))
         ended = (contacts.ended[number], contacts.stopped)
         return self._after_resolving(stays, time, contacts.state, chosen, ended, ended, events)
 
@@ -817,7 +817,7 @@ def _indeterminate(contact: Top, time: float, consistent: Sequence[Answer]) -> t
     """Return the event of an indeterminate contact force, if several answers are consistent."""
     if len(consistent) <= 1:
         return ()
-    return (Event(EventKind.INDETERMINATE, time, surface=contact.active),)
+    return (Event(EventKind.INDETERMINATE, time, surface=contact.number),)
 
 
 def _jams_alone(contact: Top, state: State) -> bool:

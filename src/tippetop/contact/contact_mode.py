@@ -19,7 +19,7 @@ from tippetop.mechanics.contacts.pair import Tops
 from tippetop.mechanics.contacts.slip_variables import slip_of
 from tippetop.mechanics.motion import along_table, on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState, State
-from tippetop.mechanics.top import Kind, Top
+from tippetop.mechanics.top import Kind, Top, contact_numbers, contacts_with, number_count
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 
 SLIPS, STICKS = "sliding", "sticking"
@@ -92,14 +92,14 @@ class ContactMode(IntegratedMode):
         if not self.is_mixed:
             return self.status + self._place
         rolling = "_without_rolling" if self.prevents_rolling else ""
-        first, second = (top.active for top in self.tops)
+        first, second = (top.number for top in self.tops)
         return f"{STICKS}{rolling}_on_{first}_{SLIPS}_on_{second}"
 
     @property
     def stuck(self) -> tuple[int, ...]:
         """Numbers of the surfaces that stick."""
         pairs = zip(self.tops, self.sticks, strict=True)
-        return tuple([top.active for top, sticks in pairs if sticks])
+        return tuple([top.number for top, sticks in pairs if sticks])
 
     @property
     def lasting(self) -> bool:
@@ -129,7 +129,7 @@ class ContactMode(IntegratedMode):
     @property
     def parameters(self) -> tuple[Scalar, ...]:
         """The numbers of the tops, and what the status needs beside them."""
-        return (*[number for top in self.tops for number in top.numbers], *self.further)
+        return (*contact_numbers(self.tops), *self.further)
 
     def without_tops(self) -> Self:
         """Return the mode without its tops and parameters."""
@@ -224,21 +224,18 @@ def mode_with(form: Any, kinds: Sequence[Kind], numbers: Sequence[Scalar]) -> An
     """Return a mode from one without tops, kinds of tops, and numbers that begin with its
     parameters.
     """
-    tops, first = list[Top](), 0
-    for kind in kinds:
-        tops.append(kind.top(tuple(numbers[first : first + kind.numbers])))
-        first += kind.numbers
-    return form.with_tops(tops, numbers[first : first + len(form.further)])
+    first = number_count(kinds)
+    return form.with_tops(contacts_with(kinds, numbers), numbers[first : first + len(form.further)])
 
 
 def example_of(form: Any, kinds: Sequence[Kind]) -> Any:
     """Return some mode of these kinds of tops, to ask what is common to all."""
-    return form.with_tops([kind.example for kind in kinds], form.further)
+    return form.with_tops(contacts_with(kinds, (1.0,) * number_count(kinds)), form.further)
 
 
 def parameter_count(form: Any, kinds: Sequence[Kind]) -> int:
     """Return how many parameters such modes have."""
-    return sum([kind.numbers for kind in kinds]) + len(form.further)
+    return number_count(kinds) + len(form.further)
 
 
 def sliding_motion(kind: Kind, guarded: bool, held: bool = False) -> Motion:

@@ -63,7 +63,12 @@ class Flight(IntegratedMode):
     @property
     def motion(self) -> Motion:
         """Equations of motion and guards, which are the same whichever surface is active."""
-        return flight_motion(self.top.each[0].kind)
+        return flight_motion(self.top.body.contacts[0].kind)
+
+    @property
+    def parameters(self) -> tuple[Scalar, ...]:
+        """The numbers of the body: no branch of the law matters."""
+        return self.top.body.numbers
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """Return the numbers of the state."""
@@ -78,11 +83,11 @@ class Flight(IntegratedMode):
 
         None where every surface is above the table.
         """
-        if all(gap(state, top) > TOUCHING for top in self.top.each):
+        if all(gap(state, top) > TOUCHING for top in self.top.body.contacts):
             return None
         counts = list[int]()
-        for top in self.top.each:
-            start = self.start if top.active == self.top.active else start_of(state, top)
+        for top in self.top.body.contacts:
+            start = self.start if top.number == self.top.number else start_of(state, top)
             # The product that is an edge's gap guard vanishes as the gap does, its face's gap not.
             counts += [int(start), 0] if is_edge(top.surface) else [int(start)]
         return tuple(counts)
@@ -121,7 +126,7 @@ class Flight(IntegratedMode):
     def end_by_guard(self, name: str, last: State) -> ModeEnd:
         """Return the end of the flight on a surface, which touches the table exactly."""
         ended = ModeEnd.by_guard(name, last)
-        landed = self.top.each[ended.contact]
+        landed = self.top.body.contacts[ended.contact]
         height = support_at(last.axis, landed.surface)[0]
         return replace(ended, state=last._replace(height=height))
 

@@ -298,7 +298,7 @@ class Mode(ABC):
         """The end of the label: the surfaces that touch, if the body has several."""
         if not self.touching or not isinstance(self.top.surface, Hull):
             return ""
-        touching = sorted(top.active for top in self.tops)
+        touching = sorted(top.number for top in self.tops)
         return f"_on_{'_and_'.join(map(str, touching))}"
 
     @abstractmethod

@@ -61,7 +61,7 @@ def initial_mode(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:
 
     It slides, but where the table would have to pull: then it lets go.
     """
-    lowest = top.lowest_at(state.axis[2])
+    lowest = top.body.lowest_at(state.axis[2])
     sliding, numbers = ContactMode(lowest, pulls=True), along_table(state).pack()
     try:
         presses = sliding.reaction(numbers).force[2] > 0.0

@@ -30,7 +30,7 @@ def surface_guards(top: Top) -> list[tuple[str, SurfaceGuard]]:
     guards: list[tuple[str, SurfaceGuard]] = []
     if is_edge(top.surface):
         guards.append((FACE, lambda top, axis, momentum: slap_guard(axis, momentum, top)))
-    open_ones = [number for number in range(len(each_surface(top.surface))) if number != top.active]
+    open_ones = [number for number in range(len(each_surface(top.surface))) if number != top.number]
     return guards + [(numbered(TOUCH, number), _gap_of(number)) for number in open_ones]
 
 
@@ -94,6 +94,6 @@ def clearance(top: Top, c: float) -> float:
     gaps = [
         height - surface.height(c)
         for number, surface in enumerate(each_surface(top.surface))
-        if number != top.active
+        if number != top.number
     ]
     return float(min(gaps))

@@ -41,8 +41,8 @@ def other_touching(top: Top, state: State) -> list[Top]:
     place, nearest = _place(top, state), SAME_POINT * top.surface.size
     others = [
         each
-        for each in top.each
-        if each != top
+        for each in top.body.contacts
+        if each.number != top.number
         and gap(state, each) <= TOUCHING
         and abs(_place(each, state) - place) > nearest
     ]

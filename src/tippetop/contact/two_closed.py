@@ -152,13 +152,13 @@ class TwoClosed:
         """
         events = []
         for top, held in zip(self.tops, resolved.sticks, strict=True):
-            surface = top.active
+            surface = top.number
             if held != (surface in before.stuck):
                 kind = EventKind.STICK if held else EventKind.SLIP
                 events.append(Event(kind, time, surface=surface))
         if before.rolled != bool(resolved.rolls):
             kind = EventKind.ROLL if resolved.rolls else EventKind.HALT
-            events += [Event(kind, time, surface=top.active) for top in self.tops]
+            events += [Event(kind, time, surface=top.number) for top in self.tops]
         return tuple(events)
 
 

@@ -42,7 +42,7 @@ from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Array, Guard
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Top
+from tippetop.mechanics.top import contact_numbers, contacts_with
 from tippetop.mechanics.units import Units
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import SAMPLED
@@ -434,18 +434,13 @@ class LinearizedRun:
 
     def _mode(self, mode: Mode, direction: StartNumbers, change: float) -> Any:
         """Return a mode with the tops of a run beside."""
-        tops = [self._top(top, direction, change) for top in mode.tops]
+        numbers = np.array(contact_numbers(mode.tops))
+        # A number of a branch does not change.
+        numbers[: len(direction.top)] += change * direction.top
+        tops = contacts_with([top.kind for top in mode.tops], tuple(numbers.tolist()))
         if isinstance(mode, ContactMode):
-            count = sum(top.kind.numbers for top in mode.tops)
-            return mode.with_tops(tops, mode.parameters[count:])
+            return mode.with_tops(tops, mode.parameters[len(numbers) :])
         return replace(mode, top=tops[0])
-
-    def _top(self, top: Top, direction: StartNumbers, change: float) -> Top:
-        """Return the top of a mode in a run beside; a number of its branch does not change."""
-        common = 2 + self.kind.proportions + self.kind.coefficients
-        branch = np.zeros(top.kind.coefficients - self.kind.coefficients)
-        rates = np.concatenate([direction.top[:common], branch, direction.top[common:]])
-        return top.kind.top(tuple((np.array(top.numbers) + change * rates).tolist()))
 
     def _guard_times(
         self, visit: Visit, at: tuple[Array, Array, Array], carried: tuple[Array, Array]

@@ -4,8 +4,10 @@ import {
   javascript_source,
   Machinery,
   NodeValues,
+  contact_numbers,
   record,
   stepped,
+  contacts_with,
   unrolled,
   within,
 } from "./mechanics.js";
@@ -141,11 +143,11 @@ export function reader(mode, size) {
 
 function readerOf(mode, size) {
   const kinds = mode.tops.map((top) => top.kind);
-  const numbers = mode.tops.flatMap((top) => top.numbers);
+  const numbers = contact_numbers(mode.tops);
   const codes = codesOf(mode.form, kinds, size);
   const parameters = Float64Array.of(...numbers, 0);
   const last = numbers.length;
-  const values = (of) => (y, p) => [...of(mode.on_tops(topsOf(kinds, p)), y, p[last])];
+  const values = (of) => (y, p) => [...of(mode.on_tops(contacts_with(kinds, p)), y, p[last])];
   return (of, count) => {
     if (!codes.has(of)) codes.set(of, compiled(values(of), size, parameters.length));
     const code = codes.get(of);
@@ -156,15 +158,4 @@ function readerOf(mode, size) {
       return out;
     };
   };
-}
-
-/** Tops of some kinds, whose numbers stand in a row. */
-function topsOf(kinds, numbers) {
-  let first = 0;
-  return kinds.map((kind) => {
-    const end = first + kind.numbers;
-    const top = kind.top(numbers.slice(first, end));
-    first = end;
-    return top;
-  });
 }

@@ -133,7 +133,7 @@ class Problem(Part):
 
     def standing(self, functions: Functions = math) -> Top:
         """Return the top with the surface active that is lowest at launch."""
-        return top_of(self).lowest_at(PoleExact(functions).cos(self.launch.tilt))
+        return top_of(self).body.lowest_at(PoleExact(functions).cos(self.launch.tilt))
 
     def start(self, functions: Functions = math) -> State:
         """Return the state at launch, SI.
@@ -316,7 +316,7 @@ def top_of(problem: Problem) -> Top:
     """Return the numbers of a problem in the form that the mechanics uses, SI."""
     body, arm = problem.body, problem.rolling_resistance
     resistance = None if isinstance(arm, (int, float)) and not arm else RollingResistance(arm)
-    return Top(
+    return Top.of(
         body.mass, body.I1, body.I3, body.surface, problem.friction.law, problem.gravity, resistance
     )
 

@@ -65,7 +65,7 @@ def settled_tilt_of_one(status: Status, state: State, start: State, top: Top) ->
 def _settled_spin_tilt(theta: float, state: State, start: State, top: Top) -> float:
     """Return the tilt at which a motion without friction torque keeps spinning, rad, or nan."""
     if isinstance(top.surface, Hull):
-        top = top.lowest_at(state.axis[2])
+        top = top.body.lowest_at(state.axis[2])
         if not _only_touches(top, theta):
             return math.nan
     if acting(top.surface).spherical:
@@ -124,7 +124,7 @@ def _has_come_to_steady_spin(state: State, start: State, top: Top) -> Scalar:
 def _only_touches(top: Top, at: float) -> bool:
     """Return whether only the active surface of a hull reaches the table near a tilt, rad."""
     near = (math.cos(at - NEAR_FINAL), math.cos(at), math.cos(at + NEAR_FINAL))
-    others = [one.surface for one in top.each if one.active != top.active]
+    others = [one.surface for one in top.body.contacts if one.number != top.number]
     return all(float(one.height(c)) < float(top.surface.height(c)) for one in others for c in near)
 
 

@@ -129,8 +129,8 @@ class ImpactsUnderWay:
 
     def _change_branches(self, which: Indices) -> None:
         """Let the branch of the law that takes over hold in some impacts."""
-        last = self.kind.coefficients
-        law: Any = self.kind.law(*self.numbers[:last, which])
+        last = self.kind.coefficients + self.kind.branch_count
+        law: Any = self.kind.branch_law(*self.numbers[:last, which])
         coefficients = law.other_branch().coefficients(UNITS)
         self.numbers[:last, which] = np.array(np.broadcast_arrays(*coefficients))
 
@@ -166,8 +166,8 @@ def chosen(which: Flags, some: State, others: State) -> State:
 def form_of_kind(kind: Kind, *, restores: bool) -> ImpactForm:
     """Return the form of the equations of tops that slide on one contact."""
     return ImpactForm(
-        (kind.law,),
-        (kind.coefficients,),
+        (kind.branch_law,),
+        (kind.coefficients + kind.branch_count,),
         kind.resists_rolling,
         ALONE,
         (SLIDES,),

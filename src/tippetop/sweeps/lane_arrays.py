@@ -1,25 +1,19 @@
 """The arrays of launches under way: one lane a launch."""
 
-from functools import cached_property
-
 import numpy as np
 
 from tippetop.contact.mode import Status
 from tippetop.integrators.base import Array
-from tippetop.mechanics.contacts.branches import is_branched, on_other_branch
+from tippetop.mechanics.contacts.branches import is_branched
 from tippetop.mechanics.motion import along_table, on_table
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.units import Units
 from tippetop.results.accumulation import accumulate, before_launch
 from tippetop.results.metrics import STATUSES
 from tippetop.sweeps.launch_arrays import Flags, Indices, Launches, branched
 from tippetop.sweeps.taylor_step import LANES
 from tippetop.sweeps.taylor_stepper import Stepper
 from tippetop.sweeps.tip_extremes import TipMotion
-
-NATURAL = Units(1.0, 1.0, 1.0)
-"""Units of what is dimensionless."""
 
 HELD_BY_LANES = {"time", "status", "steps", "turned", "arrived"}
 """Quantities that lanes hold themselves until their launches end."""
@@ -122,12 +116,10 @@ class Slots:
             lanes = np.arange(len(self.cell))
             self._put(lanes, branched(self.tops(lanes), self.states(lanes)))
 
-    @cached_property
+    @property
     def branch(self) -> int:
         """Row of the number, 0 or 1, that tells the branch of the law."""
-        example = self.launches.kind.example
-        pairs = zip(example.numbers, on_other_branch(example).numbers, strict=True)
-        return next(row for row, (first, second) in enumerate(pairs) if first != second)
+        return self.launches.kind.body_count
 
     def change_branch(self, lanes: Indices) -> None:
         """Let tops slide on along the other branch of their law."""
@@ -136,8 +128,7 @@ class Slots:
 
     def _put(self, lanes: Indices, top: Top) -> None:
         """Let tops on some lanes have these tops' law."""
-        first = 2 + self.launches.kind.proportions
-        for row, number in enumerate(top.friction.coefficients(NATURAL), start=first):
+        for row, number in enumerate(top.branch_numbers, start=self.branch):
             self.numbers[row, lanes] = number
 
     def retire(self, lanes: Indices, state: State, time: Array, status: Status) -> None:

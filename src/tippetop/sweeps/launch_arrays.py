@@ -72,7 +72,7 @@ class Launches:
         """Return the automaton of one launch, for when its contact begins or ends."""
         top = off_branch(self._top(launch))
         if top.rolling_resistance is not None and top.rolling_resistance.length == 0.0:
-            top = top._replace(rolling_resistance=None)
+            top = top.altered(rolling_resistance=None)
         if self.rules is not None:
             automaton: Automaton = self.rules[launch](top)
             return automaton

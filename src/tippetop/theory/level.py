@@ -52,9 +52,9 @@ def lying(top: Top, tilt: float) -> Lying | None:
         return Lying(math.pi / 2, (0,), rising_rate(top)) if has_level_spin(top) else None
     ends = touching_tilts(top.surface, tilt)
     for at in sorted(ends, key=lambda at: abs(at - tilt)):
-        second = top.each[ends[at]]
+        second = top.body.contacts[ends[at]]
         if top.surface.slope(math.cos(at)) * second.surface.slope(math.cos(at)) < 0.0:
-            surfaces = tuple(sorted((top.active, second.active)))
+            surfaces = tuple(sorted((top.number, second.number)))
             return Lying(at, surfaces, lifting_rate(at, top))
     return None
 

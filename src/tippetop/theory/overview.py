@@ -219,7 +219,7 @@ def _standing(problem: Problem, top: Top) -> Standing | None:
         return None
     pole = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
     point = SphereSurface(0.0, -pole * float(top.surface.height(pole)))
-    pivot = sleeping(kind, top._replace(surface=point), launch.spin, rolls=True)
+    pivot = sleeping(kind, top.altered(surface=point), launch.spin, rolls=True)
     creep = critical_spin(kind, top)
     spin, time = abs(launch.spin), math.inf
     if rolling.spin < creep:

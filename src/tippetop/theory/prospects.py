@@ -126,7 +126,7 @@ def _touch(problem: Problem, surfaces: tuple[Surface, ...], group: Group) -> Tou
 
 def _stem(problem: Problem, surfaces: tuple[Surface, ...], touch: Touch | None) -> StemTest:
     body, inverted = problem.body, SteadyKind.INVERTED
-    top = Top(body.mass, body.I1, body.I3, surfaces[-1], ViscousLaw(1.0), problem.gravity)
+    top = Top.of(body.mass, body.I1, body.I3, surfaces[-1], ViscousLaw(1.0), problem.gravity)
     least, launch = critical_jellett(inverted, top), math.nan
     if touch is not None and touch.surface == len(surfaces) - 1:
         ratio = _jellett_ratio(touch.tilt, top_of(problem), surfaces[-1])

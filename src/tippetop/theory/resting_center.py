@@ -35,7 +35,7 @@ def resting_center(tilt: float, top: Top) -> RestingCenter | None:
     For a thin disk of radius R this is Omega^2 = 4 g / (R s), and for two balls that touch,
     cos(theta) = 2/5 - g / (Omega^2 R).
     """
-    return resting_center_on(tilt, top.lowest_at(math.cos(tilt)))
+    return resting_center_on(tilt, top.body.lowest_at(math.cos(tilt)))
 
 
 def resting_center_on(tilt: float, top: Top) -> RestingCenter | None:

@@ -160,7 +160,7 @@ def fastest_growth(kind: SteadyKind, top: Top, spin: float) -> float:
     unit = natural_units(top)
     rates = [
         float(
-            vertical_growth_rates(kind, top._replace(friction=ViscousLaw(mu)), np.array([spin]))[0]
+            vertical_growth_rates(kind, top.altered(friction=ViscousLaw(mu)), np.array([spin]))[0]
         )
         for mu in np.geomspace(1e-3, 1e3, 61) / float(unit.speed)
     ]

@@ -69,7 +69,7 @@ def least_jellett_to_stand(body: Body, surface: int = 1, gravity: float = 9.8) -
         )
     if tip.slope(0.0) >= 0.0:
         return 0.0
-    top = Top(body.mass, body.I1, body.I3, tip, ViscousLaw(1.0), gravity)
+    top = Top.of(body.mass, body.I1, body.I3, tip, ViscousLaw(1.0), gravity)
     return critical_jellett(SteadyKind.INVERTED, top)
 
 

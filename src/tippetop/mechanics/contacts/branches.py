@@ -26,14 +26,14 @@ def on_branch(top: Top, slip: Slip) -> Top:
     """
     if not is_branched(top.friction):
         return top
-    return top._replace(friction=whole_law(top.friction).branch(slip))
+    return top._replace(branch_law=whole_law(top.friction).branch(slip))
 
 
 def on_numbered_branch(top: Top, slip: Slip) -> Top:
     """Return the top with the branch as a number beside the law, for arrays or shared equations."""
     if not is_branched(top.friction):
         return top
-    return top._replace(friction=whole_law(top.friction).numbered_branch(slip))
+    return top._replace(branch_law=whole_law(top.friction).numbered_branch(slip))
 
 
 def on_other_branch(top: Top) -> Top:
@@ -41,13 +41,12 @@ def on_other_branch(top: Top) -> Top:
     own ends.
     """
     law: Any = top.friction
-    return top._replace(friction=law.other_branch())
+    return top._replace(branch_law=law.other_branch())
 
 
 def off_branch(top: Top) -> Top:
     """Return the top with its whole law instead of one branch; itself if the law has none."""
-    law = whole_law(top.friction)
-    return top if law is top.friction else top._replace(friction=law)
+    return top if top.branch_law is None else top._replace(branch_law=None)
 
 
 def on_limit_branch(top: Top, wrench: Wrench) -> Top:
@@ -57,7 +56,7 @@ def on_limit_branch(top: Top, wrench: Wrench) -> Top:
     if not is_branched(top.friction):
         return top
     return top._replace(
-        friction=whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2])
+        branch_law=whole_law(top.friction).limit_branch(wrench.force[2], wrench.torque[2])
     )
 
 

@@ -11,10 +11,11 @@ from tippetop.mechanics.contacts.slip_variables import inner, plus
 from tippetop.mechanics.contacts.wrench import COUPLES, DRILLING, FORCES, Slip, Wrench
 from tippetop.mechanics.impacts.unit_impulse import StruckContacts, normal_velocities
 from tippetop.mechanics.laws.coulomb import RollingResistance
+from tippetop.mechanics.laws.friction import FrictionLaw
 from tippetop.mechanics.motion import angular_velocity, point_velocity
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.surface import contact_vector
-from tippetop.mechanics.top import Top
+from tippetop.mechanics.top import RigidBody, Top, kind_of_surface
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, add, length, scale
 
@@ -75,7 +76,14 @@ class StruckBody(NamedTuple):
             beside = without_fuzz(sinking, fuzz) / speed
             between = scale(1.0 / units.length, add(arms[1], scale(-1.0, arms[0])))
             apart = (between[0], between[1])
-        scaled_tops = [in_units(one, units) for one in tops]
+        scaled_body = in_units(top.body, units)
+        scaled_tops = [
+            one._replace(
+                body=scaled_body,
+                branch_law=None if one.branch_law is None else law_in_units(one.branch_law, units),
+            )
+            for one in tops
+        ]
         momentum = scale(1.0 / units.angular_momentum, state.momentum)
         points = contact_points(state.axis, momentum, scaled_tops)
         contacts = StruckContacts(
@@ -123,15 +131,20 @@ def without_fuzz(number: float, fuzz: float) -> float:
     return 0.0 if abs(number) <= fuzz else number
 
 
-def in_units(top: Top, units: Units) -> Top:
-    """Return a top with its numbers in these units of mass, length and time, and gravity 1."""
-    resistance = top.rolling_resistance
-    return Top(
-        top.mass / units.mass,
-        top.transverse_inertia / units.inertia,
-        top.axial_inertia / units.inertia,
-        top.kind.surface.from_proportions(top.surface.proportions),
-        type(top.friction)(*top.friction.coefficients(units)),
+def law_in_units(law: FrictionLaw, units: Units) -> FrictionLaw:
+    """Return a law with its numbers in these units."""
+    return type(law)(*law.coefficients(units))
+
+
+def in_units(body: RigidBody, units: Units) -> RigidBody:
+    """Return a body with its numbers in these units of mass, length and time, and gravity 1."""
+    resistance = body.rolling_resistance
+    return RigidBody(
+        body.mass / units.mass,
+        body.transverse_inertia / units.inertia,
+        body.axial_inertia / units.inertia,
+        kind_of_surface(body.surface).from_proportions(body.surface.proportions),
+        law_in_units(body.friction, units),
         1.0,
         None if resistance is None else RollingResistance(resistance.length / units.length),
     )

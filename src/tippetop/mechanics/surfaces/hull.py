@@ -39,7 +39,11 @@ class Hull(NamedTuple):
     @property
     def each(self) -> tuple["Hull", ...]:
         """The hull with every surface active in turn."""
-        return tuple(self._replace(active=number) for number in range(len(self.units)))
+        return tuple([self.on(number) for number in range(len(self.units))])
+
+    def on(self, number: int) -> "Hull":
+        """Return the hull with a surface active."""
+        return self._replace(active=number)
 
     def height(self, c: Scalar) -> Scalar:
         """Support function h(c), m."""
@@ -172,19 +176,27 @@ def lowest_gap(axis: Vector, height: Scalar, surface: Surface) -> Scalar:
 
 
 def lowest_surface(surface: Surface, c: float) -> Surface:
-    """Return the surface that reaches lowest at this c, active; the first of several; of floats.
+    """Return the surface that reaches lowest at this c, active; of floats."""
+    return each_surface(surface)[lowest_number(surface, c)]
+
+
+def lowest_number(surface: Surface, c: float) -> int:
+    """Return the number of the surface that reaches lowest at this c; the first of several; of
+    floats.
 
     Where the axis is vertical several surfaces may reach lowest at one point. At any other tilt the
     bluntest is the lowest of them, of which the height grows fastest.
     """
     every = each_surface(surface)
-    lowest = max(every, key=lambda one: float(one.height(c)))
+    if len(every) == 1:
+        return 0
+    lowest = max(range(len(every)), key=lambda number: float(every[number].height(c)))
     if abs(c) < 1.0 - UPRIGHT:
         return lowest
-    level = lowest.height(c) - SAME_HEIGHT * surface.size
+    level = every[lowest].height(c) - SAME_HEIGHT * surface.size
     sense = 1.0 if c > 0.0 else -1.0
     at = sense * (1.0 - UPRIGHT)
     return max(
-        [one for one in every if one.height(c) >= level],
-        key=lambda one: -sense * float(one.slope(at)),
+        [number for number, one in enumerate(every) if one.height(c) >= level],
+        key=lambda number: -sense * float(every[number].slope(at)),
     )
