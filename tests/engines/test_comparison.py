@@ -319,3 +319,72 @@ def test_figures_of_stored_results_show_every_program():
     assert labels[0] == "exact"
     assert all(any(label.startswith(name) for label in labels) for name in names)
     assert len(apart.lines) == len(labels) - 1
+
+
+OWN = """
+from tippetop.engines.adapters.base import Setting
+from tippetop.engines.adapters.moreau import Moreau as Base, MoreauStepper
+
+class Mine:
+    name = "Mine"
+    version = "3"
+    settings = (Setting("only", "all I have", "my manual", {}),)
+
+    def refusal(self, case, setting):
+        return None if case.name in ("painleve", "restitution") else "cannot"
+
+    def start(self, case, step, setting):
+        if case.name == "restitution":
+            raise KeyError("no such body")
+        return MoreauStepper(case.problem, step)
+"""
+
+
+def test_an_adapter_in_a_file_is_compared_and_its_failures_are_named(tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    file = tmp_path / "mine.py"
+    file.write_text(OWN)
+    words = ["engines", "--engine", str(file), "--out", str(tmp_path / "out")]
+    words += ["--case", "painleve", "--case", "restitution"]
+    done = CliRunner().invoke(app, [*words, "--step", "1 ms", "--step", "2 ms"])
+    assert done.exit_code == 0, done.output
+    assert "Mine 3, file" in done.output
+    assert "Mine, restitution, only at 1 ms failed: KeyError: 'no such body'" in done.output
+    stored = json.loads((tmp_path / "out" / "mine.json").read_text())
+    ours = comparison.compare(tmp_path / "ours", ["moreau"], ["painleve"], [1e-3, 2e-3])["moreau"]
+    mine = [row["error"] for row in stored["rows"] if row["case"] == "painleve"]
+    assert mine == [row["error"] for row in ours["rows"]]
+    file.write_text(OWN.replace('raise KeyError("no such body")', "pass"))
+    again = CliRunner().invoke(app, [*words, "--step", "1 ms"])
+    assert "failed" not in again.output, "another file is another version"
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("x = 1 / 0\n", "raises ZeroDivisionError in line 1: division by zero"),
+        ("x = (\n", "raises SyntaxError"),
+        ("x = 1\n", "has 0 classes with settings and start"),
+        ("class A:\n    settings = ()\n    start = 1\n", "has a class without name, refusal"),
+        (
+            OWN.replace("return None if", "return spam if"),
+            "raises NameError in line 11: name 'spam' is not defined",
+        ),
+    ],
+)
+def test_an_adapter_that_cannot_be_used_is_a_sentence(text, sentence, tmp_path):
+    file = tmp_path / "mine.py"
+    file.write_text(text)
+    with pytest.raises(tt.InvalidInput, match=sentence):
+        comparison.compare(tmp_path / "out", [str(file)])
+    with pytest.raises(tt.FileTrouble, match=r"absent.py"):
+        comparison.compare(tmp_path / "out", [str(tmp_path / "absent.py")])
+
+
+def test_a_run_that_would_take_too_long_is_named(tmp_path):
+    results = comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS, longest=1e-9)
+    assert [one["asked_step"] for one in results["moreau"]["left_out"]] == list(STEPS[1:])
+    (first, _) = comparison.dropped(results)
+    assert first.startswith("Moreau, restitution, textbook at 1 ms would take")
+    results = comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS)
+    assert comparison.dropped(results) == []

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import DRAWINGS, Force, Json, number_option, write_figure
+from tippetop.cli.options import DRAWINGS, NUMBER, Force, Json, number_of, write_figure
 from tippetop.cli.terminal import listing, progress_bar, show, show_json
 from tippetop.support.files import place_for, require_ending
 
@@ -22,10 +22,18 @@ def engines(
     ] = Path("tippetop-engines"),
     engine: Annotated[
         list[str] | None,
-        typer.Option(help="Only this program: moreau, mujoco, pybullet, drake or exudyn."),
+        typer.Option(
+            help=(
+                "Only this program: moreau, mujoco, pybullet, drake or exudyn; or your adapter in"
+                " a file, my_engine.py."
+            )
+        ),
     ] = None,
     case: Annotated[list[str] | None, typer.Option(help="Only this case of the suite.")] = None,
-    step: Annotated[list[float] | None, number_option(float, "Only this step, s.")] = None,
+    step: Annotated[
+        list[str] | None,
+        typer.Option(metavar=NUMBER, help="Only this step, s, or as in '1 ms'."),
+    ] = None,
     stored: Annotated[
         bool, typer.Option("--stored", help="Run nothing: show the results of the package.")
     ] = False,
@@ -56,7 +64,7 @@ def engines(
                 " with: pip install 'tippetop[engines]'"
             )
     else:
-        steps = step or comparison.STEPS
+        steps = [number_of("--step", one, "s") or 0.0 for one in step or ()] or comparison.STEPS
         with progress_bar("starting") as progress:
             results = comparison.compare(out, names, case, steps, progress=progress)
     best = comparison.verdicts(results)
@@ -66,10 +74,13 @@ def engines(
         write_figure(errors_figure(results), plot, force)
     if as_json:
         verdicts = [{**verdict._asdict(), "limit": verdict.limit._asdict()} for verdict in best]
-        show_json({"remark": remark, "results": results, "best": verdicts})
+        lost = comparison.dropped(results)
+        show_json({"remark": remark, "results": results, "best": verdicts, "dropped": lost})
     else:
         tables = [_table(result, best) for result in results.values()]
-        show(*([escape(remark)] if remark else []), *tables, _LEGEND, files=[plot] if plot else [])
+        lost = [f"[dim]{escape(sentence)}.[/]" for sentence in comparison.dropped(results)]
+        remarks = [escape(remark)] if remark else []
+        show(*remarks, *tables, _LEGEND, *lost, files=[plot] if plot else [])
 
 
 _LEGEND = (

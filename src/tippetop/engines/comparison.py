@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import tippetop as tt
-from tippetop.engines.adapters import ADAPTERS, adapter
+from tippetop.engines.adapters import ADAPTERS, adapter, results_name
 from tippetop.engines.adapters.base import (
     Adapter,
     EngineState,
@@ -35,7 +35,6 @@ from tippetop.engines.reference import (
 )
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import make_folder, read_text, written_beside
-from tippetop.support.suggestions import not_one_of
 
 Array = NDArray[np.float64]
 
@@ -75,19 +74,18 @@ class EngineTask(NamedTuple):
     adapter: Adapter
     case: Case
     setting: Setting
+    results: str = ""
+    """Name of its results."""
 
 
 def tasks(names: Sequence[str] | None, cases: Sequence[str] | None) -> Iterator[EngineTask]:
     """Yield what programs can follow, program by program; `InvalidInput` for unknown names."""
-    for name in names or ():
-        if name not in ADAPTERS:
-            raise not_one_of("engine", name, list(ADAPTERS))
+    made = {name: adapter(name) for name in names or ADAPTERS}
     chosen = [case_of(name) for name in cases] if cases else list(CASES)
-    for name in names or ADAPTERS:
-        made = adapter(name)
+    for name, one in made.items():
         for case in chosen:
-            for setting in settings_of(made, case):
-                yield EngineTask(made, case, setting)
+            for setting in settings_of(one, case):
+                yield EngineTask(one, case, setting, results_name(name))
 
 
 def installed(names: Sequence[str] | None = None) -> list[str]:
@@ -206,7 +204,7 @@ def stored(names: Sequence[str] | None = None) -> dict[str, dict[str, Any]]:
     """Return the results that come with this package, by program."""
     folder = files(__package__) / RESULTS_FOLDER
     results = {}
-    for name in names or ADAPTERS:
+    for name in map(results_name, names or ADAPTERS):
         path = folder / f"{name}.json"
         if path.is_file():
             results[name] = json.loads(path.read_text(encoding="utf-8"))
@@ -223,7 +221,9 @@ def compare(
 ) -> dict[str, dict[str, Any]]:
     """Run the cases in the programs that are installed, and return and write their results.
 
-    Each run is written when it is done; what a folder has of the same versions is not run again.
+    Each run is written when it is done; what a folder has of the same versions is not run again. A
+    run that fails has a `failure` in its row, and one that would take longer than `longest`
+    seconds is listed in `left_out`. A name may be that of a Python file with an adapter.
 
     Raises
     ------
@@ -242,16 +242,20 @@ def compare(
     references: dict[str, Exact] = {}
     results: dict[str, dict[str, Any]] = {}
     for k, task in enumerate(chosen):
-        name = next(name for name, kind in ADAPTERS.items() if kind == type(task.adapter).__name__)
+        name = task.results
         progress(k, len(chosen), f"{task.adapter.name}, {task.case.name}")
         result = results.get(name) or _opened(folder, name, task.adapter)
         results[name] = result
+        _forget_left_out(result, task, steps)
         missing = [step for step in steps if not _has(result, task, step)]
         if missing and task.case.name not in references:
             references[task.case.name] = exact(task.case)
         for step in missing:
             before = result["rows"][-1] if step != steps[0] else None
-            if before and _predicted(before, task, step) > longest:
+            predicted = _predicted(before, task, step) if before else 0.0
+            if predicted > longest:
+                reason = f"would take {predicted:.0f} s, more than {longest:g} s"
+                result["left_out"].append({**_run_of(task, step), "reason": reason})
                 continue
             result["rows"].append(_tried(task, step, references[task.case.name], step == steps[-1]))
             result["date"] = datetime.datetime.now(datetime.UTC).date().isoformat()
@@ -283,15 +287,26 @@ def _tried(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dict
     """Return the row of a run, or of what went wrong in it."""
     try:
         return measure(task, step, reference, drawn)
-    except (ArithmeticError, AssertionError, RuntimeError, ValueError) as error:
+    except Exception as error:  # noqa: BLE001 - a program, or an adapter, may raise anything
         # The first sentence says what went wrong; others may number objects of the process.
         message = " ".join(str(error).split()).split(". ")[0][:200]
-        return {
-            "case": task.case.name,
-            "setting": task.setting.name,
-            "asked_step": step,
-            "failure": message or type(error).__name__,
-        }
+        if not isinstance(error, (ArithmeticError, AssertionError, RuntimeError, ValueError)):
+            message = f"{type(error).__name__}: {message}"
+        return {**_run_of(task, step), "failure": message or type(error).__name__}
+
+
+def _run_of(task: EngineTask, step: float) -> dict[str, Any]:
+    """Return what names a run in results."""
+    return {"case": task.case.name, "setting": task.setting.name, "asked_step": step}
+
+
+def _forget_left_out(result: dict[str, Any], task: EngineTask, steps: Sequence[float]) -> None:
+    """Remove from results that runs of a task at these steps were left out."""
+    again = [_run_of(task, step) for step in steps]
+    earlier = result.get("left_out", [])
+    result["left_out"] = [
+        one for one in earlier if {name: one[name] for name in _run_of(task, 0.0)} not in again
+    ]
 
 
 def _predicted(before: Mapping[str, Any], task: EngineTask, step: float) -> float:
@@ -314,7 +329,7 @@ def _opened(folder: Path, name: str, made: Adapter) -> dict[str, Any]:
     }
     results = load(folder, name)
     if results is None or any(results.get(key) != value for key, value in head.items()):
-        return {**head, **about, "limits": [], "rows": []}
+        return {**head, **about, "limits": [], "left_out": [], "rows": []}
     earlier = {one["name"]: (one["options"], one.get("width")) for one in results["settings"]}
     unchanged = [
         one.name for one in made.settings if earlier.get(one.name) == (one.options, one.width)
@@ -338,6 +353,20 @@ def _save(folder: Path, name: str, result: Mapping[str, Any]) -> None:
 
 
 # What results say
+
+
+def dropped(results: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Return a sentence for each run that failed or was left out."""
+    sentences = []
+    for result in results.values():
+        for row in [*result["rows"], *result.get("left_out", ())]:
+            why = f"failed: {row['failure']}" if "failure" in row else row.get("reason")
+            if why:
+                step = f"{1e3 * row['asked_step']:g} ms"
+                sentences.append(
+                    f"{result['engine']}, {row['case']}, {row['setting']} at {step} {why}"
+                )
+    return sentences
 
 
 class EngineVerdict(NamedTuple):

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 import tippetop as tt
 from tippetop.engines.adapters.base import axis_of
-from tippetop.engines.bodies import LIMIT_SURFACE
 from tippetop.engines.mjcf.reading import problem_of_mjcf
 from tippetop.engines.reference import numbers_of
+from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS
 from tippetop.support.errors import Unavailable
 
 Array = NDArray[np.float64]
@@ -174,7 +174,7 @@ def _loaded(setting: TopSetting) -> tuple[Any, Any, Any]:
         getattr(model, f"geom_{name}")[:] = value
     if setting.patch:
         model.geom_condim[:] = 4
-        model.geom_friction[:] = (1.0, LIMIT_SURFACE * setting.patch, 0.0)
+        model.geom_friction[:] = (1.0, ELLIPSOIDAL_RADIUS * setting.patch, 0.0)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)

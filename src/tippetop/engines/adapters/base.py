@@ -1,8 +1,10 @@
 """What an adapter of another program is, and helpers for writing one."""
 
+import hashlib
 import importlib.metadata
 from collections.abc import Iterable
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -56,9 +58,10 @@ class Adapter(Protocol):
     name: str
     """Its name in tables."""
     package: str | None
-    """The package that is installed for it; None for this one."""
+    """The package that is installed for it; None for this one. A file of one's own may leave it
+    out, and state a `version` instead."""
     module: str | None
-    """The module that is imported; None for this one."""
+    """The module that is imported; None for this one. A file of one's own may leave it out."""
     settings: tuple[Setting, ...]
     """Ways to set it: the first is its defaults."""
 
@@ -90,6 +93,14 @@ def is_installed(adapter: Adapter) -> bool:
 
 def version_of(adapter: Adapter) -> str:
     """Return the version of an adapter's program."""
+    file = getattr(adapter, "file", None)
+    if file is not None:
+        # Another text of the file is another version: its results are computed again.
+        text = hashlib.sha256(Path(file).read_bytes()).hexdigest()[:8]
+        stated = getattr(adapter, "version", None) or (
+            adapter.package and importlib.metadata.version(adapter.package)
+        )
+        return f"{stated}, file {text}" if stated else f"file {text}"
     if adapter.package is None:
         return tt.__version__
     return importlib.metadata.version(adapter.package)
