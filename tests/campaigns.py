@@ -1,15 +1,36 @@
 """Sizes of the campaigns: what every check runs, what `make test-all` adds, and what is claimed.
 
 A campaign follows random cases with the seeds 0, 1, 2 and so on. Each is a parameter of a test, and
-its mark says who runs it: none, `slow` or `campaign`.
+its mark says who runs it: none, `slow` or `campaign`. Parameters that this run of pytest would only
+deselect are not made: there are thousands.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import Any
 
 import pytest
+from _pytest.mark.expression import Expression
 from hypothesis import settings
+
+left_out: set[str] = set()
+"""Marks whose parameters this run of pytest leaves out."""
+
+
+def note_marks(expression: str) -> None:
+    """Note which marks an expression, as of the option -m, leaves out, whatever marks are beside
+    them.
+    """
+    if not expression:
+        return
+    compiled = Expression.compile(expression)
+
+    def selects(*marks: str) -> bool:
+        return compiled.evaluate(lambda name, **_: name in marks)
+
+    left_out.update(
+        mark for mark in ("slow", "campaign") if not (selects(mark) or selects(mark, "browser"))
+    )
 
 
 def seeds(
@@ -28,7 +49,7 @@ def seeds(
     def first(seed: int) -> int:
         return -1 if seed in always else check if seed in sampled else seed
 
-    return [_marked(k, first(k), check, sample) for k in range(claim)]
+    return _asked(_marked(k, first(k), check, sample) for k in range(claim))
 
 
 def seed_ranges(check: int, sample: int, claim: int, size: int) -> list[Any]:
@@ -39,7 +60,7 @@ def seed_ranges(check: int, sample: int, claim: int, size: int) -> list[Any]:
         for start, end in pairwise(bounds)
         for first in range(start, end, size)
     ]
-    return [_marked(r, r.start, check, sample, id=f"{r.start}-{r.stop - 1}") for r in ranges]
+    return _asked(_marked(r, r.start, check, sample, id=f"{r.start}-{r.stop - 1}") for r in ranges)
 
 
 def among(cases: Sequence[Any], check: int) -> list[Any]:
@@ -48,14 +69,25 @@ def among(cases: Sequence[Any], check: int) -> list[Any]:
     `make test-all` runs all of them.
     """
     chosen = {k * len(cases) // check for k in range(check)}
-    return [
-        case if k in chosen else pytest.param(*_values(case), marks=pytest.mark.slow)
+    return _asked(
+        pytest.param(*_values(case), marks=() if k in chosen else pytest.mark.slow)
         for k, case in enumerate(cases)
-    ]
+    )
 
 
 def _values(case: Any) -> tuple[Any, ...]:
     return case if isinstance(case, tuple) else (case,)
+
+
+def _asked(parameters: Iterable[Any]) -> list[Any]:
+    """Return the parameters of which no mark is left out.
+
+    Where none is, the first stays, to be deselected: pytest would report a test without parameters.
+    """
+    every = list(parameters)
+    return [one for one in every if not any(mark.name in left_out for mark in one.marks)] or every[
+        :1
+    ]
 
 
 def examples(check: int, claim: int) -> int:

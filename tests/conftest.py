@@ -16,6 +16,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from browsing import browser, visit
+from campaigns import note_marks
 from children import RUN, end_leftovers, signals_heard
 from tippetop.export import bundle
 from tippetop.page_engine import HERE
@@ -32,7 +33,10 @@ settings.load_profile("fixed")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Generate the page's engine if a source is newer; pytest's workers need not."""
+    """Generate the page's engine if a source is newer; pytest's workers need not. Before, note
+    which parameters need not be made.
+    """
+    note_marks(config.option.markexpr)
     if hasattr(config, "workerinput"):
         return
     os.environ[RUN] = uuid.uuid4().hex  # all that is started from here on inherits it
