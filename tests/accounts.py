@@ -115,6 +115,15 @@ LAUNCHES: dict[str, tuple[tt.Problem, float]] = {
         ),
         20.0,
     ),
+    "homogeneous ball": (
+        of(
+            tt.Body(mass=0.02, shape=tt.Sphere(radius=0.02, center=0.0), I1=3.2e-6, I3=3.2e-6),
+            VISCOUS,
+            tilt=0.5,
+            spin=100.0,
+        ),
+        5.0,
+    ),
     "hurricane balls": (of(tt.presets.HURRICANE_BALLS, VISCOUS, tilt=0.3, spin=60.0), 3.0),
     "dry ball at rest": (
         report(0.0, launch__tilt=1.0).replace({**DRY, "rolling_resistance": 1e-3}),

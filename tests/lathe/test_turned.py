@@ -52,7 +52,6 @@ def test_a_ring_is_a_ring():
     ("profile", "sentence"),
     [
         ([(0, -R), (R, 0, R), (0, 0)], "a sphere of which only tilts 0 to 1.5708 exist"),
-        ([(0, 0), (R, R), (0, R)], "a sharp tip"),
         ([(0, 0), (0.005, 0), (0.01, R, 0.05), (0, R)], "an arc around a point beyond the axis"),
     ],
 )

@@ -52,6 +52,8 @@ def _plain(outlook: "Outlook") -> dict[str, Any]:
     prediction, stays = outlook.prediction, outlook.stays
     final = stays.state if stays else prediction and prediction.final
     possible = [stays.state] if stays else prediction and prediction.reachable
+    if outlook.is_neutral:
+        final, possible = None, None
     return {
         **{name: getattr(outlook, name) for name in QUANTITIES},
         "group_description": outlook.group and outlook.group.description,
@@ -59,6 +61,7 @@ def _plain(outlook: "Outlook") -> dict[str, Any]:
         "omega_c2": outlook.critical_spins and outlook.critical_spins.inverted,
         "omega_c_tilt": outlook.tilt,
         "stays": (None if stays is None else "stable" if stays.stable else "until disturbed"),
+        "is_neutral": outlook.is_neutral,
         "final": final,
         "final_certain": possible and len(possible) == 1,
         "final_possible": possible,
@@ -249,7 +252,9 @@ def _end_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
         state, stable = outlook.stays.state, outlook.stays.stable
         until = "" if stable else " until disturbed"
         rows.append(("stays exactly on", _described(state), f"rad{until}"))
-    if outlook.prediction is not None and not (outlook.stays and outlook.stays.stable):
+    if outlook.is_neutral:
+        rows.append(("ends as", "any θ: every tilt is neutral", "rad"))
+    elif outlook.prediction is not None and not (outlook.stays and outlook.stays.stable):
         rows.append(
             (
                 "and then ends as" if outlook.stays else "ends as",

@@ -210,6 +210,9 @@ def _measured_sphere(surface: Surface) -> Outside:
     """Return the extents of a sphere."""
     center = -surface.slope(1.0)
     radius = surface.height(1.0) + center
+    if radius == 0.0:
+        # A tip alone says nothing of the extents of the body above it.
+        return Outside(*[math.nan] * 8)
     mean = radius**2 - center**2
     mean = mean if mean >= 0.0 else math.inf
     return Outside(

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from tippetop.mechanics.surfaces.surface import (
     OvalSurface,
+    PointSurface,
     RingSurface,
     SphereSurface,
     SpheroidSurface,
@@ -78,14 +79,14 @@ class EccentricSphere(Shape):
 
 class Sphere(Shape):
     """Sphere with its centre anywhere on the axis: the tip of a stem, or one of two hurricane
-    balls.
+    balls; with radius 0 a sharp tip.
 
     Attributes
     ----------
     radius
-        Radius of the sphere, m.
+        Radius of the sphere, m; 0 for a sharp tip, such as the point of a peg top.
     center
-        Height of its centre above the centre of mass, along the axis, m.
+        Height of its centre above the centre of mass, along the axis, m; not 0 for a sharp tip.
 
     Examples
     --------
@@ -97,12 +98,21 @@ class Sphere(Shape):
     """
 
     kind: Literal["sphere"] = "sphere"
-    radius: Annotated[Positive, Quantity("m", "radius of the sphere")]
+    radius: Annotated[NotNegative, Quantity("m", "radius of the sphere")]
     center: Center
+
+    @model_validator(mode="after")
+    def _has_a_size(self) -> Self:
+        if self.radius == 0.0 and self.center == 0.0:
+            accepted = "a height other than 0: a sharp tip is not at the centre of mass"
+            raise InvalidInput("center", self.center, accepted)
+        return self
 
     @property
     def surface(self) -> Surface:
         """Surface about the centre of mass, in the form that the mechanics uses."""
+        if self.radius == 0.0:
+            return PointSurface(self.center)
         return SphereSurface(self.radius, self.center)
 
 

@@ -118,10 +118,10 @@ def _oval(workpiece: Workpiece, low: float, high: float, completed: bool) -> Sha
 
 
 def _shape(zone: Zone, center: float) -> Shape:
-    if zone.radius == 0.0 and zone.tube:
+    if zone.radius == 0.0:
         return Sphere(radius=zone.tube, center=center)
     if zone.radius > 0.0:
         return Ring(radius=zone.radius, center=center, tube=zone.tube)
-    part = "a sharp tip" if zone.name == "tip" else "an arc around a point beyond the axis"
+    part = "an arc around a point beyond the axis"
     accepted = "part of a body that stands on spheres, rings and smooth curves"
     raise InvalidInput("profile", Described(part), accepted, hint="round it by about 1 mm")

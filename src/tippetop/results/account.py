@@ -20,7 +20,7 @@ from tippetop.results.metrics import came_down
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import Prediction, predicted
 from tippetop.theory.slow_time import time_to_end
-from tippetop.theory.steady import SteadyKind, SteadyState
+from tippetop.theory.steady import SteadyKind, SteadyState, is_neutral
 from tippetop.theory.thresholds import CriticalSpins, stability_limits
 
 LEAST_SLIP = 1e-9
@@ -374,6 +374,8 @@ def _theory(facts: Facts) -> list[Clause]:
     if not top_of(problem).torque_free:
         numbers = {"spin": facts.metrics["final_spin"]}
         return [Clause("torque_takes_spin", numbers, "theory")]
+    if is_neutral(top_of(problem)):
+        return [Clause("neutral", {}, "theory")]
     clauses, spins, spin = list[Clause](), predicted_spins(problem), abs(launch.spin)
     low = launch.tilt < RISE and facts.peak[0] < RISE
     if spins is not None and low and spin < spins.upright:

@@ -30,6 +30,7 @@ from tippetop.theory.steady import (
     SteadyKind,
     SteadyState,
     has_level_spin,
+    is_neutral,
     jellett_of_launch,
     level_spin,
     vertical_spin,
@@ -116,6 +117,8 @@ class Outlook:
     """Possible ends of the launch, slightly disturbed if it starts in a steady state; None if
     Jellett's integral is not conserved, or there is no friction.
     """
+    is_neutral: bool
+    """Whether every tilt is a steady state with the same energy, as of a homogeneous ball."""
     steady: tuple[AnalysedState, ...]
     """Steady states, by tilt: all with the launch's lambda; for a shape that does not conserve it,
     both vertical spins with the launch's axial spin and the level spin with its precession.
@@ -187,6 +190,7 @@ def outlook(problem: Problem) -> Outlook:
         stays=None if stays is None else _analysed(stays, top),
         swings=_swings(problem) if top.surface.spherical and smooth else None,
         prediction=predicted(problem) if sphere and creeping and not smooth else None,
+        is_neutral=is_neutral(top),
         steady=tuple(_analysed(state, top) for state in steady_states(problem)),
         mu_arrival_time=limit,
         arrival_time=time,

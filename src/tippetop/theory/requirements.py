@@ -26,6 +26,12 @@ def require_sphere(top: Top) -> None:
             Described("this one"),
             "an eccentric sphere; Jellett's integral holds for no other",
         )
+    if top.surface.height(0.0) == 0.0:
+        raise InvalidInput(
+            "body.shape.radius",
+            0.0,
+            "more than 0: a sharp tip does not roll, and has no precession",
+        )
 
 
 def require_jellett(top: Top) -> None:

@@ -105,6 +105,31 @@ def rolling_spin(c: Scalar, surface: Surface) -> Scalar:
     return c + slope / (surface.height(c) - slope * c)
 
 
+def has_precession(top: Top) -> bool:
+    """Return whether the body can precess without slip: not on a sharp tip, which only a spin about
+    its axis leaves at rest.
+    """
+    return not (top.surface.spherical and top.surface.height(0.0) == 0.0)
+
+
+def is_neutral(top: Top) -> bool:
+    """Return whether every tilt is a steady state with the same energy: of a ball whose centre of
+    mass is in its middle and whose moments of inertia are equal.
+    """
+    scale_of_moments = HOMOGENEOUS * top.transverse_inertia
+    return bool(
+        top.surface.spherical
+        and abs(top.surface.slope(1.0)) <= HOMOGENEOUS * top.surface.size
+        and abs(top.transverse_inertia - top.axial_inertia) <= scale_of_moments
+    )
+
+
+HOMOGENEOUS = 1e-12
+"""Eccentricity, and relative difference of moments of inertia, up to which a ball is homogeneous:
+rounding of numbers that were computed from a profile.
+"""
+
+
 def gyroscopic_reaction(c: Scalar, top: Top) -> Scalar:
     """Return the gyroscopic moment of a precession without slip over phi'^2 sin(theta), kg m^2.
 
@@ -153,6 +178,8 @@ def branch_jellett(tilt: float, top: Top) -> float:
     """Return the size of Jellett's integral of the steady precession at a tilt, kg m^3/s; inf if
     there is none.
     """
+    if not has_precession(top):
+        return math.inf
     rolling = rolling_precession(tilt, top, math)
     try:
         squared = precession_rate_squared(rolling.axis[2], top)
@@ -296,6 +323,8 @@ rounding.
 
 def _precession_tilts(top: Top, jellett: float) -> list[float]:
     """Return the tilts of the steady precessions with a Jellett's integral."""
+    if not has_precession(top):
+        return []
     scaled, integral = natural(top), jellett / float(natural_units(top).jellett)
     square = integral**2
 

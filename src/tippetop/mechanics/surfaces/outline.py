@@ -95,4 +95,14 @@ def outline(surface: Surface) -> list[Line]:
     lines = arcs[:1]
     for before, arc in pairwise(arcs):
         lines += [[before[-1], arc[0]], arc]
-    return [line for line in lines if len(line) > 1]
+    lines = [line for line in lines if len(line) > 1]
+    # A tip alone says nothing of the body above it: a cone stands for that.
+    return lines if lines else _cone(surface)
+
+
+def _cone(surface: Surface) -> list[Line]:
+    """Return the outline of a cone from a sharp tip to the centre of mass."""
+    tip, rim = -surface.height(1.0), 0.5 * surface.size
+    points = [(0.0, tip), (rim, 0.0), (0.0, 0.0)]
+    ordered = points if tip < 0.0 else points[::-1]
+    return [[ordered[0], ordered[1]], [ordered[1], ordered[2]]]

@@ -95,6 +95,48 @@ class SphereSurface(NamedTuple):
         return cls(1.0, *proportions)
 
 
+class PointSurface(NamedTuple):
+    """A sharp tip on the axis, `center` above the centre of mass: the point of a peg top.
+
+    It is a sphere of radius 0, h = -center c, of which the distance of the centre of mass is the
+    only length.
+    """
+
+    center: Scalar
+
+    def height(self, c: Scalar) -> Scalar:
+        """Support function h(c), m."""
+        return -self.center * c
+
+    def slope(self, c: Scalar) -> Scalar:
+        """First derivative h'(c), m."""
+        return -self.center
+
+    def curvature(self, c: Scalar) -> Scalar:
+        """Second derivative h''(c), m: none."""
+        return 0.0
+
+    @property
+    def spherical(self) -> bool:
+        """It is a sphere, of radius 0."""
+        return True
+
+    @property
+    def size(self) -> Scalar:
+        """The distance of the tip from the centre of mass, m."""
+        return abs(self.center)
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        """1 if the tip is above the centre of mass, -1 if it is below."""
+        return (self.center / abs(self.center),)
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
+        """Make the tip at unit distance on this side."""
+        return cls(*proportions)
+
+
 class SpheroidSurface(NamedTuple):
     """A spheroid whose centre is `center` above the centre of mass along the axis: the spinning
     egg.
