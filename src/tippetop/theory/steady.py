@@ -106,7 +106,7 @@ def rolling_spin(c: Scalar, surface: Surface) -> Scalar:
 
 
 def has_precession(top: Top) -> bool:
-    """Return whether the body can precess without slip: not on a sharp tip, which only a spin about
+    """Return whether the body has precessions without slip: not on a sharp tip, which only a spin about
     its axis leaves at rest.
     """
     return not (top.surface.spherical and top.surface.height(0.0) == 0.0)
