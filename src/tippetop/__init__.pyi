@@ -34,6 +34,7 @@ from .lathe.files import read_workpiece as read_workpiece
 from .lathe.workpiece import Insert as Insert
 from .lathe.workpiece import Workpiece as Workpiece
 from .problem import presets as presets
+from .problem.air import Air as Air
 from .problem.bodies import Body as Body
 from .problem.contact_rules import Contact as Contact
 from .problem.frictions import ContensouFriction as ContensouFriction
@@ -53,6 +54,7 @@ from .problem.shapes import Ring as Ring
 from .problem.shapes import Shape as Shape
 from .problem.shapes import Sphere as Sphere
 from .problem.shapes import Spheroid as Spheroid
+from .problem.table import Table as Table
 from .results.catalogue import Outcome as Outcome
 from .results.dataframes import to_dataframe as to_dataframe
 from .results.description import Account as Account

@@ -339,7 +339,7 @@ class Automaton:
             return self._release(contact, time, state, ())
         kind = EventKind.SLIP if begins.slip else EventKind.ROLL
         event = Event(kind, time, surface=contact.number)
-        point = ContactPoint.of(state.axis, state.momentum, contact)
+        point = ContactPoint.of(state.axis, state.momentum, contact, state.velocity[:2])
         slip = None if begins.slip or held else slip_of(*along_table(state), contact)
         rolling = None if held or not begins.slip else point.turning[:2]
         try:
@@ -385,8 +385,8 @@ class Automaton:
         resists rolling, slip would need N = -b / A > 0, hence A < 0, and would at once be driven
         against its own direction: the contact opens.
         """
-        free = ContactPoint.of(state.axis, state.momentum, contact).free.point[2]
-        return bool(free > 0.0) and not self.pulls
+        point = ContactPoint.of(state.axis, state.momentum, contact, state.velocity[:2])
+        return bool(point.free.point[2] > 0.0) and not self.pulls
 
     def resolve(
         self,
@@ -406,7 +406,7 @@ class Automaton:
             state = on_table(come_to_rest(along_table(state), contact, *ended), contact)
         elif self.pulls:
             return Transition(events, self.mode_for(contact, state, slips=True), state)
-        point = ContactPoint.of(state.axis, state.momentum, contact)
+        point = ContactPoint.of(state.axis, state.momentum, contact, state.velocity[:2])
         slip = None if ended[0] else slip_of(*along_table(state), contact)
         rolling = None if ended[1] else point.turning[:2]
         try:

@@ -26,7 +26,7 @@ from tippetop.mechanics.contacts.slip_variables import remaining, scaled, slip_o
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.motion import axis_rate
 from tippetop.mechanics.state import SlidingState
-from tippetop.mechanics.vectors import Row, Scalar, Vector, dot
+from tippetop.mechanics.vectors import Row, Scalar, Vector, add, dot
 
 
 class Directed(NamedTuple):
@@ -72,7 +72,9 @@ class ClosedContacts:
     @property
     def points(self) -> tuple[ContactPoint, ...]:
         """The contact points."""
-        return contact_points(*split(self.numbers), self.mode.tops)
+        y, mode = self.numbers, self.mode
+        velocity = None if any(mode.sticks) else (y[6], y[7])
+        return contact_points(*split(y), mode.tops, velocity)
 
     @property
     def forces(self) -> ContactForces:
@@ -137,8 +139,11 @@ class ClosedContacts:
     def rates(self) -> tuple[Scalar, ...]:
         """Return the rates of the numbers."""
         forces, mode = self.forces, self.mode
-        drawn = () if any(mode.sticks) else scaled(1.0 / mode.top.mass, forces.force[:2])
-        return (*axis_rate(*split(self.numbers), mode.top), *forces.moment, *drawn)
+        moment, force, outer = forces.moment, forces.force, forces.points[0].outer
+        if outer is not None:
+            moment, force = add(moment, outer.couple), add(force, outer.force)
+        drawn = () if any(mode.sticks) else scaled(1.0 / mode.top.mass, force[:2])
+        return (*axis_rate(*split(self.numbers), mode.top), *moment, *drawn)
 
     def rate_of(self, component: SlipComponent) -> Slip:
         """Return the rate of a velocity: slip, of two contacts that of the first or xi, or

@@ -138,8 +138,11 @@ def _turning_on_two() -> list[GuardValue]:
 
 
 def _sticking_on_two(mode: Any) -> list[GuardValue]:
-    """Return the guards of what holds both contacts."""
-    if slip_length(mode.top.friction) is None:
+    """Return the guards of what holds both contacts.
+
+    An outer field changes what patches need: without one only rolling does.
+    """
+    if slip_length(mode.top.friction) is None or mode.top.field is not None:
         return [
             (numbered(SLIP, 0), lambda now: now.forces.sticking_reserve(0)),
             (numbered(SLIP, 1), lambda now: now.forces.sticking_reserve(1)),

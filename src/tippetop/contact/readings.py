@@ -12,7 +12,7 @@ from tippetop.contact.mode import IntegratedMode, Mode, Reaction
 from tippetop.integrators.base import Array, Rows
 from tippetop.integrators.evaluation import Evaluation, compiled_evaluation
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import angular_velocity, axial_spin, point_velocity
+from tippetop.mechanics.motion import air_power, angular_velocity, axial_spin, point_velocity
 from tippetop.mechanics.quadratures import quadrature_rates, resistance_powers
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, lowest_gap
@@ -37,6 +37,8 @@ class Rates(NamedTuple):
     drilling: Scalar
     rolling: Scalar
     """Powers of drilling and of rolling friction."""
+    air: Scalar
+    """Power of air."""
     axis: Scalar
     """n_z."""
     force: Scalar
@@ -54,7 +56,8 @@ class Rates(NamedTuple):
         drilling = rolling = 0.0
         if not mode.top.torque_free:
             drilling, rolling = resistance_powers(state, reaction.resistance, mode.top)
-        quadratures = east, north, turn, work, drilling, rolling
+        air = air_power(state.axis, state.momentum, state.velocity, mode.top)
+        quadratures = east, north, turn, work, drilling, rolling, air
         margin = least([one for one in conditions_of(mode, state, reaction) if one is not None])
         return cls(*quadratures, state.axis[2], reaction.force[2], margin)
 

@@ -26,7 +26,7 @@ def on_present_branch(top: Top, state: State, slips: bool) -> Top:
         return top
     if slips:
         return on_branch(top, slip_of(*along_table(state), top))
-    point = ContactPoint.of(state.axis, state.momentum, top)
+    point = ContactPoint.of(state.axis, state.momentum, top, state.velocity[:2])
     rolling = point.turning[:2] if rolls_freely(top, state) else None
     return on_limit_branch(top, forces_and_accelerations(point, None, rolling)[0])
 

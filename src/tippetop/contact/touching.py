@@ -72,7 +72,7 @@ def stays_closed(top: Top, beside: Top, state: State) -> bool:
     """
     back, depth = 1.0, max(0.0, float(gap(state, top) - gap(state, beside)))
     if _both_slip(top, beside, state):
-        point = ContactPoint.of(state.axis, state.momentum, top)
+        point = ContactPoint.of(state.axis, state.momentum, top, state.velocity[:2])
         slip = slip_of(*along_table(state), top)
         wrench = forces_and_accelerations(point, slip, point.turning[:2])[0]
         back = float(abs(gap_acceleration(top, beside, state, wrench)))
@@ -82,7 +82,7 @@ def stays_closed(top: Top, beside: Top, state: State) -> bool:
 
 def gap_acceleration(top: Top, beside: Top, state: State, wrench: Wrench) -> float:
     """Return the acceleration of another surface's gap under a wrench at the active one."""
-    pair = contact_points(state.axis, state.momentum, (top, beside))
+    pair = contact_points(state.axis, state.momentum, (top, beside), state.velocity[:2])
     return float(rates_under(pair, [(0, wrench)], free_rates(pair)).points[1][2])
 
 

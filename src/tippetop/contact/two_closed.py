@@ -81,12 +81,12 @@ class TwoClosed:
         state = without_tilting(state, tops[0])
         if ended == (False, True):
             tops, ended = tops[::-1], ended[::-1]
-        pair = contact_points(state.axis, state.momentum, tops)
+        pair = contact_points(state.axis, state.momentum, tops, state.velocity[:2])
         stopped = tops[0].resists_rolling and not rolls
         if any(ended) or stopped:
             momentum, velocity = at_rest(pair, state.velocity, ended, stopped=stopped)
             state = state._replace(momentum=momentum, velocity=velocity)
-            pair = contact_points(state.axis, state.momentum, tops)
+            pair = contact_points(state.axis, state.momentum, tops, state.velocity[:2])
         return cls(tops, state, ended, rolls, pair)
 
     @property
@@ -141,9 +141,10 @@ class TwoClosed:
     @property
     def slowest_rolling(self) -> float:
         """The |omega_e| to which rolling must fall before two patches that stick begin to slip; -1
-        where they never do, nothing rolls, or the law has no patch.
+        where they never do, nothing rolls, the law has no patch, or an outer field acts.
         """
         patches = self.rolls and slip_length(self.tops[0].friction) is not None
+        patches = patches and self.tops[0].field is None
         return rolling_of_slip(self.pair, self.rolls) if patches else -1.0
 
     def changes(self, time: float, resolved: Resolution, before: Before) -> tuple[Event, ...]:

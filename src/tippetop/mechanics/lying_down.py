@@ -24,8 +24,9 @@ the time left is
 
 Rolling resistance eps takes P = N eps |omega|, with the horizontal angular velocity omega. On a
 thin disk without slip, I1 = m R^2 / 4, this is s = [(2/3) (eps / R) sqrt(g / R) T]^2. T is wrong
-by as much as the motion departs from its form: relatively by s, and by the size of a nutation: the
-difference of the tilt's rate from -2 s / T, and that of N from the weight. Where the contact slips,
+by as much as the motion departs from its form: relatively by s, by the slope of the table, and by
+the size of a nutation: the difference of the tilt's rate from -2 s / T, and that of N from the
+weight. Where the contact slips,
 friction takes some power, too, and the departure is taken to be 1. Whether T is short enough is
 asked with the weight in place of N, which has no bound where a body that rocks turns round.
 
@@ -141,7 +142,11 @@ class Wobble(NamedTuple):
         drifting = across * energy + axis[2] * sine * loss
         pace = weight * arm / top.transverse_inertia
         nutation = (drifting * circling / (energy * pace)) ** 2 + (pressing - 1.0) ** 2
-        return cls(energy, loss, pressing, sine * sine + nutation)
+        departure = sine * sine + nutation
+        if top.field is not None and top.field.slope is not None:
+            east, north = top.field.slope
+            departure = departure + (east * east + north * north) / (top.gravity * top.gravity)
+        return cls(energy, loss, pressing, departure)
 
     @property
     def time_left(self) -> Scalar:

@@ -1,13 +1,15 @@
 """Equations of motion of a body of revolution that slides on the table.
 
-The centre of mass moves by m u' = F, the angular momentum about it by L' = a x F + N t, and the
-axis by n' = L x n / I1, where F = N (z + f) is the contact force, N t its drilling torque and a the
-contact vector. The normal force N follows from differentiating the constraint z = h(n_z) twice. The
-variables have no singularity, and the right-hand side is algebraic.
+The centre of mass moves by m u' = F + f0, the angular momentum about it by L' = a x F + N t + m0,
+and the axis by n' = L x n / I1. Here F = N (z + f) is the contact force, N t its drilling torque, a
+the contact vector, and f0 and m0 are the force and the couple of the outer field. The normal force
+N follows from differentiating the constraint z = h(n_z) twice. The variables have no singularity,
+and the right-hand side is algebraic.
 """
 
 from typing import NamedTuple
 
+from tippetop.mechanics.field import OuterForces
 from tippetop.mechanics.laws.friction import Traction
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.surface import contact_vector, support_at
@@ -31,6 +33,8 @@ class SlidingContact(NamedTuple):
     """Angular velocity omega, rad/s."""
     traction: Traction
     """Friction force and torque per unit normal force."""
+    outer: OuterForces | None
+    """What the outer field does, if there is one."""
     free_acceleration: Scalar
     """Acceleration b of the gap there would be without a contact force, m/s^2."""
     delassus: Scalar
@@ -125,15 +129,78 @@ def sliding_contact(
     slip = (velocity[0] + swing[0], velocity[1] + swing[1])
     traction = top.traction(slip, omega)
 
-    free = free_acceleration(axis, momentum, top)
+    outer = outer_forces(axis, momentum, velocity, top)
+    free = free_acceleration(axis, momentum, top, outer)
     delassus = driven_acceleration(axis, 1.0, moment_per_normal_force(arm, traction), top)
-    return SlidingContact(arm, slip, omega, traction, free, delassus)
+    return SlidingContact(arm, slip, omega, traction, outer, free, delassus)
 
 
-def free_acceleration(axis: Vector, momentum: Vector, top: Top) -> Scalar:
-    """Acceleration of the gap in free flight, -(g + h'' c'^2 + h' [L x n']_z / I1), m/s^2."""
+def outer_forces(
+    axis: Vector, momentum: Vector, velocity: Horizontal | None, top: Top
+) -> OuterForces | None:
+    """Return what the outer field does to a body that touches the table; None without a field.
+
+    Parameters
+    ----------
+    axis, momentum
+        Axis n, and angular momentum L, kg m^2/s.
+    velocity
+        Horizontal velocity of the centre of mass, m/s; None where the contact point is at rest.
+    top
+        The body.
+    """
+    if top.field is None:
+        return None
+    if top.field.drag is None:
+        return outer_forces_in(axis, momentum, (0.0, 0.0, 0.0), top)
+    if velocity is None:
+        x, y = contact_swing(axis, momentum, top)
+        velocity = (-x, -y)
+    sinking = support_at(axis, top.surface)[1] * axis_rate(axis, momentum, top)[2]
+    return outer_forces_in(axis, momentum, (velocity[0], velocity[1], sinking), top)
+
+
+def outer_forces_in(
+    axis: Vector, momentum: Vector, velocity: Vector, top: Top
+) -> OuterForces | None:
+    """Return what the outer field does to a body whose centre of mass has this velocity, m/s."""
+    field = top.field
+    if field is None:
+        return None
+    force = field.air_force(velocity)
+    if field.slope is not None:
+        east, north = field.slope
+        force = (force[0] + top.mass * east, force[1] + top.mass * north, force[2])
+    if not field.resists_turning:
+        return OuterForces(force, (0.0, 0.0, 0.0))
+    spin = axial_spin(axis, momentum, top)
+    return OuterForces(force, field.couple(axis, spin, angular_velocity(axis, momentum, top)))
+
+
+def air_power(axis: Vector, momentum: Vector, velocity: Vector, top: Top) -> Scalar:
+    """Return the power of air, W, which is not positive."""
+    field = top.field
+    if field is None or not field.has_air:
+        return 0.0
+    power = dot(field.air_force(velocity), velocity)
+    if not field.resists_turning:
+        return power
+    turning = angular_velocity(axis, momentum, top)
+    return power + dot(field.couple(axis, axial_spin(axis, momentum, top), turning), turning)
+
+
+def free_acceleration(
+    axis: Vector, momentum: Vector, top: Top, outer: OuterForces | None
+) -> Scalar:
+    """Acceleration of the gap without a contact force, m/s^2.
+
+    It is -(g + h'' c'^2 + h' [L x n']_z / I1) and that of the outer forces, if there are any.
+    """
     bending, swinging = turning_parts(axis, momentum, top)
-    return -(top.gravity + (bending + swinging))
+    falling = -(top.gravity + (bending + swinging))
+    if outer is None:
+        return falling
+    return falling + driven_acceleration(axis, outer.force[2], outer.couple, top)
 
 
 def turning_parts(axis: Vector, momentum: Vector, top: Top) -> Horizontal:
@@ -153,13 +220,13 @@ def driven_acceleration(axis: Vector, upwards: Scalar, moment: Vector, top: Top)
     return upwards / top.mass - lever * cross(moment, axis)[2]
 
 
-def presses(axis: Vector, momentum: Vector, top: Top) -> Scalar:
+def presses(axis: Vector, momentum: Vector, top: Top, outer: OuterForces | None) -> Scalar:
     """Return whether the gap would close without a contact force, by more than rounding.
 
     A truth value of floats, or an array of them.
     """
     bending, swinging = turning_parts(axis, momentum, top)
-    sinking = top.gravity + (bending + swinging)
+    sinking = -free_acceleration(axis, momentum, top, outer)
     lever = abs(support_at(axis, top.surface)[1]) / top.transverse_inertia
     error = ROUNDING * lever * dot(momentum, momentum) / top.transverse_inertia
     return sinking > ROUNDING * (top.gravity + abs(bending) + abs(swinging)) + error
@@ -191,9 +258,12 @@ def sliding_rates(state: SlidingState, top: Top) -> SlidingState:
     x, y, _ = moment_per_normal_force(touch.arm, touch.traction)
     # About the vertical only friction has a moment: as that of the force, it is a product less.
     twisting = cross(touch.arm, force)[2] + touch.torque[2]
+    moment = (normal * x, normal * y, twisting)
+    if touch.outer is not None:
+        moment, force = add(moment, touch.outer.couple), add(force, touch.outer.force)
     return SlidingState(
         axis=axis_rate(state.axis, state.momentum, top),
-        momentum=(normal * x, normal * y, twisting),
+        momentum=moment,
         velocity=(force[0] / top.mass, force[1] / top.mass),
     )
 

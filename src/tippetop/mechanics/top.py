@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from tippetop.mechanics.field import FieldKind, OuterField
 from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.laws.friction import FrictionLaw, Traction
 from tippetop.mechanics.state import State
@@ -26,8 +27,11 @@ class RigidBody(NamedTuple):
     friction: FrictionLaw
     """The whole law, where a law has branches."""
     gravity: Scalar
+    """Acceleration of gravity along the table's normal, m/s^2."""
     rolling_resistance: RollingResistance | None = None
     """What resists rolling beside friction, if anything does."""
+    field: OuterField | None = None
+    """Gravity along the table, and air; None where the table is level and there is no air."""
 
     @property
     def contacts(self) -> tuple["Top", ...]:
@@ -46,15 +50,16 @@ class RigidBody(NamedTuple):
         """The numbers that remain in natural units: inertias, proportions of the surface, friction
         law.
 
-        And the arm of rolling resistance, if there is any.
+        And the arm of rolling resistance, if there is any, and the outer field.
         """
-        units, resistance = natural_units(self), self.rolling_resistance
+        units, resistance, field = natural_units(self), self.rolling_resistance, self.field
         return (
             self.transverse_inertia / units.inertia,
             self.axial_inertia / units.inertia,
             *self.surface.proportions,
             *self.friction.coefficients(units),
             *(() if resistance is None else (resistance.length / units.length,)),
+            *(() if field is None else field.numbers(units)),
         )
 
 
@@ -82,6 +87,7 @@ class Top(NamedTuple):
         friction: FrictionLaw,
         gravity: Scalar,
         rolling_resistance: RollingResistance | None = None,
+        field: OuterField | None = None,
     ) -> "Top":
         """Return the first contact of the body with these numbers."""
         return cls(
@@ -93,6 +99,7 @@ class Top(NamedTuple):
                 friction,
                 gravity,
                 rolling_resistance,
+                field,
             )
         )
 
@@ -131,7 +138,7 @@ class Top(NamedTuple):
 
     @property
     def gravity(self) -> Scalar:
-        """Acceleration of gravity, m/s^2."""
+        """Acceleration of gravity along the table's normal, m/s^2."""
         return self.body.gravity
 
     @property
@@ -140,13 +147,19 @@ class Top(NamedTuple):
         return self.body.rolling_resistance
 
     @property
+    def field(self) -> OuterField | None:
+        """Gravity along the table, and air; None where the table is level and there is no air."""
+        return self.body.field
+
+    @property
     def conserves_jellett(self) -> bool:
         """Whether Jellett's integral -L.a is constant on one contact, whatever the motion.
 
         The contact force has no part in it on a sphere, because both its moment a x F and the
-        change of a are perpendicular to the other; a torque of the table has.
+        change of a are perpendicular to the other; a torque of the table has, and one of air.
         """
-        return self.surface.spherical and self.torque_free
+        turned_by_air = self.field is not None and self.field.resists_turning
+        return self.surface.spherical and self.torque_free and not turned_by_air
 
     @property
     def resists_rolling(self) -> bool:
@@ -181,6 +194,7 @@ class Top(NamedTuple):
             self.number,
             type(self.friction),
             len(self.friction.coefficients(NATURAL)) - coefficients,
+            None if self.field is None else self.field.kind,
         )
 
     @property
@@ -214,11 +228,14 @@ class Kind(NamedTuple):
     """The branch of the law that holds; the whole law where this has none."""
     branch_count: int
     """How many numbers the branch has that the law does not have."""
+    field: FieldKind | None = None
+    """The parts of the outer field; None where there is none."""
 
     @property
     def body_count(self) -> int:
         """How many dimensionless numbers its body has."""
-        return 2 + self.proportions + self.coefficients + self.resists_rolling
+        outer = 0 if self.field is None else self.field.numbers
+        return 2 + self.proportions + self.coefficients + self.resists_rolling + outer
 
     @property
     def numbers(self) -> int:
@@ -236,7 +253,9 @@ class Kind(NamedTuple):
         surface: Surface = self.surface.from_proportions(tuple(numbers[2:first]))
         friction = self.law(*numbers[first:last])
         resistance = RollingResistance(numbers[last]) if self.resists_rolling else None
-        body = RigidBody(1.0, numbers[0], numbers[1], surface, friction, 1.0, resistance)
+        outer = tuple(numbers[last + self.resists_rolling : self.body_count])
+        field = None if self.field is None else self.field.field(outer)
+        body = RigidBody(1.0, numbers[0], numbers[1], surface, friction, 1.0, resistance, field)
         return self.on(body, numbers[self.body_count : self.numbers])
 
     def on(self, body: RigidBody, branch_numbers: Sequence[Scalar]) -> Top:
@@ -283,7 +302,7 @@ def contacts_with(kinds: Sequence[Kind], numbers: Sequence[Scalar]) -> list[Top]
 
 
 def natural_units(body: RigidBody | Top) -> Units:
-    """Units in which the body's mass, its size and gravity are all 1."""
+    """Units in which the body's mass, its size and gravity along the table's normal are all 1."""
     size = body.surface.size
     return Units(body.mass, size, (size / body.gravity) ** 0.5)
 

@@ -1,6 +1,7 @@
 """`Problem`: the complete, validated physics of a run, with its reading and writing.
 
-A problem has a body, a friction law, a launch, rules of contact and gravity. All parts are frozen.
+A problem has a body, a friction law, a launch, rules of contact, gravity, a table and air. All
+parts are frozen.
 """
 
 import json
@@ -14,6 +15,7 @@ from pydantic import model_validator
 
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.slip_variables import is_slipping, size
+from tippetop.mechanics.field import OuterField
 from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.motion import along_table, on_table, sliding_contact
 from tippetop.mechanics.state import State
@@ -22,10 +24,12 @@ from tippetop.mechanics.surfaces.surface import POLE
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
+from tippetop.problem.air import Air
 from tippetop.problem.bodies import Body
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.frictions import LEAST_PATCH, Friction
 from tippetop.problem.launch import Launch
+from tippetop.problem.table import Table
 from tippetop.support.errors import MISSING, InvalidInput, require
 from tippetop.support.field_paths import (
     dotted_names,
@@ -71,6 +75,10 @@ class Problem(Part):
         Arm of the couple of the normal force that resists rolling, m, at most the size of the body.
         In addition to friction, the table opposes the horizontal angular velocity w_t with the
         torque N rolling_resistance, and holds w_t at zero if a smaller torque is enough.
+    table
+        The table, which may slope.
+    air
+        What air resists; none without it.
 
     Examples
     --------
@@ -91,6 +99,8 @@ class Problem(Part):
     contact: Annotated[Contact, OF_ITS_KIND] = Contact()
     gravity: Annotated[Positive, Quantity("m s-2", "acceleration of gravity")] = 9.8
     rolling_resistance: Annotated[NotNegative, Quantity("m", "rolling resistance")] = 0.0
+    table: Table = Table()
+    air: Air = Air()
 
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
@@ -133,7 +143,7 @@ class Problem(Part):
 
     def standing(self, functions: Functions = math) -> Top:
         """Return the top with the surface active that is lowest at launch."""
-        return top_of(self).body.lowest_at(PoleExact(functions).cos(self.launch.tilt))
+        return top_of(self, functions).body.lowest_at(PoleExact(functions).cos(self.launch.tilt))
 
     def start(self, functions: Functions = math) -> State:
         """Return the state at launch, SI.
@@ -312,13 +322,31 @@ class Problem(Part):
         return place
 
 
-def top_of(problem: Problem) -> Top:
-    """Return the numbers of a problem in the form that the mechanics uses, SI."""
+def top_of(problem: Problem, functions: Functions = math) -> Top:
+    """Return the numbers of a problem in the form that the mechanics uses, SI.
+
+    `functions` has the sine and cosine for the type of the fields, such as arrays.
+    """
     body, arm = problem.body, problem.rolling_resistance
     resistance = None if isinstance(arm, (int, float)) and not arm else RollingResistance(arm)
     return Top.of(
-        body.mass, body.I1, body.I3, body.surface, problem.friction.law, problem.gravity, resistance
+        body.mass,
+        body.I1,
+        body.I3,
+        body.surface,
+        problem.friction.law,
+        problem.table.normal(problem.gravity, functions),
+        resistance,
+        field_of(problem, functions),
     )
+
+
+def field_of(problem: Problem, functions: Functions = math) -> OuterField | None:
+    """Return gravity along the table, and air, SI; None on a level table without air."""
+    air = problem.air
+    slope = problem.table.along(problem.gravity, functions)
+    field = OuterField(slope, air.axial, air.transverse, air.drag)
+    return field if field.has_air or field.slope is not None else None
 
 
 # translate: skip

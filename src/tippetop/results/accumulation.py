@@ -46,6 +46,8 @@ ACCUMULATED: Mapping[str, Accumulation] = {
     "struck": SUM,
     "drilled": SUM,
     "rolled": SUM,
+    "braked": SUM,
+    "descended": SUM,
     "airborne": SUM,
     "highest_gap": HIGHEST,
     "highest": HIGHEST,

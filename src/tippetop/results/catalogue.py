@@ -238,6 +238,7 @@ SAMPLED: Mapping[str, Variable] = {
     "rolling_loss": Variable(
         "energy lost to rolling resistance since launch", "J", "lost to rolling"
     ),
+    "air_loss": Variable("energy lost to air since launch", "J", "lost to air"),
     "jellett": Variable(
         "Jellett's integral",
         "kg m3 s-1",
@@ -392,6 +393,7 @@ METRICS: Mapping[str, Variable] = {
     "energy_lost_rolling": Variable(
         "energy lost to rolling resistance from launch to end", "J", "lost to rolling"
     ),
+    "energy_lost_air": Variable("energy lost to air from launch to end", "J", "lost to air"),
     "max_height": Variable(
         "largest height of the centre of mass above the table",
         "m",

@@ -39,7 +39,8 @@ def derive(samples: Samples, orientation: Array, top: Top, units: Units) -> dict
         "velocity_body": in_frame(frame, scale(units.speed, state.velocity)),
         "angular_momentum_body": in_body,
         "angular_velocity_body": in_body / (units.inertia * moments),
-        "energy_height": top.mass * top.gravity * units.energy * state.height,
+        "energy_height": units.energy
+        * (top.mass * top.gravity * state.height - samples.sums.descent_work(top)),
         "energy_translation": half * top.mass * dot(state.velocity, state.velocity),
         "energy_spin": half * top.axial_inertia * instants.spin**2,
         "energy_turning": half / top.transverse_inertia * dot(turning, turning),

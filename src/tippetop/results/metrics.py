@@ -57,7 +57,10 @@ class Ends:
     struck: Scalar
     drilled: Scalar
     rolled: Scalar
-    """Energy lost in impacts, to drilling and to rolling."""
+    braked: Scalar
+    """Energy lost in impacts, to drilling, to rolling and to air."""
+    descended: Scalar
+    """Work of gravity along the table."""
     airborne: Scalar
     highest_gap: Scalar
     highest: Scalar
@@ -86,14 +89,16 @@ class Ends:
         flights: Flights,
         steps: int,
         sums: RunSums,
+        descended: Scalar,
         least: Sequence[float],
         settling: tuple[float, float, float],
         rolls: float,
     ) -> "Ends":
         """Return the ends of one launch.
 
-        `least` holds the least values of the normal force, n_z, -n_z and, in flights, the negative
-        height, and `settling` the numbers `turned`, `settled` and `arrived`.
+        `descended` is the work of gravity along the table. `least` holds the least values of the
+        normal force, n_z, -n_z and, in flights, the negative height, and `settling` the numbers
+        `turned`, `settled` and `arrived`.
         """
         lift_offs = [event.time for event in events if event.kind is EventKind.LIFT_OFF]
         struck, count = sum([event.energy_lost for event in events]), len(flights.rows)
@@ -109,6 +114,7 @@ class Ends:
             *pressed,
             struck,
             *sums.losses,
+            descended,
             *aloft,
             down,
             -up,
@@ -175,7 +181,8 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         moment = length(start.momentum) * outer_height(top.surface, start.axis[2])
         change = np.abs(lowest_jellett(end, top) - lowest_jellett(start, top))
         drift = change / np.where(moment > 0, moment, np.nan)
-        lost = energy(start, top) - energy(end, top)
+        lost = energy(start, top) - energy(end, top) + ends.descended
+        sliding = lost - ends.struck - ends.drilled - ends.rolled - ends.braked
         precession = np.where(
             axis_sine(end.axis) > 0, precession_rate(end.axis, end.momentum, top), np.nan
         )
@@ -196,9 +203,10 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         "flights": ends.flights,
         "airborne_time": ends.airborne * units.time,
         "energy_lost": lost * units.energy,
-        "energy_lost_sliding": (lost - ends.struck - ends.drilled - ends.rolled) * units.energy,
+        "energy_lost_sliding": sliding * units.energy,
         "energy_lost_drilling": ends.drilled * units.energy,
         "energy_lost_rolling": ends.rolled * units.energy,
+        "energy_lost_air": ends.braked * units.energy,
         "max_height": highest * units.length,
         "max_gap": ends.highest_gap * units.length,
         "jellett_change": drift,

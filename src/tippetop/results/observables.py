@@ -78,8 +78,7 @@ class Recorder:
         self._sampled = 0
         self._last: tuple[Block, tuple[Array, Array, Array]] | None = None
         self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
-        # A law without torque does no work by drilling or rolling.
-        self._integrals = 1 + WORK if top.torque_free else INTEGRALS
+        self._integrals = integrals_of(top)
         self._sums = np.array(RunSums.at_launch(self._pole * azimuth, lost))
         self.monitor = Monitor(top, start, pulls)
 
@@ -112,7 +111,10 @@ class Recorder:
         """
         assert trajectory.status is not None, "a trajectory that has no more segments has ended"
         return self.monitor.final_status(
-            trajectory.status, trajectory.state, self._sums[WORK], tolerance_of(trajectory)
+            trajectory.status,
+            trajectory.state,
+            self.sums.total_work(self.top),
+            tolerance_of(trajectory),
         )
 
     def breach_of(self, trajectory: Trajectory) -> str:
@@ -165,8 +167,8 @@ class Recorder:
         -------
         tuple
             Rates of the integrals at Gauss's points, shape (q, 8, k), the sums at the starts of the
-            steps, shape (7, k), and the charts of the angle, shape (k,). The integrals are those of
-            `RunSums`, of a law without torque up to the work.
+            steps, shape (8, k), and the charts of the angle, shape (k,). The integrals are the
+            first q of `RunSums` (see `integrals_of`).
         """
         count, last = len(block.starts), self._integrals
         rates, axis = np.empty((last, len(NODES), count)), np.empty((2, count))
@@ -194,12 +196,13 @@ class Recorder:
         values[WORK] -= np.cumsum(lost)
         values[STRUCK] += np.cumsum(lost)
         self._sums, self._pole = values[:, -1], float(poles[-1])
+        work = RunSums(*values).total_work(self.top)
         for group in block.groups:
             size, energy, jellett = read(
                 monitored_in, group.mode, group.start_numbers, total=len(group.which)
             )
             with np.errstate(invalid="ignore"):  # edges have nan where the axis is vertical
-                self.monitor.check(size, energy, jellett, values[WORK, group.which])
+                self.monitor.check(size, energy, jellett, work[group.which])
             self._check_conditions(group)
         return rates, values[:, :-1], poles
 
@@ -217,6 +220,15 @@ class Recorder:
             self.monitor.check_gap(gap)
             self.monitor.check_force(pressing)
             self.monitor.check_reserve(reserve)
+
+
+def integrals_of(top: Top) -> int:
+    """Return how many of the integrals of `RunSums` may not be zero: those of air only in air, and
+    those of drilling and rolling not under a law without torque.
+    """
+    if top.field is not None and top.field.has_air:
+        return INTEGRALS
+    return 1 + WORK if top.torque_free else INTEGRALS - 1
 
 
 def tolerance_of(trajectory: Trajectory) -> float:

@@ -27,7 +27,7 @@ from tippetop.results.metrics import (
     settled_band,
     turning_time,
 )
-from tippetop.results.settling import settled_tilt_of_one
+from tippetop.results.settling import settled_tilt_of_one, spins_for_ever
 from tippetop.results.sums import RunSums
 
 AT_ONCE = 4
@@ -75,7 +75,7 @@ class RunMetrics:
                 self.methods.setdefault("" if method is None else method.name, method)
         for segment in block.segments[-1:]:
             mode = segment.mode
-            self._rolls = mode.status == STICKS and mode.top.torque_free
+            self._rolls = mode.status == STICKS and spins_for_ever(mode.top)
         self._take_flights(block)
         for group in block.groups:
             self._take_tip(group, block.starts[group.which])
@@ -150,6 +150,7 @@ class RunMetrics:
             self.flights,
             self.steps,
             sums,
+            sums.descent_work(self._top),
             [least.value for least in leasts],
             (self._turned, settled, self.arrival(*settled_band(settled))),
             float(self._rolls),

@@ -35,7 +35,7 @@ class Samples(NamedTuple):
 def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     """Return every variable of `catalogue.SAMPLED` in SI, by name, of a top in natural units."""
     instants, state, sums = samples.instants, samples.instants.state, samples.sums
-    drilled, rolled = sums.losses
+    drilled, rolled, braked = sums.losses
     axis, momentum = state.axis, state.momentum
     sine, (slip_x, slip_y), tilting = axis_sine(axis), instants.slip, instants.tilting
     upright = sine == 0.0
@@ -58,11 +58,12 @@ def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
         "normal_force": instants.force[2] * units.force,
         "contact_force": np.stack(scale(units.force, instants.force), -1),
         "contact_torque": np.stack(scale(units.energy, instants.torque), -1),
-        "energy": instants.energy * units.energy,
+        "energy": (instants.energy - sums.descent_work(top)) * units.energy,
         "work": sums.work * units.energy,
         "sliding_loss": (-sums.work - sums.struck - drilled - rolled) * units.energy,
         "drilling_loss": drilled * units.energy,
         "rolling_loss": rolled * units.energy,
+        "air_loss": braked * units.energy,
         "jellett": instants.jellett * units.jellett,
         "height": state.height * units.length,
         "gap": instants.gap * units.length,

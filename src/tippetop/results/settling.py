@@ -58,8 +58,18 @@ def settled_tilt_of_one(status: Status, state: State, start: State, top: Top) ->
         return theta
     if status is not Status.COMPLETED:
         return math.nan
-    settled = _settled_spin_tilt(theta, state, start, top) if top.torque_free else math.nan
+    settled = _settled_spin_tilt(theta, state, start, top) if spins_for_ever(top) else math.nan
     return settled if math.isfinite(settled) else _tilt_of_rest(theta, state, top)
+
+
+def spins_for_ever(top: Top) -> bool:
+    """Return whether nothing takes a steady spin: no torque of the table, no slope and no air."""
+    return top.torque_free and top.field is None
+
+
+def slides_down(top: Top) -> bool:
+    """Return whether the table slopes, so that no energy bounds what the top can reach."""
+    return top.field is not None and top.field.slope is not None
 
 
 def _settled_spin_tilt(theta: float, state: State, start: State, top: Top) -> float:
@@ -83,6 +93,8 @@ def _tilt_of_rest(theta: float, state: State, top: Top) -> float:
     There the centre of mass is lowest, on one surface or on two. The result is nan if the energy is
     enough to leave this neighbourhood.
     """
+    if slides_down(top):
+        return math.nan
     low, high = theta - NEAR_FINAL, theta + NEAR_FINAL
     total, weight = float(energy(state, top)), float(top.mass * top.gravity)
     for at in (low, high):
@@ -144,7 +156,9 @@ def settled_tilts(state: State, start: State, top: Top) -> Array:
     """
     theta = tilt(state)
     resting = _tilts_of_rest(theta, state, top)
-    if not top.torque_free:
+    if slides_down(top):
+        return np.full(theta.shape, np.nan)
+    if not spins_for_ever(top):
         return resting
     if top.surface.spherical:
         held = is_held(state, top, NEAR_FINAL)
@@ -213,8 +227,8 @@ def is_barred(state: State, top: Top, height: Scalar, at: Scalar) -> Scalar:
     """Return whether the energy is too small for tilts `at`, rad, with the centre of mass at a
     height.
     """
-    least = height
-    if acting(top.surface).spherical and top.torque_free and not isinstance(top.surface, Hull):
+    least = -math.inf if slides_down(top) else height
+    if acting(top.surface).spherical and spins_for_ever(top) and not isinstance(top.surface, Hull):
         least = least_energy(at, jellett(state, top), top, np)
     return energy(state, top) < least * (1.0 - ROUNDING)
 

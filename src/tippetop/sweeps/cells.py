@@ -104,7 +104,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     fault = np.full(count, Fault.NONE, dtype=np.int8)
     with np.errstate(all="ignore"):
         start = launch_state(filled, fault)
-        top = branched(top_of(filled), start)
+        top = branched(top_of(filled, np), start)
         if filled.contact.liftoff != "fly":
             sliding = along_table(start)
             touch = sliding_contact(*sliding, top)
@@ -228,7 +228,7 @@ def launch_state(problem: Problem, fault: NDArray[np.int8]) -> State:
     by one, and the ones that are refused get a fault.
     """
     count = len(fault)
-    if not isinstance(top_of(problem).surface, Hull):
+    if not isinstance(problem.body.surface, Hull):
         return State.unpack([spread(number, count).copy() for number in problem.start(np).pack()])
     rows = np.zeros((10, count))
     for cell in range(count):

@@ -28,11 +28,13 @@ _LOG = logging.getLogger(__name__)
 
 def is_alone(launches: Launches) -> bool:
     """Return whether steps of many launches at once do not serve: they know nothing of bodies of
-    several surfaces and of users' rules, and do not see where a law chooses by the numbers.
+    several surfaces, of slopes and air, and of users' rules, and do not see where a law chooses by
+    the numbers.
     """
     example = launches.kind.example
     has_built_in_rules = launches.rules is None and not isinstance(example.surface, Hull)
-    return not has_built_in_rules or has_choices(example)
+    has_field = launches.kind.field is not None
+    return not has_built_in_rules or has_field or has_choices(example)
 
 
 def follow_each(launches: Launches, tolerance: float, settled: float | None = None) -> Ends:

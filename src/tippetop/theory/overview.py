@@ -21,7 +21,7 @@ from tippetop.theory.prediction import (
     single_contact_tilts,
     steady_state_of_launch,
 )
-from tippetop.theory.requirements import creeps, sticks
+from tippetop.theory.requirements import creeps, require_no_field, sticks
 from tippetop.theory.resting_center import RestingCenter, resting_center_on
 from tippetop.theory.sleeping import Sleeping, sleeping
 from tippetop.theory.stability import Spectrum, fastest_growth, has_spectrum, spectrum
@@ -164,9 +164,10 @@ def outlook(problem: Problem) -> Outlook:
     """Return what the theory says of a launch, on the surface that it is launched on.
 
     Raises `InvalidInput` if the launch turns too fast for the theory, or hardly turns on dry
-    friction of a patch.
+    friction of a patch, if the table slopes, or there is air.
     """
     top = top_of(problem)
+    require_no_field(top)
     if isinstance(top.surface, Hull):
         return _outlook_of_several_surfaces(problem)
     jellett = jellett_of_launch(problem)
@@ -271,7 +272,7 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
     Raises
     ------
     InvalidInput
-        If the launch turns too fast for the theory.
+        If the launch turns too fast for the theory, the table slopes, or there is air.
 
     Examples
     --------
@@ -283,6 +284,7 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
     inverted 3.142 -26.7
     """
     require_problem(problem)
+    require_no_field(top_of(problem))
     if isinstance(top_of(problem).surface, Hull):
         hull = hull_of(problem)
         low, high = single_contact_tilts(hull, problem.launch.tilt)

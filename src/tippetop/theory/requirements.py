@@ -1,5 +1,7 @@
 """Conditions of the theory on a top, and the refusals of tops that do not meet them."""
 
+import math
+
 from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
 from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.top import Top
@@ -17,8 +19,23 @@ def require_one_surface(top: Top) -> None:
         )
 
 
+def require_no_field(top: Top) -> None:
+    """Raise `InvalidInput` if the table slopes, or there is air: no motion is steady then."""
+    field = top.field
+    if field is None:
+        return
+    if field.slope is not None:
+        slope = math.atan2(math.hypot(*field.slope), top.gravity)
+        accepted = "0: on a slope a spinning top drifts and gains speed, and no motion is steady"
+        raise InvalidInput("table.slope", slope, accepted)
+    raise InvalidInput(
+        "air", Described("this one"), "none: air brakes every spin, and no motion is steady"
+    )
+
+
 def require_sphere(top: Top) -> None:
-    """Raise `InvalidInput` if the body is no eccentric sphere."""
+    """Raise `InvalidInput` if the body is no eccentric sphere, or an outer field acts on it."""
+    require_no_field(top)
     require_one_surface(top)
     if not top.surface.spherical:
         raise InvalidInput(
@@ -56,8 +73,9 @@ def require_creep(top: Top) -> None:
     Otherwise there is no linear motion: a point on dry friction sticks and then rolls for ever, and
     rolling resistance holds an axis that hardly moves. A patch on dry friction does creep, by
     drilling. Bodies of several surfaces, and bodies that lie flat when their axis is vertical, are
-    refused too.
+    refused too, and tops on a slope or in air.
     """
+    require_no_field(top)
     require_one_surface(top)
     if is_edge(top.surface):
         raise InvalidInput(

@@ -94,6 +94,7 @@ def critical_spins(problem: Problem) -> CriticalSpins:
     ------
     InvalidInput
         If friction is dry friction of a point, or rolling is resisted: there is no linear motion.
+        If the table slopes, or there is air: no spin is steady.
 
     Examples
     --------

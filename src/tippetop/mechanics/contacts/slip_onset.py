@@ -163,7 +163,7 @@ def resolve_onset(
 
 def _is_pressed(point: ContactPoint, onset: Onset) -> bool:
     """Return whether the table presses, or the weight does not."""
-    weight = presses(point.axis, point.momentum, point.top)
+    weight = presses(point.axis, point.momentum, point.top, point.outer)
     return bool(onset.wrench.force[2] > 0.0 or not weight)
 
 

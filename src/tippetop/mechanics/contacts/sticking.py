@@ -1,9 +1,9 @@
 """The forces of one contact that sticks and rolls freely, in the fewest operations.
 
 Where the contact point stays at rest and nothing holds rolling, the equations are those of omega'
-alone, since F = -m (gamma + omega' x a), gamma = -g z + omega x a':
+alone, since F = -m (gamma + omega' x a), gamma = -g z + f0 / m + omega x a':
 
-    (1/J + m a^2 - m a a) omega' = (1/J) k omega3 n' - m a x gamma + t,
+    (1/J + m a^2 - m a a) omega' = (1/J) k omega3 n' + m0 - m a x gamma + t,
 
 Let e = (n_x, n_y), no unit vector here: the horizontal part of a is -h' e. The matrix maps a
 horizontal rate w and omega_z' to alpha w + (beta (e.w) + kappa omega_z') e and kappa (e.w) + delta
@@ -40,7 +40,7 @@ def sticking_forces(point: ContactPoint, drills: bool) -> tuple[Wrench, Accelera
     )
     along = leant + high  # alpha + beta e^2
     carried = scale(-top.mass, cross(point.arm, point.carried))
-    right = add(scale(top.transverse_inertia, point.free.turning), carried)
+    right = add(point.spun, carried)
     driven = n[0] * right[0] + n[1] * right[1]
     if drills:
         upright, across = (

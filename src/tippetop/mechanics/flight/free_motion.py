@@ -2,19 +2,24 @@
 
 # translate module: numbers
 
-from tippetop.mechanics.motion import along_table, axis_rate, on_table
+from tippetop.mechanics.motion import along_table, axis_rate, on_table, outer_forces_in
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.vectors import Scalar, add, scale
 
 
 def free_rates(state: State, top: Top) -> State:
     """Return the rates of change of a state that no table touches, its numbers' units per s.
 
-    The angular momentum is constant, the axis turns about it, and the centre of mass falls.
+    The angular momentum is constant without air, the axis turns about it, and the centre of mass
+    falls.
     """
     turning = axis_rate(state.axis, state.momentum, top)
-    return State(turning, (0.0, 0.0, 0.0), (0.0, 0.0, -top.gravity), state.velocity[2])
+    couple, falling = (0.0, 0.0, 0.0), (0.0, 0.0, -top.gravity)
+    outer = outer_forces_in(state.axis, state.momentum, state.velocity, top)
+    if outer is not None:
+        couple, falling = outer.couple, add(falling, scale(1.0 / top.mass, outer.force))
+    return State(turning, couple, falling, state.velocity[2])
 
 
 def gap(state: State, top: Top) -> Scalar:
