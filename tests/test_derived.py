@@ -93,6 +93,7 @@ def test_in_flight_the_angular_velocity_turns_about_the_axis_as_euler_says(
 def test_all_that_has_components_or_a_direction_names_its_frame(sliding: xr.Dataset) -> None:
     scalars = {
         *("energy", "work", "jellett", "sliding_loss", "drilling_loss", "rolling_loss"),
+        "air_loss",
         *(name for name in DERIVED if name.startswith("energy_")),
     }
     for name in {**SAMPLED, **DERIVED}:

@@ -27,7 +27,9 @@ FIELD = OuterField(
 )
 TOPS = {
     "sphere": Top.of(0.02, 3e-6, 3.2e-6, SphereSurface(0.02, 0.006), CoulombLaw(0.3), 9.6),
-    "spheroid": Top.of(0.02, 4e-6, 3.2e-6, SpheroidSurface(0.02, 0.03, 0.002), CoulombLaw(0.3), 9.6),
+    "spheroid": Top.of(
+        0.02, 4e-6, 3.2e-6, SpheroidSurface(0.02, 0.03, 0.002), CoulombLaw(0.3), 9.6
+    ),
 }
 
 

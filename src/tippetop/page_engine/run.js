@@ -133,7 +133,7 @@ class Run {
     this.launch = after(this.automaton.launch(state), time);
     this.from = state;
     this.monitor = new m.Monitor(this.top, state, this.automaton.pulls);
-    this.workBefore = this.sums[WORK];
+    this.workBefore = this.totalWork;
     this.lose(this.launch.energy_lost);
     this.trajectory = null;
   }
@@ -146,7 +146,7 @@ class Run {
 
   /** All work of the table since the motion began. */
   get work() {
-    return this.sums[WORK] - this.workBefore;
+    return this.totalWork - this.workBefore;
   }
 
   /** Follow the motion to a time, s, and tell of the times that it reaches; whether it goes on from there. */
@@ -206,10 +206,15 @@ class Run {
   include(segment) {
     const { solution, mode, transition } = segment;
     this.steps += segment.steps;
-    this.rolls = mode.status === STICKING && mode.top.torque_free;
+    this.rolls = mode.status === STICKING && m.spins_for_ever(mode.top);
     if (!mode.touching) this.flightRecord.take(segment, highestGap(mode, solution));
     if (solution.count) this.includeSteps(mode, solution);
     this.lose(transition?.energy_lost ?? 0);
+  }
+
+  /** Work of all forces but the weight along the table's normal so far. */
+  get totalWork() {
+    return this.top.field ? new m.RunSums(...this.sums).total_work(this.top) : this.sums[WORK];
   }
 
   includeSteps(mode, solution) {
@@ -347,6 +352,7 @@ class Run {
     this.mostAxisZ.includeValue(-lastAxisZ, null);
     const extremes = [this.leastForce, this.leastAxisZ, this.mostAxisZ, this.mostHeight];
     const settled = m.settled_tilt_of_one(status, state, this.from, this.top);
+    const sums = new m.RunSums(...this.sums);
     return m.Ends.of_one(
       state,
       time,
@@ -354,7 +360,8 @@ class Run {
       this.happened,
       this.flightRecord,
       this.steps,
-      new m.RunSums(...this.sums),
+      sums,
+      sums.descent_work(this.top),
       extremes.map((extreme) => extreme.refined()),
       [this.firstHorizontal, settled, this.arrival(m.settled_band(settled))],
       Number(this.rolls),

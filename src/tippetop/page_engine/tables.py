@@ -11,6 +11,7 @@ from tippetop.contact.transient import DEGREE
 from tippetop.integrators.dense import SHORTEST, chebyshev
 from tippetop.lathe.workpiece import Insert, Workpiece
 from tippetop.problem import presets
+from tippetop.problem.air import Air
 from tippetop.problem.bodies import Body
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.frictions import Friction
@@ -18,6 +19,7 @@ from tippetop.problem.implausible import SENTENCES
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem
 from tippetop.problem.shapes import Shape
+from tippetop.problem.table import Table
 from tippetop.results import catalogue
 from tippetop.results.run_metrics import FORCE_DEGREE
 from tippetop.support import units
@@ -36,6 +38,8 @@ def tables(command: str) -> str:
         Body,
         Launch,
         Contact,
+        Table,
+        Air,
         Workpiece,
         Insert,
         *Shape.kinds.values(),

@@ -107,7 +107,7 @@ class Air(Part):
         --------
         >>> import tippetop as tt
         >>> tt.Air.from_decay(tt.presets.REPORT, time="20 s").axial_linear
-        4e-07
+        1.6e-07
         """
         require("body", body, Body, "a Body, such as presets.REPORT")
         duration = number_in("time", time, "s")
@@ -155,7 +155,7 @@ class Air(Part):
         >>> air = tt.Air.estimated(tt.presets.REPORT, spin=155.0)
         >>> torque = air.axial_linear * 155.0 + air.axial_quadratic * 155.0**2
         >>> f"{torque:.2g} N m"
-        '2.7e-07 N m'
+        '5e-06 N m'
         """
         require("body", body, Body, "a Body, such as presets.REPORT")
         rate = abs(_positive("spin", spin, "rad s-1", signed=True))
@@ -213,7 +213,9 @@ def _positive(name: str, value: Any, unit: str, *, signed: bool = False) -> floa
     """Return a number in SI; raise `InvalidInput` unless it is positive, or not 0 if `signed`."""
     number = number_in(name, value, unit)
     if not (is_number(number) and (number > 0.0 or (signed and number != 0.0))):
-        raise InvalidInput(name, value, "a number other than 0" if signed else "greater than 0")
+        raise InvalidInput(
+            name, value, "a number other than 0" if signed else "a number greater than 0"
+        )
     return float(number)
 
 
