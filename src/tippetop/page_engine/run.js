@@ -144,7 +144,7 @@ class Run {
     this.sums[WORK] -= energy;
   }
 
-  /** All work of the table since the motion began. */
+  /** All work but that of the weight along the normal since the motion began. */
   get work() {
     return this.totalWork - this.workBefore;
   }
