@@ -22,7 +22,7 @@ from tippetop.cli.options import (
 )
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
 from tippetop.problem.problem import top_of
-from tippetop.results.description import digits_left
+from tippetop.results.told_times import digits_left
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, refuse_ending_of_others, require_ending
 

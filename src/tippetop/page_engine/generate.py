@@ -38,6 +38,7 @@ ROOTS = (
     "tippetop.results.metrics",
     "tippetop.results.samples",
     "tippetop.results.account",
+    "tippetop.results.told_times",
     "tippetop.results.sampling",
     "tippetop.results.monitor",
     "tippetop.contact.flights",

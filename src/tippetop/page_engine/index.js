@@ -3,7 +3,7 @@ import * as m from "./mechanics.js";
 import { plain } from "./runtime.js";
 
 export { extent, InvalidInput, MISSING } from "./mechanics.js";
-export { simulate } from "./run.js";
+export { simulate, timeDigits } from "./run.js";
 
 /** What the theory says without a run: where a launch ends, its critical spins, what a body can do at all. */
 export function predict(problem) {

@@ -15,6 +15,8 @@ const BETWEEN_PROBES = 0.1;
 // The same of the normal force between and beyond the nodes of Gauss's rule, which are fewer.
 const BETWEEN_NODES = 0.5;
 
+// The most digits of a metric for people.
+const MOST_DIGITS = 4;
 // The status of a mode whose contact sticks.
 const STICKING = "sticking";
 // Relative difference of two times below which nothing happens between them.
@@ -63,6 +65,52 @@ export function simulate(
   follow(seconds);
   run.finish();
   return run;
+}
+
+/**
+ * How many digits of the times that a run tells a minute change of its launch or of its friction leaves, by the names of
+ * clauses and metrics; 0 where it may change the run. Two runs beside it are followed, as `tt.time_uncertainties` does.
+ */
+export function timeDigits(problem, options) {
+  const { facts, status, endTime } = simulate(problem, options);
+  const times = Object.fromEntries(m.told_times(facts).entries());
+  const most = Object.fromEntries(Object.keys(times).map((name) => [name, 0]));
+  const duration = status.name === "completed" ? options.duration : m.LONGER * endTime;
+  for (const fields of m.MOVED) {
+    const beside = duration > 0 && changedBy(problem, fields, m.CHANGE);
+    if (!beside) continue;
+    const { facts: other } = simulate(beside, { ...options, duration });
+    for (const [name, change] of m.time_changes(facts, other).entries())
+      most[name] = Math.max(most[name], change);
+  }
+  return Object.fromEntries(
+    Object.entries(times).map(([name, time]) => [
+      name,
+      name.endsWith("_time")
+        ? m.digits_left(time, most[name], MOST_DIGITS)
+        : m.time_digits(time, most[name]),
+    ]),
+  );
+}
+
+/** A problem whose numbers in some fields are changed by a share; null if there are none, or it is refused. */
+function changedBy(problem, fields, change) {
+  const copy = structuredClone(problem);
+  let isChanged = false;
+  for (const field of fields) {
+    const [part, name] = field.split(".");
+    const number = copy[part]?.[name];
+    if (typeof number !== "number" || number === 0) continue;
+    copy[part][name] = number * (1 + change);
+    isChanged = true;
+  }
+  try {
+    return isChanged && new m.Problem(copy) ? copy : null;
+  } catch (error) {
+    // The field is at its bound.
+    if (error instanceof m.InvalidInput) return null;
+    throw error;
+  }
 }
 
 /** Pushes with the problem from each on, refused where they are none. */

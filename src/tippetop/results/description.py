@@ -14,9 +14,10 @@ from tippetop.problem.problem import Problem
 from tippetop.results.account import Clause, Facts, account_of
 from tippetop.results.catalogue import METRICS
 from tippetop.results.dataset import require_run
+from tippetop.results.told_times import TENS, time_digits
 
-MILLISECONDS, TENS = 0.01, 10.0
-"""Times below the first, s, are written in milliseconds; those above the second in four digits."""
+MILLISECONDS = 0.01
+"""Times below it, s, are written in milliseconds."""
 
 
 class Account(NamedTuple):
@@ -81,6 +82,11 @@ def describe(run: xr.Dataset) -> Account:
     turns over: its axis passes the horizontal at 5.88 s
     """
     require_run(run)
+    return Account(tuple(account_of(facts_of(run))))
+
+
+def facts_of(run: xr.Dataset) -> Facts:
+    """Return the facts of a run that its account uses; events of users' functions are left out."""
     times, impulses = run["event_time"].values, run["event_impulse"].values
     rows = zip(
         run["event_kind"].values,
@@ -90,13 +96,12 @@ def describe(run: xr.Dataset) -> Account:
         run["event_surface"].values.tolist(),
         strict=True,
     )
-    # Events of users' functions have other names, and no clauses.
     kinds = {kind.value for kind in EventKind}
     events = [Event(EventKind(kind), *numbers) for kind, *numbers in rows if kind in kinds]
     flights = zip(
         run["flight_start"].values.tolist(), run["flight_end"].values.tolist(), strict=True
     )
-    facts = Facts(
+    return Facts(
         Problem.from_json(run.attrs["problem"]),
         Status[run.attrs["status"].upper()],
         {name: run[name].item() for name in METRICS},
@@ -105,7 +110,6 @@ def describe(run: xr.Dataset) -> Account:
         events,
         list(flights),
     )
-    return Account(tuple(account_of(facts)))
 
 
 def phrase(clause: Clause, uncertainty: float = 0.0) -> str:
@@ -148,25 +152,11 @@ def written(gap: str, value: float, units: Mapping[str, str]) -> str:
     return f"{value:.0f}"
 
 
-def digits_left(time: float, uncertainty: float, usual: int) -> int:
-    """Return how many digits an uncertainty leaves of a time, of the usual ones; 0 for none."""
-    if not uncertainty < 0.5 * time:
-        return 0
-    if uncertainty == 0.0:
-        return usual
-    digits = math.floor(math.log10(time)) - math.ceil(math.log10(uncertainty)) + 1
-    return min(max(digits, 1), usual)
-
-
 def written_time(time: float, uncertainty: float, units: Mapping[str, str]) -> str:
     """Return a time without the digits that an uncertainty takes from it, both in s."""
-    digits = digits_left(time, uncertainty, 3 if time < TENS else 4)
+    digits = time_digits(time, uncertainty)
     size, unit = (1e3, "short") if time < MILLISECONDS else (1.0, "time")
-    return f"{_digits(size * time, digits)} {units[unit]}" if digits else CHANCE
-
-
-CHANCE = "a time that chance decides"
-"""What stands for a time that a minute change of the launch moves by as much as itself."""
+    return f"{_digits(size * time, digits)} {units[unit]}" if digits else str(_english()["chance"])
 
 
 def _digits(value: float, count: int) -> str:

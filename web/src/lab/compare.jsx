@@ -17,6 +17,8 @@ const METRICS = {
   min_normal_force: "N",
 };
 
+const MOST_DIGITS = 4;
+
 export function Compare({ lab }) {
   const { pins } = lab.state;
   return (
@@ -96,6 +98,7 @@ function Table({ ghost, track, units }) {
             name={name}
             before={ghost.header.metrics[name] ?? NaN}
             now={track.header.metrics[name] ?? NaN}
+            known={[ghost, track].map(({ digits: known }) => known?.[name] ?? MOST_DIGITS)}
             units={units}
           />
         ))}
@@ -104,11 +107,13 @@ function Table({ ghost, track, units }) {
   );
 }
 
-function Row({ name, before, now, units }) {
+function Row({ name, before, now, known, units }) {
   const { name: unit, size } = unitOf(METRICS[name], units);
   const missing = name === "turnover_time" ? t("compare.never") : "–";
-  const text = (value, otherwise) =>
-    Number.isFinite(value) ? digits(cleared(value) / size, 4) : otherwise;
+  const text = (value, otherwise, count = MOST_DIGITS) => {
+    if (!Number.isFinite(value)) return otherwise;
+    return count ? digits(cleared(value) / size, count) : t("compare.chance");
+  };
   const difference = cleared(now - before, Math.max(Math.abs(now), Math.abs(before)));
   return (
     <tr data-metric={name}>
@@ -116,9 +121,9 @@ function Row({ name, before, now, units }) {
         {t(`metrics.${name}`)}
         {unit ? ` (${unit})` : ""}
       </th>
-      <td>{text(before, missing)}</td>
-      <td>{text(now, missing)}</td>
-      <td>{text(difference, "–")}</td>
+      <td>{text(before, missing, known[0])}</td>
+      <td>{text(now, missing, known[1])}</td>
+      <td>{known.every(Boolean) ? text(difference, "–", Math.min(...known)) : "–"}</td>
     </tr>
   );
 }

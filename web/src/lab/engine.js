@@ -129,6 +129,13 @@ export class Engine {
     return this.asides.ask("solid", { body });
   }
 
+  // How many digits of its times a run has; what was asked before is given up.
+  digits(setup) {
+    this.measurer?.end(null);
+    this.measurer ??= new Helper();
+    return this.measurer.ask("digits", setup);
+  }
+
   // All numbers of a launch over time, as a text.
   async csv(setup, point) {
     return (await this.asides.ask("numbers", { ...setup, point })).csv;

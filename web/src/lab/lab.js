@@ -212,6 +212,24 @@ export class Lab extends EventTarget {
     const { tab, step, units } = this.state;
     const isOfStory = tab === "story" && same(setupOf(this.track), stepOf(step).setup);
     this.player.say(isOfStory ? happened(step) : tell(this.track, units));
+    if (!isOfStory) this.measure();
+  }
+
+  // Find out how many digits the times of the run have that is shown, and of those beside it, once they are shown.
+  async measure() {
+    const tracks = [this.track, ...this.pinned()].filter(
+      ({ digits, header }) => !digits && !header.quick,
+    );
+    if (!tracks.length || sameMembers(tracks, this.measured ?? [])) return;
+    this.measured = tracks;
+    for (const track of tracks) {
+      const known = await this.engine.digits(setupOf(track)).catch(() => null);
+      if (tracks !== this.measured) return;
+      const before = tell(this.track, this.state.units).headline;
+      track.digits = known ?? {};
+      if (tell(this.track, this.state.units).headline !== before) this.say();
+      this.set({});
+    }
   }
 
   stop() {

@@ -6,30 +6,35 @@ import { cleared, digits, shown } from "./units.js";
 // Times below the first, s, are written in milliseconds, from the second on in four digits.
 const MILLISECONDS = 0.01;
 const TENS = 10;
+const DEGREE = Math.PI / 180;
 // Slips below it, m/s, are written in mm/s.
 const SLOW = 0.01;
 
 // What happened and where it ends; beside it what is implausible, how it began and what theory says.
 export function tell(track, units) {
   const { account, doubts } = track.header;
+  const { digits: known = {} } = track;
   const of = (...parts) => account.filter((clause) => parts.includes(clause.part));
   const headline = of("motion", "end")
-    .map((clause) => phrase(clause, units))
+    .map((clause) => phrase(clause, units, known[clause.name]))
     .join("; ");
   return {
     headline: headline.slice(0, 1).toUpperCase() + headline.slice(1),
     details: [
       ...doubts.map(doubtInWords),
       ...of("launch", "theory").map(
-        (clause) => `${part("account.pronoun")} ${phrase(clause, units)}.`,
+        (clause) => `${part("account.pronoun")} ${phrase(clause, units, known[clause.name])}.`,
       ),
     ],
   };
 }
 
-// A clause, without its subject.
-export function phrase({ name, numbers }, units) {
-  const gaps = Object.entries(numbers).map(([gap, value]) => [gap, written(gap, value, units)]);
+// A clause, without its subject; `known` is how many digits its time has, undefined for the usual ones.
+export function phrase({ name, numbers }, units, known) {
+  const gaps = Object.entries(numbers).map(([gap, value]) => [
+    gap,
+    gap === "time" ? time(value, known) : written(gap, value, units),
+  ]);
   const text = part(`account.clauses.${name}`) ?? part(`push.clauses.${name}`);
   return filled(text, Object.fromEntries(gaps));
 }
@@ -37,16 +42,13 @@ export function phrase({ name, numbers }, units) {
 // A number with the unit that the gap of a text asks for.
 function written(gap, value, units) {
   switch (gap) {
-    case "time":
     case "duration":
-      if (value > 0 && value < MILLISECONDS)
-        return `${digits(1e3 * value, 3)} ${part("account.units.short")}`;
-      return `${digits(value, value < TENS ? 3 : 4)} ${part("account.units.time")}`;
+      return time(value);
     case "about":
       return `${digits(value, 2)} ${part("account.units.time")}`;
     case "tilt":
     case "highest":
-      return shown(value, "angle", units);
+      return shown(units.angle === "deg" ? tenths(value) : value, "angle", units);
     case "spin":
     case "precession":
       return shown(value, "spin", units);
@@ -61,6 +63,17 @@ function written(gap, value, units) {
       return `${digits(value, 3)} ${part(`account.units.${gap}`)}`;
   }
   return `${value}`;
+}
+
+// An angle rounded to a tenth of a degree, rad.
+const tenths = (angle) => Number((angle / DEGREE).toFixed(1)) * DEGREE;
+
+// A time, with so many digits; where it has none, chance decides it.
+function time(value, known = value < TENS ? 3 : 4) {
+  if (!known) return part("account.chance");
+  if (value > 0 && value < MILLISECONDS)
+    return `${digits(1e3 * value, known)} ${part("account.units.short")}`;
+  return `${digits(value, known)} ${part("account.units.time")}`;
 }
 
 /** What happened in a step of the story, as a headline. */

@@ -11,6 +11,7 @@ import {
   sampleCount,
   simulate,
   tableKind,
+  timeDigits,
   turned,
   weighed,
 } from "engine";
@@ -29,6 +30,7 @@ const JOBS = {
   body: answerBody,
   brought: answerBrought,
   solid: answerSolid,
+  digits: answerDigits,
   advice: answerAdvice,
   numbers,
 };
@@ -51,6 +53,7 @@ function answerRun({ id, problem, duration, pushes, quick }) {
     ...(quick && { tolerance: QUICK.tolerance }),
   });
   const track = pack(problem, run, samples);
+  track.header.quick = Boolean(quick);
   if (pushes?.length) {
     // What theory says of a launch ends with the first push.
     const prospect = track.header.prospect && { ...track.header.prospect, ends: [] };
@@ -64,6 +67,11 @@ function answerCell({ problem, duration, pushes }) {
   const { final_tilt: tilt, max_tilt_ever: highest, turnover_time: turnsOver } = run.metrics;
   const { fellBack, jumps, status } = run;
   return { tilt, highest, fellBack, flights: jumps.count, turnsOver, status };
+}
+
+// How many digits of its times a run has.
+function answerDigits({ problem, duration, pushes }) {
+  return timeDigits(problem, { duration, pushes });
 }
 
 // What a body is good for on the table of a problem; null of one that does not stand on its ball.
