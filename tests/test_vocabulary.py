@@ -177,7 +177,17 @@ def test_the_glossary_lists_the_names_that_are_used() -> None:
     listed = {name for row in rows for name in re.findall(r"`([a-z_0-9]+)`", row[1] + row[2])}
     known = {
         *(name.lower() for names in (public_names, result_names, file_names) for name in names()),
-        *("from", "to", "spacing", "distribution", "parameter", "draw", "space", "path"),
+        *(
+            "from",
+            "to",
+            "spacing",
+            "distribution",
+            "parameter",
+            "draw",
+            "space",
+            "path",
+            "is_sampled",
+        ),
         *(one.name.lower() for kind in (tt.Outcome, tt.Status) for one in kind),
         *("sliding", "sticking", "flight", "sliding_on_1"),
     }

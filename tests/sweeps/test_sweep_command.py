@@ -125,7 +125,7 @@ def test_a_problem_and_a_sweep_are_read_from_files(tmp_path):
         "--no-maps",
     )
     sweep = Store.resume(tmp_path / "b.zarr").sweep
-    assert sweep.grid.dimensions == ("tilt",)
+    assert sweep.dimensions == ("tilt",)
     assert sweep.problem.friction.mu == 0.7
     assert sweep.duration == 0.1
 

@@ -73,6 +73,16 @@ Settled = Annotated[
         help="End a run once its tilt cannot leave this distance, rad; by default none ends.",
     ),
 ]
+Keep = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="VARIABLE",
+        help="Keep samples of a variable over time, such as tilt or axis; may be repeated.",
+    ),
+]
+Samples = Annotated[
+    int | None, number_option(int, "Number of samples that are kept of a run; 201 by default.")
+]
 Processes = Annotated[
     int | None, number_option(int, "Number of processes; by default all processors.")
 ]
@@ -97,6 +107,8 @@ def sweep(
     duration: Duration = None,
     tolerance: Tolerance = None,
     settled: Settled = None,
+    keep: Keep = None,
+    samples: Samples = None,
     workers: Processes = None,
     scheduler: Scheduler = None,
     out: Out = Path("sweep.zarr"),
@@ -122,6 +134,8 @@ def sweep(
         "duration": number_of("--duration", duration, "s"),
         "tolerance": tolerance,
         "settled": number_of("--settled", settled, "rad"),
+        "keep": keep,
+        "samples": samples,
     }
     fields = _chosen_fields(choice, stored, _chosen_grid(over, draw, count, seed), limits)
     chosen = Sweep(**fields)
@@ -174,7 +188,7 @@ def _chosen_fields(
     choice: Choice,
     stored: "Sweep | None",
     grid: dict[str, Any],
-    limits: dict[str, float | None],
+    limits: dict[str, Any],
 ) -> dict[str, Any]:
     """Return the fields of the sweep of the file, or of the store to be resumed, with the
     options.
@@ -193,6 +207,8 @@ def _chosen_fields(
             )
         return {"problem": choice.problem(), **grid, **stated}
     fields = base.to_fields() | {"problem": choice.changed(base.problem)}
+    if "samples" in stated:
+        fields.pop("times", None)
     if grid:
         for name in ("over", "draw", "count", "seed"):
             fields.pop(name, None)
@@ -295,8 +311,8 @@ def _map_files(out: Path, chosen: "Sweep") -> dict[str, Path]:
     from tippetop.figures.maps import MAPPED, require_drawable  # noqa: PLC0415 - slow to import
     from tippetop.sweeps.grid import field_paths  # noqa: PLC0415
 
-    paths = field_paths(chosen.grid.fields)
-    coordinates = chosen.grid.coordinates().items()
+    paths = field_paths(chosen.grid.fields, chosen.keep)
+    coordinates = chosen.coordinates().items()
     require_drawable({paths.get(name, name): values for name, (_, values) in coordinates})
     return {name: out.with_name(f"{out.name.removesuffix('.zarr')}.{name}.png") for name in MAPPED}
 

@@ -1,6 +1,7 @@
 """What is read off the numbers of a mode, at many instants at once: by arrays, or compiled."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple, TypeAlias
 
@@ -189,6 +190,37 @@ def read(reading: Reading, mode: Mode, y: Array, *others: Scalar, total: int = 0
     for place, row in zip(values, rows, strict=True):
         place[...] = row
     return values
+
+
+# translate: skip
+def read_of_kind(reading: Reading, mode: Mode, kind: Kind, y: Array) -> Array:
+    """Read numbers off those of a mode of many tops of a kind, one an instant.
+
+    Parameters
+    ----------
+    reading
+        What to read.
+    mode
+        The mode, with arrays of shape (n,) for the numbers of its top.
+    kind
+        The kind of its top.
+    y
+        Its numbers, shape (size, n).
+
+    Returns
+    -------
+    ndarray
+        Shape (numbers, n).
+    """
+    no_top: Any = None
+    evaluation = compiled_evaluation(
+        _of_kind(reading, replace(mode, top=no_top), kind), len(y), kind.numbers
+    )
+    if evaluation is not None:
+        return evaluation(y, mode.top.numbers)
+    with np.errstate(all="ignore"):
+        rows = reading(mode, list(y))
+    return np.array(np.broadcast_arrays(*rows, y[0])[:-1])
 
 
 # translate: skip

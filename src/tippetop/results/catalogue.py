@@ -114,6 +114,11 @@ class Variable(NamedTuple):
         return np.nan if self.dtype.startswith("float") else -1
 
     @property
+    def bytes(self) -> int:
+        """Size of one number, bytes."""
+        return np.dtype(self.dtype).itemsize
+
+    @property
     def attributes(self) -> dict[str, Any]:
         """Attributes by the CF conventions."""
         attributes: dict[str, Any] = {"long_name": self.long_name}

@@ -10,6 +10,7 @@ from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Vector, cross, dot, scale
+from tippetop.results.catalogue import SAMPLED
 from tippetop.results.samples import Samples, continuous, observe
 
 
@@ -18,6 +19,7 @@ def variables_of(launch: NaturalLaunch, samples: Samples) -> dict[str, Array]:
     variables = observe(samples, launch.top, launch.units)
     orientation = continuous(variables["orientation"])
     variables["orientation"] = orientation
+    variables = {name: variables[name] for name in SAMPLED}
     return variables | derive(samples, orientation, launch.top, launch.units)
 
 

@@ -24,6 +24,15 @@ def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Arra
             raise InvalidInput("samples", samples, "a whole number, at least 2")
         _check_memory(samples)
         return np.linspace(0.0, duration, int(samples))
+    grid = listed_times(times)
+    if grid[0] < 0 or grid[-1] > duration:
+        raise InvalidInput("times", times, f"times from 0 to the duration, {duration:g} s")
+    _check_memory(len(grid))
+    return grid
+
+
+def listed_times(times: ArrayLike) -> Array:
+    """Return listed sample times, s; raise `InvalidInput` unless they are finite and increase."""
     seconds = _in_seconds(times)
     try:
         grid = np.array(seconds, dtype=float)
@@ -36,9 +45,6 @@ def sample_times(duration: float, samples: int, times: ArrayLike | None) -> Arra
         or np.any(np.diff(grid) <= 0)
     ):
         raise InvalidInput("times", times, "a list of increasing finite numbers")
-    if grid[0] < 0 or grid[-1] > duration:
-        raise InvalidInput("times", times, f"times from 0 to the duration, {duration:g} s")
-    _check_memory(len(grid))
     return grid
 
 

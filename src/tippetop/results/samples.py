@@ -1,5 +1,6 @@
 """Samples of a run, and the variables over time that are computed from them."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -12,7 +13,7 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.vectors import scale
+from tippetop.mechanics.vectors import Scalar, Vector, scale
 from tippetop.mechanics.view import axis_sine
 from tippetop.results.sums import RunSums
 
@@ -34,46 +35,87 @@ class Samples(NamedTuple):
 
 def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     """Return every variable of `catalogue.SAMPLED` in SI, by name, of a top in natural units."""
-    instants, state, sums = samples.instants, samples.instants.state, samples.sums
+    instants, sums = samples.instants, samples.sums
+    variables = {name: function(instants, top, units) for name, function in OF_INSTANTS.items()}
     drilled, rolled, braked = sums.losses
-    axis, momentum = state.axis, state.momentum
-    sine, (slip_x, slip_y), tilting = axis_sine(axis), instants.slip, instants.tilting
-    upright = sine == 0.0
+    turned = orientation(instants.state.axis, sums.turn, samples.pole, np)
+    variables["energy"] = (instants.energy - sums.descent_work(top)) * units.energy
+    variables["work"] = sums.work * units.energy
+    variables["sliding_loss"] = (-sums.work - sums.struck - drilled - rolled) * units.energy
+    variables["drilling_loss"] = drilled * units.energy
+    variables["rolling_loss"] = rolled * units.energy
+    variables["air_loss"] = braked * units.energy
+    variables["x"] = sums.x * units.length
+    variables["y"] = sums.y * units.length
+    variables["orientation"] = np.stack(turned, -1)
+    return variables
+
+
+def tilt_in_rad(instants: Instants) -> Array:
+    """Return the tilt of the axis, rad."""
+    axis = instants.state.axis
+    tilt: Array = np.arctan2(axis_sine(axis), axis[2])
+    return tilt
+
+
+def azimuth_in_rad(instants: Instants) -> Array:
+    """Return the azimuth of the axis, rad."""
+    axis = instants.state.axis
+    azimuth: Array = np.arctan2(axis[1], axis[0])
+    return azimuth
+
+
+def tilt_rate_in_si(instants: Instants, top: Top, units: Units) -> Array:
+    """Return theta', rad/s; at a vertical axis the rate at which it leaves the pole."""
+    state, tilting = instants.state, instants.tilting
+    upright = axis_sine(state.axis) == 0.0
     if np.any(upright):
-        # A vertical axis has no direction of leaning: the slip is then along x and y of the table,
-        # and theta' is the rate at which the axis leaves the pole.
-        slip_x, slip_y = (
-            np.where(upright, *both) for both in zip(instants.point, instants.slip, strict=True)
-        )
-        leaving = np.hypot(momentum[0], momentum[1]) / top.transverse_inertia
-        tilting = np.where(upright, np.copysign(leaving, axis[2]), tilting)
-    return {
-        "tilt": np.arctan2(sine, axis[2]),
-        "tilt_rate": tilting / units.time,
-        "azimuth": np.arctan2(axis[1], axis[0]),
-        "precession": instants.precession / units.time,
-        "spin": instants.spin / units.time,
-        "slip_x": slip_x * units.speed,
-        "slip_y": slip_y * units.speed,
-        "normal_force": instants.force[2] * units.force,
-        "contact_force": np.stack(scale(units.force, instants.force), -1),
-        "contact_torque": np.stack(scale(units.energy, instants.torque), -1),
-        "energy": (instants.energy - sums.descent_work(top)) * units.energy,
-        "work": sums.work * units.energy,
-        "sliding_loss": (-sums.work - sums.struck - drilled - rolled) * units.energy,
-        "drilling_loss": drilled * units.energy,
-        "rolling_loss": rolled * units.energy,
-        "air_loss": braked * units.energy,
-        "jellett": instants.jellett * units.jellett,
-        "height": state.height * units.length,
-        "gap": instants.gap * units.length,
-        "x": sums.x * units.length,
-        "y": sums.y * units.length,
-        "axis": np.stack(axis, -1),
-        "velocity": np.stack(scale(units.speed, state.velocity), -1),
-        "angular_momentum": np.stack(scale(units.angular_momentum, momentum), -1),
-        "orientation": np.stack(orientation(axis, sums.turn, samples.pole, np), -1),
-    }
+        leaving = np.hypot(state.momentum[0], state.momentum[1]) / top.transverse_inertia
+        tilting = np.where(upright, np.copysign(leaving, state.axis[2]), tilting)
+    rate: Array = tilting / units.time
+    return rate
+
+
+def slip_in_si(instants: Instants, units: Units, component: int) -> Array:
+    """Return a component of the slip along the direction of leaning and across, m/s.
+
+    A vertical axis has no such direction: the components are then along x and y of the table.
+    """
+    slip, upright = instants.slip[component], axis_sine(instants.state.axis) == 0.0
+    if np.any(upright):
+        slip = np.where(upright, instants.point[component], slip)
+    velocity: Array = slip * units.speed
+    return velocity
+
+
+def vector_in_si(unit: Scalar, vector: Vector) -> Array:
+    """Return vectors in natural units, whose unit is `unit`, as an array of shape (k, 3)."""
+    return np.stack(scale(unit, vector), -1)
+
+
+OF_INSTANTS: Mapping[str, Callable[[Instants, Top, Units], Array]] = {
+    "tilt": lambda instants, _top, _units: tilt_in_rad(instants),
+    "tilt_rate": tilt_rate_in_si,
+    "azimuth": lambda instants, _top, _units: azimuth_in_rad(instants),
+    "precession": lambda instants, _top, units: instants.precession / units.time,
+    "spin": lambda instants, _top, units: instants.spin / units.time,
+    "slip_x": lambda instants, _top, units: slip_in_si(instants, units, 0),
+    "slip_y": lambda instants, _top, units: slip_in_si(instants, units, 1),
+    "normal_force": lambda instants, _top, units: instants.force[2] * units.force,
+    "contact_force": lambda instants, _top, units: vector_in_si(units.force, instants.force),
+    "contact_torque": lambda instants, _top, units: vector_in_si(units.energy, instants.torque),
+    "jellett": lambda instants, _top, units: instants.jellett * units.jellett,
+    "height": lambda instants, _top, units: instants.state.height * units.length,
+    "gap": lambda instants, _top, units: instants.gap * units.length,
+    "axis": lambda instants, _top, _units: np.stack(instants.state.axis, -1),
+    "velocity": lambda instants, _top, units: vector_in_si(units.speed, instants.state.velocity),
+    "angular_momentum": lambda instants, _top, units: vector_in_si(
+        units.angular_momentum, instants.state.momentum
+    ),
+}
+"""Variables of `catalogue.SAMPLED` that follow from the state at an instant, in SI: functions of
+`Instants` and of the top, in natural units, and of these units.
+"""
 
 
 def event_in_si(event: Event, units: Units) -> Event:

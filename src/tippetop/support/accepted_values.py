@@ -88,13 +88,22 @@ def count_of(info: FieldInfo | None) -> str:
 
 def range_of(info: FieldInfo) -> str:
     """Return the limits of a number in words: "a number greater than 0 and less than 1"."""
+    # Of a field that may be omitted, the limits are those of one of its types.
+    kinds = (info.annotation, *get_args(info.annotation))
+    inner = [item for kind in kinds for item in getattr(kind, "__metadata__", ())]
     limits = {
         name: getattr(constraint, name)
-        for constraint in info.metadata
+        for constraint in (*info.metadata, *inner, *[one for item in inner for one in stated(item)])
         for name in _LIMITS
         if getattr(constraint, name, None) is not None
     }
-    return _ranged(limits, "a whole number" if info.annotation is int else "a number")
+    is_whole = any(int in (kind, getattr(kind, "__origin__", None)) for kind in kinds)
+    return _ranged(limits, "a whole number" if is_whole else "a number")
+
+
+def stated(item: Any) -> list[Any]:
+    """Return the constraints that an item of a type's metadata states."""
+    return item.metadata if isinstance(item, FieldInfo) else []
 
 
 _LIMITS = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}

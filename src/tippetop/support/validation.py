@@ -91,13 +91,13 @@ def require_callback(field: str, value: object) -> None:
         raise InvalidInput(field, value, "a function, or None")
 
 
-def require_names(field: str, value: object) -> list[str]:
+def require_names(field: str, value: object, example: str = "launch.spin") -> list[str]:
     """Return the names that a text, or a list of texts, holds; raise `InvalidInput` for others."""
     names = [value] if isinstance(value, str) else value
     is_listed = isinstance(names, Iterable) and not isinstance(names, Mapping | bytes)
     listed = list(names) if isinstance(names, Iterable) and is_listed else []
     if not listed or not all(isinstance(name, str) for name in listed):
-        raise InvalidInput(field, value, "a name, or a list of names, such as launch.spin")
+        raise InvalidInput(field, value, f"a name, or a list of names, such as {example}")
     return [str(name) for name in listed]
 
 

@@ -1,33 +1,61 @@
 """A sweep: a base problem, the cells over it, and how they are computed."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Self, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 
 from tippetop.graph.own_parts import require_recordable
+from tippetop.integrators.base import Array
 from tippetop.problem.problem import Problem, top_of
+from tippetop.results.catalogue import SAMPLED
+from tippetop.results.sample_times import listed_times, sample_times
 from tippetop.support.errors import MISSING, Described, InvalidInput
 from tippetop.support.files import made_of, read_text
 from tippetop.support.parsing import parse_toml
-from tippetop.support.validation import Number, Part, Positive, Quantity, Whole, in_order
+from tippetop.support.suggestions import not_one_of
+from tippetop.support.validation import (
+    Number,
+    Part,
+    Positive,
+    Quantity,
+    Whole,
+    in_order,
+    require_names,
+)
 from tippetop.sweeps.axes import Count
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.draws import Column, Draws, columns_of
 from tippetop.sweeps.grid import Product
+from tippetop.sweeps.trajectory_samples import SAMPLED_IN_SWEEPS
 from tippetop.theory.requirements import require_jellett
 
 DEFAULT_TOLERANCE = 1e-9
+SAMPLED_TOLERANCE = 1e-11
+"""Relative error per step where samples are kept, if nobody says what it is: phases gather errors,
+and with 1e-10 fast tops are off by more than 1e-10 times the condition of their launches.
+"""
+
 SETTLED_RANGE = (1e-6, 1e-2)
 """Tilts, rad, that may count as settled: above rounding, and small enough that nothing more
 happens.
 """
 LEAST_TOLERANCE = float(np.finfo(float).eps)
+
+DEFAULT_SAMPLES = 201
+"""Number of samples that are kept of a run if nobody says how many."""
+
+MOST_COMPONENTS = 3
+"""Most components of a variable that is kept."""
+
+MOST_NUMBERS_A_TASK = 2**23
+"""Numbers of samples in a task, about, at most: 64 MB."""
 
 MOST_CELLS_A_TASK = 4096
 LEAST_CELLS_A_TASK = 256
@@ -40,6 +68,16 @@ GRIDS = ("over", "draw")
 
 Task: TypeAlias = tuple[int, ...]
 """The place of a task among those along every dimension."""
+
+
+def _names(value: Any) -> Any:
+    """Return names of variables, of which there may be one, or none."""
+    return () if value is None or value == () else tuple(require_names("keep", value, "tilt"))
+
+
+def _seconds(value: Any) -> Any:
+    """Return listed times in s, or None."""
+    return None if value is None else tuple(listed_times(value).tolist())
 
 
 class Sweep(Part):
@@ -63,7 +101,7 @@ class Sweep(Part):
     duration: Annotated[Positive, Quantity("s", "length of every run")] = 20.0
     """Length of every run, s."""
     tolerance: Annotated[Number, Field(ge=LEAST_TOLERANCE, le=1e-3)] = DEFAULT_TOLERANCE
-    """Relative error per step."""
+    """Relative error per step; `SAMPLED_TOLERANCE` by default where samples are kept."""
     settled: Annotated[
         Number | None,
         Field(ge=SETTLED_RANGE[0], le=SETTLED_RANGE[1]),
@@ -72,11 +110,19 @@ class Sweep(Part):
     """A run ends once its energy holds the tilt within this for good, rad (see
     `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration.
     """
+    keep: Annotated[tuple[str, ...], BeforeValidator(_names)] = ()
+    """Variables over time of which samples are kept, of `SAMPLED_IN_SWEEPS`."""
+    samples: Annotated[Whole, Field(ge=2)] | None = None
+    """Number of equally spaced samples from launch to the duration; 201 by default."""
+    times: Annotated[tuple[Number, ...], BeforeValidator(_seconds)] | None = None
+    """Sample times instead, s."""
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
         fields = in_order(
             type(self), ("problem", "grid", "duration", "tolerance", "settled"), values, fields
         )
+        if fields.get("keep"):
+            fields.setdefault("tolerance", SAMPLED_TOLERANCE)
         grid = fields.pop("grid", None)
         if grid is not None:
             stated = (
@@ -97,16 +143,54 @@ class Sweep(Part):
             fault = "are given together" if chosen else ""
             raise InvalidInput(", ".join(GRIDS), stated, "one of them", fault)
         if self.draw is None:
-            for name in ("count", "seed"):
-                value = getattr(self, name)
-                if value is not None:
-                    raise InvalidInput(name, value, "", "is only for draw", "omit it")
+            self._refuse("draw", ("count", "seed"))
+        self._require_samples()
         require_recordable(top_of(self.problem))
         if self.settled is not None:
             require_jellett(top_of(self.problem))
         with _only_refusals():
             cells_of(self.problem, self.grid.values(np.arange(1)))
         return self
+
+    def _refuse(self, required: str, names: Sequence[str]) -> None:
+        """Refuse fields that are only for another field, which is not given."""
+        for name in names:
+            value = getattr(self, name)
+            if value is not None:
+                raise InvalidInput(name, value, "", f"is only for {required}", "omit it")
+
+    def _require_samples(self) -> None:
+        """Refuse samples that cannot be kept."""
+        if not self.keep:
+            self._refuse("keep", ("samples", "times"))
+            return
+        for name in self.keep:
+            if name in SAMPLED and name not in SAMPLED_IN_SWEEPS:
+                fault = "is summed up along a run, and not kept in sweeps"
+                raise InvalidInput("keep", name, "", fault, "follow the launches with simulate")
+            if name not in SAMPLED_IN_SWEEPS:
+                raise not_one_of("keep", name, list(SAMPLED_IN_SWEEPS))
+        if len(set(self.keep)) < len(self.keep):
+            raise InvalidInput("keep", list(self.keep), "every variable once")
+        if self.samples is not None and self.times is not None:
+            raise InvalidInput("samples", self.samples, "", "is given beside times", "omit one")
+        _ = self.sample_times
+
+    @cached_property
+    def sample_times(self) -> Array:
+        """Times of the samples that are kept, s, shape (k,); none if nothing is kept."""
+        if not self.keep:
+            return np.empty(0)
+        return sample_times(self.duration, self.samples or DEFAULT_SAMPLES, self.times)
+
+    @property
+    def dimensions(self) -> tuple[str, ...]:
+        """Names of the dimensions of the launches."""
+        return self.grid.dimensions(self.keep)
+
+    def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
+        """Return the coordinates of the launches: the dimension and the values of each, by name."""
+        return self.grid.coordinates(self.keep)
 
     @cached_property
     def grid(self) -> Product | Draws:
@@ -127,6 +211,8 @@ class Sweep(Part):
         them.
         """
         target = min(max(self.cells // TASKS, LEAST_CELLS_A_TASK), MOST_CELLS_A_TASK)
+        numbers = len(self.sample_times) * len(self.keep) * MOST_COMPONENTS
+        target = min(target, max(MOST_NUMBERS_A_TASK // max(numbers, 1), 1))
         chunk = list(self.grid.shape)
         while math.prod(chunk) > target and max(chunk) > 1:
             longest = chunk.index(max(chunk))
@@ -159,6 +245,8 @@ class Sweep(Part):
         fields = self.model_dump(
             mode="json", by_alias=True, exclude_none=True, exclude={"draw", "count", "seed"}
         )
+        if not self.keep:
+            del fields["keep"]
         if isinstance(grid, Draws):
             fields |= {"draw": grid.written, "count": grid.count, "seed": grid.seed}
         return fields

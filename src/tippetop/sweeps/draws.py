@@ -5,7 +5,7 @@ A field holds a list of one number a draw, a range ``{ from, to, spacing }``, or
 }``.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Annotated, Any, Self
 
 import numpy as np
@@ -258,9 +258,8 @@ class Draws(Part):
         """Number of draws."""
         return (self.count,)
 
-    @property
-    def dimensions(self) -> tuple[str, ...]:
-        """One dimension: the draws."""
+    def dimensions(self, reserved: Collection[str] = ()) -> tuple[str, ...]:
+        """Return the one dimension: the draws."""
         return (DRAW,)
 
     def values(self, cells: Flat) -> dict[str, Array]:
@@ -271,9 +270,11 @@ class Draws(Part):
             for place, column in enumerate(self.columns)
         }
 
-    def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
-        """Return the number of every draw, and the values drawn, as coordinates."""
-        return drawn_coordinates(self.values(np.arange(self.count)), self.count)
+    def coordinates(self, reserved: Collection[str] = ()) -> dict[str, tuple[str, NDArray[Any]]]:
+        """Return the number of every draw, and the values drawn, as coordinates by names that are
+        not `reserved`.
+        """
+        return drawn_coordinates(self.values(np.arange(self.count)), self.count, reserved)
 
 
 def columns_of(table: Any) -> tuple[Column, ...]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,18 +19,20 @@ from tippetop.mechanics.surfaces.hull import lowest_gap
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
-from tippetop.results.catalogue import SWEPT, Fault, Outcome
+from tippetop.results.catalogue import Fault, Outcome
 from tippetop.results.metrics import STATUSES, Ends, metrics, outcomes_of, settled_band
 from tippetop.results.monitor import STATUSES_OF_MOTION, Monitor, monitored_quantities
 from tippetop.results.settling import settled_tilts
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.cells import cells_of, spread
+from tippetop.sweeps.contents import contents_of
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import Flat
 from tippetop.sweeps.lane_executor import Lanes, arrivals
 from tippetop.sweeps.launch_arrays import Launches
 from tippetop.sweeps.single_launches import follow_each, is_alone, note_failure
 from tippetop.sweeps.taylor_stepper import stepper
+from tippetop.sweeps.trajectory_samples import TrajectorySamples
 
 LANES_AT_ONCE = 2048
 """Launches that are followed together: enough to make little of Python's part, few enough for the
@@ -38,7 +41,8 @@ cache.
 
 
 def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
-    """Return each variable of `catalogue.SWEPT` for cells counted row by row, of shape (n,).
+    """Return each variable of `contents_of` a sweep but `is_done`, for cells counted row by row, of
+    shape (n, ...).
 
     A cell in which something raises has failed. Where cells are followed together, they are halved
     until those that raise are by themselves: a cell's numbers do not depend on the others.
@@ -50,15 +54,17 @@ def follow_cells(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     except Exception as error:  # noqa: BLE001 - whatever was raised, the others go on
         if len(numbers) > 1:
             halves = [follow_cells(sweep, half) for half in np.array_split(numbers, 2)]
-            return {name: np.concatenate([half[name] for half in halves]) for name in SWEPT}
+            return {name: np.concatenate([half[name] for half in halves]) for name in halves[0]}
         note_failure(error)
-        return _unknown(1, Outcome.FAILED)
+        return _unknown(sweep, 1, Outcome.FAILED)
 
 
-def _unknown(count: int, outcome: Outcome) -> dict[str, NDArray[np.generic]]:
+def _unknown(sweep: Sweep, count: int, outcome: Outcome) -> dict[str, NDArray[np.generic]]:
     """Return each variable for cells of which nothing but the outcome is known."""
     variables: dict[str, NDArray[np.generic]] = {
-        name: np.full(count, kind.missing, dtype=kind.dtype) for name, kind in SWEPT.items()
+        name: content.missing((count,))
+        for name, content in contents_of(sweep).items()
+        if name != "is_done"
     }
     variables["outcome"][:] = outcome
     variables["fault"][:] = Fault.NONE
@@ -69,21 +75,29 @@ def _unknown(count: int, outcome: Outcome) -> dict[str, NDArray[np.generic]]:
 def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     cells = cells_of(sweep.problem, sweep.grid.values(numbers))
     count = len(numbers)
-    variables = _unknown(count, Outcome.INVALID)
+    variables = _unknown(sweep, count, Outcome.INVALID)
     variables["fault"][:] = cells.fault
     good = np.flatnonzero(cells.fault == Fault.NONE)
     if not len(good):
         return variables
     launches = cells.launches(good, sweep.duration)
-    method = None if is_alone(launches) else stepper(swept_motion(launches.kind), sweep.tolerance)
+    method = None
+    if not is_alone(launches):
+        motion = swept_motion(launches.kind)
+        method = stepper(motion, sweep.tolerance, sampled=bool(sweep.keep))
     alike = np.argsort(expected_cost(launches), kind="stable")
     for first in range(0, len(alike), LANES_AT_ONCE):
         block = alike[first : first + LANES_AT_ONCE]
         some, which = launches.some(block), good[block]
+        units = Units(*(spread(unit, count)[which] for unit in cells.units))
+        samples = None
+        if sweep.keep:
+            arrays: dict[str, Any] = {name: variables[name] for name in sweep.keep}
+            samples = TrajectorySamples(some, units, sweep.sample_times, arrays, which)
         if method is None:
-            ends = follow_each(some, sweep.tolerance, sweep.settled)
+            ends = follow_each(some, sweep.tolerance, sweep.settled, samples)
         else:
-            lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled)
+            lanes = Lanes(some, method, sweep.tolerance, settled=sweep.settled, samples=samples)
             ends = lanes.run()
             judge(ends, some, sweep.tolerance)
             done = ends.status == STATUSES.index(Status.COMPLETED)
@@ -91,11 +105,13 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
             ends.settled = np.where(done, settled, ends.settled)
             again = arrivals(lanes, settled_band(ends.settled))
             ends.arrived = np.where(np.isnan(again), ends.arrived, again)
-        units = Units(*(spread(unit, count)[which] for unit in cells.units))
         values = metrics(ends, some.state, some.top, units)
         values["outcome"] = outcomes_of(ends, some.state)
+        if samples is not None:
+            samples.finish()
+            values["is_sampled"] = samples.is_sampled
         for name, numbers_found in values.items():
-            variables[name][which] = numbers_found.astype(SWEPT[name].dtype)
+            variables[name][which] = numbers_found.astype(variables[name].dtype)
     return variables
 
 

@@ -45,6 +45,7 @@ from tippetop.sweeps.launch_arrays import Flags, Indices
 from tippetop.sweeps.taylor_step import is_singular
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
 from tippetop.sweeps.tip_extremes import TipMotion
+from tippetop.sweeps.trajectory_samples import TrajectorySamples
 
 PLAIN = NumPyArithmetic()
 
@@ -74,12 +75,14 @@ def fly_all(
     horizon: Array,
     vanishing: Indices,
     seen: tuple[TipMotion, Indices, Array],
+    sampled: tuple[TrajectorySamples, Indices] | None = None,
 ) -> Flown:
     """Fly until the table is touched, for the `horizon` at most: all of shape (n,).
 
     The tops are told by their dimensionless numbers, shape (kind.numbers, n); of gap, gap rate and
     gap acceleration so many are `vanishing` at the start. `seen` is what follows the tip of the
-    axis, the numbers of the launches there, and the times at the start.
+    axis, the numbers of the launches there, and the times at the start. `sampled` has the samples
+    to take, and the numbers of the launches in them.
     """
     tip, launches, begins = seen
     count = len(horizon)
@@ -108,6 +111,10 @@ def fly_all(
             (made.span > 0.0) & (over | ~is_singular(made.span, starts[LEFT, active]))
         )
         lost[active] = ~moves
+        if sampled is not None:
+            samples, cells = sampled[0], sampled[1][active]
+            start = begins[active] + time[active]
+            samples.take(cells, start, made.state, np.where(moves, start + made.span, -np.inf))
         active, over, touches = active[moves], over[moves], touches[moves]
         starts[:SIZE, active], starts[VANISHING, active] = made.after[:, moves], 0.0
         passed = time[active] + made.span[moves]

@@ -5,7 +5,7 @@ Axes are written as a table by fields, the same in TOML, in JSON and on the comm
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -68,54 +68,54 @@ class Product(Entry):
         """The fields, named with dots."""
         return tuple(axis.field for axis in self.axes)
 
-    @property
-    def dimensions(self) -> tuple[str, ...]:
-        """The names of the dimensions: short ones of the fields."""
-        return tuple(short_names(self.fields).values())
+    def dimensions(self, reserved: Collection[str] = ()) -> tuple[str, ...]:
+        """Return the names of the dimensions: short ones of the fields, but those `reserved`."""
+        return tuple(short_names(self.fields, reserved).values())
 
     def values(self, cells: Flat) -> dict[str, Array]:
         """Return the values of the fields in these cells."""
         places = np.unravel_index(cells, self.shape)
         return {axis.field: axis.at(place) for axis, place in zip(self.axes, places, strict=True)}
 
-    def coordinates(self) -> dict[str, tuple[str, NDArray[Any]]]:
-        """Return the coordinates: the dimension and the values of each, by name."""
-        return {
-            name: (name, axis.values) for name, axis in zip(self.dimensions, self.axes, strict=True)
-        }
+    def coordinates(self, reserved: Collection[str] = ()) -> dict[str, tuple[str, NDArray[Any]]]:
+        """Return the coordinates, by names that are not `reserved`: the dimension and the values of
+        each.
+        """
+        names = zip(self.dimensions(reserved), self.axes, strict=True)
+        return {name: (name, axis.values) for name, axis in names}
 
 
 RESERVED_NAMES = {DRAW, "is_done", *SWEPT}
 """Names in a sweep's dataset that no coordinate of a field may have."""
 
 
-def short_names(fields: Sequence[str]) -> dict[str, str]:
+def short_names(fields: Sequence[str], reserved: Collection[str] = ()) -> dict[str, str]:
     """Return the names of coordinates by the fields that they hold.
 
-    A name is the last word of the field, spin of launch.spin, where no other field has the same
-    and it can be written in a query; elsewhere it is the whole field.
+    A name is the last word of the field, spin of launch.spin, where no other field has the same,
+    it is not `reserved` by a variable and it can be written in a query; elsewhere it is the whole
+    field.
     """
+    reserved = {*RESERVED_NAMES, *reserved}
     words = {field: field.rpartition(".")[2] for field in fields}
     counts = Counter(words.values())
     return {
-        field: word
-        if counts[word] == 1 and word.isidentifier() and word not in RESERVED_NAMES
-        else field
+        field: word if counts[word] == 1 and word.isidentifier() and word not in reserved else field
         for field, word in words.items()
     }
 
 
-def field_paths(fields: Sequence[str]) -> dict[str, str]:
+def field_paths(fields: Sequence[str], reserved: Collection[str] = ()) -> dict[str, str]:
     """Return fields, named with dots, by the names of their coordinates."""
-    return {name: field for field, name in short_names(fields).items()}
+    return {name: field for field, name in short_names(fields, reserved).items()}
 
 
 def drawn_coordinates(
-    values: Mapping[str, Array], count: int
+    values: Mapping[str, Array], count: int, reserved: Collection[str] = ()
 ) -> dict[str, tuple[str, NDArray[Any]]]:
     """Return the number of every draw, and the values of its fields, as coordinates."""
     coordinates: dict[str, tuple[str, NDArray[Any]]] = {DRAW: (DRAW, np.arange(count))}
-    names = short_names(list(values))
+    names = short_names(list(values), reserved)
     return coordinates | {names[field]: (DRAW, drawn) for field, drawn in values.items()}
 
 

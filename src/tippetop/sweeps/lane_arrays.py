@@ -14,6 +14,7 @@ from tippetop.sweeps.launch_arrays import Flags, Indices, Launches, branched
 from tippetop.sweeps.taylor_step import LANES
 from tippetop.sweeps.taylor_stepper import Stepper
 from tippetop.sweeps.tip_extremes import TipMotion
+from tippetop.sweeps.trajectory_samples import TrajectorySamples
 
 HELD_BY_LANES = {"time", "status", "steps", "turned", "arrived"}
 """Quantities that lanes hold themselves until their launches end."""
@@ -43,14 +44,21 @@ class Slots:
         The step that a lane waits before, 0 if it does not wait, and the time left before it.
     tip
         How the tip of the axis moves.
+    samples
+        The samples of the launches, if they are sampled.
     """
 
     def __init__(
-        self, launches: Launches, stepper: Stepper, band: tuple[Array, Array] | None
+        self,
+        launches: Launches,
+        stepper: Stepper,
+        band: tuple[Array, Array] | None,
+        samples: TrajectorySamples | None = None,
     ) -> None:
         count, layout = len(launches), stepper.layout
         lanes = count + -count % LANES
         self.launches, self.stepper, self.layout = launches, stepper, layout
+        self.samples = samples
         self.ends, self.tip = before_launch(count), TipMotion.of(lanes)
         self.cell: Indices = np.minimum(np.arange(lanes), count - 1)
         self.alive, self.end = np.arange(lanes) < count, launches.end[self.cell]
@@ -63,6 +71,7 @@ class Slots:
         if band is not None:
             self.tip.low, self.tip.high = band[0][self.cell], band[1][self.cell]
             self.numbers[layout.band] = self.tip.low, self.tip.high
+        self.look_ahead(np.arange(lanes))
         self.rows, self.spare = np.zeros((2, layout.rows, lanes))
         self.held, self.before = np.zeros((2, lanes))
 
@@ -76,6 +85,14 @@ class Slots:
         """Return the time of some lanes."""
         times: Array = self.end[lanes] - self.remaining[lanes]
         return times
+
+    def look_ahead(self, lanes: Indices) -> Array:
+        """Put down and return the times left at the next samples of some lanes."""
+        due = np.inf if self.samples is None else self.samples.due[self.cell[lanes]]
+        time_left: Array = self.end[lanes] - due
+        if self.layout.numbers > self.layout.due:
+            self.numbers[self.layout.due][lanes] = time_left
+        return time_left
 
     def keep(self, working: Indices) -> None:
         """Keep the lanes at work, and as many others as fill them up."""
@@ -136,6 +153,8 @@ class Slots:
         if not len(lanes):
             return
         ends, cells = self.ends, self.cell[lanes]
+        if self.samples is not None:
+            self.samples.take_last(cells, state, time)
         fine = np.all(np.isfinite(np.array(np.broadcast_arrays(*state.pack()))), axis=0)
         stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
         force, down, up = self.tip.least[:, lanes]

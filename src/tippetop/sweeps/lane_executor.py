@@ -17,9 +17,10 @@ from tippetop.results.metrics import Ends
 from tippetop.sweeps.lane_arrays import Slots
 from tippetop.sweeps.launch_arrays import Checkpoint, Flags, Indices, Launches, picked
 from tippetop.sweeps.polynomial_arcs import arcs
-from tippetop.sweeps.taylor_step import LANES, is_singular
+from tippetop.sweeps.taylor_step import LANES, SLIDING, is_singular
 from tippetop.sweeps.taylor_stepper import Stepper
 from tippetop.sweeps.tip_extremes import FORCE
+from tippetop.sweeps.trajectory_samples import TrajectorySamples
 from tippetop.sweeps.transitions import Crossings
 from tippetop.theory.prediction import is_held
 
@@ -41,7 +42,8 @@ class Lanes:
     The tolerance is that of the integrator of launches that are followed alone: relative error per
     step. A launch ends when n_z reaches its own `band`, the least and the largest of shape (n,),
     and once its tilt is held within `settled`, rad. Launches that are not at the start are
-    `resumed`: numbers of the motion and times left, shape (size + 1, n).
+    `resumed`: numbers of the motion and times left, shape (size + 1, n). The launches are sampled
+    into `samples`, by a stepper for motions that are sampled.
     """
 
     def __init__(
@@ -52,9 +54,10 @@ class Lanes:
         band: tuple[Array, Array] | None = None,
         resumed: Array | None = None,
         settled: float | None = None,
+        samples: TrajectorySamples | None = None,
     ) -> None:
         self.tolerance, self.banded, self.settled = tolerance, band is not None, settled
-        self.slots = slots = Slots(launches, stepper, band)
+        self.slots = slots = Slots(launches, stepper, band, samples)
         self.crossings, self.checkpoints = (
             Crossings(slots, tolerance, band is not None),
             list[Checkpoint](),
@@ -65,6 +68,7 @@ class Lanes:
             slots.place(lanes, picked(launches.state, slots.cell), np.zeros(len(lanes)))
             slots.remaining[~slots.alive] = 0.0
             self.crossings.launch(lanes[: len(launches)], launches.state)
+            slots.look_ahead(lanes)
         else:
             slots.rows[: stepper.layout.remaining + 1] = resumed[:, slots.cell]
             slots.choose_branch()
@@ -94,6 +98,8 @@ class Lanes:
         slots, layout = self.slots, self.slots.layout
         before, after = slots.rows, slots.spare
         self.slots.stepper.step(before, after, slots.numbers)
+        if slots.samples is not None:
+            self._sample(slots.samples, before, after)
         waiting = after[layout.pause].nonzero()[0]
         if len(waiting):
             slots.held[waiting] = after[layout.step_time, waiting]
@@ -105,6 +111,23 @@ class Lanes:
             slots.change_branch(changed)
         return len(waiting)
 
+    def _sample(self, samples: TrajectorySamples, before: Array, after: Array) -> None:
+        """Take the samples within a step of every lane that took one."""
+        slots, layout = self.slots, self.slots.layout
+        lanes = (after[layout.reached] != 0.0).nonzero()[0]
+        if not len(lanes):
+            return
+        samples.put(slots.cell[lanes], after[layout.sample].take(lanes, axis=1))
+        several = slots.look_ahead(lanes) >= after[layout.remaining][lanes]
+        if several.any():
+            lanes = lanes[several]
+            start, end = (
+                slots.end[lanes] - rows[layout.remaining, lanes] for rows in (before, after)
+            )
+            jet = slots.stepper.jet(before[:, lanes], slots.numbers[:, lanes])
+            samples.take(slots.cell[lanes], start, jet.state[:SLIDING], end)
+            slots.look_ahead(lanes)
+
     def _resume_waiting(self) -> None:
         """Find what happens in the lanes that wait, and let them go on."""
         slots, layout = self.slots, self.slots.layout
@@ -115,7 +138,7 @@ class Lanes:
         start = slots.end[lanes] - remaining
         held = slots.held[lanes]
         jet = slots.stepper.jet(slots.rows[:, lanes], numbers)
-        followed = arcs(jet, held, held, numbers[layout.parameters :])
+        followed = arcs(jet, held, held, numbers[layout.pauses])
         closer = followed.look_closer(jet, numbers[layout.counts])
         if len(closer):
             pressing, tip = (
@@ -128,6 +151,9 @@ class Lanes:
         slots.tip.put_of(lanes, followed.least)
         slots.rows[: layout.size, lanes], span = followed.after, followed.span
         slots.rows[layout.remaining, lanes] = remaining - span
+        if slots.samples is not None:
+            cells, state = slots.cell[lanes], jet.state[:SLIDING]
+            slots.samples.take(cells, start, state, slots.time(lanes))
         slots.rows[layout.step_time, lanes] = held
         slots.rows[layout.steps, lanes] += 1
         slots.held[lanes] = 0.0
@@ -137,6 +163,8 @@ class Lanes:
                 lanes[some], start[some] + span[some], followed.fallen[some].astype(np.intp)
             )
         slots.numbers[layout.turns, lanes] = np.isnan(slots.tip.turned[lanes])
+        if slots.samples is not None:
+            slots.look_ahead(lanes)
         if self.banded:
             slots.rows[layout.remaining, ~np.isnan(slots.tip.reached)] = 0.0
 

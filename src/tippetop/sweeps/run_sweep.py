@@ -1,26 +1,34 @@
 """Carry out a sweep, into a store or into memory."""
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+import psutil
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from tippetop.problem.implausible import warn
 from tippetop.problem.problem import Problem
 from tippetop.results.flags import decoded
-from tippetop.support.errors import InvalidInput, require
+from tippetop.support.errors import Described, InvalidInput, require
 from tippetop.support.validation import require_callback
-from tippetop.sweeps.definition import DEFAULT_TOLERANCE, Sweep, Task
+from tippetop.sweeps.contents import (
+    components_of,
+    contents_of,
+    coordinate_attributes,
+    coordinates_of,
+)
+from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.draws import columns_of
 from tippetop.sweeps.grid import Product
 from tippetop.sweeps.implausible_cells import implausible_cells
 from tippetop.sweeps.schedulers import Cluster, Found, need_workers, results
 from tippetop.sweeps.store import Store
-from tippetop.sweeps.store_layout import CONTENTS, coordinate_attributes, layout_attributes
+from tippetop.sweeps.store_layout import layout_attributes
 
 
 @dataclass(frozen=True)
@@ -92,12 +100,14 @@ def compute(
 ) -> xr.Dataset:
     """Carry out a sweep in memory; for workers, scheduler and callback see `sweep`.
 
-    The variables of `tippetop.results.catalogue.SWEPT` and `is_done` are over the grid.
+    The variables of `tippetop.results.catalogue.SWEPT` and `is_done` are over the grid, and those
+    that are kept over the grid and the sample times.
+
+    Raises `InvalidInput` if the samples do not fit into the free memory.
     """
-    shape, grid = sweep.grid.shape, sweep.grid
-    arrays = {
-        name: np.full(shape, kind.missing, dtype=kind.dtype) for name, kind in CONTENTS.items()
-    }
+    contents = contents_of(sweep)
+    _require_memory(sweep)
+    arrays = {name: content.missing(sweep.grid.shape) for name, content in contents.items()}
 
     def keep(task: Task, variables: Found) -> None:
         region = sweep.region(task)
@@ -107,13 +117,33 @@ def compute(
     _carry_out(sweep, sweep.tasks, keep, workers, scheduler, callback)
     arrays["is_done"][...] = True
     data = {
-        name: (grid.dimensions, arrays[name], kind.attributes) for name, kind in CONTENTS.items()
+        name: (
+            (*sweep.dimensions, *content.dimensions),
+            arrays[name],
+            content.variable.attributes,
+        )
+        for name, content in contents.items()
     }
-    coordinates = {
+    coordinates: dict[str, Any] = {
         name: ((along,), values, coordinate_attributes(sweep, name))
-        for name, (along, values) in grid.coordinates().items()
+        for name, (along, values) in coordinates_of(sweep).items()
     }
-    return xr.Dataset(data, coordinates, layout_attributes(sweep))
+    return xr.Dataset(data, coordinates | components_of(sweep), layout_attributes(sweep))
+
+
+def _require_memory(sweep: Sweep) -> None:
+    """Refuse to keep samples in memory that are more than fit into it."""
+    sizes = [
+        math.prod(content.shape) * content.variable.bytes
+        for content in contents_of(sweep).values()
+        if content.shape
+    ]
+    total, free = sweep.cells * sum(sizes), psutil.virtual_memory().available
+    if total > free:
+        amount = f"{total / 1e9:.3g} GB of samples"
+        fault = f"are more than the {free / 1e9:.3g} GB of free memory"
+        hint = "keep them in a store, with out, or keep fewer variables or times"
+        raise InvalidInput("keep", Described(amount), "", fault, hint)
 
 
 def sweep(
@@ -124,8 +154,11 @@ def sweep(
     count: int | None = None,
     seed: int | None = None,
     duration: float = 20.0,
-    tolerance: float = DEFAULT_TOLERANCE,
+    tolerance: float | None = None,
     settled: float | None = None,
+    keep: str | Sequence[str] | None = None,
+    samples: int | None = None,
+    times: ArrayLike | None = None,
     events: object = None,
     until: object = None,
     out: Path | str | None = None,
@@ -160,10 +193,18 @@ def sweep(
     duration
         Length of every run, s.
     tolerance
-        Relative error per step.
+        Relative error per step: 1e-9 by default, and 1e-11 where samples are kept.
     settled
         A run ends once its energy holds the tilt within this for good, rad; None to follow every
         run for its whole duration.
+    keep
+        Variables over time, such as ``["tilt", "axis"]``, of which samples of every launch are
+        kept: those of a run that follow from its state alone, by their names there. They are not
+        numbers after the end of a run that ends before `duration`, and `is_sampled` says so.
+    samples
+        Number of equally spaced samples from launch to `duration`, of what is kept; 201 by default.
+    times
+        Sample times instead, s: increasing, from 0 to `duration`.
     events, until
         Not in a sweep: they are refused with a sentence. `simulate` finds the events of one launch.
     out
@@ -189,8 +230,9 @@ def sweep(
         What became of every launch, over the grid: its outcome, final tilt, spin and precession,
         when it turned over, its flights, forces and losses, each with its SI unit. That of a store
         is read when used. A coordinate is named by the last word of its field, spin for
-        launch.spin, where that names one field alone, else by the whole; its attribute `path` is
-        the whole. The dimensions are the fields of `over`, or `draw`.
+        launch.spin, where that names one field alone and nothing that is kept, else by the whole;
+        its attribute `path` is the whole. The dimensions are the fields of `over`, or `draw`, and
+        `time` of what is kept.
 
     Raises
     ------
@@ -210,6 +252,12 @@ def sweep(
     [0.0, 1.5, 3.14]
     >>> bool(found["outcome"].sel(spin=155.0) == "inverted")
     True
+
+    Sampled trajectories of all launches:
+
+    >>> found = tt.sweep(tt.presets.report_problem(), spins, duration=2.0, keep="tilt", samples=5)
+    >>> found["tilt"].dims, found["tilt"].shape
+    (('spin', 'time'), (3, 5))
     """
     chosen = Sweep(
         problem=problem,
@@ -218,8 +266,11 @@ def sweep(
         count=count,
         seed=seed,
         duration=duration,
-        tolerance=tolerance,
+        **({} if tolerance is None else {"tolerance": tolerance}),
         settled=settled,
+        keep=keep,
+        samples=samples,
+        times=times,
     )
     require_callback("callback", callback)
     require("decode", decode, bool, "True or False")

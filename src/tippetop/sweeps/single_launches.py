@@ -21,6 +21,7 @@ from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import RunMetrics
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.launch_arrays import Launches, single
+from tippetop.sweeps.trajectory_samples import TrajectorySamples
 from tippetop.theory.prediction import is_held
 
 _LOG = logging.getLogger(__name__)
@@ -37,8 +38,14 @@ def is_alone(launches: Launches) -> bool:
     return not has_built_in_rules or has_field or has_choices(example)
 
 
-def follow_each(launches: Launches, tolerance: float, settled: float | None = None) -> Ends:
-    """Follow every launch to its end, or until its tilt is held within `settled`, rad.
+def follow_each(
+    launches: Launches,
+    tolerance: float,
+    settled: float | None = None,
+    samples: TrajectorySamples | None = None,
+) -> Ends:
+    """Follow every launch to its end, or until its tilt is held within `settled`, rad; take its
+    samples.
 
     A launch in which something raises has failed, and nothing else is known of it.
     """
@@ -47,7 +54,9 @@ def follow_each(launches: Launches, tolerance: float, settled: float | None = No
         try:
             automaton, state = launches.automaton(i), single(launches.state, i)
             start, end = automaton.launch(state), float(launches.end[i])
-            ended, _ = follow((automaton, state, 0.0), start, end, tolerance, settled)
+            sampled = None if samples is None else (samples, i)
+            begin = automaton, state, 0.0
+            ended, _ = follow(begin, start, end, tolerance, settled, sampled=sampled)
         except (MemoryError, Unavailable):
             raise
         except Exception as error:  # noqa: BLE001 - whatever was raised, the others go on
@@ -69,26 +78,33 @@ def follow(
     tolerance: float,
     settled: float | None = None,
     launched: State | None = None,
+    sampled: tuple[TrajectorySamples, int] | None = None,
 ) -> tuple[Ends, RunMetrics]:
     """Return what a launch comes to, followed from a state, a time and what follows, or until it
     settles.
 
-    `launched` is the state at launch, where that is another.
+    `launched` is the state at launch, where that is another. `sampled` has the samples to take, and
+    the number of the launch in them.
     """
     automaton, state, time = begin
     top = automaton.top
     method = make_integrator(None, max(tolerance, TOLERANCES[DEFAULT]))
     trajectory = Trajectory(automaton, start, end, method, time=time)
     run_metrics = RunMetrics(top, launched or state)
+    times = np.empty(0) if sampled is None else sampled[0].times_left(sampled[1])
     segments, recorder = (
         trajectory.segments(),
-        Recorder(top, state, 0.0, np.empty(0), start.energy_lost, automaton.pulls),
+        Recorder(top, state, 0.0, times, start.energy_lost, automaton.pulls),
     )
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
     for block in in_blocks(segments):
         recorder.take(block)
         run_metrics.take(block)
     status = recorder.status_of(trajectory)
+    if sampled is not None and np.any(times <= trajectory.time):
+        samples, launch = sampled
+        observed = recorder.finish(trajectory.time, trajectory.state, early=False)
+        samples.take_observed(launch, observed, top)
     return run_metrics.ends(
         trajectory.state, trajectory.time, status, trajectory.events, recorder.sums
     ), run_metrics

@@ -18,15 +18,19 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from tippetop.results.catalogue import SWEPT
 from tippetop.results.flags import decoded
 from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable, require
 from tippetop.support.files import in_words, path_of, require_ending
 from tippetop.support.installation import install_command
 from tippetop.support.interrupts import deferred
+from tippetop.sweeps.contents import (
+    CONTENTS,
+    components_of,
+    contents_of,
+    coordinates_of,
+)
 from tippetop.sweeps.definition import Sweep, Task
 from tippetop.sweeps.store_layout import (
-    CONTENTS,
     altered,
     lay_out,
     may_be_replaced,
@@ -49,7 +53,7 @@ class Store:
     def __init__(self, path: Path, sweep: Sweep) -> None:
         import zarr  # noqa: PLC0415 - optional
 
-        self.path, self.sweep = path, sweep
+        self.path, self.sweep, self._contents = path, sweep, contents_of(sweep)
         with in_words(path, "opened"):
             # Chunks of fill values are written too: a missing chunk was deleted.
             with zarr.config.set({"array.write_empty_chunks": True}), metadata_in_words(path):
@@ -149,9 +153,14 @@ class Store:
 
     def _write_first_values(self) -> None:
         """Write the coordinates, and that no cell is done."""
-        for name, (_, values) in self.sweep.grid.coordinates().items():
+        for name, (_, values) in coordinates_of(self.sweep).items():
             self._arrays[name][...] = values
         self._arrays["is_done"][...] = False
+
+    @property
+    def _results(self) -> list[str]:
+        """Names of the variables that tasks compute."""
+        return [name for name in self._contents if name != "is_done"]
 
     def is_done(self) -> NDArray[np.bool_]:
         """Return whether each cell is computed; those of chunks that cannot be read are not."""
@@ -167,7 +176,7 @@ class Store:
     def remaining(self) -> list[Task]:
         """Return the tasks that are not done, and those of which a chunk was deleted."""
         done = self._done(self.is_done())
-        stored = [self._stored(name) for name in SWEPT]
+        stored = [self._stored(name) for name in self._results]
         done.intersection_update(*stored)
         return [task for task in self.sweep.tasks if task not in done]
 
@@ -179,7 +188,8 @@ class Store:
         """Return the tasks of which an array has a chunk on disk."""
         folder = self.path / name / "c"
         places = (file.relative_to(folder).parts for file in folder.rglob("*") if file.is_file())
-        return {tuple(map(int, place)) for place in places if all(map(str.isdigit, place))}
+        along = len(self.sweep.grid.shape)
+        return {tuple(map(int, place[:along])) for place in places if all(map(str.isdigit, place))}
 
     def write(self, task: Task, variables: Mapping[str, NDArray[Any]]) -> None:
         """Write the results of a task, and that it is done once they are on disk.
@@ -192,7 +202,7 @@ class Store:
         self._check_identity()
         with in_words(self.path, "written"):
             for name, values in variables.items():
-                self._arrays[name][region] = values.reshape(shape)
+                self._arrays[name][region] = values.reshape(*shape, *values.shape[1:])
             self._bring_chunks_to_disk(variables, task)
             self._arrays["is_done"][region] = np.full(shape, True)
             self._bring_chunks_to_disk(["is_done"], task)
@@ -211,18 +221,18 @@ class Store:
 
         Raises `FileTrouble` if a chunk is missing, or the metadata were altered.
         """
-        return self._opened(SWEPT)
+        return self._opened(self._results)
 
-    def load(self, names: Collection[str]) -> xr.Dataset:
-        """Return some of the variables, read now.
+    def load(self, names: Collection[str], others: Collection[str] = ()) -> xr.Dataset:
+        """Return some of the variables, read now, and others that are read when they are used.
 
         Raises `FileTrouble` if one of their chunks is damaged or missing, or the metadata were
         altered.
         """
         with _damage_in_words(self.path):
-            dataset = self._opened(names)[list(names)]
+            dataset = self._opened([*names, *others])[[*names, *others]]
             try:
-                return dataset.load()
+                return dataset.assign(dataset[list(names)].load().variables)
             except ZARR_ERRORS:
                 self._name_damaged_chunk(names)
                 raise
@@ -233,14 +243,14 @@ class Store:
             self._check_coordinates()
             done = self._done(np.asarray(self._arrays["is_done"][...]))
             chunks = [("is_done", task) for task in self.sweep.tasks]
-            chunks += [(name, task) for name in names if name in SWEPT for task in done]
+            chunks += [(name, task) for name in names if name in self._results for task in done]
             self._require_chunks(chunks)
             opened: xr.Dataset = xr.open_zarr(self.path)
-        return opened
+        return opened.assign_coords(components_of(self.sweep))
 
     def _check_coordinates(self) -> None:
         """Raise an error unless the coordinates are stored and are those of the sweep."""
-        coordinates = self.sweep.grid.coordinates()
+        coordinates = coordinates_of(self.sweep)
         self._require_chunks([(name, (0,)) for name in coordinates])
         for name, (_, values) in coordinates.items():
             # Other processors and libraries may round values that follow from a formula otherwise.
@@ -265,7 +275,9 @@ class Store:
                     )
 
     def _chunk(self, name: str, task: Task) -> Path:
-        return self.path.joinpath(name, "c", *map(str, task))
+        """Return the file of the chunk of a task: samples are not divided further."""
+        shape = self._contents[name].shape if name in self._contents else ()
+        return self.path.joinpath(name, "c", *map(str, task), *("0" for _ in shape))
 
 
 def read_sweep(
@@ -273,7 +285,8 @@ def read_sweep(
 ) -> xr.Dataset:
     """Return a stored sweep, or some of its variables.
 
-    Flags are words, or numbers unless `decode`.
+    Flags are words, or numbers unless `decode`. Samples of trajectories may be more than
+    fits into memory: they are read when they are used, unless they are named.
 
     Raises
     ------
@@ -294,7 +307,9 @@ def read_sweep(
     path = path_of(path)
     with in_words(path, "read"):
         sweep = stored_sweep(path)
-    dataset = Store(path, sweep).load(list(CONTENTS) if names is None else names)
+    samples = [name for name in contents_of(sweep) if name not in CONTENTS]
+    chosen = (list(CONTENTS), samples) if names is None else (names, [])
+    dataset = Store(path, sweep).load(*chosen)
     return decoded(dataset) if decode else dataset
 
 

@@ -17,23 +17,20 @@ from llvmlite.binding import get_host_cpu_name
 
 from tippetop import __version__
 from tippetop.problem.implausible import warn
-from tippetop.results.catalogue import SWEPT, Variable
 from tippetop.results.dataset import CONVENTIONS
 from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, short
 from tippetop.support.files import refuse_overwriting
+from tippetop.sweeps.contents import (
+    CONTENTS,
+    contents_of,
+    coordinate_attributes,
+    coordinates_of,
+)
 from tippetop.sweeps.definition import Sweep
-from tippetop.sweeps.grid import field_paths
 
 FORMAT = "tippetop sweep 5"
 """Name and version of the layout; a store of another is refused."""
 METADATA = "zarr.json"
-
-
-CONTENTS = {
-    "is_done": Variable("whether the launch is computed", dtype="bool"),
-    **SWEPT,
-}
-"""Variables of a sweep's dataset over the grid."""
 
 _warnings_lock = Lock()
 """Held while warnings are silenced, which affects all threads."""
@@ -53,9 +50,8 @@ def lay_out(store: Any, sweep: Sweep) -> Any:
     from zarr.codecs import Crc32cCodec, ZstdCodec  # noqa: PLC0415 - optional
 
     compressors = ZstdCodec(level=0), Crc32cCodec()
-    grid = sweep.grid
     group = zarr.create_group(store, attributes=layout_attributes(sweep), zarr_format=3)
-    for name, (dimension, values) in grid.coordinates().items():
+    for name, (dimension, values) in coordinates_of(sweep).items():
         group.create_array(
             name,
             shape=values.shape,
@@ -65,14 +61,15 @@ def lay_out(store: Any, sweep: Sweep) -> Any:
             attributes=coordinate_attributes(sweep, name),
             compressors=compressors,
         )
-    for name, kind in CONTENTS.items():
+    for name, content in contents_of(sweep).items():
+        kind = content.variable
         group.create_array(
             name,
-            shape=grid.shape,
-            chunks=sweep.chunk,
+            shape=(*sweep.grid.shape, *content.shape),
+            chunks=(*sweep.chunk, *content.shape),
             dtype=kind.dtype,
             fill_value=kind.missing,
-            dimension_names=grid.dimensions,
+            dimension_names=(*sweep.dimensions, *content.dimensions),
             attributes=_json_attributes(kind.attributes) | _coordinates(sweep),
             compressors=compressors,
         )
@@ -107,20 +104,9 @@ def layout_attributes(sweep: Sweep) -> dict[str, Any]:
     }
 
 
-def coordinate_attributes(sweep: Sweep, name: str) -> dict[str, Any]:
-    """Return the attributes of a coordinate by the CF conventions, and the `path` of its field."""
-    path = field_paths(sweep.grid.fields).get(name)
-    if path is None:
-        return Variable("number of the draw", "1").attributes
-    kind = sweep.problem.quantity(path)
-    return Variable(kind.long_name, kind.units).attributes | {"path": path}
-
-
 def _coordinates(sweep: Sweep) -> dict[str, str]:
     """Return the CF attribute that names the coordinates that are not dimensions."""
-    others = [
-        name for name, (dimension, _) in sweep.grid.coordinates().items() if name != dimension
-    ]
+    others = [name for name, (dimension, _) in sweep.coordinates().items() if name != dimension]
     return {"coordinates": " ".join(others)} if others else {}
 
 

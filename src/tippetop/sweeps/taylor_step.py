@@ -52,6 +52,9 @@ SHORTEST, ROUNDED = 1e-13, 2.0**-52
 singular.
 """
 
+SLIDING = 8
+"""How many numbers the state of a sliding top has, the first of its motion."""
+
 LANES = 16
 """Arrays are filled up to a multiple of this many launches."""
 
@@ -67,6 +70,9 @@ class Layout(NamedTuple):
 
     What to pause for is in rows after the parameters: whether each guard counts, whether the top is
     yet to turn over, and the least and the largest n_z of a band (inf and -inf for none).
+
+    Of motions that are sampled, a further number is the time that is left at the next sample, and
+    the last rows tell whether that is in a step that was taken, and have the state there.
     """
 
     size: int
@@ -84,34 +90,47 @@ class Layout(NamedTuple):
     """Rows of the least values of the first guard, n_z and -n_z in a step."""
     changed: int
     """Row of whether a step ended where another branch of the law takes over."""
+    reached: int
+    sample: slice
+    """Rows of whether the next sample is reached and of the state there, of motions that are
+    sampled.
+    """
     rows: int
     """How many rows there are."""
+    pauses: slice
+    """Rows, after the parameters, of what to pause for."""
     counts: slice
     turns: int
     band: slice
     """Rows, after the parameters, of which guards count, of whether the top is yet to turn over,
     and of the band.
     """
+    due: int
+    """Row, after those, of the time left at the next sample, of motions that are sampled."""
     numbers: int
-    """How many rows of parameters and of what to pause for there are."""
+    """How many rows of parameters, of what to pause for and of samples there are."""
     branch: int | None
     """Which guard tells where another branch of the law takes over, if any does."""
 
     @classmethod
-    def of(cls, motion: Motion) -> "Layout":
-        """Return the layout for a motion."""
+    def of(cls, motion: Motion, *, sampled: bool = False) -> "Layout":
+        """Return the layout for a motion, which may be sampled."""
         size, guards, parameters = motion.size, len(motion.guards), motion.parameters
         carried, turns = size + 2, parameters + guards
-        pause, changed, numbers = carried + 1, carried + 5, turns + 3
+        pause, changed, due = carried + 1, carried + 5, turns + 3
         least, counts, band = (
             slice(carried + 2, changed),
             slice(parameters, turns),
-            slice(turns + 1, numbers),
+            slice(turns + 1, due),
         )
-        row = (size, size + 1, carried, carried, pause, least, changed, changed + 1)
+        reached = changed + 1
+        rows = reached + (1 + SLIDING if sampled else 0)
+        sample, pauses = slice(reached + 1, rows), slice(parameters, due)
+        row = (size, size + 1, carried, carried, pause, least, changed, reached, sample, rows)
         names = [guard.name for guard in motion.guards]
         branch = names.index(BRANCH) if BRANCH in names else None
-        return cls(size, parameters, *row, counts, turns, band, numbers, branch)
+        numbers = due + sampled
+        return cls(size, parameters, *row, pauses, counts, turns, band, due, numbers, branch)
 
 
 class Jet(NamedTuple):
@@ -151,7 +170,7 @@ def stride(
     carried rows.
     """
     remaining, steps = before[layout.size :]
-    counts, band = numbers[layout.counts], numbers[layout.turns :]
+    counts, band = numbers[layout.counts], numbers[layout.turns : layout.due]
     state, falls = jet
     full = step_size(state, remaining, plain, axis=3)
     length, changes, events = later_guards(falls, counts, (full, layout.branch), plain)
@@ -169,7 +188,12 @@ def stride(
     least = [
         plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)
     ]
-    return [*stays, full, pause, *least, plain.choose(pause, 0.0 * changes, changes)]
+    samples = []
+    if layout.numbers > layout.due:
+        due = numbers[layout.due]
+        reached = goes * (1.0 - plain.below(due, stays[layout.remaining]))
+        samples = [reached, *(horner(terms, remaining - due) for terms in state[:SLIDING])]
+    return [*stays, full, pause, *least, plain.choose(pause, 0.0 * changes, changes), *samples]
 
 
 def extremes(tip: Sequence[Scalar], length: Scalar, plain: Arithmetic) -> tuple[Scalar, Scalar]:

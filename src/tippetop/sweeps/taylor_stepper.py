@@ -47,8 +47,9 @@ class NumPyArithmetic:
 class Stepper:
     """Taylor's method for one motion, of some order, compiled when first used."""
 
-    def __init__(self, motion: Motion, order: int) -> None:
-        self.motion, self.order, self.layout = motion, order, Layout.of(motion)
+    def __init__(self, motion: Motion, order: int, *, sampled: bool = False) -> None:
+        self.motion, self.order = motion, order
+        self.layout = Layout.of(motion, sampled=sampled)
 
     def step(self, before: Array, after: Array, numbers: Array) -> None:
         """Take a step from the rows of `before` to those of `after`, both of shape (layout.rows,
@@ -78,9 +79,9 @@ class Stepper:
 
 
 @lru_cache(maxsize=16)
-def stepper(motion: Motion, tolerance: float) -> Stepper:
-    """Taylor's method for a motion."""
-    return Stepper(motion, order_for(tolerance))
+def stepper(motion: Motion, tolerance: float, *, sampled: bool = False) -> Stepper:
+    """Taylor's method for a motion, which may be sampled."""
+    return Stepper(motion, order_for(tolerance), sampled=sampled)
 
 
 @lru_cache(maxsize=16)

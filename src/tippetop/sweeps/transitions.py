@@ -107,9 +107,9 @@ class Crossings:
             cells = slots.cell[lanes]
             horizon = slots.end[lanes] - time
             numbers = launches.numbers[:, cells]
-            flown = fly_all(
-                state, launches.kind, numbers, horizon, vanishing, (slots.tip, lanes, time)
-            )
+            sampled = None if slots.samples is None else (slots.samples, cells)
+            seen = slots.tip, lanes, time
+            flown = fly_all(state, launches.kind, numbers, horizon, vanishing, seen, sampled)
             accumulate(
                 ends,
                 cells,
@@ -229,7 +229,12 @@ class Crossings:
         begin = slots.launches.automaton(int(slots.cell[lane])), state, time
         launched = single(slots.launches.state, int(slots.cell[lane]))
         ended, run_metrics = follow(
-            begin, transition, float(slots.end[lane]), self.tolerance, launched=launched
+            begin,
+            transition,
+            float(slots.end[lane]),
+            self.tolerance,
+            launched=launched,
+            sampled=None if slots.samples is None else (slots.samples, int(slots.cell[lane])),
         )
         parts = of_a_part(ended)
         accumulate(ends, cell, **{name: parts[name] for name in parts if name not in HELD_BY_LANES})
