@@ -1,20 +1,20 @@
 """The automaton of contact modes: it decides which mode follows where one ends.
 
 A mode says what ended it (`ModeEnd`); the automaton says what follows (`Transition`). No other file
-names next modes. Read `Automaton.follow` first: one branch for every kind of mode. What comes to
-rest normally on the table goes through `Automaton.resting`, and from there to one contact
+names next modes. Read `RULES` first: one rule for every cause of a mode's end. What comes to rest
+normally on the table goes through `Automaton.resting`, and from there to one contact
 (`Automaton.resolve`) or two (`Automaton.resolve_two`). Both ask the resolver for every consistent
 answer (`tippetop.mechanics.contacts.resolver`), and `Automaton._chosen` takes one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 from tippetop.contact.closed_contacts import ClosedContacts
 from tippetop.contact.collision import collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
-from tippetop.contact.flight import TOUCHING, Flight, Start
+from tippetop.contact.flight import LANDING, TOUCHING, Flight, Start
 from tippetop.contact.guards import (
     BRANCH,
     ENDING,
@@ -138,53 +138,11 @@ class Automaton:
         return self.resting(lowest, 0.0, state)
 
     def follow(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
-        """Return what follows the end of a mode."""
-        if end.cause == COMPLETED:
-            return Transition((), Status.COMPLETED, end.state)
-        if end.cause == FAILURE:
-            return self._after_failure(mode, end, time)
-        if end.cause == FLAT:
-            return Transition((), Status.LYING_FLAT, end.state)
-        if end.cause == AT_REST:
-            return Transition((), Status.AT_REST, end.state)
-        contact = off_branch(mode.top)
-        if isinstance(mode, Flight):
-            return self._after_flight(contact, end, time)
-        if end.cause == TOUCH:
-            return self.touch(contact, end.contact, time, end.state)
-        moving = mode.contact_mode if isinstance(mode, TransientMode) else mode
-        if not isinstance(moving, ContactMode):  # one that a user defined
-            raise InvalidInput(
-                "contact",
-                Described(f"the mode {mode.name}, ended by '{end.cause}',"),
-                "",
-                "has no rule for what follows",
-                "return a Transition for this guard from the automaton's method follow",
-            )
-        if end.cause in (FACE, WOBBLE):
-            settling = SettlingFlat(moving.top, moving, slaps=end.cause == FACE)
-            return Transition((), settling, end.state)
-        if end.cause == LIFT_OFF:
-            return self.lift_off(contact, time, mode, end)
-        if end.cause == OPENING:
-            return self._open_one(moving, mode, end, time)
-        if end.cause in (BRANCH, LIMIT_BRANCH):
-            return self._on_other_branch(moving, mode, end)
-        if end.cause == JAMMED:
-            return self._after_jam(moving, end, time)
-        if end.cause == OVERTAKEN:
-            assert isinstance(mode, SlipEnd)
-            return Transition((), mode.of_second(), end.state)
-        if end.cause in (SLIP_SMALL, SLIP_LARGE, REOPENING, ONSET_OVER):
-            return self._go_on(moving, end)
-        if end.cause in (STOPPING, ROLLING_STOPPING):
-            return self._follow_to_end(moving, end, time)
-        if end.cause in (REACHED_ZERO, ENDED):
-            assert isinstance(mode, TransientMode)
-            return self._after_end(moving, mode, end, time)
-        if moving.is_single:
-            return self._begins_on_one(moving, mode, end, time)
-        return self._begins_on_two(moving, end, time)
+        """Return what follows the end of a mode, by the rule of its cause in `RULES`."""
+        rule = RULES.get(end.cause)
+        if rule is None:
+            raise without_rule(mode, end)
+        return rule(self, mode, end, time)
 
     def _after_failure(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a mode cannot be followed: friction that turns may have jammed
@@ -196,11 +154,21 @@ class Automaton:
             return self.jammed(off_branch(mode.top), time, end.state) or failure
         return failure
 
+    def _settle_flat(self, mode: Mode, end: ModeEnd, *, slaps: bool) -> Transition:
+        """Return the mode in which a face closes onto the table, slapping or wobbling down."""
+        moving = contact_mode_of(mode, end)
+        return Transition((), SettlingFlat(moving.top, moving, slaps=slaps), end.state)
+
     def _after_flight(self, contact: Top, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a surface lands."""
         if end.contact == contact.number:
             return self.touchdown(contact, time, end.state)
         return self.touch(contact, end.contact, time, end.state)
+
+    def _overtaken(self, mode: Mode, end: ModeEnd) -> Transition:
+        """Return the end of the other velocity, which comes before that of the first."""
+        assert isinstance(mode, SlipEnd)
+        return Transition((), mode.of_second(), end.state)
 
     def _go_on(self, mode: ContactMode, end: ModeEnd) -> Transition:
         """Return the contact mode as it goes on, near an end of its velocities or not."""
@@ -227,10 +195,10 @@ class Automaton:
         ending, _ = soonest_end(mode, end.state)
         return self._go_on(mode, end) if ending is None else Transition((), ending, end.state)
 
-    def _after_end(
-        self, mode: ContactMode, transient: TransientMode, end: ModeEnd, time: float
-    ) -> Transition:
+    def _after_end(self, transient: Mode, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a velocity has ended."""
+        assert isinstance(transient, TransientMode)
+        mode = transient.contact_mode
         if not mode.is_single:
             return self.resolve_two(time, end.state, mode.tops, Before.of(mode), mode.rolls)
         contact, slip = off_branch(mode.top), transient.components[0].slip
@@ -267,37 +235,44 @@ class Automaton:
         state = state._replace(momentum=mode.stilled(state.axis, state.momentum))
         return Transition((event,), self.mode_for(off_branch(stays), state, slips=slips), state)
 
+    def _slips(self, ended: Mode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where the table can no longer hold slip."""
+        mode = contact_mode_of(ended, end)
+        if mode.is_single:
+            return self._begins_on_one(mode, ended, end, time, SlipComponent(slip=True))
+        return self.slip_on_two(time, end.state, mode, end.contact)
+
+    def _rolls(self, ended: Mode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where the table can no longer hold rolling."""
+        mode = contact_mode_of(ended, end)
+        if mode.is_single:
+            return self._begins_on_one(mode, ended, end, time, SlipComponent(slip=False))
+        rolls = rolling_direction(mode.contacts(mode.numbers(end.state)).forces)
+        return self.resolve_two(time, end.state, mode.tops, Before.of(mode), rolls)
+
+    def _turning_ends(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where the body has stopped turning about one of two contacts.
+
+        What the guard has ended is over, however much of it the error of a step leaves.
+        """
+        state, before = end.state, Before.of(mode)
+        return self.resolve_two(time, state, mode.tops, before, mode.rolls, ended=(True, True))
+
     def _begins_on_one(
-        self, mode: ContactMode, ended: Mode, end: ModeEnd, time: float
+        self, mode: ContactMode, ended: Mode, end: ModeEnd, time: float, begins: SlipComponent
     ) -> Transition:
         """Return what follows where the table can no longer hold slip, or rolling, on one
         contact.
         """
-        assert end.cause in (SLIP, ROLLING), f"nothing follows {end.cause}"
         contact, state = off_branch(mode.top), end.state
         wrench: Wrench | None = None
         if ended is mode:
             wrench = mode.contacts(mode.numbers(state)).forces.wrenches[0]
             if wrench.force[2] <= 0.0 and not self.pulls:
                 return self.lift_off(contact, time, mode, end)
-        begins = SlipComponent(end.cause == SLIP)
         held = mode.prevents_rolling if begins.slip else mode.sticks[0]
         # A velocity that was about to end goes on beside one that begins.
         return self._begin(contact, time, state, begins, held and ended is mode, wrench)
-
-    def _begins_on_two(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
-        """Return what follows where the table can no longer hold slip, or rolling, on two
-        contacts.
-        """
-        assert end.cause in (SLIP, ROLLING, ENDING), f"nothing follows {end.cause}"
-        if end.cause == SLIP:
-            return self.slip_on_two(time, end.state, mode, end.contact)
-        rolls = mode.rolls
-        if end.cause == ROLLING:
-            rolls = rolling_direction(mode.contacts(mode.numbers(end.state)).forces)
-        # What a guard has ended is over, however much of it the error of a step leaves.
-        ended = (True, True) if end.cause == ENDING else None
-        return self.resolve_two(time, end.state, mode.tops, Before.of(mode), rolls, ended=ended)
 
     # One contact.
 
@@ -811,6 +786,74 @@ class Automaton:
             (begins if both else begins[:2],),
         )
         return Transition((), onset, contacts.state)
+
+
+Rule: TypeAlias = Callable[[Automaton, Mode, ModeEnd, float], Transition]
+"""What follows the end of a mode at a time."""
+
+RULES: dict[str, Rule] = {
+    COMPLETED: lambda rules, mode, end, time: Transition((), Status.COMPLETED, end.state),
+    FAILURE: lambda rules, mode, end, time: rules._after_failure(mode, end, time),
+    FLAT: lambda rules, mode, end, time: Transition((), Status.LYING_FLAT, end.state),
+    AT_REST: lambda rules, mode, end, time: Transition((), Status.AT_REST, end.state),
+    LANDING: lambda rules, mode, end, time: rules._after_flight(off_branch(mode.top), end, time),
+    TOUCH: lambda rules, mode, end, time: rules.touch(
+        off_branch(mode.top), end.contact, time, end.state
+    ),
+    FACE: lambda rules, mode, end, time: rules._settle_flat(mode, end, slaps=True),
+    WOBBLE: lambda rules, mode, end, time: rules._settle_flat(mode, end, slaps=False),
+    LIFT_OFF: lambda rules, mode, end, time: rules.lift_off(
+        off_branch(contact_mode_of(mode, end).top), time, mode, end
+    ),
+    OPENING: lambda rules, mode, end, time: rules._open_one(
+        contact_mode_of(mode, end), mode, end, time
+    ),
+    SLIP: lambda rules, mode, end, time: rules._slips(mode, end, time),
+    ROLLING: lambda rules, mode, end, time: rules._rolls(mode, end, time),
+    ENDING: lambda rules, mode, end, time: rules._turning_ends(
+        contact_mode_of(mode, end), end, time
+    ),
+    STOPPING: lambda rules, mode, end, time: rules._follow_to_end(
+        contact_mode_of(mode, end), end, time
+    ),
+    ROLLING_STOPPING: lambda rules, mode, end, time: rules._follow_to_end(
+        contact_mode_of(mode, end), end, time
+    ),
+    SLIP_SMALL: lambda rules, mode, end, time: rules._go_on(contact_mode_of(mode, end), end),
+    SLIP_LARGE: lambda rules, mode, end, time: rules._go_on(contact_mode_of(mode, end), end),
+    BRANCH: lambda rules, mode, end, time: rules._on_other_branch(
+        contact_mode_of(mode, end), mode, end
+    ),
+    LIMIT_BRANCH: lambda rules, mode, end, time: rules._on_other_branch(
+        contact_mode_of(mode, end), mode, end
+    ),
+    ONSET_OVER: lambda rules, mode, end, time: rules._go_on(contact_mode_of(mode, end), end),
+    REOPENING: lambda rules, mode, end, time: rules._go_on(contact_mode_of(mode, end), end),
+    OVERTAKEN: lambda rules, mode, end, time: rules._overtaken(mode, end),
+    JAMMED: lambda rules, mode, end, time: rules._after_jam(contact_mode_of(mode, end), end, time),
+    REACHED_ZERO: lambda rules, mode, end, time: rules._after_end(mode, end, time),
+    ENDED: lambda rules, mode, end, time: rules._after_end(mode, end, time),
+}
+"""The rule of each cause of a mode's end, which runs and sweeps ask."""
+
+
+def contact_mode_of(mode: Mode, end: ModeEnd) -> ContactMode:
+    """Return the contact mode that has ended, or in which velocities began or ended."""
+    moving = mode.contact_mode if isinstance(mode, TransientMode) else mode
+    if not isinstance(moving, ContactMode):  # one that a user defined
+        raise without_rule(mode, end)
+    return moving
+
+
+def without_rule(mode: Mode, end: ModeEnd) -> InvalidInput:
+    """Return the refusal of the end of a mode that no rule follows."""
+    return InvalidInput(
+        "contact",
+        Described(f"the mode {mode.name}, ended by '{end.cause}',"),
+        "",
+        "has no rule for what follows",
+        "return a Transition for this guard from the automaton's method follow",
+    )
 
 
 def _indeterminate(contact: Top, time: float, consistent: Sequence[Answer]) -> tuple[Event, ...]:
