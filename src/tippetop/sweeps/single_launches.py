@@ -14,7 +14,8 @@ from tippetop.graph.own_parts import has_choices
 from tippetop.integrators import DEFAULT, TOLERANCES, make_integrator
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.hull import Hull, is_edge
+from tippetop.mechanics.top import Top
 from tippetop.results.accumulation import accumulate, before_launch, of_a_part
 from tippetop.results.metrics import Ends
 from tippetop.results.observables import Recorder
@@ -71,6 +72,16 @@ def note_failure(error: Exception) -> None:
     _LOG.warning("a cell of the sweep failed: %s: %s", type(error).__name__, error)
 
 
+def tolerance_of_steps(tolerance: float, top: Top) -> float:
+    """Return the relative tolerance of the steps of one launch of a sweep.
+
+    On an edge it is that of single runs: near its face the sine of the tilt, of which the motion
+    depends, falls far below any other tolerance of the axis, to which that is relative.
+    """
+    has_edge = any(is_edge(contact.surface) for contact in top.body.contacts)
+    return TOLERANCES[DEFAULT] if has_edge else max(tolerance, TOLERANCES[DEFAULT])
+
+
 def follow(
     begin: tuple[Automaton, State, float],
     start: Transition,
@@ -88,7 +99,7 @@ def follow(
     """
     automaton, state, time = begin
     top = automaton.top
-    method = make_integrator(None, max(tolerance, TOLERANCES[DEFAULT]))
+    method = make_integrator(None, tolerance_of_steps(tolerance, automaton.top))
     trajectory = Trajectory(automaton, start, end, method, time=time)
     run_metrics = RunMetrics(top, launched or state)
     times = np.empty(0) if sampled is None else sampled[0].times_left(sampled[1])
