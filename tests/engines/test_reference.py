@@ -151,7 +151,7 @@ def test_the_suite_says_the_same_in_all_formats(tmp_path):
         events = [(float(row["time"]), row["kind"]) for row in csv.DictReader(file)]
     assert events == [(event["time"], event["kind"]) for event in told["events"]]
     assert read["event_time"].values.tolist() == [time for time, _ in events]
-    assert "| `painleve` |" in (folder / "README.md").read_text()
+    assert "| [`painleve`](painleve.html) |" in (folder / "README.md").read_text()
     with pytest.raises(tt.FileTrouble, match="exists"):
         suite.write_suite(folder, ["painleve"])
     with pytest.raises(tt.FileTrouble, match="cannot be written"):

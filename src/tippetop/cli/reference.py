@@ -18,7 +18,7 @@ def reference(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Write reference problems with results to which other programs can be compared.
+    """Write reference problems, results and tests to which other programs can be compared.
 
     Each result states the agreement of two methods that share no code. The exit code is 1 if they
     differ by more than the limits of a case, which are listed with it: 1e-10 s in an event and 1e-8

@@ -14,7 +14,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import tippetop as tt
+from tippetop.engines.bodies import launch_state
+from tippetop.engines.case_page import page_of
 from tippetop.engines.cases import CASES, Case
+from tippetop.engines.derivatives import Derivative, derivatives, units_of
+from tippetop.problem.problem import top_of
 from tippetop.results.dataset import CONVENTIONS
 from tippetop.support.files import make_folder, place_for, written_beside
 from tippetop.support.suggestions import not_one_of
@@ -56,6 +60,10 @@ COLUMNS: Mapping[str, tuple[str, str]] = {
 """The numbers of a state: their units and meaning; x and y along the table, z up."""
 
 
+UNITS = {name: unit for name, (unit, _) in COLUMNS.items()}
+"""Units of the numbers of a state."""
+
+
 class Reference(NamedTuple):
     """A case with its numbers and how well two methods agree on each."""
 
@@ -69,8 +77,10 @@ class Reference(NamedTuple):
     status: str
     energy_error: float
     jellett_drift: float
+    """Relative change of Jellett's integral; nan where it is not conserved."""
     method: str
     """The second method in words."""
+    derivatives: tuple[Derivative, ...] = ()
 
     @property
     def event_agreement(self) -> float:
@@ -175,7 +185,7 @@ def reference_state(case: Case) -> Array:
     return judged_state(case, row[1:4], row[4:7])
 
 
-def reference(case: Case) -> Reference:
+def reference(case: Case, with_derivatives: bool = False) -> Reference:
     """Run a case here, and hold each number against the independent solver's."""
     stored = independent(case)
     times = case.times
@@ -200,9 +210,25 @@ def reference(case: Case) -> Reference:
         tuple(_events(run, stored["events"])),
         run.attrs["status"],
         float(run["energy_error"]),
-        float(run["jellett_drift"]),
+        float(run["jellett_drift"]) if _conserves_jellett(case) else math.nan,
         stored["method"],
+        tuple(derivatives(case, UNITS)) if with_derivatives else (),
     )
+
+
+def _conserves_jellett(case: Case) -> bool:
+    """Return whether nothing in a case changes Jellett's integral."""
+    return top_of(case.problem).conserves_jellett
+
+
+def start_of(problem: tt.Problem) -> dict[str, float]:
+    """Return the variables of `COLUMNS` at launch."""
+    start, launch = problem.start(), launch_state(problem)
+    axis, omega, velocity = (
+        np.array([vector], float) for vector in (start.axis, launch.omega, start.velocity)
+    )
+    numbers = numbers_of(problem, axis, omega, velocity, np.array([float(start.height)]))
+    return {name: float(values[0]) + 0.0 for name, values in numbers.items()}
 
 
 def _lasting(values: Array, count: int) -> Array:
@@ -223,6 +249,17 @@ def _events(
 
 # Files
 
+SUITE_FOLDER = "suite"
+"""Where the texts of the suite are, in this package."""
+
+TEXTS = {
+    "README.md": "README.md",
+    "DATA_CARD.md": "DATA_CARD.md",
+    "test_suite.py": "test_suite.py.txt",
+    "test_suite.mjs": "test_suite.mjs",
+}
+"""Files of the suite that are texts of this package."""
+
 
 def write_suite(
     folder: Path | str,
@@ -230,7 +267,7 @@ def write_suite(
     overwrite: bool = False,
     progress: Callable[[float, float, str], None] = lambda *_: None,
 ) -> list[Reference]:
-    """Write the suite, or the cases named, as JSON, CSV and NetCDF with a schema and a README.
+    """Write the suite, or the cases named: pages, JSON, CSV and NetCDF, tests and explanations.
 
     Raises
     ------
@@ -241,31 +278,23 @@ def write_suite(
     """
     folder = Path(folder)
     cases = [case_of(name) for name in dict.fromkeys(names)] if names else list(CASES)
-    paths = [folder / name for case in cases for name in _files_of(case.name)]
-    for path in [*paths, *(folder / name for name in ("README.md", "schema.json"))]:
+    paths = [folder / f"{case.name}{ending}" for case in cases for ending in ENDINGS]
+    for path in [*paths, *(folder / name for name in (*TEXTS, "schema.json"))]:
         if path.parent.is_dir():
             place_for(path, overwrite)
     make_folder("out", folder)
     references = []
     for k, case in enumerate(cases):
         progress(k, len(cases), case.name)
-        one = reference(case)
+        one = reference(case, with_derivatives=True)
         references.append(one)
-        as_json, states, events, netcdf = _files_of(case.name)
-        _write(folder / as_json, json.dumps(record(one), indent=1) + "\n", overwrite)
-        _write(folder / states, _states_csv(one), overwrite)
-        _write(folder / events, _events_csv(one), overwrite)
-        memory = BytesIO()
-        _dataset(one).to_netcdf(memory, engine="h5netcdf")
-        _write(folder / netcdf, memory.getvalue(), overwrite)
+        for ending, content in ENDINGS.items():
+            _write(folder / f"{case.name}{ending}", content(one), overwrite)
     progress(len(cases), len(cases), "")
     _write(folder / "schema.json", json.dumps(SCHEMA, indent=1) + "\n", overwrite)
-    _write(folder / "README.md", _readme(references), overwrite)
+    for name, source in TEXTS.items():
+        _write(folder / name, _text(source, references), overwrite)
     return references
-
-
-def _files_of(name: str) -> tuple[str, str, str, str]:
-    return f"{name}.json", f"{name}_states.csv", f"{name}_events.csv", f"{name}.nc"
 
 
 def _write(path: Path, content: str | bytes, overwrite: bool) -> None:
@@ -285,7 +314,9 @@ def record(one: Reference) -> dict[str, Any]:
         "problem": json.loads(case.problem.to_json()),
         "duration": case.duration,
         "status": one.status,
+        "start": start_of(case.problem),
         "time": one.states["time"].values.tolist(),
+        "judged": case.judged - 1,
         "states": {
             name: {
                 "unit": unit,
@@ -300,18 +331,55 @@ def record(one: Reference) -> dict[str, Any]:
                 "time": time,
                 "kind": kind,
                 "surface": surface,
-                "agreement": None if math.isnan(apart) else apart,
+                "agreement": _or_none(apart),
             }
             for time, kind, surface, apart in one.events
+        ],
+        "derivatives": [
+            {**row, "value": _or_none(row["value"]), "agreement": _or_none(row["agreement"])}
+            for row in _derivative_rows(one)
         ],
         "checks": {
             "second_method": one.method,
             "energy_error": one.energy_error,
-            "jellett_drift": None if math.isnan(one.jellett_drift) else one.jellett_drift,
+            "jellett_drift": _or_none(one.jellett_drift),
             "event_limit": one.event_limit,
             "state_limit": one.state_limit,
         },
     }
+
+
+def _or_none(value: float) -> float | None:
+    """Return a number as JSON has it: nothing for nan."""
+    return None if math.isnan(value) else value
+
+
+def _derivative_rows(one: Reference) -> list[dict[str, Any]]:
+    """Return the derivatives of a case, each with its unit."""
+    units = units_of(one.case)
+    rows = []
+    for derivative in one.derivatives:
+        above = "s" if derivative.number.startswith("event") else COLUMNS[derivative.number][0]
+        unit = f"({above})/({units[derivative.parameter]})"
+        rows.append({**derivative._asdict(), "unit": unit})
+    return rows
+
+
+def _json(one: Reference) -> str:
+    return json.dumps(record(one), indent=1) + "\n"
+
+
+def _derivatives_csv(one: Reference) -> str:
+    rows = _derivative_rows(one)
+    headings = ("parameter", "number", "value", "unit", "agreement", "reason")
+    cells = (
+        [
+            "" if isinstance(row[name], float) and math.isnan(row[name]) else row[name]
+            for name in headings
+        ]
+        for row in rows
+    )
+    return _rows(headings, cells)
 
 
 def _rows(headings: Sequence[str], rows: Iterator[Sequence[Any]]) -> str:
@@ -352,6 +420,27 @@ def _dataset(one: Reference) -> xr.Dataset:
     )
 
 
+def _netcdf(one: Reference) -> bytes:
+    memory = BytesIO()
+    _dataset(one).to_netcdf(memory, engine="h5netcdf")
+    return memory.getvalue()
+
+
+def _page(one: Reference) -> str:
+    return page_of(one.case, record(one))
+
+
+ENDINGS: Mapping[str, Callable[[Reference], str | bytes]] = {
+    ".html": _page,
+    ".json": _json,
+    "_states.csv": _states_csv,
+    "_events.csv": _events_csv,
+    "_derivatives.csv": _derivatives_csv,
+    ".nc": _netcdf,
+}
+"""Files of a case by how they end, and what is in them."""
+
+
 def case_json(case: Case) -> str:
     """Return the problem of a case as JSON text."""
     return case.problem.to_json()
@@ -365,7 +454,7 @@ SCHEMA: Mapping[str, Any] = {
     "type": "object",
     "required": [
         *("suite", "program", "case", "title", "problem", "duration", "status", "time"),
-        *("states", "events", "checks"),
+        *("start", "judged", "states", "events", "derivatives", "checks"),
     ],
     "properties": {
         "suite": {"type": "string", "description": "version of the suite"},
@@ -380,7 +469,17 @@ SCHEMA: Mapping[str, Any] = {
         },
         "duration": {"type": "number", "description": "s"},
         "status": {"type": "string", "description": "how the run ended"},
+        "start": {
+            "type": "object",
+            "description": "state at t = 0, units as those of states",
+            "required": list(COLUMNS),
+            "additionalProperties": {"type": "number"},
+        },
         "time": {**_NUMBERS, "description": "instants of the states, s"},
+        "judged": {
+            "type": "integer",
+            "description": "number of an instant, from 0, at which an error is no mere phase",
+        },
         "states": {
             "type": "object",
             "required": list(COLUMNS),
@@ -411,23 +510,51 @@ SCHEMA: Mapping[str, Any] = {
                 },
             },
         },
+        "derivatives": {
+            "type": "array",
+            "description": "of the last state, and of the times of events, by the parameters",
+            "items": {
+                "type": "object",
+                "required": ["parameter", "number", "value", "unit", "agreement", "reason"],
+                "properties": {
+                    "parameter": {"type": "string", "description": "field of the problem"},
+                    "number": {
+                        "type": "string",
+                        "description": "a column of the states, or 'event 3': number from 0",
+                    },
+                    "value": {"type": ["number", "null"]},
+                    "unit": {"type": "string"},
+                    "agreement": {
+                        **_AGREEMENT,
+                        "description": "difference of two methods; null where one has none",
+                    },
+                    "reason": {"type": "string", "description": "why there is no value"},
+                },
+            },
+        },
         "checks": {"type": "object"},
     },
 }
 """JSON schema of a case's file."""
 
 
-def _readme(references: Sequence[Reference]) -> str:
-    template = (files(__package__) / "suite_readme.md").read_text(encoding="utf-8")
+def _text(source: str, references: Sequence[Reference]) -> str:
+    """Return a text of the suite, with what depends on the cases in it."""
+    text = (files(__package__) / SUITE_FOLDER / source).read_text(encoding="utf-8")
     rows = [
-        f"| `{one.case.name}` | {one.case.title} | {one.case.tests} | {len(one.events)} |"
-        f" {_order(one.event_agreement)} | {_order(one.state_agreement)} |"
+        f"| [`{one.case.name}`]({one.case.name}.html) | {one.case.title} | {one.case.tests} |"
+        f" {len(one.events)} | {_order(one.event_agreement)} | {_order(one.state_agreement)} |"
         for one in references
     ]
-    fields = {"version": SUITE_VERSION, "program": tt.__version__, "rows": "\n".join(rows)}
-    for name, value in fields.items():
-        template = template.replace(f"{{{name}}}", value)
-    return template
+    fields = {
+        "version": SUITE_VERSION,
+        "program": tt.__version__,
+        "count": str(len(references)),
+        "rows": "\n".join(rows),
+    }
+    for name, value in fields.items() if source.endswith(".md") else ():
+        text = text.replace(f"{{{name}}}", value)
+    return text
 
 
 def _order(value: float) -> str:
