@@ -26,6 +26,7 @@ ROOMS = {
     "sweeps": "many launches: grid, lanes, store, schedulers",
     "extend": "what users' laws, surfaces and events need",
     "run": "simulate: one launch from mode to mode",
+    "stepper": "one launch, in steps of one's own",
     "results": "variables, metrics, monitors, files of a run",
     "theory": "steady states, stability, critical spins",
     "contact": "contact modes: motion, guards, what follows",
@@ -38,7 +39,7 @@ ROOMS = {
 }
 """Every room of the package and what it holds."""
 
-MODULES = ("extend", "run")
+MODULES = ("extend", "run", "stepper")
 """Rooms that are one module."""
 
 WIDTH, HEIGHT, GAP_X, GAP_Y, MARGIN = 176, 60, 26, 48, 16

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.mode import Mode, Segment
-from tippetop.contact.readings import Rates, instants, is_compiled, normal_force, read
+from tippetop.contact.readings import WORTH, Rates, instants, is_compiled, normal_force, read
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, evaluated
 from tippetop.mechanics.state import State
@@ -40,6 +40,12 @@ class ModeSteps:
     """Their polynomials, shape (k, size, degree + 1)."""
     spans: Array
     """How long they are, shape (k,)."""
+    is_one_of_many: bool = False
+    """Whether so many blocks are read that functions for it are compiled."""
+
+    def total(self, count: int) -> int:
+        """Return the number of instants that are read in all, where this block has `count`."""
+        return max(count, WORTH if self.is_one_of_many else 0)
 
     @cached_property
     def nodes(self) -> Array:
@@ -54,11 +60,15 @@ class ModeSteps:
     def at(self, fractions: Array) -> Array:
         """`Rates` at fractions of the steps, shape (m,); of shape (9, m, k)."""
         y = at_fractions(self.terms, fractions)
-        return read(Rates.of, self.mode, y, nearer_pole(y[2]), total=len(NODES) * len(self.which))
+        total = self.total(len(NODES) * len(self.which))
+        return read(Rates.of, self.mode, y, nearer_pole(y[2]), total=total)
 
     def force_at(self, fractions: Array, some: NDArray[np.intp]) -> Array:
         """Return the normal force at fractions of some steps, shape (m,); of shape (m, k)."""
-        y, total = at_fractions(self.terms[some], fractions), len(NODES) * len(self.which)
+        y, total = (
+            at_fractions(self.terms[some], fractions),
+            self.total(len(NODES) * len(self.which)),
+        )
         if is_compiled(self.mode, total):  # by the function of `nodes`, which is compiled already
             force = read(Rates.of, self.mode, y, nearer_pole(y[2]), total=total)[FORCE]
         else:
@@ -81,6 +91,8 @@ class Block:
     """Segments that follow one another; there may be none."""
 
     segments: Sequence[Segment]
+    is_one_of_many: bool = False
+    """Whether so many blocks are read that functions for it are compiled."""
 
     @cached_property
     def lengths(self) -> NDArray[np.intp]:
@@ -121,7 +133,7 @@ class Block:
             pieces = [self.segments[n].solution.terms for n in numbers]
             terms = pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
             mode = self.segments[numbers[0]].mode
-            groups.append(ModeSteps(mode, which, terms, spans[which]))
+            groups.append(ModeSteps(mode, which, terms, spans[which], self.is_one_of_many))
         return groups
 
     def step_at(self, times: Array) -> NDArray[np.intp]:
@@ -139,7 +151,8 @@ class Block:
             chosen, numbers = self._within(group, step)
             if len(numbers):
                 y = evaluated(group.terms, numbers, parts[chosen])
-                yield group.mode, chosen, read(instants, group.mode, y.T, total=len(numbers))
+                total = group.total(len(numbers))
+                yield group.mode, chosen, read(instants, group.mode, y.T, total=total)
 
     def until(self, step: int, part: float) -> tuple["Block", float, State]:
         """Return the block up to an instant, told by its step and the part of it that has passed.

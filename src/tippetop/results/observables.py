@@ -88,6 +88,15 @@ class Recorder:
         lost, pulls = launch.first.energy_lost, launch.automaton.pulls
         return cls(launch.top, launch.state, launch.azimuth, times, lost, pulls)
 
+    def go_on_from(self, turn: float, pole: float) -> None:
+        """Go on with the angle about the axis, and its chart, with which another recorder ended."""
+        self._sums[TURN], self._pole = turn, pole
+
+    @property
+    def pole(self) -> float:
+        """Pole of the chart of the angle at the end of the last block."""
+        return self._pole
+
     def take(self, block: Block) -> None:
         """Take the samples in a block."""
         if not len(block.starts):
@@ -199,7 +208,7 @@ class Recorder:
         work = RunSums(*values).total_work(self.top)
         for group in block.groups:
             size, energy, jellett = read(
-                monitored_in, group.mode, group.start_numbers, total=len(group.which)
+                monitored_in, group.mode, group.start_numbers, total=group.total(len(group.which))
             )
             with np.errstate(invalid="ignore"):  # edges have nan where the axis is vertical
                 self.monitor.check(size, energy, jellett, work[group.which])

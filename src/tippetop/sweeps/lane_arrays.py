@@ -12,7 +12,7 @@ from tippetop.results.accumulation import accumulate, before_launch
 from tippetop.results.metrics import STATUSES
 from tippetop.sweeps.launch_arrays import Flags, Indices, Launches, branched
 from tippetop.sweeps.taylor_step import LANES
-from tippetop.sweeps.taylor_stepper import Stepper
+from tippetop.sweeps.taylor_stepper import LaneStepper
 from tippetop.sweeps.tip_extremes import TipMotion
 from tippetop.sweeps.trajectory_samples import TrajectorySamples
 
@@ -51,7 +51,7 @@ class Slots:
     def __init__(
         self,
         launches: Launches,
-        stepper: Stepper,
+        stepper: LaneStepper,
         band: tuple[Array, Array] | None,
         samples: TrajectorySamples | None = None,
     ) -> None:

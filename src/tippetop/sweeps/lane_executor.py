@@ -18,7 +18,7 @@ from tippetop.sweeps.lane_arrays import Slots
 from tippetop.sweeps.launch_arrays import Checkpoint, Flags, Indices, Launches, picked
 from tippetop.sweeps.polynomial_arcs import arcs
 from tippetop.sweeps.taylor_step import LANES, SLIDING, is_singular
-from tippetop.sweeps.taylor_stepper import Stepper
+from tippetop.sweeps.taylor_stepper import LaneStepper
 from tippetop.sweeps.tip_extremes import FORCE
 from tippetop.sweeps.trajectory_samples import TrajectorySamples
 from tippetop.sweeps.transitions import Crossings
@@ -49,7 +49,7 @@ class Lanes:
     def __init__(
         self,
         launches: Launches,
-        stepper: Stepper,
+        stepper: LaneStepper,
         tolerance: float,
         band: tuple[Array, Array] | None = None,
         resumed: Array | None = None,

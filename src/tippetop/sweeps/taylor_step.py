@@ -166,7 +166,7 @@ def expansion(
 def stride(
     layout: Layout, jet: Jet, before: Sequence[Scalar], numbers: Sequence[Scalar], plain: Arithmetic
 ) -> list[Scalar]:
-    """Return all rows after a step of `Stepper.step`, from the polynomials that start at the
+    """Return all rows after a step of `LaneStepper.step`, from the polynomials that start at the
     carried rows.
     """
     remaining, steps = before[layout.size :]

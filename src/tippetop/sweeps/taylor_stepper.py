@@ -44,7 +44,7 @@ class NumPyArithmetic:
     rarely = choose
 
 
-class Stepper:
+class LaneStepper:
     """Taylor's method for one motion, of some order, compiled when first used."""
 
     def __init__(self, motion: Motion, order: int, *, sampled: bool = False) -> None:
@@ -79,9 +79,9 @@ class Stepper:
 
 
 @lru_cache(maxsize=16)
-def stepper(motion: Motion, tolerance: float, *, sampled: bool = False) -> Stepper:
+def stepper(motion: Motion, tolerance: float, *, sampled: bool = False) -> LaneStepper:
     """Taylor's method for a motion, which may be sampled."""
-    return Stepper(motion, order_for(tolerance), sampled=sampled)
+    return LaneStepper(motion, order_for(tolerance), sampled=sampled)
 
 
 @lru_cache(maxsize=16)
