@@ -8,7 +8,6 @@ of the table, or it is held: its angular velocity stays constant.
 from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeAlias
 
-from tippetop.mechanics.contacts.branches import on_branch
 from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
 from tippetop.mechanics.contacts.sticking import sticking_forces
 from tippetop.mechanics.contacts.system import (
@@ -19,7 +18,6 @@ from tippetop.mechanics.contacts.system import (
     ContactRates,
     delassus_matrix,
     free_rates,
-    rates_added,
     rates_under,
     responses_to,
     solve_constraints,
@@ -201,30 +199,6 @@ def sum_at(contact: int, wrenches: Sequence[At]) -> Wrench:
         if number == contact:
             force, torque = add(force, wrench.force), add(torque, wrench.torque)
     return Wrench(force, torque)
-
-
-def struck_wrench(point: ContactPoint, slip: Slip | None, rolling: Horizontal | None) -> Wrench:
-    """Return a unit normal impulse, with what goes with it; of floats.
-
-    The arguments are those of `forces_and_accelerations`. The configuration is fixed, nothing
-    falls, and velocities that are held stay as they are.
-    """
-    if slip is not None:
-        point = point._replace(top=on_branch(point.top, slip))
-    normal, points = pressing_wrench(point, slip, rolling), (point,)
-    held = rolling_constraints(points, rolling)
-    if slip is None:
-        held = [*sticking_constraints(points, [True]), *held]
-    if not held:
-        return normal
-    driven = rates_added(points, 0, normal)
-    further = solve_constraints(points, held, driven).wrenches
-    return sum_at(0, [(0, normal), *further])
-
-
-def pressing_wrench(point: ContactPoint, slip: Slip | None, rolling: Slip | None) -> Wrench:
-    """Return a unit normal force with the friction, and the rolling couple, that go with it."""
-    return normal_wrench(point, slip, rolling_couple((point,), rolling))
 
 
 def jamming_margin(points: Sequence[ContactPoint], slips: Slips, rolling: Slip | None) -> Scalar:

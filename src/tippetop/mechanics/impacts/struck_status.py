@@ -11,16 +11,16 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from tippetop.mechanics.contacts.contact_forces import ContactForces
-from tippetop.mechanics.contacts.contact_point import Acceleration, ContactPoint
+from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import (
     Slips,
     directions_of,
     is_set_valued,
     slip_length,
-    struck_wrench,
 )
 from tippetop.mechanics.contacts.pair import ContactPair, slip_apart, slips_of
 from tippetop.mechanics.contacts.pair_resolver import OnTwo, Resolution, of_slips
+from tippetop.mechanics.contacts.resolver import moved_under
 from tippetop.mechanics.contacts.slip_direction import Resisted, directions
 from tippetop.mechanics.contacts.slip_onset import resolve_onset
 from tippetop.mechanics.contacts.slip_variables import LEFT_OVER, scaled, size, slip_part
@@ -148,7 +148,7 @@ def status_at(
             points[number],
             None if ended[number] else slips[number],
             None if stopped else rolling,
-            moved=struck_motion,
+            moved=moved_under(1.0, 0.0),
         )
         directions_begun: list[Slip | None] = [None, None, None]
         if ended[number]:
@@ -270,11 +270,3 @@ def _forces(
 
 def _vector(numbers: Slip) -> Vector:
     return (numbers[0], numbers[1], numbers[2])
-
-
-def struck_motion(
-    point: ContactPoint, slip: Slip | None, rolling: Slip | None
-) -> tuple[Wrench, Acceleration]:
-    """Return the impulses per unit normal impulse, and the changes of the velocities."""
-    wrench = struck_wrench(point, slip, rolling)
-    return wrench, point.response(wrench)
