@@ -1,12 +1,10 @@
-"""Where a guard falls through zero within a step of an integrator: the search that all runs share.
+"""Where a guard falls through zero within a step of an integrator whose guards are no polynomials.
 
-A function is looked at in places that divide the step evenly. Between two of them it falls from
-positive to not positive, or it dips and returns (`brackets`), and then its zero is bracketed. Three
-other modules state a part of this search, because it calls a function of time again and again.
-`polynomial_minima` does without branches, so that it is compiled, for one launch and for many, and
-leaves to `first_zero` what it cannot decide. `dormand_prince.suspect` tells in a loop over arrays
-which steps need no search. `tippetop.mechanics.roots.first_root` proves that no touch is passed
-over in a flight, whose gap has a known bound of its third derivative.
+A guard is a function of the state, of which a step has polynomials; the guard along them is none.
+So it is looked at in places that divide the step evenly. Between two of them it falls from positive
+to not positive, or it dips and returns (`brackets`), and then its zero is bracketed.
+`dormand_prince.suspect` tells in a loop over arrays which steps need no search. Taylor's method has
+the polynomials of its guards, and `tippetop.integrators.first_fall` searches them by bounds.
 """
 
 # translate module: numbers
@@ -81,34 +79,6 @@ def first_fall(
     # The interpolation is wrong by more than the guard is: only ends of steps tell.
     fall = _fall_along(guards, landed, landed, step, AT_ONCE)
     return None if fall is None else (*fall, landed(fall[1]))
-
-
-def first_zero(
-    value: TimeFunction,
-    values: Sequence[float],
-    from_above: bool = False,
-    after_rise: bool = False,
-) -> float:
-    """Return where in [0, 1] a function first falls to zero from above; nan where it does not.
-
-    Parameters
-    ----------
-    value, values
-        The function, and its values in places that divide [0, 1] evenly, from 0 to 1.
-    from_above
-        Whether a function that starts below zero falls no sooner than it has been positive. One
-        that does not rise falls at 0.
-    after_rise
-        Whether that holds of one that starts at zero, too.
-    """
-    starts = values[0] == 0.0 if from_above else values[0] <= 0.0
-    if starts and values[1] <= 0.0 and not after_rise:
-        return 0.0
-    last = len(values) - 1
-    places = [k / last for k in range(last + 1)]
-    for low, high, function in brackets(places, values, value, value):
-        return crossing(function, low, high)
-    return math.nan
 
 
 def _fall_along(

@@ -1,13 +1,13 @@
 // Compiles what modes state in plain operators: it is recorded once a kind of mode, and compiled by the browser.
 import {
   advance,
+  contact_numbers,
+  contacts_with,
   javascript_source,
   Machinery,
   NodeValues,
-  contact_numbers,
   record,
   stepped,
-  contacts_with,
   unrolled,
   within,
 } from "./mechanics.js";

@@ -63,6 +63,12 @@ export class DenseSolution {
     return total;
   }
 
+  /** The coefficients of a number in a step, in powers of the part of the step. */
+  coefficients(step, number) {
+    const first = (step * this.size + number) * (this.degree + 1);
+    return Array.from(this.terms.slice(first, first + this.degree + 1));
+  }
+
   /** Least and most that a number may be in a step: x - x^k is at most (k - 1) / (k + 2) between its ends. */
   bounds(step, number) {
     const first = (step * this.size + number) * (this.degree + 1);
@@ -232,7 +238,7 @@ export class DenseSolution {
 }
 
 /** Coefficients in powers of a part that begins at a place and has a length, by Horner's scheme. */
-function shifted(row, place, length) {
+export function shifted(row, place, length) {
   for (let first = 0; first < row.length; first += 1) {
     for (let k = row.length - 2; k >= first; k -= 1) row[k] += place * row[k + 1];
   }

@@ -1,6 +1,6 @@
 // Follows one launch from contact mode to contact mode, sums up its metrics, and samples it on demand.
 import { integrator, reader } from "./compile.js";
-import { DenseSolution, earliest } from "./dense.js";
+import { DenseSolution, earliest, shifted } from "./dense.js";
 import * as m from "./mechanics.js";
 import { inUnits } from "./part.js";
 import { neg, plain, replace } from "./runtime.js";
@@ -341,7 +341,8 @@ class Run {
       const value = reading(solution, step, AXIS_Z);
       // Where one step ends and another begins with a level axis, as in an impact there, no step falls through zero.
       const fallsFromStart = this.wasAbove && start <= 0 && value(PROBES[1]) < 0;
-      const part = fallsFromStart ? 0 : firstZero(value, true);
+      const terms = solution.coefficients(step, AXIS_Z);
+      const part = fallsFromStart ? 0 : m.first_fall(terms, true);
       this.firstHorizontal = solution.time(step, part);
     }
     this.wasAbove ||= start > 0;
@@ -664,19 +665,14 @@ function highestGap(mode, solution) {
   return -lowest;
 }
 
-/** Where a function on [0, 1] first falls to zero; NaN where it does not. With `fromAbove` it must be above first. */
-function firstZero(value, fromAbove = false) {
-  return m.first_zero(value, PROBES.map(value), fromAbove);
-}
-
 /** The first part of a step at which n_z is in a band; NaN if it is not in that step. */
 function firstPartInBand(solution, step, low, high) {
   const start = solution.value(step, AXIS_Z, 0);
   const [least, most] = solution.bounds(step, AXIS_Z);
   if (least > high || most < low) return NaN;
   if (start <= high && start >= low) return 0;
-  if (start > high) return firstZero((part) => solution.value(step, AXIS_Z, part) - high);
-  return firstZero((part) => low - solution.value(step, AXIS_Z, part));
+  const terms = solution.coefficients(step, AXIS_Z);
+  return m.first_fall(start > high ? changed(terms, 1, -high) : changed(terms, -1, low));
 }
 
 /** The last part of a step at which n_z is not in a band; NaN if it is in it all along. */
@@ -685,12 +681,15 @@ function lastPartOutside(solution, step, low, high) {
   if (least >= low && most <= high) return NaN;
   const last = solution.value(step, AXIS_Z, 1);
   if (last > high || last < low) return 1;
-  const exits = [
-    firstZero((rest) => high - solution.value(step, AXIS_Z, 1 - rest)),
-    firstZero((rest) => solution.value(step, AXIS_Z, 1 - rest) - low),
-  ].filter((rest) => !Number.isNaN(rest));
+  const rest = shifted(solution.coefficients(step, AXIS_Z), 1, -1);
+  const exits = [changed(rest, -1, high), changed(rest, 1, -low)]
+    .map((terms) => m.first_fall(terms))
+    .filter((part) => !Number.isNaN(part));
   return exits.length ? 1 - Math.min(...exits) : NaN;
 }
+
+/** The coefficients of a polynomial times a sign and plus a number. */
+const changed = (terms, sign, shift) => terms.map((term, k) => sign * term + (k ? 0 : shift));
 
 /** Give quaternions in a row the signs that let none jump. */
 function makeContinuous(quaternions) {

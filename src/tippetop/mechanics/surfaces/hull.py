@@ -43,7 +43,7 @@ class Hull(NamedTuple):
 
     def on(self, number: int) -> "Hull":
         """Return the hull with a surface active."""
-        return self._replace(active=number)
+        return Hull(self.units, self.sizes, number)
 
     def height(self, c: Scalar) -> Scalar:
         """Support function h(c), m."""
