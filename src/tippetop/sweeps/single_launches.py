@@ -75,7 +75,7 @@ def note_failure(error: Exception) -> None:
 def tolerance_of_steps(tolerance: float, top: Top) -> float:
     """Return the relative tolerance of the steps of one launch of a sweep.
 
-    On an edge it is that of single runs: near its face the sine of the tilt, of which the motion
+    On an edge it is that of single runs: near its face the sine of the tilt, on which the motion
     depends, falls far below any other tolerance of the axis, to which that is relative.
     """
     has_edge = any(is_edge(contact.surface) for contact in top.body.contacts)
