@@ -35,6 +35,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "tippetop"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
 html_favicon = html_logo = "_static/top.svg"
 html_baseurl = "https://tippetop.github.io/tippetop/"
 html_copy_source = html_show_sourcelink = False

@@ -108,3 +108,42 @@ def test_a_page_is_whole_on_a_phone_and_accessible(page, scheme, browser):
     assert too_wide <= 0
     assert cut_off == 0
     assert serious == []
+
+
+def test_dark_that_is_chosen_by_hand_reaches_the_laboratory_in_its_frame(browser):
+    tab = browser.new_page(color_scheme="light")
+    tab.goto((BUILT / "learn" / "lab.html").as_uri())
+    frame = tab.locator("figure.player iframe").first
+    frame.scroll_into_view_if_needed()
+    page = frame.element_handle().content_frame()
+    page.wait_for_selector("html[data-theme=light] header")
+    tab.evaluate("document.documentElement.dataset.theme = 'dark'")
+    page.wait_for_selector("html[data-theme=dark] header")
+    tab.close()
+
+
+def test_code_is_copied_without_prompts(browser):
+    tab = browser.new_page()
+    tab.goto((BUILT / "teach" / "lesson2.html").as_uri())
+    tab.evaluate(
+        "Object.defineProperty(navigator, 'clipboard', "
+        "{ value: { writeText: async (text) => { globalThis.copied = text; } } })"
+    )
+    block = tab.locator("div.highlight").first
+    block.hover()
+    block.get_by_role("button", name="Copy").click()
+    block.get_by_role("button", name="Copied").wait_for()
+    assert tab.evaluate("copied").startswith("import tippetop as tt")
+    tab.close()
+
+
+def test_no_page_shows_a_raw_warning():
+    raw = [page for page in PAGES if "Implausible: " in page.read_text(encoding="utf-8")]
+    assert [page.relative_to(BUILT).as_posix() for page in raw] == []
+
+
+def test_a_search_for_class_finds_the_lessons(browser):
+    tab = browser.new_page()
+    tab.goto(f"{(BUILT / 'search.html').as_uri()}?q=class")
+    tab.locator("#search-results a", has_text="Lesson 1").first.wait_for()
+    tab.close()

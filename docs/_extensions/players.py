@@ -1,5 +1,6 @@
 """Frames in pages: ``{player}`` plays the run of a `problem` that its lines state, ``{laboratory}``
-is the laboratory, and ``{torque}`` its picture of the torque that lifts the stem.
+is the laboratory, and ``{torque}`` its picture of the torque that lifts the stem. ``{launch}`` is a
+link to the laboratory without a frame.
 """
 
 import shutil
@@ -30,10 +31,13 @@ class Frame(SphinxDirective):
         found.mkdir(parents=True, exist_ok=True)
         return found
 
+    def place(self, name: str, link: str = "") -> str:
+        """The address of the page of a name, opened at a link."""
+        return "../" * self.env.docname.count("/") + f"{FOLDER}/{name}.html{link}"
+
     def frame(self, name: str, kind: str, link: str = "") -> list[nodes.Node]:
         """The frame with the page of a name, opened at a link."""
-        title = self.arguments[0]
-        where = "../" * self.env.docname.count("/") + f"{FOLDER}/{name}.html{link}"
+        title, where = self.arguments[0], self.place(name, link)
         frame = (
             f'<figure class="{kind}"><iframe src="{where}" title="{title}" loading="lazy"'
             f' allowfullscreen></iframe><figcaption>{title} <a href="{where}">Alone on a'
@@ -52,6 +56,19 @@ class Laboratory(Frame):
         shutil.copyfile(page_path(), self.folder / "lab.html")
         link = self.options.get("link", "")
         return self.frame("lab", "player laboratory", f"#{escape(link)}" if link else "")
+
+
+class Launch(Frame):
+    """A link to the laboratory at a launch."""
+
+    option_spec: ClassVar = {"link": directives.unchanged_required}
+
+    def run(self) -> list[nodes.Node]:
+        """Copy its page, and link to it."""
+        shutil.copyfile(page_path(), self.folder / "lab.html")
+        where = self.place("lab", f"#{escape(self.options['link'])}")
+        text = f'<p class="launch"><a href="{where}">{self.arguments[0]}</a></p>'
+        return [nodes.raw("", text, format="html")]
 
 
 class Torque(Frame):
@@ -85,5 +102,6 @@ def setup(app: Any) -> dict[str, Any]:
     """Register the directives."""
     app.add_directive("player", Player)
     app.add_directive("laboratory", Laboratory)
+    app.add_directive("launch", Launch)
     app.add_directive("torque", Torque)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

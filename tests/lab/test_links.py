@@ -1,5 +1,9 @@
 """Every state of the page is in its link: what is reopened is what was shown."""
 
+import json
+import re
+from pathlib import Path
+
 from bundled import found_in_the_page
 
 REOPENED = """
@@ -84,3 +88,21 @@ def test_two_hundred_states_are_reopened_as_they_were() -> None:
     assert len({asked for asked, _, _ in found}) == 200
     for asked, reopened, link in found:
         assert reopened == asked, link
+
+
+READ = """
+import { readLink } from "./link.js";
+export const found = %s.map((link) => {
+  const { unread, flaw } = readLink(link);
+  return flaw ? [...unread, flaw.field] : unread;
+});
+"""
+
+
+def test_links_of_the_documentation_are_read_whole() -> None:
+    docs = Path(__file__).parents[2] / "docs"
+    texts = [page.read_text("utf-8") for page in docs.rglob("*.md")]
+    links = [link for text in texts for link in re.findall(r"^:link: (.+)$", text, re.M)]
+    assert len(links) > 6
+    found = found_in_the_page(READ % json.dumps(links))
+    assert [link for link, unread in zip(links, found, strict=True) if unread] == []

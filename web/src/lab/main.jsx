@@ -2,6 +2,7 @@
 
 import { render } from "preact";
 
+import { followTheme } from "../player/theme.js";
 import { App, isDark } from "./app.jsx";
 import { preferred, speak } from "./i18n.js";
 import { Lab } from "./lab.js";
@@ -27,6 +28,7 @@ function showLab() {
     lab.undo();
   });
   printSheet(lab);
+  followTheme((theme) => lab.set({ theme }));
   render(<App lab={lab} />, host);
 }
 
@@ -34,7 +36,11 @@ function showLab() {
 function showPicture(language) {
   speak(language);
   document.documentElement.lang = language;
-  document.documentElement.dataset.theme = isDark("auto") ? "dark" : "light";
+  const { dataset } = document.documentElement;
+  dataset.theme = isDark("auto") ? "dark" : "light";
+  followTheme((theme) => {
+    dataset.theme = theme;
+  });
   render(
     <main class="alone">
       <TorquePicture />

@@ -1,8 +1,9 @@
 // What shows a run elsewhere: the file that plays offline, the report's page, the notebook.
 
 import { createPlayer, stillness } from "./player.js";
+import { followTheme } from "./theme.js";
 
-export { createPlayer, stillness };
+export { createPlayer, followTheme, stillness };
 
 function render({ model, el }) {
   const host = document.createElement("div");
