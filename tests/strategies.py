@@ -134,7 +134,7 @@ def problems(draw):
     liftoff = draw(st.sampled_from(["fly", "stop", "ignore"]))
     if liftoff == "fly":
         launch["gap"] = draw(numbers(0.0, 1.0))
-        if draw(st.booleans()):
+        if launch["gap"] or draw(st.booleans()):
             launch["velocity"] = tuple(draw(numbers(-1.0, 1.0)) for _ in range(3))
             del launch["slip"]
     body = {

@@ -151,3 +151,25 @@ def test_what_is_no_angular_velocity_is_refused() -> None:
         with pytest.raises(InvalidInput) as refusal:
             tt.Launch.from_angular_velocity(wrong, tilt=0.1)
         assert refusal.value.field.startswith("omega")
+
+
+@pytest.mark.parametrize("tilt", [0.3, 1.4])
+def test_what_is_dropped_falls_from_rest(tilt: float) -> None:
+    problem = tt.presets.report_problem(spin=155.0, tilt=tilt)
+    dropped = problem.replace({"launch.gap": 0.05, "launch.precession": 20.0})
+    run = tt.simulate(dropped, duration=0.09)
+    assert abs(run["velocity"].values[0]).max() == 0.0
+    assert float(run["height"][-1]) == pytest.approx(float(run["height"][0]) - 4.9 * 0.09**2)
+    assert abs(run["x"].values).max() == abs(run["y"].values).max() == 0.0
+
+
+def test_nothing_slips_across_a_gap() -> None:
+    problem = tt.presets.report_problem().replace({"launch.gap": 0.05})
+    with pytest.raises(tt.InvalidInput, match=r"slip: .*stands beside a gap"):
+        problem.replace({"launch.slip": (0.1, 0.0)})
+    swept = tt.sweep(
+        tt.presets.report_problem(),
+        {"launch.gap": [0.0, 0.01], "launch.slip.0": [0.0, 0.1]},
+        duration=0.01,
+    )
+    assert (swept["fault"].values == "none").tolist() == [[True, True], [True, False]]

@@ -38,15 +38,15 @@ class Launch(Part):
         phi', rad/s.
     slip
         Slip velocity of the contact point, m/s: along the direction into which the axis leans, and
-        90 degrees to the left of it.
+        90 degrees to the left of it. None beside a gap.
     gap
         Height of the lowest point above the table, m: more than 0 for a top that is dropped or
-        thrown.
+        thrown. Without a velocity its centre of mass is at rest.
     velocity
         Velocity of the centre of mass along x, y and z, m/s; it takes the place of `slip`. Of two
         numbers, or with 0 for the third, it is horizontal: a top on the table gets the vertical
-        part that keeps contact. Any other third number is meant. Without a velocity the lowest
-        point moves with the slip velocity and neither up nor down.
+        part that keeps contact. Any other third number is meant. Without a velocity the contact
+        point of a top on the table moves with the slip velocity.
 
     Every number may be a text with a unit, such as "2200 rpm", or a quantity of pint.
 
@@ -86,6 +86,14 @@ class Launch(Part):
                 "0",
                 "stands beside a velocity, which determines it",
                 "leave out one",
+            )
+        if self.gap and self.slip != (0.0, 0.0):
+            raise InvalidInput(
+                "slip",
+                self.slip,
+                "0",
+                "stands beside a gap, across which nothing slips",
+                "write a velocity instead",
             )
         return self
 

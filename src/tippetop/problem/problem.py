@@ -160,11 +160,13 @@ class Problem(Part):
             launch.slip,
         )
         touching = on_table(state_from_angles(angles, top, PoleExact(functions)), top)
-        velocity = touching.velocity
+        touches = launch.gap == 0.0
+        east, north, sinking = touching.velocity
+        velocity = (touches * east, touches * north, touches * sinking)
         if launch.velocity is not None:
             x, y, up = launch.velocity
             # A horizontal velocity on the table gets the vertical component that maintains contact.
-            velocity = (x, y, up + (up == 0.0) * (launch.gap == 0.0) * velocity[2])
+            velocity = (x, y, up + (up == 0.0) * touches * sinking)
         return touching._replace(height=touching.height + launch.gap, velocity=velocity)
 
     # translate: skip

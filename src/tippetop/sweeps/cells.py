@@ -115,6 +115,10 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
         )
         for field, numbers in values.items():
             fault[~allowed(numbers, numeric[field])] = Fault.VALUE_OUT_OF_RANGE
+        slipping = (spread(filled.launch.slip[0], count) != 0.0) | (
+            spread(filled.launch.slip[1], count) != 0.0
+        )
+        fault[slipping & (spread(filled.launch.gap, count) > 0.0)] = Fault.VALUE_OUT_OF_RANGE
         for part in (*filled.body.shapes, filled.friction, filled.contact):
             fault[refused(part, count)] = Fault.VALUE_OUT_OF_RANGE
         size = np.max([spread(size, count) for size in sizes(filled.body.surface)], axis=0)
