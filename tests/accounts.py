@@ -69,6 +69,12 @@ LAUNCHES: dict[str, tuple[tt.Problem, float]] = {
     "exactly inverted": (report(launch__tilt=3.141592653589793), 5.0),
     "no friction": (report(friction__mu=0.0), 5.0),
     "no friction, swings": (report(5.0, friction__mu=0.0, launch__tilt=1.0), 5.0),
+    "on a slope": (report(table__slope=0.03), 3.0),
+    "in air": (report(air__axial_linear=2e-7, air__drag_quadratic=1e-2), 5.0),
+    "dry on a slope in air": (
+        REPORT.replace({**DRY, "table.slope": 0.03, "air.drag_linear": 1e-3}),
+        3.0,
+    ),
     "dropped": (report(50.0, launch__gap=0.05, contact__restitution=0.5), 5.0),
     "in the air all along": (report(50.0, launch__gap=0.5), 0.2),
     "dry": (REPORT.replace(DRY), 20.0),

@@ -2,6 +2,7 @@
 
 import logging
 import math
+import re
 from xml.etree import ElementTree
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import tippetop as tt
 from tippetop.engines.bodies import friction_numbers, launch_state, mjcf, save_mjcf, save_urdf, urdf
 from tippetop.engines.cases import CASES
+from tippetop.engines.mjcf.reading import problem_of_mjcf
 from tippetop.engines.outline import revolved
 
 DRY = tt.CoulombFriction(mu=0.3)
@@ -82,6 +84,23 @@ def test_what_a_format_cannot_say_is_said():
     assert any("contact.liftoff = 'stop'" in remark for remark in mjcf(stopping)[1].remarks)
     assert any("mesh" in remark for remark in mjcf(problem_of(ROUND))[1].remarks)
     assert mjcf(problem_of(tt.presets.EGG))[1].remarks == (), "MuJoCo has ellipsoids"
+
+
+def test_gravity_has_the_direction_of_a_slope():
+    problem = tt.presets.report_problem().replace(
+        {"friction.kind": "coulomb", "table.slope": 0.1, "table.azimuth": 2.0}
+    )
+    text, written = mjcf(problem)
+    gravity = [float(part) for part in re.search(r'gravity="([^"]+)"', text)[1].split()]
+    expected = np.array([math.cos(2.0), math.sin(2.0), -1.0 / math.tan(0.1)])
+    assert gravity == pytest.approx(9.8 * math.sin(0.1) * expected, rel=1e-14)
+    read = problem_of_mjcf(text)
+    assert read.gravity == pytest.approx(9.8)
+    assert (read.table.slope, read.table.azimuth) == pytest.approx((0.1, 2.0))
+    assert not any("air" in remark for remark in written.remarks)
+    braked = problem.replace({"air.axial_linear": 1e-7})
+    assert any("air is not mapped" in remark for remark in mjcf(braked)[1].remarks)
+    assert any("no gravity: set" in remark for remark in urdf(problem)[2].remarks)
 
 
 @pytest.mark.parametrize("name", BODIES)

@@ -255,8 +255,8 @@ REFUSED = {
     "geom 'wall'.type: 'box' touches the body": model_text(
         free(BALL), world=f'{PLANE}<geom name="wall" type="box" size=".1 .1 .1" pos="1 0 0"/>'
     ),
-    "option.gravity: 1 0 -9.81 is not at right angles": model_text(
-        free(BALL), head='<option gravity="1 0 -9.81"/>'
+    "option.gravity: 1 0 9.81 is not a vector that points into the plane": model_text(
+        free(BALL), head='<option gravity="1 0 9.81"/>'
     ),
     "option.density: 1.2 is not 0": model_text(free(BALL), head='<option density="1.2"/>'),
     "actuator: '<motor>' is not read": model_text(

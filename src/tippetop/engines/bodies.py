@@ -105,6 +105,8 @@ def friction_numbers(problem: tt.Problem) -> FrictionNumbers:
     for field, value in problem.contact:
         if field != "restitution" and value != getattr(tt.Contact(), field, value):
             lost.append(f"contact.{field} = {value!r} is not mapped: it is a rule of this program.")
+    if problem.air != tt.Air():
+        lost.append("The air is not mapped: others have drag of their own, or none.")
     return FrictionNumbers(sliding, torsional, rolling, tuple(lost))
 
 
@@ -164,7 +166,7 @@ def mjcf(problem: tt.Problem, timestep: float = 1e-3, facets: int = FACETS) -> t
         root,
         "option",
         timestep=f"{timestep:.17g}",
-        gravity=_numbers((0.0, 0.0, -problem.gravity)),
+        gravity=_numbers(problem.gravity_vector),
         cone="elliptic",
     )
     shapes = primitives(body, ellipsoids=True)
@@ -243,6 +245,9 @@ def urdf(
         "URDF has no friction: Drake finds the sliding coefficient in the file, others must be"
         f" told mu = {friction.sliding:g}.",
     ]
+    if not problem.table.is_level:
+        gravity = " ".join(f"{part:.6g}" for part in problem.gravity_vector)
+        remarks.append(f"URDF has no gravity: set {gravity} m/s^2 for the slope of the table.")
     if friction.torsional or friction.rolling:
         remarks.append(
             f"Set where the program has them: drilling {friction.torsional:.4g} m and rolling"

@@ -22,7 +22,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, is_edge, sizes
 from tippetop.mechanics.surfaces.surface import POLE
 from tippetop.mechanics.top import Top, natural_state, natural_units
-from tippetop.mechanics.vectors import Functions
+from tippetop.mechanics.vectors import Functions, Vector
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
 from tippetop.problem.air import Air
 from tippetop.problem.bodies import Body
@@ -168,6 +168,14 @@ class Problem(Part):
             # A horizontal velocity on the table gets the vertical component that maintains contact.
             velocity = (x, y, up + (up == 0.0) * touches * sinking)
         return touching._replace(height=touching.height + launch.gap, velocity=velocity)
+
+    @property
+    def gravity_vector(self) -> Vector:
+        """Acceleration of gravity along x, y and z of the table, m/s^2."""
+        top = top_of(self)
+        field = top.field
+        east, north = (0.0, 0.0) if field is None or field.slope is None else field.slope
+        return (east, north, -top.gravity)
 
     # translate: skip
     def replace(self, changes: Mapping[str, Any]) -> Self:

@@ -17,6 +17,7 @@ from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE
 from tippetop.results.metrics import came_down
+from tippetop.results.settling import spins_for_ever
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import Prediction, predicted
 from tippetop.theory.slow_time import time_to_end
@@ -193,7 +194,7 @@ def _flights(facts: Facts) -> list[Clause]:
 
 def _sticks_since(facts: Facts) -> float:
     """Return the time since which the top rolls without slip or loss to the end, s, or nan."""
-    if not top_of(facts.problem).torque_free or facts.status is not Status.COMPLETED:
+    if not spins_for_ever(top_of(facts.problem)) or facts.status is not Status.COMPLETED:
         return math.nan
     changes = [
         event
@@ -360,6 +361,8 @@ def _theory(facts: Facts) -> list[Clause]:
     """Return the clauses of the theory: what explains the run, and where it ends."""
     problem = facts.problem
     launch, settled = problem.launch, facts.metrics["is_settled"]
+    if top_of(problem).field is not None:
+        return _outer_field(facts)
     if problem.friction.vanishes:
         return [Clause("no_friction", {}, "theory")]
     pulled = problem.contact.liftoff == "ignore" and facts.metrics["min_normal_force"] < 0.0
@@ -396,6 +399,17 @@ def _theory(facts: Facts) -> list[Clause]:
         about = time_to_end(problem, end.final.tilt, NEAR_FINAL)
         if about > _end_time(facts):
             clauses.append(Clause("is_there_after", {"about": about}, "theory"))
+    return clauses
+
+
+def _outer_field(facts: Facts) -> list[Clause]:
+    """Return the clauses of a sloping table and of air."""
+    clauses, table = list[Clause](), facts.problem.table
+    if not table.is_level:
+        clauses.append(Clause("table_slopes", {"tilt": table.slope}, "theory"))
+    lost = facts.metrics["energy_lost_air"]
+    if lost > 0.0:
+        clauses.append(Clause("air_brakes", {"energy": lost}, "theory"))
     return clauses
 
 

@@ -228,7 +228,8 @@ SAMPLED: Mapping[str, Variable] = {
         convention=_ON_THE_BODY,
     ),
     "energy": Variable(
-        "kinetic and potential energy; zero at rest with the centre of mass on the table",
+        "kinetic and potential energy; zero at rest with the centre of mass on the table where it"
+        " is at launch",
         "J",
         r"energy $E$",
     ),
@@ -328,7 +329,7 @@ DERIVED: Mapping[str, Variable] = {
         convention="relative to the table, as a gyroscope on the body reads it",
     ),
     "energy_height": Variable(
-        "potential energy of the height; zero with the centre of mass on the table",
+        "potential energy; zero with the centre of mass on the table where it is at launch",
         "J",
         "energy of height",
     ),

@@ -15,6 +15,7 @@ export const TABLE = [
   dial("contact.restitution", "", 0, 1, 0.01),
   dial("gravity", "m/s²", 0.1, 25, 0.1),
   dial("rolling_resistance", "mm", 0, 1e-3, 1e-5),
+  dial("table.slope", "angle", 0, 0.3, 1e-3),
   dial("duration", "s", 1, 60, 1),
 ];
 export const TOP = [

@@ -17,7 +17,7 @@ const KNOWN = [
   ...["result", "picture", "speed", "own", "class", "results", "push"],
 ];
 const FORBIDDEN = ["__proto__", "prototype", "constructor"];
-const TABLES = /^(body|friction|launch|contact)\./;
+const TABLES = /^(body|friction|launch|contact|table|air)\./;
 // What a push says of friction that stays as it is.
 const SAME_FRICTION = "-";
 const PLAIN = ["gravity", "rolling_resistance", "duration"];

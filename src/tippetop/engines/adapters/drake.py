@@ -207,7 +207,7 @@ class DrakeStepper:
             **{"time_step": 0.0 if scheme else step, "contact_model": "point", **options}
         )
         plant, _ = AddMultibodyPlant(config, builder)
-        plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -problem.gravity])
+        plant.mutable_gravity_field().set_gravity_vector(list(problem.gravity_vector))
         I1, I3 = body.I1 / body.mass, body.I3 / body.mass
         inertia = SpatialInertia(body.mass, [0.0, 0.0, 0.0], UnitInertia(I1, I1, I3))
         top = plant.AddRigidBody("top", inertia)

@@ -151,7 +151,7 @@ class ExudynStepper:
             referenceRotationMatrix=matrix,
             initialVelocity=list(state.velocity),
             initialAngularVelocity=list(state.omega),
-            gravity=[0.0, 0.0, -problem.gravity],
+            gravity=list(problem.gravity_vector),
         )
         ground = system.AddObject(itemInterface.ObjectGround())
         table = system.AddMarker(marker_on(bodyNumber=ground))

@@ -99,7 +99,7 @@ class PyBulletStepper:
         on = {"physicsClientId": self.client}
         problem = case.problem
         body, friction, state = problem.body, friction_numbers(problem), launch_state(problem)
-        pybullet.setGravity(0.0, 0.0, -problem.gravity * units, **on)
+        pybullet.setGravity(*(part * units for part in problem.gravity_vector), **on)
         pybullet.setPhysicsEngineParameter(fixedTimeStep=step, numSubSteps=0, **parameters, **on)
         plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=[0, 0, 1], **on)
         table = pybullet.createMultiBody(0.0, plane, **on)

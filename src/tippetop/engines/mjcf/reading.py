@@ -72,7 +72,7 @@ def problem_of_mjcf(text: str, keyframe: str | None = None) -> tt.Problem:
     turned = turned_body(touching, model.mass(top))
     friction, rolling = friction_of(turned.pair)
     state = _state_in(document, keyframe, pose)
-    launch, gravity = _launch(turned, state, table), _gravity(document, table)
+    launch, (gravity, slope) = _launch(turned, state, table), _gravity(document, table)
     try:
         return tt.Problem(
             body=turned.body,
@@ -80,6 +80,7 @@ def problem_of_mjcf(text: str, keyframe: str | None = None) -> tt.Problem:
             launch=launch,
             gravity=gravity,
             rolling_resistance=rolling,
+            table=slope,
         )
     except InvalidInput as error:
         if error.field != "friction.patch_radius":
@@ -93,14 +94,20 @@ def problem_of_mjcf(text: str, keyframe: str | None = None) -> tt.Problem:
         ) from None
 
 
-def _gravity(document: Document, table: Geom) -> float:
-    """Return gravity, which pulls at right angles onto the table, m/s^2."""
+def _gravity(document: Document, table: Geom) -> tuple[float, tt.Table]:
+    """Return gravity, m/s^2, and the table with the slope that its direction stands for."""
     stated = numbers(document.settings("option"), "gravity", "option", (3,)) or (0.0, 0.0, -9.81)
     x, y, up = map(float, matrix(table.pose.orientation).T @ np.array(stated))
-    if not math.hypot(x, y) <= -OFF_AXIS * up:
+    along = math.hypot(x, y)
+    if not up < 0.0:
         shown = " ".join(f"{part:g}" for part in stated)
-        raise InvalidInput("option.gravity", Described(shown), "at right angles into the plane")
-    return -up
+        raise InvalidInput(
+            "option.gravity", Described(shown), "a vector that points into the plane"
+        )
+    if along <= -OFF_AXIS * up:
+        return -up, tt.Table()
+    slope = tt.Table(slope=math.atan2(along, -up), azimuth=math.atan2(y, x))
+    return math.hypot(along, up), slope
 
 
 class _FreeState(NamedTuple):
