@@ -337,3 +337,22 @@ def test_units_of_air_and_slope():
     )
     assert problem.table.slope == pytest.approx(math.radians(2.0))
     assert problem.air.axial_linear == pytest.approx(3e-7)
+
+
+FIELDS = ("table.slope", "table.azimuth", "air.axial_linear", "air.drag_quadratic")
+
+
+@pytest.mark.parametrize("field", FIELDS)
+def test_derivatives_are_differences_of_runs(field):
+    problem = bodies()["viscous"].replace(SLOPE | AIR)
+    slopes = tt.sensitivities(problem, 0.3, [field], samples=5)
+    value = problem.get(field)
+    step = 1e-4 * value
+    ahead, behind = (
+        tt.simulate(problem.replace({field: value + sign * step}), duration=0.3, samples=5)
+        for sign in (1.0, -1.0)
+    )
+    for name in ("tilt", "x", "y"):
+        difference = (ahead[name].values[-1] - behind[name].values[-1]) / (2.0 * step)
+        derivative = float(np.ravel(slopes[name].values)[-1])
+        assert derivative == pytest.approx(difference, rel=1e-5, abs=1e-12 / step)
