@@ -64,8 +64,8 @@ from .results.netcdf import write_run as write_run
 from .results.run_solution import RunSolution as RunSolution
 from .results.summary import summarize as summarize
 from .run import simulate as simulate
-from .stepper import Observation as Observation
 from .stepper import Stepper as Stepper
+from .stepper import StepState as StepState
 from .support.errors import FileTrouble as FileTrouble
 from .support.errors import InvalidInput as InvalidInput
 from .support.errors import NotConverged as NotConverged

@@ -24,7 +24,7 @@ from tippetop.support.errors import InvalidInput, is_number
 from tippetop.support.units import number_in
 
 
-class Observation(NamedTuple):
+class StepState(NamedTuple):
     """Where a top is after a step, in SI units."""
 
     time: float
@@ -89,7 +89,7 @@ class Stepper:
         """The problem whose launch `reset` begins with."""
         return self._problem
 
-    def reset(self, problem: Problem | None = None) -> Observation:
+    def reset(self, problem: Problem | None = None) -> StepState:
         """Begin anew with the launch of the problem, or of another one, and return it."""
         if problem is not None:
             require_problem(problem)
@@ -100,12 +100,12 @@ class Stepper:
         pole = 1.0 if launch.state.axis[2] >= 0.0 else -1.0
         self._turn, self._pole, self._place = pole * launch.azimuth, pole, (0.0, 0.0)
         recorder = self._recorder(0.0)
-        return self._observation(recorder.finish(0.0, launch.state, early=True), recorder, (), 0.0)
+        return self._step_state(recorder.finish(0.0, launch.state, early=True), recorder, (), 0.0)
 
     @np.errstate(all="ignore")
     def step(
         self, dt: float, *, nudge: ArrayLike | None = None, twist: ArrayLike | None = None
-    ) -> Observation:
+    ) -> StepState:
         """Follow the top for a time, and return where it is then.
 
         Parameters
@@ -136,7 +136,7 @@ class Stepper:
             self._time = end
             recorder = self._recorder(end)
             samples = recorder.finish(end, self._state, early=True)
-            return self._observation(samples, recorder, (), end)
+            return self._step_state(samples, recorder, (), end)
         trajectory = Trajectory(self._launch.automaton, start, end, self._integrator, time=begin)
         recorder = self._recorder(end)
         last: Mode = start.next
@@ -150,7 +150,7 @@ class Stepper:
         self._next = Transition((), status, self._state) if early else self._continued(last)
         reported = [*events, *trajectory.events]
         kinds = tuple((event.time * units.time, event.kind.value) for event in reported)
-        return self._observation(samples, recorder, kinds, end)
+        return self._step_state(samples, recorder, kinds, end)
 
     def _push(self, nudge: ArrayLike | None, twist: ArrayLike | None) -> None:
         """Change the velocity and the angular momentum, and launch the top from there."""
@@ -177,13 +177,13 @@ class Stepper:
         recorder.go_on_from(self._turn, self._pole)
         return recorder
 
-    def _observation(
+    def _step_state(
         self,
         samples: Samples,
         recorder: Recorder,
         events: tuple[tuple[float, str], ...],
         time: float,
-    ) -> Observation:
+    ) -> StepState:
         """Return what is observed in the last sample, from which the next step goes on."""
         units, instants = self._launch.units, samples.instants
         state = list(
@@ -196,7 +196,7 @@ class Stepper:
         place = [*(units.length * number for number in self._place), state[-1].height]
         following = self._next.next
         status = following if isinstance(following, Status) else Status.COMPLETED
-        return Observation(
+        return StepState(
             time * units.time,
             state[-1],
             np.array(place),
