@@ -8,7 +8,9 @@ from scipy.optimize import brentq
 
 import tippetop as tt
 from tippetop.contact import contact_mode, slip_end_motion, slip_onset
+from tippetop.contact.natural_launch import NaturalLaunch
 from tippetop.mechanics import lying_down
+from tippetop.mechanics.motion import along_table, contact_swing, sliding_contact
 
 R, MASS, G = 0.04, 0.4, 9.81
 I1 = MASS * R * R / 4
@@ -175,3 +177,22 @@ def test_a_ring_whose_slip_ends_with_its_rate_sticks() -> None:
     run = tt.simulate(problem, 0.12, samples=3, mode_limit=200)
     assert run.attrs["status"] == "completed"
     assert float(run["energy_error"]) < 1e-12
+
+
+@pytest.mark.parametrize("part", [0.3, 1e-3, 1e-6])
+def test_the_law_of_the_end_keeps_the_force_of_what_creeps(part: float) -> None:
+    """Friction on slip far slower than the wobble has a direction, on which the normal force
+    depends: both keep.
+    """
+    friction = tt.ContensouFriction(mu=0.3, patch_radius=0.02 * R)
+    launch = tt.Launch(tilt=1e-6, spin=0.0, precession=900.0)
+    problem = tt.Problem(body=disk(0.2 * R), friction=friction, launch=launch, gravity=G)
+    natural = NaturalLaunch.of(problem)
+    top, state = natural.top, along_table(natural.state)
+    swing = contact_swing(state.axis, state.momentum, top)
+    slip = (3e-7, -8e-7)
+    state = state._replace(velocity=(slip[0] - swing[0], slip[1] - swing[1]))
+    before = sliding_contact(*state, top)
+    after = sliding_contact(*lying_down.scaled_wobble(state, part, False, top), top)
+    assert after.slip == pytest.approx(before.slip, rel=1e-6)
+    assert after.normal_force == pytest.approx(before.normal_force, rel=1e-4)

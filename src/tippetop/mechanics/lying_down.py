@@ -40,7 +40,7 @@ disk, whose friction has an arm that falls with s.
 from typing import NamedTuple
 
 from tippetop.mechanics.contacts.forces import spun_up
-from tippetop.mechanics.motion import angular_velocity, axis_rate
+from tippetop.mechanics.motion import angular_velocity, axis_rate, contact_swing
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import POLE, support_at
 from tippetop.mechanics.top import Top
@@ -211,7 +211,7 @@ def scaled_wobble(state: SlidingState, part: Scalar, sticks: bool, top: Top) -> 
     """Return the state where a part of the time left to a wobble is left.
 
     Its direction is kept: how far that turns until then has no bound. Where the contact slips, the
-    spin about the vertical and the velocity along the table do not end with the wobble.
+    spin about the vertical and the slip do not end with the wobble, nor does friction's direction.
 
     Parameters
     ----------
@@ -227,7 +227,13 @@ def scaled_wobble(state: SlidingState, part: Scalar, sticks: bool, top: Top) -> 
     x, y, z = state.axis
     axis = (part * part * x, part * part * y, z)
     p, q, w = angular_velocity(state.axis, state.momentum, top)
-    beside = part if sticks else 1.0
-    momentum = spun_up(axis, (0.0, 0.0, 0.0), (part * p, part * q, beside * w), top)
     u, v = state.velocity
-    return SlidingState(axis, momentum, (beside * u, beside * v))
+    if sticks:
+        momentum = spun_up(axis, (0.0, 0.0, 0.0), (part * p, part * q, part * w), top)
+        return SlidingState(axis, momentum, (part * u, part * v))
+    momentum = spun_up(axis, (0.0, 0.0, 0.0), (part * p, part * q, w), top)
+    before, after = (
+        contact_swing(state.axis, state.momentum, top),
+        contact_swing(axis, momentum, top),
+    )
+    return SlidingState(axis, momentum, (u + before[0] - after[0], v + before[1] - after[1]))
