@@ -138,6 +138,43 @@ def test_laws_are_told_apart_or_not(run):
     assert "cannot tell" in unclear.verdict
 
 
+@pytest.mark.parametrize(
+    "law",
+    [
+        tt.CoulombFriction(mu=0.3),
+        tt.ContensouFriction(mu=0.3, patch_radius=5e-4),
+        tt.RegularizedCoulombFriction(mu=0.3, eps=0.01),
+    ],
+    ids=["coulomb", "contensou", "regularized"],
+)
+def test_a_film_under_another_law_ends_as_a_fit(law):
+    """Runs of the search may stick, turn over or end early: none of its numbers is not finite."""
+    times = np.linspace(0.0, 0.5, 31)
+    problem = tt.presets.report_problem(spin=150.0)
+    tilt = tt.simulate(problem, 0.5, times=times)["tilt"].values
+    noisy = tilt + np.random.default_rng(3).normal(0.0, 0.02, times.size)
+    data = tt.Measurement.of_variables(times, {"tilt": noisy}, noise=0.02)
+    other = problem.model_copy(update={"friction": law})
+    fitted = tt.fit(other, data, ["launch.spin", "friction.mu"], starts=1)
+    assert np.isfinite(list(fitted.values.values())).all()
+    assert np.isfinite(fitted.chi2)
+
+
+@pytest.mark.slow
+def test_the_profile_of_revolutions_a_minute():
+    times = np.linspace(0.0, 1.0, 21)
+    problem = tt.presets.report_problem(spin=150.0).replace(
+        {"friction": tt.ContensouFriction(mu=0.3, patch_radius=1e-3)}
+    )
+    spin = tt.simulate(problem, 1.0, times=times)["angular_velocity"].values[:, 2]
+    rates = np.abs(spin) * 60.0 / (2.0 * np.pi) + np.random.default_rng(3).normal(0.0, 5.0, 21)
+    data = tt.Measurement.of_spin(times, rates, noise=5.0)
+    fitted = tt.fit(problem, data, ["launch.spin", "friction.mu"], starts=1)
+    for name in fitted.values:
+        low, high = fitted.profile(name)
+        assert low < fitted.values[name] < high
+
+
 def test_what_does_not_converge_is_no_fit(monkeypatch, film):
     def stopped(self, start, *_, **__):
         return Minimum(start, 1.0, False, "too many steps")

@@ -136,6 +136,46 @@ def test_restitution_at_its_bound_has_no_derivative():
     assert np.isnan(alone["event_time"].values).tolist() == [[True] * run.sizes["event"]]
 
 
+def test_a_top_that_jumps_without_loss():
+    """Without friction and with full restitution nothing is lost, whatever it starts from."""
+    problem = tt.presets.report_problem().replace(
+        {
+            "friction.mu": 0.0,
+            "launch": tt.Launch(tilt=0.3, spin=50.0, gap=0.01),
+            "contact": tt.Contact(liftoff="fly", restitution=1.0),
+        }
+    )
+    fields = ["launch.tilt", "launch.gap", "launch.spin"]
+    slopes = tt.sensitivities(problem, 0.3, fields, samples=5)
+    assert slopes["reason"].values.tolist() == [""] * 3
+    assert np.max(np.abs(slopes["energy_lost"].values)) < 1e-9
+
+    def moved(field, change):
+        nearby = problem.replace({field: problem.get(field) + change})
+        return tt.simulate(nearby, 0.3, samples=2)["event_time"].values
+
+    for field, step in (("launch.tilt", 1e-5), ("launch.gap", 1e-6), ("launch.spin", 1e-3)):
+        change = (moved(field, step) - moved(field, -step)) / (2.0 * step)
+        finer = (moved(field, 0.5 * step) - moved(field, -0.5 * step)) / step
+        found = slope(slopes, "event_time", field)
+        scale = np.max(np.abs(finer))
+        np.testing.assert_allclose(found, (4.0 * finer - change) / 3.0, atol=1e-6 * scale)
+    # Friction of either sign would end the impact by another condition: energy, or restitution.
+    slopes = tt.sensitivities(problem, 0.3, ["friction.mu"], samples=5)
+    assert "without friction and without loss" in slopes["reason"].item()
+    assert np.isnan(slopes["energy_lost"].item())
+    # With less restitution only restitution ends it.
+    dull = problem.replace({"contact.restitution": 0.5})
+    found = tt.sensitivities(dull, 0.05, ["friction.mu"], samples=5)["energy_lost"].item()
+    rubbed = tt.simulate(dull.replace({"friction.mu": 1e-6}), 0.05, samples=2)["energy_lost"]
+    smooth = tt.simulate(dull, 0.05, samples=2)["energy_lost"]
+    assert found == pytest.approx(1e6 * float(rubbed - smooth), rel=1e-4)
+    # A little friction suffices.
+    little = problem.replace({"friction.mu": 1e-6})
+    found = tt.sensitivities(little, 0.05, ["friction.mu"], samples=5)["energy_lost"].item()
+    assert found == pytest.approx(1e6 * float(tt.simulate(little, 0.05)["energy_lost"]), rel=1e-4)
+
+
 def test_the_time_of_a_guard_that_nearly_grazes_goes_as_a_square_root():
     """Where the normal force dips to zero and no more, the time of lift-off is t - C (p - q)^(1/2),
     and its derivative to the power of -2 is linear in p and zero at q.

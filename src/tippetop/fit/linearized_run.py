@@ -42,7 +42,7 @@ from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Array, Guard
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import contact_numbers, contacts_with
+from tippetop.mechanics.top import Kind, contact_numbers, contacts_with
 from tippetop.mechanics.units import Units
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import SAMPLED
@@ -90,6 +90,10 @@ GRAZES = "the motion grazes: the guard that ends it hardly falls"
 UNSOLVED = "the variational equations cannot be followed"
 AT_BOUND = (
     "contact.restitution is at the end of its range, from 0 to 1: there is no run on the other side"
+)
+ELASTIC = (
+    "an impact without friction and without loss: restitution and the energy stored end it at once,"
+    " and friction.mu has no run on the other side"
 )
 UNKNOWN = "what follows cannot be found beside the run"
 
@@ -503,7 +507,7 @@ class LinearizedRun:
         automaton, nominal = self._automaton(numbers), self._start_of(junction)
         segments = list[list[Segment]]()
         try:
-            require_restitution(numbers, junction.transitions[0])
+            require_impact(numbers, self.kind, junction.transitions[0])
             if junction.before is None:
                 time, transition = 0.0, automaton.launch(numbers.start)
             else:
@@ -518,7 +522,7 @@ class LinearizedRun:
                     return Beside(done, segments, time, some[-1].end_state)
                 if how is None or visit.end is None or how.cause != visit.end.cause:
                     raise Differs(OTHER_EVENTS)
-                require_restitution(numbers, following)
+                require_impact(numbers, self.kind, following)
                 mode: Any = done[-1].next
                 transition = automaton.follow(mode, how, time)
                 done.append(same(transition, following))
@@ -735,13 +739,16 @@ class RunReading(NamedTuple):
         return {**{str(name): one for name, one in self.run.variables.items()}, **named}
 
 
-def require_restitution(numbers: StartNumbers, transition: Transition) -> None:
+def require_impact(numbers: StartNumbers, kind: Kind, transition: Transition) -> None:
     """Refuse, with `Differs`, an impact beside the run for which the coefficient of restitution is
-    out of its range.
+    out of its range, or friction is where restitution is full: then another condition ends it.
     """
-    strikes = any(event.kind is EventKind.IMPACT for event in transition.events)
-    if strikes and not 0.0 <= numbers.restitution <= 1.0:
+    if not any(event.kind is EventKind.IMPACT for event in transition.events):
+        return
+    if not 0.0 <= numbers.restitution <= 1.0:
         raise Differs(AT_BOUND)
+    if numbers.restitution == 1.0 and getattr(numbers.top_of(kind).friction, "mu", 0.0) < 0.0:
+        raise Differs(ELASTIC)
 
 
 def is_integrated(mode: object) -> bool:
