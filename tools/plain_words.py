@@ -23,6 +23,7 @@ BANNED = {
 PUBLIC = {
     ("problem/bodies.py", "whole"): "keyword of `Body.turned`",
     ("cli/body.py", "whole"): "option --whole",
+    ("fit/improve.py", "whole"): "keyword of `improve`, as of `Body.turned`",
     ("lathe/design.py", "piece"): "argument of `design_insert`",
     ("export/solid.py", "piece"): "argument of `write_solid`",
 }

@@ -1,6 +1,7 @@
 """What `tippetop body` prints, writes and refuses."""
 
 import json
+import math
 
 import pytest
 from typer.testing import CliRunner
@@ -38,7 +39,7 @@ def said(*words, code=0):
 
 
 def test_programs_are_told_what_the_theory_and_the_profile_say(files):
-    told = json.loads(said("ball.toml", "--json"))
+    told = json.loads(said("ball.toml", "--json", "--no-runs"))
     body = tt.Body.turned(files / "ball.toml")
     assert [told["mass"], told["I1"], told["I3"]] == [body.mass, body.I1, body.I3]
     assert told["eccentricity"] == pytest.approx(body.shape.eccentricity, rel=1e-12)
@@ -51,13 +52,13 @@ def test_programs_are_told_what_the_theory_and_the_profile_say(files):
     )
     assert told["omega_c2"] == pytest.approx(spins.inverted)
     assert told["trouble"] is None
-    assert told["stem"] is None
+    assert told["stem"] is told["stands_from"] is None
     (surface,) = told["surfaces"]
     assert surface["kind"] == "sphere"
 
 
 def test_people_are_told_too(files):
-    lines = said("top.toml")
+    lines = said("top.toml", "--no-runs")
     assert "Cannot be simulated" not in lines
     assert lines.startswith("Group ")
     for text in (
@@ -74,8 +75,24 @@ def test_people_are_told_too(files):
     assert "lies flat" in cut_off
     assert "up to a tilt of 1.5708" in cut_off
     assert "Cannot be simulated" not in said(
-        "bowl.csv", "--density", "700", "--unit", "mm", "--whole"
+        "bowl.csv", "--density", "700", "--unit", "mm", "--whole", "--no-runs"
     )
+
+
+@pytest.mark.slow
+def test_the_spin_from_which_it_stands_is_that_of_runs(files):
+    told = json.loads(said("top.toml", "--json"))
+    least, body = told["stands_from"], tt.Body.turned(files / "top.toml")
+    assert least > told["stem"]["least_launch_spin"], "losses while both touch need more"
+    assert f"{least:.3g} rad/s" in " ".join(said("top.toml").split())
+
+    def highest(spin):
+        patch = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)
+        launch = tt.Launch(tilt=0.1, spin=spin)
+        run = tt.simulate(tt.Problem(body=body, friction=patch, launch=launch), 20.0, samples=2)
+        return float(run["max_tilt"])
+
+    assert highest(0.99 * least) < math.pi - 0.1 < highest(1.01 * least)
 
 
 def test_the_problem_is_one_that_is_simulated(files):
@@ -89,7 +106,7 @@ def test_files_are_written_once(files):
     pytest.importorskip(
         "trimesh", reason="solids are written with trimesh; it comes with the lathe extra"
     )
-    names = ["--plot", "a.png", "--stl", "a.stl", "--3mf", "a.3mf"]
+    names = ["--no-runs", "--plot", "a.png", "--stl", "a.stl", "--3mf", "a.3mf"]
     assert said("top.toml", *names).count("wrote ") == 3
     sizes = {path.name: path.stat().st_size for path in files.glob("a.*")}
     assert set(sizes) == {"a.png", "a.stl", "a.3mf"}
@@ -152,5 +169,5 @@ profile = [
 def test_a_top_heavy_body_is_said_not_to_turn_over(files):
     (files / "heavy.toml").write_text(TOP_HEAVY)
     with pytest.warns(tt.Implausible, match="above the ball's centre: it does not turn over"):
-        done = CliRunner().invoke(app, ["body", "heavy.toml"])
+        done = CliRunner().invoke(app, ["body", "heavy.toml", "--no-runs"])
     assert done.exit_code == 0

@@ -32,6 +32,9 @@ FILE_ENDINGS = {
 }
 """Accepted suffixes of files."""
 
+ROUND_FEET = ("sphere", "eccentric_sphere", "spheroid", "oval")
+"""Kinds of surfaces on which a body can be spun so that friction raises it."""
+
 
 def body(
     file: Annotated[
@@ -84,6 +87,14 @@ def body(
     whole: Annotated[
         bool, typer.Option("--whole", help="Accept incomplete surfaces as if they were complete.")
     ] = False,
+    runs: Annotated[
+        bool,
+        typer.Option(
+            "--runs/--no-runs",
+            help="Follow runs to find the spin from which a body with a round foot turns over and"
+            " stands: some seconds.",
+        ),
+    ] = True,
     plot: Annotated[Path | None, typer.Option(help="Draw the section: .png, .svg or .pdf.")] = None,
     stl: Annotated[Path | None, typer.Option(help="Write the solid for printing, mm.")] = None,
     three_mf: Annotated[
@@ -132,7 +143,7 @@ def body(
         turned = tt.Body.turned(workpiece, whole=whole)
         written = commented_toml(tt.presets.report_problem().model_copy(update={"body": turned}))
     else:
-        summary = {"remarks": [*remarks, *_fit(workpiece)], **_summary(workpiece, whole)}
+        summary = {"remarks": [*remarks, *_fit(workpiece)], **_summary(workpiece, whole, runs)}
     outputs = [_write(workpiece, path, force, whole) for path in files.values()]
     not_mapped = list(dict.fromkeys(remark for _, remarks in outputs for remark in remarks))
     paths = [path for written_paths, _ in outputs for path in written_paths]
@@ -169,17 +180,20 @@ def _fit(workpiece: "tt.Workpiece") -> list[str]:
     ]
 
 
-def _summary(workpiece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
+def _summary(workpiece: "tt.Workpiece", whole: bool, runs: bool) -> dict[str, Any]:
     """Return the mass properties, surfaces and prospects of a body.
 
-    `trouble` is the reason for which it cannot be simulated, or None.
+    `trouble` is the reason for which it cannot be simulated, or None. `stands_from` is the least
+    spin from which runs turn over and stand, rad/s, inf if there is none; None without runs.
     """
     from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415 - slow to import
 
     mass, center, I1, I3 = workpiece.mass_properties
-    trouble = None
+    trouble, stands_from = None, None
     try:
         turned = tt.Body.turned(workpiece, whole=whole)
+        if runs and turned.shapes[0].kind in ROUND_FEET and not _is_top_heavy(turned):
+            stands_from = _standing_spin(turned)
     except InvalidInput as error:
         trouble = str(error)
         # Mass and size are in doubt whatever the surfaces: those of a ball around the body.
@@ -199,7 +213,23 @@ def _summary(workpiece: "tt.Workpiece", whole: bool) -> dict[str, Any]:
         "trouble": trouble,
         **_prospects(workpiece),
         "upside_down": _prospects(workpiece.turned_over()),
+        "stands_from": stands_from,
     }
+
+
+def _is_top_heavy(turned: "tt.Body") -> bool:
+    """Return whether a body, set upright without spin, does not return there when tilted."""
+    surface = turned.shapes[0].surface
+    return bool(surface.height(math.cos(0.05)) <= surface.height(1.0) + 1e-12 * surface.size)
+
+
+def _standing_spin(turned: "tt.Body") -> float:
+    """Return the least spin from which runs of a body on a drilling patch stand, rad/s."""
+    from tippetop.fit.standing import least_standing_spin  # noqa: PLC0415 - slow to import
+
+    law = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)
+    launch = tt.Launch(tilt=0.1, spin=1.0)
+    return least_standing_spin(tt.Problem(body=turned, friction=law, launch=launch))
 
 
 def _surfaces(workpiece: "tt.Workpiece") -> list[dict[str, Any]]:
@@ -381,11 +411,16 @@ def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
         if "least_launch_spin" in summary["stem"]:
             rows.append(
                 (
-                    "that is, launched above",
+                    "that is, without loss while both touch, launched above",
                     spelled(summary["stem"]["least_launch_spin"], 7),
                     "rad/s",
                 )
             )
+    if summary["stands_from"] is not None:
+        never = math.isinf(summary["stands_from"])
+        least = "no spin" if never else f"{summary['stands_from']:.3g}"
+        units = "" if never else "rad/s"
+        rows.append(("turns over and stands in runs (mu 0.3, patch of 0.5 mm) from", least, units))
     between = [tilt for tilt in summary["lies_on_lines_at_tilts"] if 0.0 < tilt < math.pi]
     rows += [("touches in two points or a line at tilt", f"{tilt:.7g}", "rad") for tilt in between]
     ends = {0.0: "below", math.pi: "above"}

@@ -3,12 +3,19 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from itertools import product
+from typing import Literal
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import brentq
 
-from tippetop.fit.sensitivities import sensitivities
+from tippetop.fit.standing import (
+    FALLEN,
+    LONGEST_RISE,
+    is_upside_down,
+    least_standing_spin,
+    stands,
+)
 from tippetop.integrators.base import Array
 from tippetop.lathe.design import LONGEST, bowl_with_stem, rim_height
 from tippetop.lathe.workpiece import Workpiece
@@ -16,8 +23,9 @@ from tippetop.problem.bodies import Body
 from tippetop.problem.frictions import ContensouFriction, Friction
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem, top_of
+from tippetop.problem.shapes import Sphere
 from tippetop.run import simulate
-from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.errors import Described, InvalidInput, is_number
 from tippetop.support.suggestions import not_one_of
 from tippetop.support.units import number_in
 from tippetop.theory.advice import standing_spin
@@ -26,8 +34,15 @@ from tippetop.theory.requirements import sticks
 
 GOALS = ("lowest spin", "fastest", "stands longest")
 
-GRID = (4, 6, 2)
-"""Walls, tips and stems that are tried before the best of them is improved."""
+GRID = (5, 8, 3)
+"""Walls, tips and stems that are tried by theory before the best of them are improved."""
+
+STARTS = 3
+"""Places of the grid that are improved by theory: its least spin has several minima, and edges at
+which the kind of motion changes."""
+
+ENTRANTS = 14
+"""Places of the grid whose runs are followed beside those."""
 
 SHORTEST_TIP = 1.05
 """Least height of the stem's end over the sphere's centre, in radii."""
@@ -40,14 +55,28 @@ FASTER = 1.3
 nobody says: at the least spin the last part of the rise takes for ever.
 """
 
-LONGEST_RUN = 6.0
-"""Seconds after which a top that has not turned over does not count as fast."""
+MICROMETRE = 1e-6
+"""Digits of the sizes, m: finer than any lathe or printer. A body made of rounded sizes is
+recognized when it is improved again."""
 
-SLOPE_STEP = 1e-5
-"""Step, relative to the range of a size, of differences of theory's formulae and of masses."""
+GAIN = 0.02
+"""Least relative gain for which runs are followed: less is not worth their time."""
 
-ITERATIONS, RUN_ITERATIONS = 12, 4
-"""Steps of the search, by theory and by runs: the value hardly falls after them."""
+STEPS_BY_THEORY, STEPS_BY_RUNS = (0.08, 0.03, 0.01, 0.003), (0.04, 0.012)
+"""Steps of the two searches, in ranges of the sizes."""
+
+TRIALS_BY_THEORY = 100
+"""Most bodies that the search by theory tries from a start."""
+
+HARDER = 1.08
+"""Ratio of the spins, one after the other, at which runs of the entrants are followed until one of
+them stands."""
+
+SURELY = (1.0, 1.05, 1.15, 1.3)
+"""Ratios to a spin at which runs must stand before a body counts as better."""
+
+LONGEST_STAND = 60.0
+"""Seconds up to which it is measured how long a top stands."""
 
 
 @dataclass(frozen=True)
@@ -57,9 +86,12 @@ class ImprovedTop:
     Examples
     --------
     >>> import tippetop as tt
-    >>> better = tt.improve(tt.presets.FRIEDL)
-    >>> better.goal, sorted(better.sizes)
-    ('lowest spin', ['radius', 'stem', 'tip', 'wall'])
+    >>> piece = tt.design_bowl(radius=0.015, density=700.0, eccentricity=0.15, inertia_ratio=1.0)
+    >>> sizes = {"radius": 0.015, "wall": 1e-3, "stem": 1.5e-3, "tip": 0.02}
+    >>> body, none = tt.Body.turned(piece), float("inf")
+    >>> top = tt.ImprovedTop(body, piece, "lowest spin", spin=150.0, before=none, sizes=sizes)
+    >>> print(str(top).splitlines()[0])
+    lowest spin: turns over and stands from 150 rad/s (before: no spin)
     """
 
     body: Body
@@ -69,7 +101,9 @@ class ImprovedTop:
     goal: str
     """What was improved."""
     spin: float
-    """Least spin of launches from which theory lets it turn over and stand, rad/s."""
+    """Least spin of launches from which runs turn over and stand, rad/s: they come within 0.1 rad
+    of upside down within 20 s, and so do runs from more spin, up to half as much again.
+    """
     before: float
     """The same of the body that it was made from; inf if that does not turn over."""
     sizes: dict[str, float]
@@ -99,12 +133,14 @@ def improve(
     stem: float = 1.5e-3,
     tilt: float = 0.1,
     gravity: float = 9.8,
+    whole: bool = False,
+    trials: int = 20,
 ) -> ImprovedTop:
     """Return a top like a body that meets a goal better: a bowl with a stem that can be made.
 
-    The thickness of the bowl, and the radius and length of the stem, are found by the gradients of
-    theory; for the fastest, by those of runs (see `tippetop.sensitivities`), which go through
-    all their events.
+    Theory proposes the thickness of the bowl, and the radius and length of the stem. Runs improve
+    them further and decide: what the result claims was seen in runs with this friction. A result
+    that is improved again is not worse afterwards.
 
     Parameters
     ----------
@@ -112,8 +148,8 @@ def improve(
         The top to begin with. It lies on a sphere, its centre of mass below the centre of that.
     goal
         "lowest spin": it turns over and stands from the least spin; "fastest": it turns over
-        soonest from a spin; "stands longest": drilling friction takes longest to stop it on its
-        stem, from a spin.
+        soonest from a spin; "stands longest": it stands on its stem for the longest time, from a
+        spin.
     friction
         Friction of the runs: a law with creep; None for a patch of 0.5 mm with mu = 0.3.
     spin
@@ -126,6 +162,11 @@ def improve(
         The least thickness of the bowl and radius of the stem, m.
     tilt, gravity
         Tilt of the launches, rad, and gravity, m/s^2.
+    whole
+        Accept incomplete surfaces of a workpiece as `Body.turned` does.
+    trials
+        Most bodies that are tried by runs around the best of the first; with 0, the best by theory
+        is taken, and only its spin is measured by runs.
 
     Raises
     ------
@@ -135,14 +176,16 @@ def improve(
     Examples
     --------
     >>> import tippetop as tt
-    >>> better = tt.improve(tt.presets.FRIEDL)  # which hangs at some tilt, whatever its spin
-    >>> better.before, better.spin < 150.0
+    >>> better = tt.improve(tt.presets.FRIEDL, trials=0)  # which stands from no spin
+    >>> better.before, better.spin < 300.0
     (inf, True)
     """
     if goal not in GOALS:
         raise not_one_of("goal", goal, GOALS)
+    if not is_number(trials) or trials < 0 or trials != int(trials):
+        raise InvalidInput("trials", trials, "a whole number, 0 or more")
     law = ContensouFriction(mu=0.3, patch_radius=5e-4) if friction is None else friction
-    start = Body.turned(body) if isinstance(body, Workpiece) else body
+    start = Body.turned(body, whole=whole) if isinstance(body, Workpiece) else body
     _require_top(start, gravity, tilt)
     size = start.shapes[0].surface.size if radius is None else number_in("radius", radius, "m")
     problem = Problem(body=start, friction=law, launch=Launch(tilt=tilt, spin=1.0), gravity=gravity)
@@ -153,23 +196,27 @@ def improve(
             "viscous, regularized or Contensou friction, by which slip never ends while the top"
             " spins; on this one it sticks, and rolls for ever without turning over",
         )
-    family = BowlFamily(float(size), density, wall, stem, mass, gravity, tilt)
-    best = family.least_spin()
-    least = standing_spin(family.body(best), gravity, tilt)
-    launched = FASTER * least if spin is None else float(number_in("spin", spin, "rad s-1"))
+    family = BowlFamily(round_to_picometre(size), density, wall, stem, mass, gravity, tilt)
+    proposed = family.proposals(ENTRANTS if trials else 0)
+    present = family.sizes_of(start)
+    trial = Trial(family, problem, goal)
+    before = least_standing_spin(problem)
+    if goal != "lowest spin":
+        least = trial.least_spin(proposed[0]) if spin is None else math.nan
+        trial.spin = FASTER * least if spin is None else float(number_in("spin", spin, "rad s-1"))
     if goal == "stands longest":
-        best = family.improved(best, lambda at: -family.standing_time(at, launched))
-    if goal == "fastest":
-        launch = problem.replace({"launch.spin": launched})
-        best = family.improved(best, *timed(family, launch))
+        by_theory = family.improved(proposed[0], lambda at: -family.standing_time(at, trial.spin))
+        proposed.insert(0, by_theory)
+    best = trial.best_of(proposed, trials)
+    if present is not None and trial.value(present) <= trial.value(best):
+        best = present
     workpiece = family.workpiece(best)
-    solid = Body.turned(workpiece)
     return ImprovedTop(
-        solid,
+        Body.turned(workpiece),
         workpiece,
         goal,
-        standing_spin(solid, gravity, tilt),
-        standing_spin(start, gravity, tilt),
+        trial.least_spin(best),
+        before,
         {"radius": family.radius, **dict(zip(("wall", "tip", "stem"), best.tolist(), strict=True))},
     )
 
@@ -246,8 +293,33 @@ class BowlFamily:
         except (InvalidInput, ValueError):
             return math.inf
 
+    def sizes_of(self, body: Body) -> Array | None:
+        """Return wall, tip and stem of a body of this family; None for other bodies."""
+        first, last = body.shapes[0], body.shapes[-1]
+        if len(body.shapes) != 2 or not isinstance(first, Sphere) or not isinstance(last, Sphere):
+            return None
+        stem, tip = last.radius, last.center - first.center + last.radius
+
+        def excess(wall: float) -> float:
+            return self._mass(np.array([wall, tip, stem])) - body.mass
+
+        rim = math.hypot(rim_height(self.radius, stem, tip), stem + self.least_wall)
+        ends = (self.low[0] - MICROMETRE, self.radius - rim)
+        if not tip > self.radius > stem or not excess(ends[0]) < 0.0 < excess(ends[1]) < math.inf:
+            return None
+        at = rounded(np.array([brentq(excess, *ends), tip, stem]))
+        if np.any(self.margins(at) <= 0.0) or np.any(at < self.low - 0.5 * MICROMETRE):
+            return None
+        same = self.body(at)
+        pairs = ((same.mass, body.mass), (same.I1, body.I1), (same.I3, body.I3))
+        return at if all(math.isclose(*pair, rel_tol=1e-9) for pair in pairs) else None
+
     def spin(self, at: Array) -> float:
-        """Return the least spin from which it turns over and stands, rad/s; inf for none."""
+        """Return the least spin from which theory lets it turn over and stand, rad/s; inf for
+        none.
+
+        Theory leaves out what the top loses while sphere and stem both touch.
+        """
         if np.any(self.margins(at) <= 0.0):
             return math.inf
         try:
@@ -277,8 +349,8 @@ class BowlFamily:
         except InvalidInput:
             return None
 
-    def least_spin(self) -> Array:
-        """Return the sizes with the least spin.
+    def proposals(self, entrants: int) -> list[Array]:
+        """Return sizes with little spin by theory, the least first, and some of the grid.
 
         Raises
         ------
@@ -288,106 +360,181 @@ class BowlFamily:
         axes = [np.linspace(0.02, 0.98, count) for count in GRID]
         grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(GRID))
         points = self.low + grid * (self.high - self.low)
-        spins = [self.spin(point) for point in points]
-        best = int(np.argmin(spins))
-        if not math.isfinite(spins[best]):
+        spins = np.array([self.spin(point) for point in points])
+        if not np.any(np.isfinite(spins)):
             raise InvalidInput(
                 "body",
                 Described(f"a sphere of {1e3 * self.radius:.3g} mm with these bounds"),
                 "a larger radius or mass, or a thinner wall or stem",
                 "leaves no bowl with a stem that turns over",
             )
-        return self.improved(points[best], self.spin)
+        order = [place for place in np.argsort(spins) if math.isfinite(spins[place])]
+        improved = [self.improved(points[place], self.spin) for place in order[:STARTS]]
+        others = [rounded(points[place]) for place in order[:entrants]]
+        return [*sorted(improved, key=self.spin), *others]
 
-    def improved(
-        self,
-        start: Array,
-        value: Callable[[Array], float],
-        gradient: Callable[[Array], Array] | None = None,
-    ) -> Array:
-        """Return the sizes with the least value near others, within all bounds."""
-        reach, first = self.high - self.low, value(start)
-        scale = abs(first) or 1.0
-        tried: list[tuple[float, Array]] = [(first, start)]
-
-        def scaled(at: Array) -> float:
-            sizes = self.low + at * reach
-            number = value(sizes)
-            if not math.isfinite(number):
-                return 10.0
-            if np.all(self.margins(sizes) > 0.0):
-                tried.append((number, sizes))
-            return number / scale
-
-        def slopes(at: Array) -> Array:
-            if gradient is not None:
-                return np.asarray(gradient(self.low + at * reach) * reach / scale)
-            ends = [at + sign * SLOPE_STEP * row for row in np.eye(len(at)) for sign in (1.0, -1.0)]
-            numbers = np.array([value(self.low + end * reach) for end in ends]).reshape(-1, 2)
-            changes = (numbers[:, 0] - numbers[:, 1]) / (2.0 * SLOPE_STEP * scale)
-            return np.asarray(np.nan_to_num(changes, posinf=0.0, neginf=0.0))
-
-        search: Any = minimize  # Its annotations know no constraints of an array of numbers.
-        search(
-            scaled,
-            (start - self.low) / reach,
-            jac=slopes,
-            method="SLSQP",
-            bounds=[(0.0, 1.0)] * len(start),
-            constraints={
-                "type": "ineq",
-                "fun": lambda at: self.margins(self.low + at * reach) - 1e-6,
-            },
-            options={"maxiter": ITERATIONS if gradient is None else RUN_ITERATIONS, "ftol": 1e-5},
+    def improved(self, start: Array, value: Callable[[Array], float]) -> Array:
+        """Return sizes near others at which a function of theory is least."""
+        return pattern_search(
+            lambda at, bound: value(at), rounded(start), self, STEPS_BY_THEORY, TRIALS_BY_THEORY
         )
-        return min(tried, key=lambda pair: pair[0])[1]
 
 
-def timed(
-    family: BowlFamily, problem: Problem
-) -> tuple[Callable[[Array], float], Callable[[Array], Array]]:
-    """Return the time of turning over as a function of the sizes, and its gradient."""
+def rounded(sizes: Array) -> Array:
+    """Return sizes to the micrometre, m."""
+    return np.round(sizes / MICROMETRE) * MICROMETRE
 
-    def launched(at: Array) -> Problem | None:
-        if np.any(family.margins(at) <= 0.0):
-            return None
+
+def round_to_picometre(size: float) -> float:
+    """Return a length, m, without the rounding of the surfaces that were made from it."""
+    return round(float(size), 12)
+
+
+DIRECTIONS = [np.array(signs) / 2.0 for signs in product((-1.0, 0.0, 1.0), repeat=3) if any(signs)]
+"""Directions of the search: along the sizes, and along those that change two or three of them."""
+
+
+def pattern_search(
+    value: Callable[[Array, float], float],
+    start: Array,
+    family: BowlFamily,
+    steps: tuple[float, ...],
+    trials: int,
+) -> Array:
+    """Return the sizes with the least value near others.
+
+    It compares values only, for theory's least spin has edges at which it jumps, and runs decide
+    whether a top stands.
+
+    Parameters
+    ----------
+    value
+        Function of the sizes, and of the least value so far, of which it need only be decided
+        whether it is undercut.
+    start
+        The sizes to begin with.
+    family
+        Bodies and their bounds.
+    steps
+        Lengths of steps in ranges of the sizes, one after the other.
+    trials
+        Most sizes that are tried.
+    """
+    reach, best, least = family.high - family.low, start, value(start, math.inf)
+    for step in steps:
+        directions, failed = list(DIRECTIONS), 0
+        while failed < len(directions) and trials > 0:
+            direction = directions[failed]
+            sizes = rounded(np.clip(best + step * direction * reach, family.low, family.high))
+            if np.array_equal(sizes, best) or np.any(family.margins(sizes) <= 0.0):
+                failed += 1
+                continue
+            trials -= 1
+            number = value(sizes, least)
+            if number < least:
+                best, least = sizes, number
+                directions.insert(0, directions.pop(failed))
+                failed = 0
+            else:
+                failed += 1
+    return best
+
+
+class Trial:
+    """Runs of bowls, by which one of them is chosen.
+
+    Attributes
+    ----------
+    spin
+        Spin of the launches, rad/s, of all goals but the lowest spin.
+    """
+
+    def __init__(self, family: BowlFamily, problem: Problem, goal: str) -> None:
+        self.family, self.problem, self.goal, self.spin = family, problem, goal, math.nan
+        self._values: dict[tuple[float, ...], float] = {}
+
+    def launch(self, at: Array, spin: float) -> Problem:
+        """Return the launch of a bowl with a spin, rad/s."""
+        made = self.problem.model_copy(update={"body": self.family.body(at)})
+        return made.replace({"launch.spin": spin})
+
+    def least_spin(self, at: Array) -> float:
+        """Return the least spin from which runs turn over and stand, rad/s; inf for none."""
+        place = ("spin", *at.tolist())
+        if place not in self._values:
+            self._values[place] = least_standing_spin(self.launch(at, 1.0))
+        return self._values[place]
+
+    def value(self, at: Array) -> float:
+        """Return the number that is least for the best bowl; inf if the bowl does not stand."""
+        if self.goal == "lowest spin":
+            return self.least_spin(at)
+        place = (self.goal, *at.tolist())
+        if place not in self._values:
+            self._values[place] = self._measured(at)
+        return self._values[place]
+
+    def best_of(self, starts: list[Array], trials: int) -> Array:
+        """Return the best of some bowls, or of those around it that are tried by runs."""
+        if trials == 0:
+            return starts[0]
+        first, least = self._first_of(starts)
+        return pattern_search(
+            lambda at, bound: least if math.isinf(bound) else self._better_than(at, bound),
+            first,
+            self.family,
+            STEPS_BY_RUNS,
+            trials,
+        )
+
+    def _first_of(self, starts: list[Array]) -> tuple[Array, float]:
+        """Return the best of some bowls, and a bound of its value."""
+        if self.goal != "lowest spin":
+            best = min(starts, key=self.value)
+            return best, self.value(best)
+        least = min(self.family.spin(at) for at in starts)
+        spin = HARDER * least
+        while spin < FASTER**4 * least:
+            for at in starts:
+                if self._stands_from(at, spin):
+                    return at, spin
+            spin *= HARDER
+        return starts[0], self.least_spin(starts[0])
+
+    def _better_than(self, at: Array, bound: float) -> float:
+        """Return a bound of a value that is less than another bound, or inf."""
         try:
-            return problem.model_copy(update={"body": family.body(at)})
-        except InvalidInput:
-            return None
-
-    def time(at: Array) -> float:
-        launch = launched(at)
-        if launch is None or family.spin(at) > launch.launch.spin:
+            if self.goal != "lowest spin":
+                return self.value(at)
+            spin = (1.0 - GAIN) * bound
+            return spin if self._stands_from(at, spin) else math.inf
+        except InvalidInput:  # There is no such solid.
             return math.inf
-        run = simulate(launch, LONGEST_RUN, until=lambda state: state.axis[2], samples=2)
-        return float(run["end_time"]) if run.attrs["status"] == "stopped" else math.inf
 
-    def gradient(at: Array) -> Array:
-        launch, end = launched(at), time(at)
-        if launch is None or not math.isfinite(end):
-            return np.zeros(len(at))
-        fields = fields_of(launch)
-        slopes = sensitivities(launch, 1.05 * end, fields, samples=2)["turnover_time"].values
-        reach = family.high - family.low
-        rows = np.zeros(len(at))
-        for place in range(len(at)):
-            step = np.zeros(len(at))
-            step[place] = SLOPE_STEP * reach[place]
-            up, down = (launched(at + sign * step) for sign in (1.0, -1.0))
-            if up is not None and down is not None:
-                moved = [float(up.get(name)) - float(down.get(name)) for name in fields]
-                rows[place] = np.nan_to_num(slopes) @ np.array(moved) / (2.0 * step[place])
-        return rows
+    def _stands_from(self, at: Array, spin: float) -> bool:
+        """Return whether runs stand from some spins, rad/s, from the least on."""
+        return all(stands(self.launch(at, spin * ratio)) for ratio in SURELY)
 
-    return time, gradient
+    def _measured(self, at: Array) -> float:
+        """Return the time of turning over, s, or minus the time for which the top stands."""
+        if not self._stands_from(at, self.spin):
+            return math.inf
+        launch = self.launch(at, self.spin)
+        if self.goal == "fastest":
+            run = simulate(launch, LONGEST_RISE, until=is_upside_down, samples=2)
+            return float(run["turnover_time"])
+        return -standing_duration(launch)
 
 
-def fields_of(problem: Problem) -> list[str]:
-    """Return the fields of a turned body that move with its sizes."""
-    names = ["body.mass", "body.I1", "body.I3"]
-    several = len(problem.body.shapes) > 1
-    for place, shape in enumerate(problem.body.shapes):
-        prefix = f"body.shape.{place}" if several else "body.shape"
-        names += [f"{prefix}.{name}" for name in ("radius", "center") if hasattr(shape, name)]
-    return names
+def standing_duration(problem: Problem) -> float:
+    """Return for how long a run stands, s: how long its axis is within `FALLEN` of upside down."""
+    crossing = "stands"
+    run = simulate(
+        problem,
+        LONGEST_STAND,
+        events={crossing: lambda state: state.axis[2] + math.cos(FALLEN)},
+        samples=2,
+    )
+    times = run["event_time"].values[run["event_kind"].values == crossing].tolist()
+    times += [float(run["end_time"])] * (len(times) % 2)
+    return float(np.sum(np.diff(times)[::2]))
