@@ -288,7 +288,9 @@ def test_the_command_says_how_a_drawing_was_read(tmp_path):
 def test_a_body_that_cannot_be_simulated_ends_with_exit_code_2(tmp_path):
     path = drawing(tmp_path, '<path d="M 20 5 H 30 A 50 50 0 0 1 25 25 H 20"/>')
     for options in ([], ["--json"]):
-        done = CliRunner().invoke(app, ["body", str(path), "--density", "700", "--no-runs", *options])
+        done = CliRunner().invoke(
+            app, ["body", str(path), "--density", "700", "--no-runs", *options]
+        )
         assert done.exit_code == 2
         assert "an arc around a point beyond" in done.stdout.replace("\n", " ")
 
