@@ -86,7 +86,7 @@ class ImprovedTop:
     Examples
     --------
     >>> import tippetop as tt
-    >>> piece = tt.design_bowl(radius=0.015, density=700.0, eccentricity=0.15, inertia_ratio=1.0)
+    >>> piece = tt.design_bowl(radius=0.015, density=700.0, eccentricity=0.15, inertia_ratio=1.2)
     >>> sizes = {"radius": 0.015, "wall": 1e-3, "stem": 1.5e-3, "tip": 0.02}
     >>> body, none = tt.Body.turned(piece), float("inf")
     >>> top = tt.ImprovedTop(body, piece, "lowest spin", spin=150.0, before=none, sizes=sizes)
@@ -175,10 +175,21 @@ def improve(
 
     Examples
     --------
+    A minute or two of runs:
+
+    .. code-block:: python
+
+        better = tt.improve(tt.presets.FRIEDL)  # which stands from no spin
+        print(better)
+        tt.write_solid(better.workpiece, "better.stl")
+
+    Only tops of the kind are improved:
+
     >>> import tippetop as tt
-    >>> better = tt.improve(tt.presets.FRIEDL, trials=0)  # which stands from no spin
-    >>> better.before, better.spin < 300.0
-    (inf, True)
+    >>> tt.improve(tt.presets.COIN)
+    Traceback (most recent call last):
+        ...
+    tippetop.support.errors.InvalidInput: body: a body that lies on a ring is no tippe top: ...
     """
     if goal not in GOALS:
         raise not_one_of("goal", goal, GOALS)

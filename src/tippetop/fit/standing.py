@@ -21,8 +21,8 @@ RISING = 1.15
 """Ratio of the spins that are tried one after the other until a run stands. Windows of spin in
 which a top does not stand that are narrower than this may be passed over."""
 
-FASTEST = 40.0
-"""Largest spin that is tried, in natural units: 1000 rad/s for a ball of 15 mm, several times what
+FASTEST = 25.0
+"""Largest spin that is tried, in natural units: 640 rad/s for a ball of 15 mm, several times what
 fingers reach."""
 
 CLOSE = 4e-3
