@@ -189,7 +189,9 @@ def improve(
     >>> tt.improve(tt.presets.COIN)
     Traceback (most recent call last):
         ...
-    tippetop.support.errors.InvalidInput: body: a body that lies on a ring is no tippe top: ...
+    tippetop.support.errors.InvalidInput: body: a body that lies on a ring is no tippe top: friction
+    does not raise it (write a top that lies on a sphere, its centre of mass between its centre and
+    the table)
     """
     if goal not in GOALS:
         raise not_one_of("goal", goal, GOALS)
