@@ -169,11 +169,12 @@ def test_a_top_that_falls_back_is_told_from_one_that_turns_over() -> None:
     assert told["tilt"] == pytest.approx(theta[-1], rel=1e-12)
 
 
-def test_a_disk_that_lies_flat_still_spins() -> None:
+def test_a_disk_lies_down_and_goes_on_upon_its_face() -> None:
     run = followed("puck")
-    told = named(describe(run), "lies_flat_and_spins")
-    assert told["spin"] == abs(float(run["final_spin"])) > 50.0
-    assert told["time"] == float(run["end_time"])
+    down = float(run["event_time"].values[run["event_kind"].values == "lies down"][0])
+    account = describe(run)
+    assert named(account, "lies_down") == {"time": down}
+    assert named(account, "comes_to_rest_on_face")["time"] == float(run["end_time"]) > down + 0.1
 
 
 def test_two_balls_stand_on_the_ball_that_touches() -> None:

@@ -73,7 +73,7 @@ def test_a_disk_that_does_not_spin_falls_flat() -> None:
         body=thin, friction=tt.ViscousFriction(mu=0.0), launch=launch, gravity=9.81
     )
     run = tt.simulate(problem, 1.0)
-    assert run.attrs["status"] == "lying_flat"
+    assert run["event_kind"].values.tolist() == ["lies down"]
     assert abs(run["tilt"].values[-1]) < 1e-9
     # (I1 + m R^2 cos^2) theta'^2 / 2 = m g R (sin 1.2 - sin theta); theta = 1.2 - u^2 takes the
     # root away.
@@ -83,15 +83,8 @@ def test_a_disk_that_does_not_spin_falls_flat() -> None:
     fall = DISK_MASS * 9.81 * DISK_RADIUS * (np.sin(1.2) - np.sin(tilt))
     moving = (inertia + DISK_MASS * (DISK_RADIUS * np.cos(tilt)) ** 2) / 2
     expected = np.sqrt(1.2) / 2 * weights @ (2 * u * np.sqrt(moving / fall))
-    assert float(run["end_time"]) == pytest.approx(expected, rel=1e-9)
+    assert float(run["event_time"][0]) == pytest.approx(expected, rel=1e-9)
     assert float(run["energy_error"]) < 1e-9
-
-
-def test_what_lies_flat_is_not_launched() -> None:
-    with pytest.raises(
-        tt.InvalidInput, match=r"launch\.tilt: 0.* a tilt at which the body does not lie"
-    ):
-        tt.Problem(body=DISK, friction=ROUGH, launch=tt.Launch(tilt=0.0, spin=1.0))
 
 
 def test_sweeps_find_disks_lying_flat_as_runs_do() -> None:
@@ -110,8 +103,12 @@ def test_sweeps_find_disks_lying_flat_as_runs_do() -> None:
         assert float(cell["end_time"]) == pytest.approx(float(run["end_time"]), rel=1e-9)
         assert float(cell["final_tilt"]) == pytest.approx(float(run["final_tilt"]), abs=1e-9)
         flat = found.sel(spin=spin, tilt=0.0)
-        assert flat["fault"] == "value_out_of_range"
-    assert float(found.sel(spin=0.0, tilt=0.3)["end_time"]) < 0.1
+        run = tt.simulate(problem.replace({"launch.spin": spin, "launch.tilt": 0.0}), 0.2)
+        for name in ("final_spin", "energy_lost", "energy_lost_drilling", "final_tilt"):
+            assert float(flat[name]) == pytest.approx(float(run[name]), rel=1e-9, abs=1e-15)
+    fallen = tt.simulate(problem, 0.2)
+    assert fallen["event_kind"].values[-1] == "lies down"
+    assert float(fallen["event_time"][-1]) < 0.1
 
 
 LAWS = {
@@ -135,10 +132,13 @@ def test_a_coin_thrown_onto_its_face_slips_until_it_lies_flat(
         friction=LAWS[law],
         launch=tt.Launch(tilt=tilt, spin=0.0, tilt_rate=rate),
     )
-    run = tt.simulate(problem, 0.1, samples=1001)
-    assert run.attrs["status"] == "lying_flat"
+    run, solution = tt.simulate(problem, 0.5, samples=1001, dense=True)
+    down = run["event_time"].values[run["event_kind"].values == "lies down"]
+    assert len(down) == 1
+    assert run.attrs["status"] == ("completed" if law == "viscous" else "at_rest")
     assert float(run["energy_error"]) < 1e-9
-    theta = run["tilt"].values if rate < 0.0 else math.pi - run["tilt"].values
+    tilts = solution(np.linspace(0.0, float(down[0]), 1001)).tilt
+    theta = tilts if rate < 0.0 else math.pi - tilts
     assert theta[-1] == pytest.approx(0.0, abs=1e-9)
     assert (np.diff(theta) < 0.0).all()
 

@@ -260,7 +260,9 @@ def test_a_coin_tossed_without_spin_tumbles_on_its_edges_until_it_lies_flat(fric
         contact=tt.Contact(restitution=0.5),
     )
     run = tt.simulate(problem, 0.3, samples=20_001)
-    assert run.attrs["status"] == "lying_flat"
+    assert run.attrs["status"] == ("at_rest" if friction.kind == "coulomb" else "completed")
+    (down,) = run.event_time.values[run.event_kind.values == "lies down"]
+    run = run.sel(time=slice(0.0, float(down)))
     touchdowns = run.event_time.values[run.event_kind.values == "touchdown"]
     assert touchdowns[0] == pytest.approx(math.sqrt(2 * 0.01 / 9.8), rel=1e-12)
     assert float(run.energy_error) < 1e-12
@@ -305,7 +307,7 @@ def test_a_coin_tossed_without_spin_does_the_same_in_a_sweep():
                 tt.simulate(one.replace({"launch.tilt": tilt}), 0.3),
                 swept.sel(tilt=tilt),
             )
-            assert run.attrs["status"] == "lying_flat"
+            assert "lies down" in run.event_kind.values
             for name in ("end_time", "flights", "max_gap", "airborne_time", "final_tilt"):
                 assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-7), (tilt, name)
 

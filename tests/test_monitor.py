@@ -230,7 +230,6 @@ def test_what_a_motion_seemed_to_come_to_is_not_told_of_one_that_cannot_be_trust
             tt.Status.COMPLETED,
             tt.Status.LIFTED_OFF,
             tt.Status.AT_REST,
-            tt.Status.LYING_FLAT,
             tt.Status.STOPPED,
         )
         assert kept.trusted_status(outcome, 1e-12) is outcome

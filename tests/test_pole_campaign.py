@@ -13,7 +13,7 @@ SIZE, MASS = 0.02, 0.02
 STEPS, MODES = 2_000, 200
 TILTS = [0.0, 1e-12, 1e-9, 1e-8, 1e-6, 1e-3, 0.05, np.pi - 1e-3, np.pi - 1e-9, np.pi]
 
-NAMED = {"completed", "at_rest", "lying_flat", "too_many_steps", "too_many_modes"}
+NAMED = {"completed", "at_rest", "too_many_steps", "too_many_modes"}
 """Outcomes that need no reason."""
 
 

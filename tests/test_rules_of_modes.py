@@ -3,6 +3,7 @@
 from every_motion import CASES, SURFACES
 from tippetop.contact.automaton import RULES
 from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.face_mode import SLOWED, STOPPED, FaceMode
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import COMPLETED, FAILURE, ModeEnd
 from tippetop.contact.settling_flat import FLAT
@@ -11,11 +12,12 @@ from tippetop.contact.slip_onset import ENDED, ONSET_OVER
 from tippetop.contact.transient import AT_REST
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.laws.face_friction import UniformDiskLaw
 from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 
-NO_GUARDS = {COMPLETED, FAILURE, FLAT, AT_REST, ENDED, ONSET_OVER}
+NO_GUARDS = {COMPLETED, FAILURE, FLAT, STOPPED, AT_REST, ENDED, ONSET_OVER}
 """Causes that modes name themselves."""
 
 
@@ -29,8 +31,11 @@ def test_the_rules_are_those_of_the_causes_that_modes_have() -> None:
     ball, dry = SURFACES["sphere"], CoulombLaw(0.3)
     tops = [Top.of(1.0, 0.45, 0.38, one, ViscousLaw(0.3), 1.0) for one in SURFACES.values()]
     nearly_stuck = ContactMode(Top.of(1.0, 0.45, 0.38, ball, dry, 1.0), near=True)
-    modes = [*(Flight(top) for top in tops), nearly_stuck]
+    on_ring = Top.of(1.0, 0.45, 0.38, SURFACES["ring"], dry, 1.0)
+    on_face = FaceMode(on_ring, UniformDiskLaw)
+    modes = [*(Flight(top) for top in tops), nearly_stuck, on_face]
     motions = [*(case.motion for case in CASES), *(mode.motion for mode in modes)]
     named = set().union(*(causes(motion) for motion in motions))
-    # The clock of a velocity that ends stops with the run, whose end the mode reports.
-    assert named - {TIME} | NO_GUARDS == RULES.keys()
+    # The clock of a velocity that ends stops with the run, whose end the mode reports, and a stage
+    # of the motion on a face is followed by the next one.
+    assert named - {TIME, SLOWED} | NO_GUARDS == RULES.keys()

@@ -77,7 +77,9 @@ def test_a_slow_decay_is_that_of_eulers_disk() -> None:
 def test_rolling_resistance_lays_a_disk_flat_when_it_is_derived_to(arm: float) -> None:
     problem, left = decaying(arm, 1e-7)
     run = tt.simulate(problem, 10.0 * left, samples=2)
-    assert run.attrs["status"] == "lying_flat"
+    assert run.attrs["status"] == "at_rest"
+    assert run["event_kind"].values[-2:].tolist() == ["lies down", "rests"]
+    assert float(run["event_time"][-2]) == pytest.approx(left, rel=1e-9)
     assert float(run["end_time"]) == pytest.approx(left, rel=1e-9)
     assert float(run["final_tilt"]) < 1e-12
     assert float(run["energy"][-1]) == pytest.approx(0.0, abs=1e-15)
@@ -105,7 +107,7 @@ def test_the_end_does_not_depend_on_where_the_law_takes_over(
         ):
             cached.cache_clear()
         run = tt.simulate(FALLING, 2.0, samples=2)
-        assert run.attrs["status"] == "lying_flat"
+        assert run.attrs["status"] == "at_rest"
         ends.append(float(run["end_time"]))
         energies.append(float(run["energy"][-1]))
     assert ends[0] == pytest.approx(ends[2], abs=1e-8)
@@ -142,8 +144,8 @@ def test_friction_of_a_spinning_disk_brings_its_edge_down_or_lifts_it(spin: floa
     left = math.sqrt(sine) * math.sqrt(MASS * G * R / I1) / beta
     run = tt.simulate(problem, 3.0 * left, samples=2)
     if spin < 0.0:
-        assert run.attrs["status"] == "lying_flat"
-        assert float(run["end_time"]) == pytest.approx(left, rel=1e-3)
+        assert run["event_kind"].values[-1] == "lies down"
+        assert float(run["event_time"][-1]) == pytest.approx(left, rel=1e-3)
     else:
         assert run.attrs["status"] == "completed"
         assert float(run["final_tilt"]) > 2.0 * sine

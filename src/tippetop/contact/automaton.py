@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 from tippetop.contact.closed_contacts import ClosedContacts
 from tippetop.contact.collision import collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
+from tippetop.contact.face_mode import STOPPED, TIPPING, FaceMode
 from tippetop.contact.flight import LANDING, TOUCHING, Flight, Start
 from tippetop.contact.guards import (
     BRANCH,
@@ -82,6 +83,13 @@ from tippetop.mechanics.contacts.slip_variables import (
     slip_of,
 )
 from tippetop.mechanics.contacts.wrench import Slip, Wrench
+from tippetop.mechanics.face_motion import (
+    face_speed,
+    is_held_on_face,
+    law_of_face,
+    lying_flat,
+    pressure_reserve,
+)
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
 from tippetop.mechanics.invariants import energy
@@ -95,6 +103,9 @@ from tippetop.support.errors import Described, InvalidInput
 
 REST = 1e-13
 """Velocities and accelerations, in natural units, that are rounding in a body at rest."""
+
+SLOWEST_ON_FACE = 1e-10
+"""Velocity, in natural units, with which slip on a face begins: its energy is below rounding."""
 
 MOST_IN_TURNS = 200
 """Impacts at one instant, now of one surface and now of another, after which a run is given up."""
@@ -115,6 +126,8 @@ class Automaton:
     """Ratio of the normal impulses of restitution and compression."""
     indeterminate: str = "impact"
     """Where the contact force is indeterminate: "impact" or "liftoff"."""
+    face_pressure: str = "uniform"
+    """Pressure under a face: "uniform", "rim" or "ellipsoidal"."""
 
     @property
     def pulls(self) -> bool:
@@ -457,8 +470,9 @@ class Automaton:
         """
         beside = other_touching(contact, state)
         closed, reported = False, events
-        if any(lands_flat(neighbour, state.axis) for neighbour in beside):
-            return Transition(events, Status.LYING_FLAT, state)
+        for neighbour in beside:
+            if lands_flat(neighbour, state.axis):
+                return self.lie_down(neighbour, time, state, events)
         for neighbour in beside:
             if gap_rate(state, neighbour) < -SLOWEST_ROCKING:
                 if sum(event.kind is EventKind.IMPACT for event in events) >= MOST_IN_TURNS:
@@ -489,7 +503,7 @@ class Automaton:
         under it. `_chosen` decides, for two contacts as for one.
         """
         if lies_flat(contact, state.axis):
-            return Transition(events, Status.LYING_FLAT, state)
+            return self.lie_down(contact, time, state, events)
         stuck = is_set_valued(contact.friction) and not is_slipping(*along_table(state), contact)
         held = not rolls_freely(contact, state)
         return self.resolve(contact, time, state, (stuck, held), events=events)
@@ -518,6 +532,66 @@ class Automaton:
         first = consistent[0]
         is_largest = all(number in first.closed for each in consistent for number in each.closed)
         return first if is_largest else None
+
+    # A face.
+
+    def lie_down(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
+        """Go on on the face of the active edge, onto which the body comes without rebound, or on
+        which it lies.
+        """
+        flat = lying_flat(state, contact)
+        if flat == state:
+            return self.on_face(contact, time, flat, events)
+        lost = float(energy(state, contact) - energy(flat, contact))
+        event = Event(EventKind.LIES_DOWN, time, energy_lost=lost, surface=contact.number)
+        return self.on_face(contact, time, flat, (*events, event))
+
+    def on_face(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
+        """Go on on the face of the active edge: slide and drill, or rest."""
+        law_type = law_of_face(contact, self.face_pressure)
+        if law_type is None:
+            detail = "the friction law has no form for a flat face, on which the body lies"
+            return Transition(events, Status.FAILED, state, detail)
+        moves = bool(face_speed(state.velocity[:2], state.momentum, contact) > REST)
+        if not moves and is_set_valued(contact.friction):
+            return self._from_rest_on_face(contact, time, state, events)
+        mode = FaceMode(contact, law_type)
+        if pressure_reserve(mode.forces(mode.numbers(state)), contact) <= 0.0:
+            return self._tip(contact, time, state, events)
+        return Transition(events, mode, state)
+
+    def _from_rest_on_face(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
+        """Return what follows at rest on a face: the end of the run, or slip down the slope.
+
+        That begins with `SLOWEST_ON_FACE`, which has a direction.
+        """
+        held = FaceMode(contact, law_of_face(contact, self.face_pressure), slips=False)
+        forces = held.forces(held.numbers(state))
+        if pressure_reserve(forces, contact) <= 0.0:
+            return self._tip(contact, time, state, events)
+        if is_held_on_face(state.axis, contact):
+            event = Event(EventKind.RESTS, time, surface=contact.number)
+            return Transition((*events, event), Resting(contact, held), state)
+        x, y, _ = forces.force
+        factor = -SLOWEST_ON_FACE * (x * x + y * y) ** -0.5
+        slips = state._replace(velocity=(factor * x, factor * y, 0.0))
+        event = Event(EventKind.SLIP, time, surface=contact.number)
+        mode = FaceMode(contact, held.law_type)
+        return Transition((*events, event), mode, slips)
+
+    def _tip(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
+        """Return the end of a run at the instant at which the body tips over its rim."""
+        event = Event(EventKind.TIPS, time, surface=contact.number)
+        detail = "the body tips over the rim of its face, from where its motion is not simulated"
+        return Transition((*events, event), Status.FAILED, state, detail)
 
     # Leaving the table, and impacts.
 
@@ -549,7 +623,7 @@ class Automaton:
         """Collide, unless with a face, and go on as the impact leaves the top."""
         reported = (Event(EventKind.TOUCHDOWN, time, surface=contact.number),)
         if lands_flat(contact, state.axis):
-            return Transition(reported, Status.LYING_FLAT, state)
+            return self.lie_down(contact, time, state, reported)
         return self._collide(contact, time, state, reported, self.restitution)
 
     def touch(
@@ -794,7 +868,9 @@ Rule: TypeAlias = Callable[[Automaton, Mode, ModeEnd, float], Transition]
 RULES: dict[str, Rule] = {
     COMPLETED: lambda rules, mode, end, time: Transition((), Status.COMPLETED, end.state),
     FAILURE: lambda rules, mode, end, time: rules._after_failure(mode, end, time),
-    FLAT: lambda rules, mode, end, time: Transition((), Status.LYING_FLAT, end.state),
+    FLAT: lambda rules, mode, end, time: rules.lie_down(off_branch(mode.top), time, end.state, ()),
+    STOPPED: lambda rules, mode, end, time: rules._from_rest_on_face(mode.top, time, end.state, ()),
+    TIPPING: lambda rules, mode, end, time: rules._tip(mode.top, time, end.state, ()),
     AT_REST: lambda rules, mode, end, time: Transition((), Status.AT_REST, end.state),
     LANDING: lambda rules, mode, end, time: rules._after_flight(off_branch(mode.top), end, time),
     TOUCH: lambda rules, mode, end, time: rules.touch(

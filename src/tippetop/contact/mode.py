@@ -43,9 +43,6 @@ class Status(Enum):
         "with liftoff = ignore it does, and with fly the top leaves it."
     )
     AT_REST = "The top came to rest, and the table holds it so: nothing happens any more."
-    LYING_FLAT = (
-        "The body lies flat on a face, and may still spin; motion on a flat face is not simulated."
-    )
     STOPPED = "The run ended at the event that it was asked to end at."
     TOO_MANY_MODES = (
         "The top bounced and slid more often than the run allows; "
@@ -80,6 +77,9 @@ class EventKind(Enum):
     OPENING = "opening"
     DOUBLE_CONTACT = "double contact"
     INDETERMINATE = "indeterminate force"
+    LIES_DOWN = "lies down"
+    TIPS = "tips over its rim"
+    RESTS = "rests"
 
 
 @dataclass(frozen=True)
@@ -292,6 +292,11 @@ class Mode(ABC):
     def label(self) -> str:
         """Its name, with the numbers of the surfaces that touch if the body has several."""
         return self.status + self._place
+
+    @property
+    def torque_free(self) -> bool:
+        """Whether the table's torque takes no energy in it."""
+        return self.top.torque_free
 
     @property
     def _place(self) -> str:

@@ -53,7 +53,9 @@ def automaton_of(rules: Contact, top: Top, units: Units) -> Automaton:
     chosen: Automaton | None = rules.rules(top, units)
     if chosen is not None:
         return chosen
-    return Automaton(top, rules.liftoff, rules.restitution, rules.indeterminate)
+    return Automaton(
+        top, rules.liftoff, rules.restitution, rules.indeterminate, rules.face_pressure
+    )
 
 
 def initial_mode(state: State, top: Top) -> tuple[Mode, tuple[Scalar, ...]]:

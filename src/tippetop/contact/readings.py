@@ -55,7 +55,7 @@ class Rates(NamedTuple):
         state, reaction = mode.state(y), mode.reaction(y)
         east, north, turn, work = quadrature_rates(state, reaction.power, pole, mode.top)
         drilling = rolling = 0.0
-        if not mode.top.torque_free:
+        if not mode.torque_free:
             drilling, rolling = resistance_powers(state, reaction.resistance, mode.top)
         air = air_power(state.axis, state.momentum, state.velocity, mode.top)
         quadratures = east, north, turn, work, drilling, rolling, air

@@ -107,6 +107,16 @@ class DenseSolution:
         knots[-1] = end
         return DenseSolution(knots, self.terms)
 
+    def in_units(
+        self, start: float, time_unit: float, units: Sequence[float], end: float
+    ) -> "DenseSolution":
+        """Return the solution, whose time begins at zero in some unit, from `start` on, with every
+        number times its own unit; it ends exactly at `end`.
+        """
+        knots = start + time_unit * self.knots
+        knots[-1] = end
+        return DenseSolution(knots, self.terms * np.asarray(units)[:, None])
+
     def subdivided(self, parts: int) -> "DenseSolution":
         """Return the same solution with every step in so many of equal length."""
         if parts == 1 or not len(self.terms):

@@ -50,6 +50,15 @@ export class DenseSolution {
     this.degree = terms.length / size / count - 1;
   }
 
+  /** The solution, whose time begins at zero in some unit, from a time to an end, each number times its own unit. */
+  in_units(start, time_unit, units, end) {
+    const knots = Float64Array.from(this.knots, (knot) => start + time_unit * knot);
+    knots[this.count] = end;
+    const powers = this.degree + 1;
+    const inUnit = (term, place) => term * units[Math.floor(place / powers) % this.size];
+    return new DenseSolution(knots, this.terms.map(inUnit), this.size);
+  }
+
   /** The step in which a time lies, the earlier one where two meet. */
   step(time) {
     return earliest(this.count, (step) => this.knots[step + 1] >= time);

@@ -177,6 +177,7 @@ class Run {
       contact.liftoff,
       contact.restitution,
       contact.indeterminate,
+      contact.face_pressure,
     );
     this.launch = after(this.automaton.launch(state), time);
     this.from = state;

@@ -29,17 +29,22 @@ class Contact(Variant):
         paradox), so that both an impact and a lift-off satisfy the laws of mechanics and friction:
         "impact" or "liftoff". Where friction jams nothing, "impact" begins none: what is closed
         stays closed, and what friction can hold is held.
+    face_pressure
+        Pressure of a flat face on the table, on which its dry friction depends. "uniform": the same
+        all over the face; "rim": at its outer radius alone; "ellipsoidal": uniform, with the limit
+        surface approximated by an ellipsoid with the same drilling torque.
 
     Examples
     --------
     >>> import tippetop as tt
     >>> tt.Contact()  # the top may leave the table, and does not bounce
-    Contact(liftoff='fly', restitution=0.0, indeterminate='impact')
+    Contact(liftoff='fly', restitution=0.0, indeterminate='impact', face_pressure='uniform')
     """
 
     liftoff: Literal["fly", "stop", "ignore"] = "fly"
     restitution: Annotated[Fraction, Quantity("1", "coefficient of restitution")] = 0.0
     indeterminate: Literal["impact", "liftoff"] = "impact"
+    face_pressure: Literal["uniform", "rim", "ellipsoidal"] = "uniform"
 
     # translate: skip
     def rules(self, top: Top, units: Units) -> Any:

@@ -19,8 +19,7 @@ from tippetop.mechanics.field import OuterField
 from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.motion import along_table, on_table, sliding_contact
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull, is_edge, sizes
-from tippetop.mechanics.surfaces.surface import POLE
+from tippetop.mechanics.surfaces.hull import Hull, sizes
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions, Vector
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
@@ -105,13 +104,6 @@ class Problem(Part):
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
         _require_fitting_patch(self)
-        if _lies_flat(self):
-            raise InvalidInput(
-                "launch.tilt",
-                self.launch.tilt,
-                "a tilt at which the body does not lie flat",
-                "lays the body flat on its face",
-            )
         if not (math.isfinite(_resistance(self)) and math.isfinite(_largest_square(self))):
             raise _overflow_refusal(self)
         if self.contact.liftoff == "fly":
@@ -413,15 +405,6 @@ def _largest_square(problem: Problem) -> float:
         )
     except ArithmeticError:
         return math.nan
-
-
-def _lies_flat(problem: Problem) -> bool:
-    """Return whether the top is launched on a ring that is parallel to the table."""
-    try:
-        edge = is_edge(problem.standing().surface)
-    except ArithmeticError:
-        return False
-    return edge and PoleExact(math).sin(problem.launch.tilt) ** 2 <= POLE
 
 
 def _overflow_refusal(problem: Problem) -> InvalidInput:

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from tippetop.mechanics.laws.face_friction import LEAST_WIDTH
 from tippetop.mechanics.surfaces.surface import (
     OvalSurface,
     PointSurface,
@@ -127,6 +128,8 @@ class Ring(Shape):
         Height of its plane above the centre of mass, along the axis, m.
     tube
         Radius of the ring's cross-section, m; 0 for a sharp edge.
+    inner_radius
+        Inner radius of the flat face that the ring bounds, m, less than `radius`; 0 for a disk.
 
     Examples
     --------
@@ -139,11 +142,20 @@ class Ring(Shape):
     radius: Annotated[Positive, Quantity("m", "radius of the ring's circle")]
     center: Center = 0.0
     tube: Annotated[NotNegative, Quantity("m", "radius of the ring's tube")] = 0.0
+    inner_radius: Annotated[NotNegative, Quantity("m", "inner radius of the ring's face")] = 0.0
+
+    @model_validator(mode="after")
+    def _has_a_face(self) -> Self:
+        widest = (1.0 - LEAST_WIDTH) * self.radius
+        if not self.inner_radius <= widest:
+            accepted = f"from 0 to {widest:.4g} m, less than the ring's radius"
+            raise InvalidInput("inner_radius", self.inner_radius, accepted)
+        return self
 
     @property
     def surface(self) -> Surface:
         """Surface about the centre of mass, in the form that the mechanics uses."""
-        return RingSurface(self.radius, self.center, self.tube)
+        return RingSurface(self.radius, self.center, self.tube, self.inner_radius)
 
 
 DEGREE = 16

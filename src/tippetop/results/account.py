@@ -13,7 +13,8 @@ from typing import NamedTuple
 from tippetop.contact.mode import Event, EventKind, Status
 from tippetop.mechanics.motion import angular_velocity, point_velocity
 from tippetop.mechanics.surfaces.hull import Hull, acting, is_edge, lowest_surface
-from tippetop.mechanics.surfaces.surface import contact_vector
+from tippetop.mechanics.surfaces.surface import POLE, contact_vector
+from tippetop.mechanics.view import PoleExact
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE
 from tippetop.results.metrics import came_down
@@ -99,13 +100,16 @@ def _launch(facts: Facts) -> list[Clause]:
         lost = sum([event.energy_lost for event in struck])
         clauses.append(Clause("strikes_at_launch", {"energy": lost}, "launch"))
     speed = _slip_at_launch(problem)
+    is_flat = _is_launched_flat(problem)
+    if is_flat:
+        clauses.append(Clause("starts_flat", {}, "launch"))
     if any(event.time == 0.0 and event.kind is EventKind.STICK for event in facts.events):
         return clauses  # the clauses of the motion say that it rolls
     if any(event.time == 0.0 and event.kind is EventKind.LIFT_OFF for event in facts.events):
         return clauses
     if speed > LEAST_SLIP:
         clauses.append(Clause("slips_at_launch", {"speed": speed}, "launch"))
-    elif not struck:
+    elif not struck and not is_flat:
         # Dry friction strong enough to hold the top would have made it stick at launch.
         name = "starts_to_slip" if problem.friction.kind == "coulomb" else "starts_without_slip"
         clauses.append(Clause(name, {}, "launch"))
@@ -146,6 +150,7 @@ def _motion(facts: Facts) -> list[Clause]:
         ]
         name = "rocks" if len(strikes) > 2 else "touches_with_two"
         clauses.append(Clause(name, {"count": len(strikes), "time": doubles[0]}, "motion"))
+    clauses += _onto_face(facts)
     sticks = _sticks_since(facts)
     if math.isfinite(sticks):
         name = "never_slips" if sticks == 0.0 else "sticks"
@@ -192,18 +197,51 @@ def _flights(facts: Facts) -> list[Clause]:
     return clauses
 
 
+def _onto_face(facts: Facts) -> list[Clause]:
+    """Return the clauses of the last times of lying down on a face and of tipping over its rim."""
+    clauses = list[Clause]()
+    for kind, name in ((EventKind.LIES_DOWN, "lies_down"), (EventKind.TIPS, "tips_over")):
+        times = [event.time for event in facts.events if event.kind is kind]
+        if times:
+            clauses.append(Clause(name, {"time": times[-1]}, "motion"))
+    return clauses
+
+
+def _is_launched_flat(problem: Problem) -> bool:
+    """Return whether a body is launched on its face."""
+    flat = PoleExact(math).sin(problem.launch.tilt) ** 2 <= POLE
+    return flat and problem.launch.gap == 0.0 and is_edge(problem.standing().surface)
+
+
+def _is_on_face(facts: Facts) -> bool:
+    """Return whether the body lies on its face at the end of its run."""
+    on_face = _is_launched_flat(facts.problem)
+    for event in facts.events:
+        if event.kind in (EventKind.LIES_DOWN, EventKind.RESTS):
+            on_face = True
+        elif event.kind in (EventKind.TIPS, EventKind.LIFT_OFF):
+            on_face = False
+    return on_face
+
+
 def _sticks_since(facts: Facts) -> float:
     """Return the time since which the top rolls without slip or loss to the end, s, or nan."""
     if not spins_for_ever(top_of(facts.problem)) or facts.status is not Status.COMPLETED:
         return math.nan
-    changes = [
-        event
-        for event in facts.events
-        if event.kind in (EventKind.STICK, EventKind.SLIP, EventKind.LIFT_OFF, EventKind.IMPACT)
-    ]
+    changes = [event for event in facts.events if event.kind in CHANGES_OF_STICKING]
     if not changes or changes[-1].kind is not EventKind.STICK:
         return math.nan
     return changes[-1].time
+
+
+CHANGES_OF_STICKING = (
+    EventKind.STICK,
+    EventKind.SLIP,
+    EventKind.LIFT_OFF,
+    EventKind.IMPACT,
+    EventKind.LIES_DOWN,
+)
+"""Events after which a contact sticks, or no longer does."""
 
 
 def fell_back(facts: Facts) -> bool:
@@ -223,16 +261,18 @@ def _end(facts: Facts) -> list[Clause]:
     final, spin = facts.metrics["final_tilt"], facts.metrics["final_spin"]
     status, time = facts.status, _end_time(facts)
     clauses = list[Clause]()
-    if status is Status.LYING_FLAT:
-        name = "lies_flat" if abs(spin) < LEAST_SPIN else "lies_flat_and_spins"
-        clauses.append(Clause(name, {"time": time, "spin": abs(spin)}, "end"))
-    elif status is Status.AT_REST:
-        clauses.append(Clause("comes_to_rest", {"tilt": final, "time": time}, "end"))
+    on_face = _is_on_face(facts)
+    if status is Status.AT_REST:
+        name = "comes_to_rest_on_face" if on_face else "comes_to_rest"
+        clauses.append(Clause(name, {"tilt": final, "time": time}, "end"))
     elif status is Status.LIFTED_OFF:
         numbers = {"time": facts.metrics["liftoff_time"], "tilt": final}
         clauses.append(Clause("lifts_off", numbers, "end"))
     elif status is not Status.COMPLETED:
         clauses.append(_ended_early(facts))
+    elif on_face:
+        name = "lies_flat" if abs(spin) < LEAST_SPIN else "lies_flat_and_spins"
+        clauses.append(Clause(name, {"time": time, "spin": abs(spin)}, "end"))
     elif facts.metrics["is_settled"]:
         clauses.append(_settled(facts))
     elif _is_undisturbed(facts):
@@ -272,7 +312,7 @@ def _is_aloft(facts: Facts) -> bool:
 
 
 LEAST_SPIN = 1e-6
-"""Spin below which a body that lies flat counts as at rest, rad/s."""
+"""Spin below which a body that lies flat turns no more, rad/s."""
 
 
 def _is_undisturbed(facts: Facts) -> bool:
@@ -307,6 +347,7 @@ def _standing(facts: Facts) -> list[Clause]:
     if (
         not isinstance(surface, Hull)
         or _is_aloft(facts)
+        or _is_on_face(facts)
         or facts.status not in (Status.COMPLETED, Status.AT_REST)
     ):
         return []
@@ -367,7 +408,7 @@ def _theory(facts: Facts) -> list[Clause]:
         return [Clause("no_friction", {}, "theory")]
     pulled = problem.contact.liftoff == "ignore" and facts.metrics["min_normal_force"] < 0.0
     stays_aloft = launch.gap > 0.0 and not facts.events
-    if facts.status is not Status.COMPLETED or pulled or stays_aloft:
+    if facts.status is not Status.COMPLETED or pulled or stays_aloft or _is_on_face(facts):
         return []
     if math.isfinite(_sticks_since(facts)):
         if settled or math.isfinite(facts.metrics["turnover_time"]):

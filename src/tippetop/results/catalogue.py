@@ -58,7 +58,6 @@ class Outcome(IntEnum):
     MOVING_TILTED = 10
     FELL_BACK = 11
     ROLLING = 12
-    LYING_FLAT = 13
 
 
 FRAMES: Mapping[str, str] = {

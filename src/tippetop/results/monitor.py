@@ -43,7 +43,6 @@ STATUSES_OF_MOTION = (
     Status.COMPLETED,
     Status.LIFTED_OFF,
     Status.AT_REST,
-    Status.LYING_FLAT,
     Status.STOPPED,
 )
 """Statuses that describe the motion, which a run that cannot be trusted does not have; all others

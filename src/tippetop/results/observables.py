@@ -16,6 +16,7 @@ from tippetop.contact.transient import TransientMode
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, parts_of, powers
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import each_surface, is_edge
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
 from tippetop.results.monitor import NEGATIVE, Monitor, monitored_quantities
@@ -233,11 +234,12 @@ class Recorder:
 
 def integrals_of(top: Top) -> int:
     """Return how many of the integrals of `RunSums` may not be zero: those of air only in air, and
-    those of drilling and rolling not under a law without torque.
+    those of drilling and rolling not under a law without torque, but on a face.
     """
     if top.field is not None and top.field.has_air:
         return INTEGRALS
-    return 1 + WORK if top.torque_free else INTEGRALS - 1
+    has_face = any(is_edge(one) for one in each_surface(top.surface))
+    return INTEGRALS - 1 if has_face or not top.torque_free else 1 + WORK
 
 
 def tolerance_of(trajectory: Trajectory) -> float:

@@ -49,12 +49,12 @@ def tilt(state: State) -> Array:
 def settled_tilt_of_one(status: Status, state: State, start: State, top: Top) -> float:
     """Return the tilt near which one launch that has ended stays for ever, rad, or nan.
 
-    The criteria are those of `settled_tilts`. A body at rest or lying flat stays where it is; a
+    The criteria are those of `settled_tilts`. A body at rest stays where it is; a
     body that rolls on two surfaces stays at the tilt at which both touch. All numbers are floats in
     natural units.
     """
     theta = math.atan2(axis_sine(state.axis), state.axis[2])
-    if status in (Status.AT_REST, Status.LYING_FLAT):
+    if status is Status.AT_REST:
         return theta
     if status is not Status.COMPLETED:
         return math.nan

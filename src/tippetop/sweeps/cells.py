@@ -18,11 +18,10 @@ from tippetop.contact.trajectory import LONGEST_RUN
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, sliding_contact
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull, is_edge, sizes
-from tippetop.mechanics.surfaces.surface import POLE, support_at
+from tippetop.mechanics.surfaces.hull import Hull, sizes
+from tippetop.mechanics.surfaces.surface import support_at
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.units import Units
-from tippetop.mechanics.view import axis_sine
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import Fault
@@ -62,6 +61,7 @@ class Cells:
             contact_rule.liftoff,
             spread(contact_rule.restitution, count)[which],
             contact_rule.indeterminate,
+            contact_rule.face_pressure,
             self._own_rules(which),
         )
 
@@ -126,8 +126,6 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
         fault[~np.broadcast_to(fits, (count,))] = Fault.VALUE_OUT_OF_RANGE
         if not isinstance(top.surface, Hull):
             fault[~np.isfinite(support_at(start.axis, top.surface)[1])] = Fault.VALUE_OUT_OF_RANGE
-            if is_edge(top.surface):
-                fault[axis_sine(start.axis) ** 2 <= POLE] = Fault.VALUE_OUT_OF_RANGE
         units = natural_units(top)
         return Cells(fault, top, units, natural_state(start, units), filled)
 

@@ -1,6 +1,6 @@
 """Launches as arrays, and where they were on the way."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,8 @@ class Launches:
     """Ratio of the normal impulses of restitution and compression, shape (n,)."""
     indeterminate: str
     """What the table does where the contact force is indeterminate: "impact" or "liftoff"."""
+    face_pressure: str = "uniform"
+    """Pressure under a face: "uniform", "rim" or "ellipsoidal"."""
     rules: Own | None = None
     """For contacts that bring their own rules, what makes them of a top, shape (n,)."""
 
@@ -48,8 +50,8 @@ class Launches:
         state = picked(self.state, which)
         numbers, end, restitution = self.numbers[:, which], self.end[which], self.restitution[which]
         rules = None if self.rules is None else self.rules[which]
-        return Launches(
-            self.kind, numbers, state, end, self.liftoff, restitution, self.indeterminate, rules
+        return replace(
+            self, numbers=numbers, state=state, end=end, restitution=restitution, rules=rules
         )
 
     @property
@@ -76,7 +78,8 @@ class Launches:
         if self.rules is not None:
             automaton: Automaton = self.rules[launch](top)
             return automaton
-        return Automaton(top, self.liftoff, float(self.restitution[launch]), self.indeterminate)
+        restitution = float(self.restitution[launch])
+        return Automaton(top, self.liftoff, restitution, self.indeterminate, self.face_pressure)
 
     def sliding(self, launch: int, state: State) -> ContactMode:
         """Return the mode in which one launch slides in a state, on the branch that holds there."""

@@ -44,6 +44,7 @@ export class Track {
     if (label === undefined) return undefined;
     const [kind, surfaces = "0", others] = label.split("_on_");
     if (others !== undefined || surfaces.includes("_and_")) return "double";
+    if (kind.endsWith("_flat")) return kind;
     if (surfaces !== "0") return this.kindOf(Number(surfaces));
     return kind.replace("_without_rolling", "");
   }

@@ -23,16 +23,22 @@ from typing import Any, NamedTuple, Protocol
 
 from tippetop.mechanics.laws.contensou import PI, EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw
-from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.laws.coulomb import TINY, CoulombLaw
 from tippetop.mechanics.laws.friction import FrictionLaw, ViscousLaw
 from tippetop.mechanics.vectors import Horizontal, Scalar
 
 MEANS = 7
 """Arithmetic-geometric means after the first: as many as 1 - k^2 >= `LEAST_COMPLEMENT` needs."""
 
-LEAST_COMPLEMENT = 1e-15
-"""Added to 1 - k^2, whose root and logarithm then have derivatives. More changes the torque where
-v = a |w|, by 1e-14 of it; much less is lost in rounding of 1.
+LEAST_COMPLEMENT = 1e-13
+"""Least 1 - k^2, whose root and logarithm then have derivatives: the squared modulus is less by as
+much, relatively. Much less is lost in rounding where a rim comes to rest at v = a |w|; more can be
+seen in the force.
+"""
+
+PREVALENCE = 1e-14
+"""How far drilling must prevail over slip, relatively, for its form of the law. A rim comes to rest
+at v = a |w|, where rounding would choose anew in every step; 1 - k^2 must stay positive.
 """
 
 LEAST_WIDTH = 1e-3
@@ -99,7 +105,7 @@ def elliptic_integrals(square: Scalar) -> Integrals:
     Its differences c_n, all divided by k^2, are q_1 = 1 / (2 (1 + k')) and q_(n+1) = k^2 q_n^2 / (4
     a_(n+1)), and sigma is the sum of 2^(n-1) q_n^2.
     """
-    complement = (1.0 - square + LEAST_COMPLEMENT) ** 0.5
+    complement = (1.0 - (1.0 - LEAST_COMPLEMENT) * square) ** 0.5
     mean, geometric = 0.5 * (1.0 + complement), complement**0.5
     part = 0.5 / (1.0 + complement)
     sigma, factor = part * part, 1.0
@@ -152,7 +158,8 @@ def rim_shares(square: Scalar, drilling: Scalar, radius: Scalar) -> DiskShares:
 def _prevailing(square: Scalar, drilling: Scalar, radius: Scalar) -> tuple[Scalar, Scalar, Scalar]:
     """Return the larger of v^2 and (a w)^2, the smaller over it, and whether drilling prevails."""
     drilled = (radius * drilling) * (radius * drilling)
-    drills = 1.0 * (square < drilled)
+    excess = drilled - (1.0 + PREVALENCE) * square
+    drills = 0.5 + 0.5 * (excess / (abs(excess) + TINY))
     larger = drills * drilled + (1.0 - drills) * square
     return larger, (drills * square + (1.0 - drills) * drilled) / larger, drills
 

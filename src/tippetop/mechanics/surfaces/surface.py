@@ -254,6 +254,8 @@ class RingSurface(NamedTuple):
     radius: Scalar
     center: Scalar = 0.0
     tube: Scalar = 0.0
+    inner_radius: Scalar = 0.0
+    """Inner radius of the face that the ring bounds, m: 0 of a disk, else it is an annulus."""
 
     def height(self, c: Scalar) -> Scalar:
         """Support function h(c), m."""
@@ -317,8 +319,14 @@ class RingSurface(NamedTuple):
 
     @property
     def proportions(self) -> tuple[Scalar, ...]:
-        """The height of the middle and the radius of the tube, in radii of the circle."""
-        return (self.center / self.radius, self.tube / self.radius)
+        """The height of the middle, the tube's radius and the face's inner one, in radii of the
+        circle.
+        """
+        return (
+            self.center / self.radius,
+            self.tube / self.radius,
+            self.inner_radius / self.radius,
+        )
 
     @classmethod
     def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:

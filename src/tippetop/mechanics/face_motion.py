@@ -1,0 +1,123 @@
+"""Motion of a body that lies on a flat face, which slips and drills.
+
+The axis stays vertical. The face is a contact at its middle with unilateral normal components: the
+normal velocity v_n and the horizontal angular velocity omega_h, with v_n >= a1 |omega_h| for the
+outer radius a1. Dual to them are the normal force N >= 0 and a horizontal couple of at most a1 N.
+The couple is pressure, no friction: it is held, dissipates nothing, and over N it is how far the
+centre of pressure has moved from the middle. Where that would leave the face, the body tips over
+its rim.
+"""
+
+from typing import Any, NamedTuple
+
+from tippetop.mechanics.field import OuterForces
+from tippetop.mechanics.laws.face_friction import face_law_type
+from tippetop.mechanics.motion import outer_forces_in
+from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import Hull, acting
+from tippetop.mechanics.surfaces.surface import Surface, support_at
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
+
+
+class FaceForces(NamedTuple):
+    """What the table does to a body on its face."""
+
+    force: Vector
+    """Contact force, N."""
+    couple: Horizontal
+    """Horizontal couple of the pressure about the middle of the face, N m."""
+    torque: Scalar
+    """Torque of drilling friction about the vertical, N m."""
+
+
+def face_radii(surface: Surface) -> tuple[Scalar, Scalar]:
+    """Return the inner and outer radius of the face that the active surface, an edge, bounds, m."""
+    edge: Any = acting(surface)
+    size = surface.sizes[surface.active] if isinstance(surface, Hull) else 1.0
+    return size * edge.inner_radius, size * edge.radius
+
+
+def law_of_face(top: Top, pressure: str) -> Any:
+    """Return the class of the friction law of a body's face (see `face_law_type`); of floats."""
+    return face_law_type(top.friction, face_radii(top.surface)[0], pressure)
+
+
+def drilling_rate(momentum: Vector, top: Top) -> Scalar:
+    """Angular velocity about the vertical of a body whose axis is vertical, rad/s."""
+    return momentum[2] / top.axial_inertia
+
+
+def face_speed(velocity: Horizontal, momentum: Vector, top: Top) -> Scalar:
+    """Return sqrt(v^2 + (a1 w)^2), m/s: zero where neither slip nor drilling goes on."""
+    drilled = face_radii(top.surface)[1] * drilling_rate(momentum, top)
+    return (velocity[0] * velocity[0] + velocity[1] * velocity[1] + drilled * drilled) ** 0.5
+
+
+def lying_flat(state: State, top: Top) -> State:
+    """Return the state on the face: axis vertical, tilting and normal velocity ended, floats."""
+    up = 1.0 if state.axis[2] > 0.0 else -1.0
+    axis = (0.0, 0.0, up)
+    momentum, velocity = (0.0, 0.0, state.momentum[2]), (state.velocity[0], state.velocity[1], 0.0)
+    return State(axis, momentum, velocity, support_at(axis, top.surface)[0])
+
+
+def resting_on_face(axis: Vector, top: Top) -> FaceForces:
+    """Return the forces on a body at rest on its face: they hold it against the outer field."""
+    outer = face_field(axis, (0.0, 0.0, 0.0), (0.0, 0.0), top)
+    x, y = -outer.force[0], -outer.force[1]
+    return _face_forces(axis, (x, y), top.mass * top.gravity, 0.0, top)
+
+
+def is_held_on_face(axis: Vector, top: Top) -> bool:
+    """Return whether dry friction holds a body at rest on its face, of floats."""
+    x, y, normal = resting_on_face(axis, top).force
+    friction: Any = top.friction
+    return bool(x * x + y * y <= (friction.mu * normal) ** 2)
+
+
+def face_field(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> OuterForces:
+    """Return what the outer field does to a body on its face."""
+    outer = outer_forces_in(axis, momentum, (velocity[0], velocity[1], 0.0), top)
+    return OuterForces((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) if outer is None else outer
+
+
+def _face_forces(
+    axis: Vector, friction: Horizontal, normal: Scalar, torque: Scalar, top: Top
+) -> FaceForces:
+    """Return the forces with the couple of the pressure that balances the moment of friction."""
+    (x, y), height = friction, support_at(axis, top.surface)[0]
+    return FaceForces((x, y, normal), (-height * y, height * x), torque)
+
+
+def sliding_on_face(
+    axis: Vector, momentum: Vector, velocity: Horizontal, law_type: Any, top: Top
+) -> FaceForces:
+    """Return the forces on a body that slips, or drills, on its face.
+
+    Friction acts at the depth h below the centre of mass, and the couple of the pressure balances
+    its moment about that.
+
+    Parameters
+    ----------
+    axis, momentum, velocity
+        Axis, along or against the vertical, angular momentum (kg m^2/s) and horizontal velocity of
+        the centre of mass (m/s).
+    law_type
+        The class of the face's law, of `law_of_face`.
+    top
+        The body; its active surface is an edge.
+    """
+    inner, outer = face_radii(top.surface)
+    law = law_type.of(top.friction, inner, outer)
+    normal = top.mass * top.gravity
+    traction = law.traction(velocity, drilling_rate(momentum, top))
+    friction = normal * traction.force[0], normal * traction.force[1]
+    return _face_forces(axis, friction, normal, normal * traction.torque, top)
+
+
+def pressure_reserve(forces: FaceForces, top: Top) -> Scalar:
+    """Return N^2 - (couple / a1)^2, N^2: positive while the centre of pressure is on the face."""
+    outer, normal = face_radii(top.surface)[1], forces.force[2]
+    x, y = forces.couple
+    return normal * normal - (x * x + y * y) / (outer * outer)

@@ -1,0 +1,208 @@
+"""Bodies that lie on a flat face: how they slide, spin and stop there."""
+
+import math
+
+import numpy as np
+import pytest
+
+import tippetop as tt
+
+MASS, RADIUS, THICKNESS, GRAVITY = 0.05, 0.02, 0.005, 9.8
+MU = 0.2
+KNOWN_RATIOS = {0.0: 0.6530, 0.5: 0.7745, 0.9: 0.9508}
+"""Ratios v / (a1 w) at which faces stop, by inner radius over outer (Farkas et al. 2003)."""
+
+
+def puck(inner: float = 0.0, axial: float | None = None) -> tt.Body:
+    """Return a flat body whose I3 is (a0^2 + a1^2)/2, or so many m a1^2."""
+    axial = (1 + inner**2) / 2 if axial is None else axial
+    edges = [
+        tt.Ring(radius=RADIUS, center=side * THICKNESS / 2, inner_radius=inner * RADIUS)
+        for side in (-1, 1)
+    ]
+    inertia = axial * MASS * RADIUS**2
+    return tt.Body(mass=MASS, shape=edges, I1=inertia / 2 + MASS * THICKNESS**2 / 12, I3=inertia)
+
+
+def launched(slip: float, spin: float, body: tt.Body | None = None, **others) -> tt.Problem:
+    """Return a flat launch."""
+    fields = {"friction": tt.CoulombFriction(mu=MU), "gravity": GRAVITY} | others
+    launch = tt.Launch(tilt=0.0, azimuth=0.4, spin=spin, slip=(slip, 0.0))
+    return tt.Problem(body=body or puck(), launch=launch, **fields)
+
+
+@pytest.mark.parametrize("slip", [1e-3, 0.3, 20.0])
+def test_without_spin_a_face_stops_as_a_point_does(slip: float) -> None:
+    run = tt.simulate(launched(slip, 0.0), 20.0, samples=501)
+    assert run.attrs["status"] == "at_rest"
+    assert run["event_kind"].values.tolist() == ["rests"]
+    assert float(run["end_time"]) == pytest.approx(slip / (MU * GRAVITY), rel=1e-12)
+    way = math.hypot(float(run["x"][-1]), float(run["y"][-1]))
+    assert way == pytest.approx(slip**2 / (2 * MU * GRAVITY), rel=1e-12)
+    assert float(run["energy_lost_drilling"]) == 0.0
+
+
+@pytest.mark.parametrize("spin", [1e-2, -40.0, 3000.0])
+def test_without_slip_a_disk_stops_after_the_known_time(spin: float) -> None:
+    run = tt.simulate(launched(0.0, spin), 50.0, samples=501)
+    assert run.attrs["status"] == "at_rest"
+    expected = 3 * RADIUS * abs(spin) / (4 * MU * GRAVITY)
+    assert float(run["end_time"]) == pytest.approx(expected, rel=1e-12)
+    lost = 0.25 * MASS * RADIUS**2 * spin**2
+    assert float(run["energy_lost_drilling"]) == pytest.approx(lost, rel=1e-12)
+    assert float(run["energy"][-1]) == pytest.approx(MASS * GRAVITY * THICKNESS / 2, rel=1e-14)
+
+
+@pytest.mark.parametrize("inner", KNOWN_RATIOS)
+def test_slip_and_spin_end_together_at_the_known_ratio(inner: float) -> None:
+    random = np.random.default_rng(11)
+    for _ in range(6):
+        ratio, slip = 10.0 ** random.uniform(-0.5, 0.6), 10.0 ** random.uniform(-1.5, 0.5)
+        problem = launched(slip, slip / (ratio * RADIUS), puck(inner))
+        run, solution = tt.simulate(problem, 50.0, samples=2, dense=True)
+        assert run.attrs["status"] == "at_rest"
+        assert float(run["energy_error"]) < 1e-14
+        late = solution(float(run["end_time"]) * (1.0 - 1e-9))
+        speed, drilled = np.hypot(*late.velocity[:2]), RADIUS * late.spin
+        assert float(np.hypot(speed, drilled)) < 1e-8 * slip
+        assert float(speed / drilled) == pytest.approx(KNOWN_RATIOS[inner], abs=1e-4)
+
+
+def test_a_rim_stops_where_its_rear_point_rests() -> None:
+    """Of a ring whose mass is its rim v = a w: the instantaneous centre is on it."""
+    problem = launched(0.5, 30.0, puck(0.9, 0.95), contact=tt.Contact(face_pressure="rim"))
+    heavy = problem.replace({"body.I3": MASS * RADIUS**2, "body.I1": 0.6 * MASS * RADIUS**2})
+    run, solution = tt.simulate(heavy, 50.0, samples=2, dense=True)
+    assert run.attrs["status"] == "at_rest"
+    late = solution(float(run["end_time"]) * (1.0 - 1e-8))
+    speed = np.hypot(*late.velocity[:2])
+    assert float(speed / (RADIUS * late.spin)) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_friction_is_least_where_slip_and_drilling_share_it() -> None:
+    """A puck that spins slides farther: 1 m/s with 100 rad/s goes beyond v^2 / (2 mu g)."""
+    ways = []
+    for spin in (0.0, 50.0, 100.0):
+        run = tt.simulate(launched(0.6, spin), 20.0, samples=2)
+        ways.append(math.hypot(float(run["x"][-1]), float(run["y"][-1])))
+    assert ways[0] < ways[1] < ways[2]
+
+
+@pytest.mark.parametrize("inner", [0.0, 0.6])
+def test_on_viscous_friction_slip_and_spin_decay_each_by_itself(inner: float) -> None:
+    mu, time = 0.5, 0.3
+    problem = launched(0.4, 30.0, puck(inner, 0.4), friction=tt.ViscousFriction(mu=mu))
+    run = tt.simulate(problem, time, samples=11)
+    assert run.attrs["status"] == "completed"
+    assert set(run["mode"].values.tolist()) == {"sliding_flat_on_0"}
+    times = run["time"].values
+    slip = np.hypot(run["velocity"].sel(space="x"), run["velocity"].sel(space="y"))
+    assert slip.values == pytest.approx(0.4 * np.exp(-mu * GRAVITY * times), rel=1e-12)
+    arm = 0.5 * (1 + inner**2) / 0.4
+    spin = 30.0 * np.exp(-mu * GRAVITY * arm * times)
+    assert run["spin"].values == pytest.approx(spin, rel=1e-12)
+    assert float(run["energy_error"]) < 1e-15
+
+
+def test_a_regularized_face_comes_near_the_dry_one() -> None:
+    dry = tt.simulate(launched(0.3, 5.0), 0.1, samples=3)
+    smooth = launched(0.3, 5.0, friction=tt.RegularizedCoulombFriction(mu=MU, eps=1e-6))
+    run = tt.simulate(smooth, 0.1, samples=3)
+    assert float(run["energy_error"]) < 1e-14
+    assert float(run["final_spin"]) == pytest.approx(float(dry["final_spin"]), rel=1e-4)
+    assert float(run["energy"][-1]) == pytest.approx(float(dry["energy"][-1]), rel=1e-4)
+
+
+def test_a_patch_on_a_face_is_the_face() -> None:
+    patch = tt.ContensouFriction(mu=MU, patch_radius=1e-4)
+    ends = [
+        float(tt.simulate(launched(0.3, 20.0, friction=law), 5.0, samples=2)["end_time"])
+        for law in (tt.CoulombFriction(mu=MU), patch)
+    ]
+    assert ends[0] == ends[1]
+
+
+def test_a_body_launched_at_rest_on_its_face_rests() -> None:
+    run = tt.simulate(launched(0.0, 0.0), 5.0, samples=3)
+    assert run.attrs["status"] == "at_rest"
+    assert float(run["end_time"]) < 1e-12
+    assert str(tt.describe(run)) == (
+        "The top starts flat on its face. It comes to rest on its face at 0 ms."
+    )
+
+
+def test_sweeps_follow_faces_as_runs_do() -> None:
+    problem = launched(0.3, 20.0, contact=tt.Contact(face_pressure="rim"))
+    swept = tt.sweep(
+        problem,
+        {"launch.spin": [0.0, 20.0], "launch.tilt": [0.0, math.pi]},
+        duration=5.0,
+        workers=1,
+    )
+    for spin in (0.0, 20.0):
+        for tilt in (0.0, math.pi):
+            run = tt.simulate(problem.replace({"launch.spin": spin, "launch.tilt": tilt}), 5.0)
+            cell = swept.sel(spin=spin, tilt=tilt)
+            assert cell["outcome"] == run["outcome"] == "at_rest"
+            for name in ("end_time", "energy_lost_drilling", "energy_lost_sliding", "final_spin"):
+                assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-9)
+
+
+def test_a_wobbling_disk_goes_on_spinning_on_its_face() -> None:
+    """It comes down with the spin that it has then, which only drilling takes from it."""
+    disk = tt.Body(mass=0.1, shape=tt.Ring(radius=0.02, center=-0.005), I1=1.2e-5, I3=2e-5)
+    sine = 1e-6
+    launch = tt.Launch(
+        tilt=sine,
+        precession=2 * math.sqrt(GRAVITY / (0.02 * sine)),
+        spin=-20.0,
+        velocity=(0.0, 0.0, 0.0),
+    )
+    problem = tt.Problem(
+        body=disk, friction=tt.CoulombFriction(mu=0.2), launch=launch, rolling_resistance=1e-4
+    )
+    run = tt.simulate(problem, 20.0, samples=4001)
+    kinds = run["event_kind"].values.tolist()
+    assert run.attrs["status"] == "at_rest"
+    assert kinds[-2:] == ["lies down", "rests"]
+    assert float(run["energy_error"]) < 1e-9
+    down = float(run["event_time"][-2])
+    after = run.sel(time=slice(down, None))
+    assert set(after["mode"].values.tolist()) == {"sliding_flat", "resting_flat"}
+    spin = abs(float(after["spin"][0]))
+    assert spin > 5.0
+
+
+def test_a_face_that_cannot_hold_its_pressure_says_so() -> None:
+    """At mu h > a1 the centre of pressure would be beyond the rim."""
+    tall = tt.Body(mass=0.1, shape=tt.Ring(radius=0.02, center=-0.05), I1=1e-4, I3=2e-5)
+    for mu, tips in ((0.39, False), (0.41, True)):
+        run = tt.simulate(launched(0.5, 0.0, tall, friction=tt.CoulombFriction(mu=mu)), 2.0)
+        assert ("tips over its rim" in run["event_kind"].values) == tips
+
+
+def test_an_annulus_has_a_width() -> None:
+    with pytest.raises(tt.InvalidInput, match="inner_radius"):
+        tt.Ring(radius=0.02, inner_radius=0.02)
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 2.0])
+def test_on_a_slope_a_face_slides_down_or_is_held(azimuth: float) -> None:
+    """It accelerates by g (sin beta - mu cos beta), and is held where tan beta < mu."""
+    for slope, slides in ((math.atan(MU) - 1e-3, False), (0.3, True)):
+        table = tt.Table(slope=slope, azimuth=azimuth)
+        run = tt.simulate(launched(0.0, 0.0, table=table), 1.0, samples=3)
+        assert run.attrs["status"] == ("completed" if slides else "at_rest")
+        if not slides:
+            continue
+        acceleration = GRAVITY * (math.sin(slope) - MU * math.cos(slope))
+        way = math.hypot(float(run["x"][-1]), float(run["y"][-1]))
+        assert way == pytest.approx(acceleration / 2, rel=1e-9)
+        assert float(run["energy_error"]) < 1e-12
+
+
+def test_a_puck_stops_on_a_slope_where_friction_holds_it() -> None:
+    table = tt.Table(slope=0.1, azimuth=1.0)
+    run = tt.simulate(launched(0.4, 40.0, table=table), 20.0, samples=3)
+    assert run.attrs["status"] == "at_rest"
+    assert float(run["energy_error"]) < 1e-13
