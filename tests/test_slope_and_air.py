@@ -356,3 +356,32 @@ def test_derivatives_are_differences_of_runs(field):
         difference = (ahead[name].values[-1] - behind[name].values[-1]) / (2.0 * step)
         derivative = float(np.ravel(slopes[name].values)[-1])
         assert derivative == pytest.approx(difference, rel=1e-5, abs=1e-12 / step)
+
+
+@pytest.mark.parametrize(
+    ("law", "down"),
+    [
+        (tt.ViscousFriction(mu=MU), math.tan(0.04) / MU),
+        (tt.CoulombFriction(mu=MU), 0.0),
+    ],
+)
+@pytest.mark.parametrize("spin", [155.0, -155.0])
+def test_spinning_top_drifts_straight_across_the_slope(law, down, spin):
+    # With its centre of mass above the contact point no force has a moment: the top keeps its axis,
+    # at sin(tilt + slope) = sin(slope) / alpha downhill, and its velocity.
+    slope, report = 0.04, tt.presets.REPORT
+    tilt = math.asin(math.sin(slope) / report.shape.eccentricity) - slope
+    across = -R * spin * math.sin(tilt)
+    problem = tt.Problem(
+        body=report,
+        friction=law,
+        launch=tt.Launch(tilt=tilt, spin=spin, velocity=(down, across)),
+        table=tt.Table(slope=slope),
+    )
+    run = tt.simulate(problem, duration=0.1)
+    expected = np.tile([down, across, 0.0], (len(run["time"]), 1))
+    assert run["velocity"].values == pytest.approx(expected, abs=1e-11)
+    assert run["tilt"].values == pytest.approx(np.full(len(run["time"]), tilt), abs=1e-10)
+    assert run["spin"].values == pytest.approx(np.full(len(run["time"]), spin), rel=1e-11)
+    modes = set(run["mode"].values[1:].tolist())
+    assert modes == ({"sliding"} if down else {"sticking"})

@@ -28,10 +28,10 @@ class Table(Part):
     Examples
     --------
     >>> import tippetop as tt
-    >>> level = tt.presets.report_problem()
-    >>> sloping = level.replace({"table.slope": "2 deg"})
-    >>> run = tt.simulate(sloping, duration=0.5)
-    >>> bool(run["y"][-1] < -0.02)  # it drifts across the slope, to the right of the way down
+    >>> upright = tt.presets.report_problem(tilt=0.0)
+    >>> sloping = upright.replace({"table.slope": "1 deg"})
+    >>> run = tt.simulate(sloping, duration=2.0)
+    >>> bool(run["y"][-1] < -0.05)  # it drifts across the slope, to the right of the way down
     True
     """
 
