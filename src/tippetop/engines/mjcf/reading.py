@@ -12,7 +12,7 @@ from tippetop.engines.mjcf.document import Document, numbers
 from tippetop.engines.mjcf.geoms import Geom
 from tippetop.engines.mjcf.model import MjcfModel
 from tippetop.engines.mjcf.poses import Pose, Quaternion, inverse, matrix, product
-from tippetop.engines.mjcf.surfaces import OFF_AXIS, Turned, friction_of, turned_body
+from tippetop.engines.mjcf.surfaces import Turned, friction_of, turned_body
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.files import made_of, path_of, read_text
 from tippetop.support.suggestions import not_one_of
@@ -104,7 +104,7 @@ def _gravity(document: Document, table: Geom) -> tuple[float, tt.Table]:
         raise InvalidInput(
             "option.gravity", Described(shown), "a vector that points into the plane"
         )
-    if along <= -OFF_AXIS * up:
+    if along <= -ROUNDING * up:
         return -up, tt.Table()
     slope = tt.Table(slope=math.atan2(along, -up), azimuth=math.atan2(y, x))
     return math.hypot(along, up), slope
