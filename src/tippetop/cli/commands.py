@@ -10,6 +10,7 @@ from typer.core import TyperGroup
 from tippetop import __version__
 from tippetop.cli.body import body
 from tippetop.cli.critical import critical
+from tippetop.cli.dataset import dataset
 from tippetop.cli.engines import engines
 from tippetop.cli.fit import fit
 from tippetop.cli.lab import lab
@@ -85,7 +86,19 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (simulate, reproduce, critical, sweep, fit, lab, problem, body, reference, engines):
+for command in (
+    simulate,
+    reproduce,
+    critical,
+    sweep,
+    fit,
+    lab,
+    problem,
+    body,
+    reference,
+    engines,
+    dataset,
+):
     app.command()(command)
 
 
