@@ -68,6 +68,32 @@ def test_out_and_in_again_is_the_same_problem(body, friction, launch):
             assert flat_two[name] == value, name
 
 
+@pytest.mark.parametrize("slope", [0.2, 1e-7])
+def test_a_slope_goes_out_and_in_again(slope):
+    level = tt.Problem(
+        body=tt.presets.REPORT,
+        friction=tt.CoulombFriction(mu=0.3),
+        launch=tt.Launch(tilt=1, spin=9),
+    )
+    sloping = level.replace({"table.slope": slope, "table.azimuth": -2.0})
+    text, written = mjcf(sloping)
+    assert not written.remarks
+    again = problem_of_mjcf(text)
+    assert again.gravity == pytest.approx(sloping.gravity, rel=1e-15)
+    assert again.table.slope == pytest.approx(slope, rel=1e-15)
+    assert again.table.azimuth == pytest.approx(-2.0, rel=1e-15)
+
+
+def test_a_plane_that_is_turned_slopes():
+    plane = PLANE.replace("type=", 'euler="0 10 0" type=')
+    read = problem_of_mjcf(model_text(free(BALL, 'pos="0 0 .1"'), world=plane))
+    # The plane falls towards x, and the launch is counted from its normal.
+    turned = math.radians(10.0)
+    assert (read.table.slope, read.table.azimuth) == pytest.approx((turned, 0.0), abs=1e-15)
+    assert read.launch.tilt == pytest.approx(turned)
+    assert read.launch.gap == pytest.approx(0.1 * math.cos(turned) - 0.02)
+
+
 def _numbers(fields, place=""):
     items = fields.items() if isinstance(fields, dict) else enumerate(fields)
     for name, value in items:
